@@ -1,0 +1,1 @@
+"""Servo-press linkage."""
