@@ -1,1 +1,70 @@
-"""Truing."""
+"""Engineering calculations as plugins: what a plugin author needs, and nothing else."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from truing.declare.batch import column, either, feasible
+    from truing.declare.blocks import Block, Drawing, Table, Words
+    from truing.declare.fields import Float, axis, found, given, inputs, loaded, part, results, rows
+    from truing.declare.goals import Maximise, Minimise, Objective, Price, Require, Vary
+    from truing.declare.model import Model, Record, Section, Study
+    from truing.declare.published import Finding, Published
+    from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance, Unknown
+    from truing.declare.spreads import by_choice, drawn, grade, lognormal, normal, off, plus_minus, uniform, zone
+    from truing.errors import TruingError
+    from truing.kernel import Kernel
+    from truing.markers import hookimpl, hookspec
+    from truing.studies.allocation import Allocation, Allotted
+    from truing.studies.reliability import Odds, Reliability
+    from truing.studies.sensitivity import Sensitivities, Sensitivity
+    from truing.studies.sweep import Sweep, Swept
+
+_HOMES = {
+    "truing.declare.batch": ("column", "either", "feasible"),
+    "truing.declare.blocks": ("Block", "Drawing", "Table", "Words"),
+    "truing.declare.fields": ("Float", "axis", "found", "given", "inputs", "loaded", "part", "results", "rows"),
+    "truing.declare.goals": ("Maximise", "Minimise", "Objective", "Price", "Require", "Vary"),
+    "truing.declare.model": ("Model", "Record", "Section", "Study"),
+    "truing.declare.published": ("Finding", "Published"),
+    "truing.declare.sources": ("Condition", "Effect", "ErrorSource", "Tolerance", "Unknown"),
+    "truing.declare.spreads": (
+        "by_choice", "drawn", "grade", "lognormal", "normal", "off", "plus_minus", "uniform", "zone",
+    ),
+    "truing.errors": ("TruingError",),
+    "truing.kernel": ("Kernel",),
+    "truing.markers": ("hookimpl", "hookspec"),
+    "truing.studies.allocation": ("Allocation", "Allotted"),
+    "truing.studies.reliability": ("Odds", "Reliability"),
+    "truing.studies.sensitivity": ("Sensitivities", "Sensitivity"),
+    "truing.studies.sweep": ("Sweep", "Swept"),
+}  # fmt: skip
+_HOME = {name: module for module, names in _HOMES.items() for name in names}
+
+__all__ = [  # noqa: RUF022  # in the order of a plugin's story
+    "inputs", "results", "given", "found", "axis", "rows", "part", "loaded", "Float",
+    "feasible", "either", "column",
+    "Tolerance", "Effect", "Unknown", "Condition", "ErrorSource",
+    "normal", "plus_minus", "uniform", "lognormal", "grade", "zone", "drawn", "by_choice", "off",
+    "Vary", "Minimise", "Maximise", "Require", "Price", "Objective",
+    "Model", "Section", "Record", "Study", "Published", "Finding",
+    "Words", "Table", "Drawing", "Block",
+    "Sweep", "Swept", "Sensitivity", "Sensitivities", "Reliability", "Odds", "Allocation", "Allotted",
+    "hookimpl", "hookspec", "Kernel", "TruingError",
+]  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    """Import a name when it is first used, so that ``import truing`` costs nothing."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'truing' has no attribute '{name}'")
+    from importlib import import_module
+
+    value = getattr(import_module(_HOME[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(set(globals()) | set(__all__))

@@ -1,0 +1,95 @@
+"""A whole run: the calculation, its studies in order, and the checks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from typing import Any
+
+from truing.declare.fields import read
+from truing.declare.model import Record
+from truing.evaluate import effects_in_order, evaluate
+from truing.executors import open_executor
+from truing.setup import Setup
+from truing.studies.bench import Bench, Check, Outcome, Progress, silent
+from truing.studies.checks import plain_checks
+
+
+@dataclass(frozen=True)
+class Calculation:
+    """What a run found; everything in SI, by flat name."""
+
+    setup: Setup
+    results: Any
+    answers: Mapping[str, Any]
+    outcomes: Mapping[str, Outcome]
+    checks: tuple[Check, ...]
+    warnings: tuple[str, ...]
+    failed: tuple[tuple[int, str], ...] = field(default=())
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check on the sheet holds."""
+        return all(check.passed for check in self.checks)
+
+    @property
+    def record(self) -> Record[Any, Any]:
+        """The run as sections of the sheet see it."""
+        return Record(self.setup.inputs, self.results, self.answers, self.outcomes, self.setup.model.function)
+
+
+def calculate(setup: Setup, *, executor: Executor | None = None, progress: Progress = silent) -> Calculation:
+    """Run the calculation and the studies of the setup, in order.
+
+    Raises InfeasibleError where the inputs describe something impossible, PluginError where the plugin's code fails.
+    """
+    setup = effects_in_order(setup)
+    results = evaluate(setup)
+    answers = setup.model.read_results(results)
+    outcomes: dict[str, Outcome] = {}
+    given_by = setup.model.study_result_fields
+    own = executor is None
+    executor = executor or open_executor("serial")
+    try:
+        for study in setup.studies:
+            bench = Bench(setup, results, executor, dict(answers), dict(outcomes), progress)
+            outcomes[study.name] = outcome = study.run(bench)
+            if study.gives is not None:
+                given = study.gives(outcome)
+                fields = given_by[study.name]
+                answers.update({name: read(given, item.path) for name, item in fields.items()})
+    finally:
+        if own:
+            executor.shutdown()
+    return Calculation(
+        setup=setup,
+        results=results,
+        answers=answers,
+        outcomes=outcomes,
+        checks=tuple(_checks(setup, answers, outcomes)),
+        warnings=tuple(_warnings(setup, outcomes)),
+    )
+
+
+def _checks(setup: Setup, answers: Mapping[str, Any], outcomes: Mapping[str, Outcome]) -> list[Check]:
+    """Plain limits first; a chance that two studies decide is the last one's word (allocation after reliability)."""
+    checks = {check.name: check for check in plain_checks(setup, dict(answers))}
+    for outcome in outcomes.values():
+        checks.update({check.name: check for check in outcome.checks()})
+    return list(checks.values())
+
+
+def _warnings(setup: Setup, outcomes: Mapping[str, Outcome]) -> list[str]:
+    return [*setup.warnings, *_idle_effects(setup), *(text for outcome in outcomes.values() for text in outcome.warnings())]
+
+
+def _idle_effects(setup: Setup) -> list[str]:
+    """Name effects that are on while every condition they need stays at its reference."""
+    idle = []
+    for item in setup.effects:
+        needs = item.effect.needs
+        if needs and all(setup.conditions[need.name] == need.zero for need in needs):
+            names = " and ".join(f"'{need.name}'" for need in needs)
+            idle.append(f"effect '{item.effect.name}' is on, but {names} stays at its reference: it does nothing")
+    return idle

@@ -1,0 +1,1 @@
+"""What a calculation says of itself: fields, error sources, goals, and the model that joins them."""

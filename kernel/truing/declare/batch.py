@@ -1,0 +1,88 @@
+"""Words for the body of a calculation: what must hold, optional inputs, values that meet an axis."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import TYPE_CHECKING, Any
+
+from truing.errors import InfeasibleError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from truing.declare.fields import Float
+
+
+class FailedRows:
+    """Rows of one batch that broke a condition, each with the first sentence it broke."""
+
+    def __init__(self, rows: int) -> None:
+        import numpy as np
+
+        self.codes: NDArray[np.int32] = np.zeros(rows, dtype=np.int32)
+        self.sentences: list[str] = []
+
+    def add(self, failed: NDArray[np.bool_], sentence: str) -> None:
+        """Note ``sentence`` for every failed row that has none yet; a scalar condition concerns all rows."""
+        import numpy as np
+
+        fresh = np.broadcast_to(failed, self.codes.shape) & (self.codes == 0)
+        if fresh.any():
+            self.sentences.append(sentence)
+            self.codes[fresh] = len(self.sentences)
+
+    def reason(self, row: int) -> str | None:
+        """Return why this row failed, or None if it did not."""
+        code = int(self.codes[row])
+        return self.sentences[code - 1] if code else None
+
+
+_WATCH: ContextVar[FailedRows | None] = ContextVar("truing_failed_rows", default=None)
+
+
+@contextmanager
+def watching(rows: int) -> Iterator[FailedRows]:
+    """Collect what ``feasible`` finds in a batch of ``rows`` instead of ending the calculation."""
+    failed = FailedRows(rows)
+    token = _WATCH.set(failed)
+    try:
+        yield failed
+    finally:
+        _WATCH.reset(token)
+
+
+def feasible(holds: Any, sentence: str) -> None:
+    """State what must hold; NaN does not hold.
+
+    A single calculation ends with ``InfeasibleError`` and the sentence; in a batch the row keeps its reason and
+    the others go on. ``holds`` is a bool or an array (n,) or (n, k): a row fails if any of its values does.
+    """
+    import numpy as np
+
+    values = np.asarray(holds, dtype=bool)
+    if values.all():
+        return
+    failed = _WATCH.get()
+    if failed is None:
+        raise InfeasibleError(sentence)
+    broken = ~values
+    failed.add(broken if broken.ndim < 2 else broken.any(axis=tuple(range(1, broken.ndim))), sentence)
+
+
+def either(value: Float, otherwise: Float) -> Float:
+    """Return ``value`` where it is given (not NaN), else ``otherwise``."""
+    import numpy as np
+
+    if isinstance(value, float):
+        return otherwise if value != value else value
+    return np.where(np.isnan(value), otherwise, value)
+
+
+def column(value: Float) -> Float:
+    """Make one value per row meet an axis: (n,) becomes (n, 1); a number stays a number."""
+    import numpy as np
+
+    return value[..., np.newaxis] if isinstance(value, np.ndarray) and value.ndim else value

@@ -1,0 +1,80 @@
+"""What the calculation is for: what may be chosen, what should be small or large, what must hold, what it costs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from truing.errors import DeclarationError
+
+LimitKind = Literal["at_most", "at_least", "within"]
+
+
+@dataclass(frozen=True)
+class Price:
+    """What a tolerance costs: a formula in ``width`` (the full band as a number in the unit ``width``)."""
+
+    formula: str
+    width: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Vary:
+    """An input that may be chosen between ``low`` and ``high`` (texts with units), or that a formula makes follow."""
+
+    input: str
+    low: str = ""
+    high: str = ""
+    by: str = ""
+
+    def __post_init__(self) -> None:
+        if bool(self.by) == bool(self.low and self.high):
+            raise DeclarationError(f"Vary('{self.input}') takes either low and high or by=\"formula\"")
+
+
+@dataclass(frozen=True)
+class Minimise:
+    """A result that should be small."""
+
+    result: str
+
+
+@dataclass(frozen=True)
+class Maximise:
+    """A result that should be large."""
+
+    result: str
+
+
+@dataclass(frozen=True, init=False)
+class Require:
+    """A limit on a result; with ``reliability`` a limit on the chance of meeting it.
+
+    A limit is a quantity ("80 MPa") or the name of an input or result. ``within`` is the distance from the nominal
+    result, that of the design without any scatter. ``reliability`` is a probability or the name of an input.
+    """
+
+    result: str
+    kind: LimitKind
+    limit: str
+    reliability: float | str | None
+
+    def __init__(
+        self,
+        result: str,
+        *,
+        at_most: str = "",
+        at_least: str = "",
+        within: str = "",
+        reliability: float | str | None = None,
+    ) -> None:
+        stated = [(kind, text) for kind, text in (("at_most", at_most), ("at_least", at_least), ("within", within)) if text]
+        if len(stated) != 1:
+            raise DeclarationError(f"Require('{result}') takes one of at_most, at_least and within")
+        values = {"result": result, "kind": stated[0][0], "limit": stated[0][1], "reliability": reliability}
+        for key, value in values.items():
+            object.__setattr__(self, key, value)
+
+
+Objective: TypeAlias = Vary | Minimise | Maximise | Require

@@ -1,0 +1,191 @@
+"""The model: one plain function with everything that is said about it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, Literal, Protocol, TypeVar, get_type_hints
+
+from truing.declare.checks import check_model
+from truing.declare.fields import InputField, ResultField, in_si, input_fields, read, result_fields, with_values
+from truing.declare.goals import Objective
+from truing.declare.published import Finding, Published
+from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance
+from truing.errors import DeclarationError
+
+if TYPE_CHECKING:
+    from truing.declare.blocks import Block
+
+I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
+R = TypeVar("R")
+Level = Literal["short", "normal", "full"]
+
+
+class Study(Protocol):
+    """A question asked of a model: a frozen dataclass with one method."""
+
+    @property
+    def name(self) -> str:
+        """The key in results.json and in ``[studies]``."""
+
+    @property
+    def gives(self) -> Callable[[Any], Any] | None:
+        """Turns the outcome into results of the model, or None."""
+
+    def run(self, bench: Any) -> Any:
+        """Answer, with the workbench ``truing.studies.bench.Bench`` that holds model, inputs and error sources."""
+
+
+@dataclass(frozen=True)
+class Record(Generic[I, R]):
+    """A finished run as sections see it: inputs and results in SI, every answer by flat name, outcomes by study."""
+
+    inputs: I
+    results: R
+    answers: Mapping[str, Any]
+    studies: Mapping[str, Any]
+    function: Callable[[I], R]
+
+
+@dataclass(frozen=True, init=False)
+class Section:
+    """A part of the sheet: results by name with their formulas, words, and what ``figure`` draws.
+
+    ``figure(record)`` returns a matplotlib Figure; ``blocks(record)`` a sequence of words, tables and drawings.
+    """
+
+    title: str
+    names: tuple[str, ...]
+    text: str
+    figure: Callable[[Record[Any, Any]], Any] | None
+    blocks: Callable[[Record[Any, Any]], Sequence[Block]] | None
+    level: Level
+    caption: str
+
+    def __init__(
+        self,
+        title: str,
+        *names: str,
+        text: str = "",
+        figure: Callable[[Record[Any, Any]], Any] | None = None,
+        blocks: Callable[[Record[Any, Any]], Sequence[Block]] | None = None,
+        level: Level = "normal",
+        caption: str = "",
+    ) -> None:
+        values = {"title": title, "names": names, "text": text, "figure": figure, "blocks": blocks, "level": level}
+        for key, value in {**values, "caption": caption}.items():
+            object.__setattr__(self, key, value)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Model(Generic[I, R]):
+    """A calculation: ``function`` takes SI floats or arrays (n,) and returns the same, no I/O, no globals.
+
+    ``derivatives(inputs)`` may give exact ones, ``{result: {input: value}}`` in SI. ``example`` is the commented inputs
+    file that ``calc init`` writes. Everything is checked when the model is made; a fault raises DeclarationError.
+    """
+
+    name: str
+    title: str
+    function: Callable[[I], R]
+    errors: Sequence[ErrorSource[I, R]] = ()
+    objectives: Sequence[Objective] = ()
+    studies: Sequence[Study] = ()
+    sheet: Sequence[Section] = ()
+    cites: Sequence[str] = ()
+    published: Sequence[Published] = ()
+    findings: Sequence[Finding] = ()
+    derivatives: Callable[[I], Mapping[str, Mapping[str, Any]]] | None = None
+    example: Path | None = None
+    summary: str = ""
+    _checked: bool = field(default=True, repr=False)
+
+    def __post_init__(self) -> None:
+        check_model(self)
+
+    @cached_property
+    def input_type(self) -> type[I]:
+        """The dataclass of inputs."""
+        return self._annotated()[0]
+
+    @cached_property
+    def result_type(self) -> type[R]:
+        """The dataclass of results."""
+        return self._annotated()[1]
+
+    def _annotated(self) -> tuple[type[Any], type[Any]]:
+        hints = get_type_hints(self.function)
+        answer = hints.pop("return", None)
+        if len(hints) != 1 or answer is None:
+            raise DeclarationError(f"{self.name}: the function takes one annotated class of inputs and returns one of results")
+        return next(iter(hints.values())), answer
+
+    @cached_property
+    def input_fields(self) -> dict[str, InputField]:
+        """Every input by flat name."""
+        return input_fields(self.input_type)
+
+    @cached_property
+    def own_result_fields(self) -> dict[str, ResultField]:
+        """Every result of the function by flat name."""
+        return result_fields(self.result_type)
+
+    @cached_property
+    def study_result_fields(self) -> dict[str, dict[str, ResultField]]:
+        """The results that studies give, by study name."""
+        given: dict[str, dict[str, ResultField]] = {}
+        for study in self.studies:
+            if study.gives is not None:
+                answer = get_type_hints(study.gives).get("return")
+                if answer is None:
+                    raise DeclarationError(f"{self.name}: {study.gives.__name__} must say which @results class it returns")
+                given[study.name] = result_fields(answer)
+        return given
+
+    @cached_property
+    def result_fields(self) -> dict[str, ResultField]:
+        """Every result, the function's and the studies'."""
+        fields = dict(self.own_result_fields)
+        for of_study in self.study_result_fields.values():
+            for name, item in of_study.items():
+                if name in fields:
+                    raise DeclarationError(f"{self.name}: the result '{name}' occurs twice")
+                fields[name] = item
+        return fields
+
+    @property
+    def tolerances(self) -> dict[str, Tolerance]:
+        """The tolerances by name."""
+        return {source.name: source for source in self.errors if isinstance(source, Tolerance)}
+
+    @property
+    def effects(self) -> dict[str, Effect[I, R]]:
+        """The effects by name, as declared."""
+        return {source.name: source for source in self.errors if isinstance(source, Effect)}
+
+    @property
+    def conditions(self) -> dict[str, Condition]:
+        """The conditions of all effects by name."""
+        return {condition.name: condition for effect in self.effects.values() for condition in effect.needs}
+
+    def inputs(self, **values: Any) -> I:
+        """Make inputs by flat name; texts carry units (``load="3 kN"``), numbers are SI, the rest is default."""
+        unknown = set(values) - set(self.input_fields)
+        if unknown:
+            raise TypeError(f"{self.name} has no input {', '.join(sorted(unknown))}")
+        changed = {}
+        for name, value in values.items():
+            item = self.input_fields[name]
+            has_unit = isinstance(value, str) and item.kind in {"float", "whole", "series"}
+            changed[item.path] = in_si(value, item.unit) if has_unit else value
+        return with_values(self.input_type(), changed)
+
+    def read_inputs(self, inputs: I) -> dict[str, Any]:
+        """Return every input by flat name, SI."""
+        return {name: read(inputs, item.path) for name, item in self.input_fields.items()}
+
+    def read_results(self, results: R) -> dict[str, Any]:
+        """Return every result of the function by flat name, SI."""
+        return {name: read(results, item.path) for name, item in self.own_result_fields.items()}

@@ -1,0 +1,20 @@
+"""Which quantity a name in a formula means: that of its own part first."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from truing.declare.fields import InputField, ResultField
+    from truing.declare.model import Model
+
+
+def formula_scope(model: Model[Any, Any], item: ResultField) -> Mapping[str, InputField | ResultField]:
+    """Return what each name means in the formula of ``item``: own part first, then the flat names."""
+    known: dict[str, InputField | ResultField] = {**model.input_fields, **model.own_result_fields}
+    if not item.scope:
+        return known
+    ending = "_" + item.scope
+    own = {name.removesuffix(ending): field for name, field in known.items() if name.endswith(ending)}
+    return {**known, **own}

@@ -1,0 +1,171 @@
+"""Error sources: what could make a model disagree with reality. Declared once, used by every study."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Concatenate, Generic, Literal, TypeAlias, TypeVar
+
+from truing.declare.goals import Price
+from truing.declare.spreads import Spread
+from truing.errors import DeclarationError
+
+I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
+R = TypeVar("R")
+Place = Literal["inputs", "results", "reading"]
+
+
+@dataclass(frozen=True, init=False)
+class Tolerance:
+    """Inputs that scatter about their nominal: one band, one price, one independent draw per input it is ``on``."""
+
+    name: str
+    spread: Spread
+    on: tuple[str, ...]
+    why: str
+    price: Price | None
+    source: str
+
+    def __init__(
+        self,
+        name: str,
+        spread: Spread,
+        on: Sequence[str] | None = None,
+        *,
+        why: str = "",
+        price: Price | None = None,
+        source: str = "",
+    ) -> None:
+        values = {"name": name, "spread": spread, "on": tuple(on or (name,)), "why": why, "price": price, "source": source}
+        for key, value in values.items():
+            object.__setattr__(self, key, value)
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A number that only measurement can tell; bounds in ``unit``.
+
+    Bounds that contain 0 make it an amplitude, any others a shape (positive ones are searched on a logarithmic grid).
+    """
+
+    name: str
+    low: float
+    high: float
+    unit: str = ""
+    note: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.low < self.high:
+            raise DeclarationError(f"unknown '{self.name}': the lower bound {self.low} must lie below {self.high}")
+
+    @property
+    def is_amplitude(self) -> bool:
+        """Whether the effect vanishes with it."""
+        return self.low <= 0 <= self.high
+
+
+@dataclass(frozen=True)
+class Condition:
+    """Something measured that is no input of the model, with the reference at which its effects vanish (in ``unit``)."""
+
+    name: str
+    unit: str
+    reference: float = 0.0
+    note: str = ""
+    derived: str = ""
+
+    @property
+    def zero(self) -> float:
+        """The reference in SI, as effects see the condition itself."""
+        from truing.units import to_si
+
+        return float(to_si(self.reference, self.unit))
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Actions(Generic[I, R]):
+    on_inputs: Callable[Concatenate[I, ...], I] | None = None
+    on_results: Callable[Concatenate[I, R, ...], R] | None = None
+    on_reading: Callable[Concatenate[I, R, ...], R] | None = None
+
+
+@dataclass(frozen=True, init=False)
+class Effect(Generic[I, R]):
+    """Physics the model leaves out, with one to three unknowns, acting at one place.
+
+    ``on_inputs(inputs, **unknowns, **conditions) -> inputs``: the model runs again and everything follows;
+    ``on_results(inputs, results, ...) -> results``: a last term on a last result;
+    ``on_reading(inputs, results, ...) -> results``: the gauge errs, not the machine.
+    """
+
+    name: str
+    actions: _Actions[I, R]
+    unknowns: tuple[Unknown, ...]
+    needs: tuple[Condition, ...]
+    looks_like: str
+    why: str
+    source: str
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        unknowns: Sequence[Unknown],
+        on_inputs: Callable[Concatenate[I, ...], I] | None = None,
+        on_results: Callable[Concatenate[I, R, ...], R] | None = None,
+        on_reading: Callable[Concatenate[I, R, ...], R] | None = None,
+        needs: Sequence[Condition] = (),
+        looks_like: str = "",
+        why: str = "",
+        source: str = "",
+    ) -> None:
+        actions = _Actions(on_inputs=on_inputs, on_results=on_results, on_reading=on_reading)
+        values = {
+            "name": name, "actions": actions, "unknowns": tuple(unknowns), "needs": tuple(needs),
+            "looks_like": looks_like, "why": why, "source": source,
+        }  # fmt: skip
+        for key, value in values.items():
+            object.__setattr__(self, key, value)
+        _check_effect(self)
+
+    @property
+    def place(self) -> Place:
+        """Where the effect acts: on the inputs, on the results or on the reading."""
+        if self.actions.on_inputs is not None:
+            return "inputs"
+        return "results" if self.actions.on_results is not None else "reading"
+
+    @property
+    def function(self) -> Callable[..., Any]:
+        """The function of that place."""
+        given = (self.actions.on_inputs, self.actions.on_results, self.actions.on_reading)
+        return next(function for function in given if function is not None)
+
+
+def _check_effect(effect: Effect[Any, Any]) -> None:
+    """Refuse an effect whose function does not fit its unknowns and conditions."""
+    actions = effect.actions
+    if sum(function is not None for function in (actions.on_inputs, actions.on_results, actions.on_reading)) != 1:
+        raise DeclarationError(f"effect '{effect.name}' acts at one place: give on_inputs, on_results or on_reading")
+    if not 1 <= len(effect.unknowns) <= 3:
+        raise DeclarationError(f"effect '{effect.name}' has {len(effect.unknowns)} unknowns; one to three can be found")
+    if not any(unknown.is_amplitude for unknown in effect.unknowns):
+        raise DeclarationError(f"effect '{effect.name}' has no amplitude: one unknown's bounds must contain 0")
+    wanted = {item.name for item in (*effect.unknowns, *effect.needs)}
+    if len(wanted) != len(effect.unknowns) + len(effect.needs):
+        raise DeclarationError(f"effect '{effect.name}' names an unknown or condition twice")
+    parameters = list(inspect.signature(effect.function).parameters.values())
+    leading = 1 if effect.place == "inputs" else 2
+    named = parameters[leading:]
+    if any(item.kind is inspect.Parameter.VAR_KEYWORD for item in named):
+        return
+    if {item.name for item in named} != wanted:
+        have = ", ".join(item.name for item in named) or "none"
+        raise DeclarationError(
+            f"effect '{effect.name}': {effect.function.__name__} takes the keywords {have}, "
+            f"but its unknowns and conditions are {', '.join(sorted(wanted))}"
+        )
+
+
+ErrorSource: TypeAlias = Tolerance | Effect[I, R]

@@ -1,0 +1,338 @@
+"""How an input scatters about its nominal: the words of a drawing, resolved to a distribution in SI.
+
+A spread is what is declared (``plus_minus("0.05 mm")``); with the nominal value it becomes a ``Distribution``.
+A band of six standard deviations and a half-band of three are the 3-sigma rule of mass production.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal, Protocol
+
+from truing.errors import DeclarationError, UnitError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+Shape = Literal["normal", "uniform", "lognormal"]
+SIGMAS_IN_BAND = 6.0
+
+
+@dataclass(frozen=True, slots=True)
+class Distribution:
+    """One input's scatter in SI: mean, standard deviation and shape."""
+
+    mean: float
+    sd: float
+    shape: Shape = "normal"
+
+    @property
+    def width(self) -> float:
+        """The full band that a drawing would state: six standard deviations, or the whole of a uniform one."""
+        return self.sd * (12**0.5 if self.shape == "uniform" else SIGMAS_IN_BAND)
+
+    def draw(self, rng: np.random.Generator, rows: int) -> NDArray[np.float64]:
+        """Draw ``rows`` values."""
+        if self.shape == "uniform":
+            half = self.width / 2
+            return rng.uniform(self.mean - half, self.mean + half, rows)
+        return self._scaled(rng.standard_normal(rows))
+
+    def from_standard(self, standard: Any) -> Any:
+        """Map standard normal values to this distribution (for FORM, Sobol sequences and fixed draws)."""
+        if self.shape != "uniform":
+            import numpy as np
+
+            return self._scaled(np.array(standard, dtype=float))
+        from scipy.special import ndtr
+
+        return self.mean + self.width * (ndtr(standard) - 0.5)
+
+    def _scaled(self, standard: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Scale standard normal values in place."""
+        if self.shape == "lognormal":
+            import numpy as np
+
+            log_variance = np.log1p((self.sd / self.mean) ** 2)
+            return np.asarray(np.exp(np.log(self.mean) - log_variance / 2 + np.sqrt(log_variance) * standard))
+        standard *= self.sd
+        if self.mean:
+            standard += self.mean
+        return standard
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """The input a spread acts on: its nominal value in SI, its unit, and how to read another input by name."""
+
+    name: str
+    nominal: float
+    unit: str
+    value_of: Callable[[str], Any]
+
+
+class Spread(Protocol):
+    """What every word for a spread can do."""
+
+    @property
+    def text(self) -> str:
+        """The spread as an inputs file writes it."""
+
+    def resolve(self, target: Target) -> Distribution | None:
+        """Return the distribution about the target's nominal, or None when the spread is off."""
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """A standard deviation, a full band or a half-band, as a quantity or as a share of the nominal."""
+
+    amount: str
+    says: Literal["sd", "band", "±"]
+    shape: Shape = "normal"
+    at_radius: str = ""
+
+    @property
+    def text(self) -> str:
+        """The spread as an inputs file writes it."""
+        words = f"±{self.amount}" if self.says == "±" else f"{self.says} {self.amount}"
+        return words if self.shape == "normal" else f"{self.shape} {words}"
+
+    def resolve(self, target: Target) -> Distribution:
+        """Return the distribution; a percentage is of the nominal unless the input itself is declared in percent."""
+        amount = self._amount(target)
+        half_to_sd = 3**0.5 if self.shape == "uniform" else SIGMAS_IN_BAND / 2
+        sd = {"sd": amount, "band": amount / 2 / half_to_sd, "±": amount / half_to_sd}[self.says]
+        if self.shape == "lognormal" and not target.nominal > 0:
+            raise UnitError(f"a lognormal spread needs a nominal above zero; '{target.name}' is {target.nominal:g}")
+        return Distribution(target.nominal, sd, self.shape)
+
+    def _amount(self, target: Target) -> float:
+        from truing.units import read_quantity, split_quantity
+
+        quantity = split_quantity(self.amount)
+        if quantity.unit == "%" and target.unit != "%":
+            if not target.nominal:
+                raise UnitError(f"{self.amount} of '{target.name}' is nothing, because its nominal is 0; write a quantity")
+            return abs(quantity.value / 100 * target.nominal)
+        if not self.at_radius:
+            return _positive(difference(self.amount, target.unit), self.amount)
+        radius = float(target.value_of(self.at_radius))
+        return _positive(read_quantity(self.amount, "m"), self.amount) / radius
+
+
+@dataclass(frozen=True, slots=True)
+class Grade:
+    """An ISO 286 tolerance grade from the nominal size, read as a full band."""
+
+    grade: str
+    size: str = ""
+
+    @property
+    def text(self) -> str:
+        """The spread as an inputs file writes it."""
+        return self.grade
+
+    def width(self, target: Target) -> float:
+        """Return the full width in metres."""
+        from truing.fits import tolerance
+
+        return tolerance(self.grade, self.size_of(target))
+
+    def size_of(self, target: Target) -> float:
+        """Return the nominal size in metres that the grade is read for."""
+        return float(target.value_of(self.size)) if self.size else target.nominal
+
+    def resolve(self, target: Target) -> Distribution:
+        """Return a normal distribution whose six standard deviations fill the grade."""
+        return Distribution(target.nominal, self.width(target) / SIGMAS_IN_BAND)
+
+
+@dataclass(frozen=True, slots=True)
+class Zone:
+    """A tolerance zone from ``low`` to ``high``, measured from the nominal; its mean is its middle."""
+
+    low: str
+    high: str
+    grows: Literal["up", "down", "both"] = "both"
+
+    @property
+    def text(self) -> str:
+        """The spread as an inputs file writes it."""
+        return f"zone {self.low} .. {self.high}"
+
+    def resolve(self, target: Target) -> Distribution:
+        """Return a normal distribution about the middle, six standard deviations wide."""
+        low, high = (difference(end, target.unit) for end in (self.low, self.high))
+        if not high > low:
+            raise UnitError(f"zone of '{target.name}': its end {self.high} must lie above its start {self.low}")
+        return Distribution(target.nominal + (low + high) / 2, (high - low) / SIGMAS_IN_BAND)
+
+
+@dataclass(frozen=True, slots=True)
+class Off:
+    """No scatter."""
+
+    @property
+    def text(self) -> str:
+        """The spread as an inputs file writes it."""
+        return "off"
+
+    def resolve(self, target: Target) -> None:
+        """Return nothing: the input keeps its nominal value."""
+
+
+@dataclass(frozen=True, slots=True)
+class ByChoice:
+    """Another spread for each value of an input that offers choices."""
+
+    chooser: str
+    spreads: Mapping[str, Spread]
+
+    @property
+    def text(self) -> str:
+        """All branches in words; an inputs file writes one of them."""
+        return ", ".join(f"{spread.text} if {self.chooser} is {value}" for value, spread in self.spreads.items())
+
+    def chosen(self, value: str) -> Spread:
+        """Return the spread for this value of the choosing input."""
+        return self.spreads[value]
+
+    def resolve(self, target: Target) -> Distribution | None:
+        """Return what the chosen spread says."""
+        return self.chosen(str(target.value_of(self.chooser))).resolve(target)
+
+
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """Inputs that scatter together: ``function(rng, rows)`` returns their deviations from nominal by name."""
+
+    function: Callable[[Any, int], Mapping[str, Any]]
+
+    @property
+    def text(self) -> str:
+        """The spread as the sheet names it."""
+        return f"drawn by {self.function.__name__}"
+
+    def resolve(self, target: Target) -> Distribution:
+        """Return a normal stand-in with the mean and standard deviation of 4096 fixed draws."""
+        import numpy as np
+
+        deviations = np.asarray(self.function(np.random.default_rng(0), 4096)[target.name])
+        return Distribution(target.nominal + float(deviations.mean()), float(deviations.std(ddof=1)))
+
+
+def normal(*, sd: str = "", band: str = "", at_radius: str = "") -> Band:
+    """Scatter normally with a standard deviation, or with a band of six of them."""
+    if bool(sd) == bool(band):
+        raise DeclarationError('normal() takes either sd="3 %" or band="0.125 mm"')
+    return Band(sd or band, "sd" if sd else "band", at_radius=at_radius)
+
+
+def plus_minus(half: str, *, at_radius: str = "") -> Band:
+    """Scatter normally within ± ``half``, read as three standard deviations.
+
+    ``at_radius`` names the input that holds a radius: then ``half`` is a length across it and the input an angle.
+    """
+    return Band(half, "±", at_radius=at_radius)
+
+
+def uniform(half: str) -> Band:
+    """Scatter evenly within ± ``half``."""
+    return Band(half, "±", "uniform")
+
+
+def lognormal(*, sd: str) -> Band:
+    """Scatter lognormally with the nominal as mean; ``sd`` is a share of it or a quantity."""
+    return Band(sd, "sd", "lognormal")
+
+
+def grade(name: str, *, size: str = "") -> Grade:
+    """Scatter within an ISO 286 grade of the input's nominal size, or of the input named by ``size``."""
+    return Grade(name, size)
+
+
+def zone(low: str, high: str, *, grows: Literal["up", "down", "both"] = "both") -> Zone:
+    """Scatter normally in a zone measured from the nominal; ``grows`` says which end moves when it is widened."""
+    return Zone(low, high, grows)
+
+
+def off() -> Off:
+    """Do not scatter."""
+    return Off()
+
+
+def by_choice(chooser: str, /, **spreads: Spread) -> ByChoice:
+    """Scatter as the value of the input ``chooser`` says."""
+    return ByChoice(chooser, spreads)
+
+
+def drawn(function: Callable[[Any, int], Mapping[str, Any]]) -> Drawn:
+    """Scatter together: ``function(rng, rows)`` returns deviations in SI, shape (rows,), by input name."""
+    return Drawn(function)
+
+
+def difference(text: str, unit: str) -> float:
+    """Read a difference: like any quantity, except that levels of temperature differ by kelvins."""
+    from truing.units import read_quantity
+
+    return read_quantity(text, "K" if unit in {"degC", "degF", "°C", "°F"} else unit)
+
+
+def _positive(value: float, text: str) -> float:
+    if value < 0:
+        raise UnitError(f"'{text}' is negative; a spread is written as its size")
+    return value
+
+
+def read_spread(text: str | Mapping[str, Any], declared: Spread) -> Spread:
+    """Read what an inputs file says of a tolerance; where the spread is measured stays as declared.
+
+    Takes "±0.05 mm", "sd 3 %", "band 0.125 mm", "IT6", "uniform ±0.1 mm", "lognormal sd 6 %", "off",
+    "zone 0 um .. 6 um" and {zone = ["0 um", "6 um"]}. Raises UnitError with one sentence for anything else.
+    """
+    if not isinstance(text, str):
+        return _zone_table(text, declared)
+    words = text.replace("+/-", "±").replace("+-", "±").strip()
+    if words == "off":
+        return Off()
+    if words.upper().startswith("IT") and words[2:].strip().isdigit():
+        return Grade("IT" + words[2:].strip(), _settled(declared, "size"))
+    if words.startswith("zone"):
+        ends = [end.strip() for end in words[4:].split("..")]
+        return _zone_table({"zone": ends}, declared)
+    return _band(words, text, declared)
+
+
+def _band(words: str, text: str, declared: Spread) -> Band:
+    from truing.units import split_quantity
+
+    shape: Shape = "normal"
+    for other in ("uniform", "lognormal", "normal"):
+        if words.startswith(other + " "):
+            shape, words = other, words[len(other) :].strip()  # type: ignore[assignment]  # one of the three
+            break
+    says: tuple[Literal["±", "sd", "band"], ...] = ("±", "sd", "band")
+    for word in says:
+        if words.startswith(word):
+            amount = words[len(word) :].strip()
+            split_quantity(amount)
+            return Band(amount, word, shape, _settled(declared, "at_radius"))
+    raise UnitError(
+        f"'{text}' is no tolerance; write '±0.05 mm', 'sd 3 %', 'band 0.125 mm', 'IT6', "
+        "{zone = [\"0 um\", \"6 um\"]} or 'off'"
+    )
+
+
+def _zone_table(table: Mapping[str, Any], declared: Spread) -> Zone:
+    ends = table.get("zone") if isinstance(table, Mapping) else None
+    if not isinstance(ends, list) or len(ends) != 2 or set(table) != {"zone"} or not all(isinstance(e, str) for e in ends):
+        raise UnitError('a zone is written {zone = ["0 um", "6 um"]}')
+    return replace(declared, low=ends[0], high=ends[1]) if isinstance(declared, Zone) else Zone(ends[0], ends[1])
+
+
+def _settled(declared: Spread, name: str) -> str:
+    """Return a setting of the declared spread (its size, its radius) that a file does not repeat."""
+    spreads = declared.spreads.values() if isinstance(declared, ByChoice) else (declared,)
+    return next((value for spread in spreads if (value := getattr(spread, name, ""))), "")

@@ -1,0 +1,95 @@
+"""A calculation ready to run: a model with checked inputs and everything the inputs file decided."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from truing.declare.model import Model, Study
+from truing.declare.sources import Effect
+from truing.declare.spreads import Distribution, Off, Spread, Target
+from truing.kernel import Added, Origin
+
+
+@dataclass(frozen=True)
+class SwitchedOn:
+    """An effect that is on: its unknowns in SI, and their standard deviations and covariance where diagnosed."""
+
+    effect: Effect[Any, Any]
+    values: Mapping[str, float]
+    sds: Mapping[str, float] = field(default_factory=dict)
+    covariance: tuple[tuple[float, ...], ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setup:
+    """What one inputs file says, checked, in SI. ``spreads`` holds the tolerances in force, by name."""
+
+    model: Model[Any, Any]
+    origin: Origin
+    inputs: Any
+    stated: frozenset[str] = frozenset()
+    spreads: Mapping[str, Spread] = field(default_factory=dict)
+    conditions: Mapping[str, float] = field(default_factory=dict)
+    effects: tuple[SwitchedOn, ...] = ()
+    calibrated: Mapping[str, float] = field(default_factory=dict)
+    studies: tuple[Study, ...] = ()
+    units: Mapping[str, str] = field(default_factory=dict)
+    head: Mapping[str, str] = field(default_factory=dict)
+    detail: str = "normal"
+    seed: int = 1
+    added: tuple[Added, ...] = ()
+    file: str = ""
+    files: Mapping[str, str] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+    def nominal(self, name: str) -> Any:
+        """Return the nominal value in SI of an input or condition."""
+        if name in self.model.input_fields:
+            return self.model.read_inputs(self.inputs)[name]
+        return self.conditions[name]
+
+    def unit_of(self, name: str) -> str:
+        """Return the declared unit of an input or condition."""
+        item = self.model.input_fields.get(name)
+        return item.unit if item is not None else self.model.conditions[name].unit
+
+    def print_unit(self, name: str) -> str:
+        """Return the unit in which a result or input is printed."""
+        if name in self.units:
+            return self.units[name]
+        item = self.model.result_fields.get(name)
+        return item.unit if item is not None else self.unit_of(name)
+
+    def target(self, name: str) -> Target:
+        """Return what a spread needs to know of the input it acts on."""
+        return Target(name, float(self.nominal(name)), self.unit_of(name), self.nominal)
+
+    def distributions(self) -> dict[str, dict[str, Distribution]]:
+        """Return, by tolerance and input, every scatter that is not off."""
+        found: dict[str, dict[str, Distribution]] = {}
+        for tolerance in self.model.tolerances.values():
+            spread = self.spreads.get(tolerance.name, tolerance.spread)
+            if isinstance(spread, Off):
+                continue
+            resolved = {name: spread.resolve(self.target(name)) for name in tolerance.on}
+            kept = {name: distribution for name, distribution in resolved.items() if distribution is not None}
+            if kept:
+                found[tolerance.name] = kept
+        return found
+
+
+def default_setup(model: Model[Any, Any], origin: Origin | None = None, **values: Any) -> Setup:
+    """Return the model at its defaults, with some inputs replaced (texts carry units)."""
+    origin = origin or Origin(model.name, "", "", "", f"entry:{model.name}")
+    conditions = {name: condition.zero for name, condition in model.conditions.items()}
+    return Setup(
+        model=model,
+        origin=origin,
+        inputs=model.inputs(**values),
+        stated=frozenset(values),
+        spreads={name: tolerance.spread for name, tolerance in model.tolerances.items()},
+        conditions=conditions,
+        studies=tuple(model.studies),
+    )

@@ -1,0 +1,92 @@
+"""Limits: what a requirement demands, in numbers, and the margin that is left."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from truing.declare.fields import in_si
+from truing.declare.goals import Require
+from truing.setup import Setup
+from truing.studies.bench import Check
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A requirement in SI: ``low <= result <= high``, and the probability it asks for (None: it must simply hold)."""
+
+    name: str
+    result: str
+    low: float
+    high: float
+    goal: float | None
+    require: Require
+
+
+def margin_of(value: float, limit: float, *, at_least: bool = False) -> float:
+    """Return (limit - value)/|limit|, negated for a lower limit; absolute when the limit is 0."""
+    distance = (value - limit) if at_least else (limit - value)
+    return distance / abs(limit) if limit else distance
+
+
+def limits(setup: Setup, answers: dict[str, Any]) -> list[Limit]:
+    """Return every requirement of the model in numbers; ``answers`` holds the nominal results in SI."""
+    requires = [item for item in setup.model.objectives if isinstance(item, Require)]
+    return [_limit(require, requires, setup, answers) for require in requires if require.result in answers]
+
+
+def _limit(require: Require, others: list[Require], setup: Setup, answers: dict[str, Any]) -> Limit:
+    amount = limit_amount(require, setup, answers)
+    nominal = answers[require.result]
+    low, high = -float("inf"), float("inf")
+    if require.kind == "at_most":
+        high = amount
+    elif require.kind == "at_least":
+        low = amount
+    else:
+        low, high = nominal - amount, nominal + amount
+    goal = require.reliability
+    if isinstance(goal, str):
+        goal = float(setup.nominal(goal))
+    return Limit(check_name(require, others), require.result, low, high, goal, require)
+
+
+def limit_amount(require: Require, setup: Setup, answers: dict[str, Any]) -> float:
+    """Return the stated limit in SI: an input, a result or a quantity in the unit of the result."""
+    if require.limit in setup.model.input_fields:
+        return float(setup.nominal(require.limit))
+    if require.limit in answers:
+        return float(answers[require.limit])
+    return float(in_si(require.limit, setup.model.result_fields[require.result].unit))
+
+
+def check_name(require: Require, others: list[Require]) -> str:
+    """Return the name of a check: the result's, with the kind where one result has several limits."""
+    twins = [other for other in others if other.result == require.result]
+    return require.result if len(twins) == 1 else f"{require.result} {require.kind.replace('_', ' ')}"
+
+
+def plain_checks(setup: Setup, answers: dict[str, Any]) -> list[Check]:
+    """Return the checks that need no probability, in the unit each result is printed in."""
+    return [_plain(limit, setup, answers) for limit in limits(setup, answers) if limit.goal is None]
+
+
+def _plain(limit: Limit, setup: Setup, answers: dict[str, Any]) -> Check:
+    import numpy as np
+
+    from truing.units import from_si
+
+    unit = setup.print_unit(limit.result)
+    values = np.atleast_1d(np.asarray(answers[limit.result], dtype=float))
+    at_least = limit.require.kind == "at_least"
+    worst = float(values.min() if at_least else values.max())
+    stated = limit.low if at_least else limit.high
+    value, bound = float(from_si(worst, unit)), float(from_si(stated, unit))
+    margin = margin_of(value, bound, at_least=at_least)
+    return Check(limit.name, value, bound, unit, margin, margin >= 0)
+
+
+def chance_check(name: str, probability: float, goal: float) -> Check:
+    """Return the check of a probability against its goal."""
+    margin = margin_of(probability, goal, at_least=True)
+    return Check(name, probability, goal, "", margin, margin >= 0)
