@@ -1,0 +1,354 @@
+"""How a formula is set: where parentheses, fractions and multiplication dots go, once for every output language."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import Enum, IntEnum
+from functools import reduce
+from itertools import pairwise
+from typing import Final, Protocol
+
+from truing.formulas.symbols import read_number, read_symbol
+from truing.formulas.tree import (
+    Binary,
+    Call,
+    Comparison,
+    Constant,
+    Formula,
+    Logic,
+    Name,
+    Negative,
+    Node,
+    Number,
+    simplified,
+)
+
+
+class Writer(Protocol):
+    """The marks of one output language; every argument except names, texts and signs is finished markup."""
+
+    def symbol(self, text: str, exponent: str | None = None) -> str:
+        """Write a declared symbol, with an exponent beside its subscript if there is one."""
+
+    def word(self, name: str) -> str:
+        """Write the name of a quantity that has no symbol."""
+
+    def quantity(self, number: str, unit: str) -> str:
+        """Write a number with its unit; the unit is empty for a pure number."""
+
+    def constant(self, name: str) -> str:
+        """Write pi."""
+
+    def minus(self, operand: str) -> str:
+        """Write minus the operand."""
+
+    def infix(self, left: str, sign: str, right: str) -> str:
+        """Join two sides by a sign: + - dot gap , == != < <= > >= and or."""
+
+    def parenthesised(self, inner: str) -> str:
+        """Put round parentheses, as tall as what they hold."""
+
+    def bars(self, inner: str) -> str:
+        """Put the bars of an absolute value."""
+
+    def fraction(self, above: str, below: str) -> str:
+        """Write a fraction."""
+
+    def power(self, base: str, exponent: str) -> str:
+        """Write a power."""
+
+    def root(self, inner: str, index: str) -> str:
+        """Write a root; the index is empty for the square root."""
+
+    def function(self, name: str, exponent: str | None = None) -> str:
+        """Write the printed name of a function, with an exponent directly on it (sin squared)."""
+
+    def applied(self, function: str, argument: str, *, bare: bool) -> str:
+        """Join a function and its argument; a bare argument has no parentheses and needs a gap."""
+
+    def table(self, rows: Sequence[tuple[str, str]]) -> str:
+        """Write alternatives behind a left brace: value and condition per row."""
+
+    def condition(self, inner: str) -> str:
+        """Write "if" before a condition."""
+
+    def prose(self, text: str) -> str:
+        """Write a few plain words."""
+
+
+class Level(IntEnum):
+    """How firmly a piece holds together; what is looser than its place asks gets parentheses."""
+
+    CASES = 0
+    OR = 1
+    AND = 2
+    COMPARISON = 3
+    SUM = 4
+    PRODUCT = 5
+    TIGHT = 6
+    ATOM = 7
+
+
+class Edge(Enum):
+    """What a piece shows to its neighbour in a product."""
+
+    DIGIT = "digit"
+    WORD = "word"
+    OTHER = "other"
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """Finished markup and what its surroundings must know of it."""
+
+    markup: str
+    level: Level
+    negative: bool = False
+    begins: Edge = Edge.OTHER
+    ends: Edge = Edge.OTHER
+
+
+Leaf = Callable[[str], Piece]
+"""Turns the name of a quantity into a piece: its symbol, or its number."""
+
+PRINTED: Final = {"log": "ln", "asin": "arcsin", "acos": "arccos", "atan": "arctan", "sign": "sgn", "sum": "∑"}
+"""Functions printed under another name."""
+
+SQUARED_ON_NAME: Final = frozenset({"sin", "cos", "tan", "cot", "sinh", "cosh", "tanh"})
+MAY_BE_BARE: Final = SQUARED_ON_NAME | {"asin", "acos", "atan", "log", "log10", "inv", "sum"}
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Sets formulas with one writer; ``leaf`` says what stands for a name.
+
+    ``symbols`` holds the declared symbols whose exponents stand beside their subscript. ``dots`` puts a dot between
+    all factors. ``is_given`` tells ``either`` whether a name has a number (None: not known, both are shown).
+    """
+
+    writer: Writer
+    leaf: Leaf
+    symbols: Mapping[str, str] = field(default_factory=dict)
+    dots: bool = False
+    is_given: Callable[[str], bool | None] = lambda name: None
+
+    def formula(self, formula: Formula) -> str:
+        """Set an expression, or both sides of an equation."""
+        right = self.piece(simplified(formula.right)).markup
+        if formula.left is None:
+            return right
+        return self.writer.infix(self.piece(simplified(formula.left)).markup, "==", right)
+
+    def piece(self, node: Node, *, bare: bool = True) -> Piece:
+        """Set one node; ``bare`` lets a function stand without parentheses (``sin x``)."""
+        match node:
+            case Number(text, _):
+                return number_piece(text, self.writer.quantity(text, ""))
+            case Constant(name):
+                return Piece(self.writer.constant(name), Level.ATOM)
+            case Name(name):
+                return self.leaf(name)
+            case Negative(operand):
+                inner = self.at_least(operand, Level.PRODUCT, signed=False)
+                return Piece(self.writer.minus(inner.markup), Level.PRODUCT, negative=True)
+            case Binary(("+" | "-") as sign, left, right):
+                return self.sum(sign, left, right)
+            case Binary("*", _, _):
+                return self.product(node)
+            case Binary("/", above, below):
+                return Piece(self.writer.fraction(self.piece(above).markup, self.piece(below).markup), Level.TIGHT)
+            case Binary(_, base, exponent):
+                return self.power(base, exponent, bare=bare)
+            case Call(function, arguments):
+                return self.call(function, arguments, bare=bare)
+            case Comparison(signs, operands):
+                return self.comparison(signs, operands)
+            case Logic(word, operands):
+                return self.logic(word, operands)
+
+    def at_least(self, node: Node, level: Level, *, signed: bool = True, bare: bool = True) -> Piece:
+        """Set a node, in parentheses if it is looser than ``level`` or begins with a minus where none may stand."""
+        piece = self.piece(node, bare=bare)
+        if piece.level >= level and (signed or not piece.negative):
+            return piece
+        return Piece(self.writer.parenthesised(piece.markup), Level.ATOM)
+
+    def sum(self, sign: str, left: Node, right: Node) -> Piece:
+        """Set a sum or a difference."""
+        first = self.at_least(left, Level.SUM)
+        second = self.at_least(right, Level.SUM if sign == "+" else Level.PRODUCT, signed=False)
+        return Piece(self.writer.infix(first.markup, sign, second.markup), Level.SUM, negative=first.negative)
+
+    def product(self, node: Node) -> Piece:
+        """Set all factors in a row: a thin gap where it reads well, a dot beside digits and words."""
+        first, *others = factors(node)
+        negative = isinstance(first, Negative)
+        row = [first.operand if isinstance(first, Negative) else first, *others]
+        pieces = []
+        for place, factor in enumerate(row):
+            bare = place == len(row) - 1 or begins_with_function(row[place + 1])
+            signed = place == 0 and not negative
+            pieces.append(self.at_least(factor, Level.PRODUCT, signed=signed, bare=bare))
+        markup = pieces[0].markup
+        for before, after in pairwise(pieces):
+            dot = self.dots or after.begins is not Edge.OTHER or before.ends is Edge.WORD
+            markup = self.writer.infix(markup, "dot" if dot else "gap", after.markup)
+        if negative:
+            return Piece(self.writer.minus(markup), Level.PRODUCT, negative=True)
+        return Piece(markup, Level.PRODUCT, pieces[0].negative, begins=pieces[0].begins, ends=pieces[-1].ends)
+
+    def power(self, base: Node, exponent: Node, *, bare: bool) -> Piece:
+        """Set a power: on the name of sin and its like, beside a subscript, or on a base in parentheses."""
+        raised = self.piece(exponent).markup
+        if isinstance(base, Call) and base.function in SQUARED_ON_NAME and is_small_count(exponent):
+            return self.applied(self.function(base.function, raised), base.arguments[0], may_be_bare=bare)
+        if isinstance(base, Name) and (symbol := self.symbols.get(base.name)) and read_symbol(symbol).is_plain:
+            return Piece(self.writer.symbol(symbol, raised), Level.TIGHT)
+        below = self.at_least(base, Level.ATOM, signed=False)
+        return Piece(self.writer.power(below.markup, raised), Level.TIGHT, begins=below.begins)
+
+    def call(self, function: str, arguments: tuple[Node, ...], *, bare: bool) -> Piece:
+        """Set a function, a root, absolute bars, or alternatives."""
+        if function == "cases":
+            return self.cases(arguments)
+        if function == "either":
+            return self.either(*arguments)
+        if function in ("sqrt", "cbrt"):
+            inner = self.piece(arguments[0]).markup
+            return Piece(self.writer.root(inner, "" if function == "sqrt" else "3"), Level.TIGHT)
+        if function == "abs":
+            return Piece(self.writer.bars(self.piece(arguments[0]).markup), Level.ATOM)
+        head = self.function(function)
+        if len(arguments) == 1:
+            return self.applied(head, arguments[0], may_be_bare=bare and function in MAY_BE_BARE)
+        inner = self.piece(arguments[0]).markup
+        for argument in arguments[1:]:
+            inner = self.writer.infix(inner, ",", self.piece(argument).markup)
+        return Piece(self.writer.applied(head, self.writer.parenthesised(inner), bare=False), Level.TIGHT)
+
+    def function(self, name: str, exponent: str | None = None) -> str:
+        """Set the name of a function."""
+        return self.writer.function(PRINTED.get(name, name), exponent)
+
+    def applied(self, head: str, argument: Node, *, may_be_bare: bool) -> Piece:
+        """Set a function of one argument."""
+        piece = self.piece(argument)
+        if may_be_bare and piece.level is Level.ATOM and piece.ends is not Edge.WORD and not encloses(argument):
+            return Piece(self.writer.applied(head, piece.markup, bare=True), Level.TIGHT)
+        return Piece(self.writer.applied(head, self.writer.parenthesised(piece.markup), bare=False), Level.TIGHT)
+
+    def comparison(self, signs: tuple[str, ...], operands: tuple[Node, ...]) -> Piece:
+        """Set a condition: a comparison or a chain of them."""
+        markup = self.at_least(operands[0], Level.SUM).markup
+        for sign, operand in zip(signs, operands[1:], strict=True):
+            markup = self.writer.infix(markup, sign, self.at_least(operand, Level.SUM).markup)
+        return Piece(markup, Level.COMPARISON)
+
+    def logic(self, word: str, operands: tuple[Node, ...]) -> Piece:
+        """Set conditions joined by and/or."""
+        level = Level.AND if word == "and" else Level.OR
+        markups = [self.at_least(operand, Level(level + 1)).markup for operand in operands]
+        return Piece(reduce(lambda left, right: self.writer.infix(left, word, right), markups), level)
+
+    def cases(self, arguments: tuple[Node, ...]) -> Piece:
+        """Set alternatives behind a brace."""
+        rows = [
+            (self.piece(value).markup, self.writer.condition(self.piece(condition).markup))
+            for value, condition in zip(arguments[:-1:2], arguments[1::2], strict=True)
+        ]
+        rows.append((self.piece(arguments[-1]).markup, self.writer.prose("otherwise")))
+        return Piece(self.writer.table(rows), Level.CASES)
+
+    def either(self, first: Node, second: Node) -> Piece:
+        """Set "the first if it is given, otherwise the second"; with numbers at hand only the one that counts."""
+        given = self.is_given(first.name) if isinstance(first, Name) else None
+        if given is not None:
+            return self.piece(first if given else second)
+        rows = [
+            (self.piece(first).markup, self.writer.prose("if given")),
+            (self.piece(second).markup, self.writer.prose("otherwise")),
+        ]
+        return Piece(self.writer.table(rows), Level.CASES)
+
+
+def factors(node: Node) -> list[Node]:
+    """Return what a product multiplies, in order."""
+    match node:
+        case Binary("*", left, right):
+            return factors(left) + factors(right)
+    return [node]
+
+
+def begins_with_function(node: Node) -> bool:
+    """Tell whether a factor begins with the name of a function, so that ``sin x cos y`` cannot be misread."""
+    match node:
+        case Call(function, _):
+            return function in MAY_BE_BARE
+        case Binary("**", Call(function, _), exponent):
+            return function in SQUARED_ON_NAME and is_small_count(exponent)
+    return False
+
+
+def is_small_count(exponent: Node) -> bool:
+    """Tell whether an exponent may stand on a function's name: a positive whole number (-1 would be an inverse)."""
+    return isinstance(exponent, Number) and exponent.text.isdigit() and exponent.value > 0
+
+
+def encloses(node: Node) -> bool:
+    """Tell whether a node has marks of its own around it that would hide a missing parenthesis."""
+    return isinstance(node, Call)
+
+
+def number_piece(text: str, markup: str, *, unit: str = "") -> Piece:
+    """Wrap a printed number: how firmly it holds depends on its sign, power of ten and unit."""
+    number = read_number(text)
+    if number is None:
+        return Piece(markup, Level.OR, begins=Edge.WORD, ends=Edge.WORD)
+    loose = unit or number.negative or number.exponent
+    level = Level.PRODUCT if loose else Level.ATOM
+    return Piece(markup, level, number.negative, begins=Edge.DIGIT)
+
+
+def symbol_leaf(writer: Writer, symbols: Mapping[str, str]) -> Leaf:
+    """Return the leaf that prints symbols, and words where there is no symbol."""
+
+    def leaf(name: str) -> Piece:
+        symbol = symbols.get(name)
+        if not symbol:
+            return word_piece(writer, name)
+        return Piece(writer.symbol(symbol), Level.ATOM if read_symbol(symbol).is_plain else Level.TIGHT)
+
+    return leaf
+
+
+def number_leaf(writer: Writer, numbers: Mapping[str, tuple[str, str]]) -> Leaf:
+    """Return the leaf that prints numbers with their units, and words where there is no number."""
+
+    def leaf(name: str) -> Piece:
+        if name not in numbers:
+            return word_piece(writer, name)
+        number, unit = numbers[name]
+        return number_piece(number, writer.quantity(number, unit), unit=unit)
+
+    return leaf
+
+
+def word_piece(writer: Writer, name: str) -> Piece:
+    """Set a name as a word."""
+    level = Level.ATOM if "_" not in name else Level.TIGHT
+    return Piece(writer.word(name), level, begins=Edge.WORD, ends=Edge.WORD)
+
+
+def symbolic(writer: Writer, formula: Formula, symbols: Mapping[str, str]) -> str:
+    """Set a formula in symbols."""
+    return Layout(writer, symbol_leaf(writer, symbols), symbols).formula(formula)
+
+
+def substituted(writer: Writer, formula: Formula, numbers: Mapping[str, tuple[str, str]]) -> str:
+    """Set a formula with the numbers in place of the symbols."""
+
+    def is_given(name: str) -> bool | None:
+        return read_number(numbers[name][0]) is not None if name in numbers else None
+
+    return Layout(writer, number_leaf(writer, numbers), dots=True, is_given=is_given).formula(formula)

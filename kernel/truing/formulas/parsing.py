@@ -1,0 +1,225 @@
+"""Reading a formula: Python's own grammar behind a strict list of what may stand in it."""
+
+from __future__ import annotations
+
+import ast
+import difflib
+import math
+import re
+import warnings
+from functools import lru_cache
+from typing import Final, NoReturn
+
+from truing.errors import DeclarationError
+from truing.formulas.tree import (
+    ANY_NUMBER,
+    ARGUMENTS,
+    CONSTANTS,
+    Binary,
+    Call,
+    Comparison,
+    Constant,
+    Formula,
+    Logic,
+    Name,
+    Negative,
+    Node,
+    Number,
+    walk,
+)
+
+LONGEST: Final = 2000
+DEEPEST: Final = 50
+
+OPERATORS: Final[dict[type[ast.operator], str]] = {
+    ast.Add: "+",
+    ast.Sub: "-",
+    ast.Mult: "*",
+    ast.Div: "/",
+    ast.Pow: "**",
+}
+COMPARISONS: Final[dict[type[ast.cmpop], str]] = {
+    ast.Lt: "<",
+    ast.LtE: "<=",
+    ast.Gt: ">",
+    ast.GtE: ">=",
+    ast.Eq: "==",
+    ast.NotEq: "!=",
+}
+WORDS: Final[dict[type[ast.AST], str]] = {
+    ast.Attribute: "a dot between names",
+    ast.Subscript: "an index in brackets",
+    ast.Lambda: "a lambda",
+    ast.IfExp: "if ... else (write cases(value, condition, otherwise))",
+    ast.List: "a list",
+    ast.Tuple: "a comma outside a function",
+    ast.Dict: "a dictionary",
+    ast.Set: "a set",
+    ast.NamedExpr: "an assignment",
+    ast.Starred: "a star before an argument",
+    ast.Compare: "a comparison outside the conditions of cases (an equation has one == at the top)",
+    ast.BoolOp: "and/or outside the conditions of cases",
+}
+FORBIDDEN: Final = re.compile(r"""["'\\#;`$?]|[^\S ]|[\x00-\x1f]""")
+PLAIN_NUMBER: Final = re.compile(r"\d+(\.\d+)?([eE][+-]?\d+)?", re.ASCII)
+
+
+class _RefusalError(Exception):
+    """What is not allowed; the sentence around it is made where the text is known."""
+
+
+@lru_cache(maxsize=4096)
+def parse(text: str) -> Formula:
+    """Read a formula such as ``load / area``, or an equation ``inv(x) == y``.
+
+    Raises:
+        DeclarationError: the text holds anything but names, finite numbers, ``+ - * / **``, known functions,
+            and comparisons inside ``cases``; or it is longer than 2000 characters or deeper than 50 levels.
+    """
+    if not isinstance(text, str):
+        raise DeclarationError(f"a formula is a text, not {type(text).__name__}: {text!r:.80}")
+    try:
+        return _read(text)
+    except _RefusalError as refusal:
+        shown = text if len(text) <= 200 else text[:200] + " ..."
+        raise DeclarationError(f"formula {shown!r}: {refusal}") from None
+
+
+def _read(text: str) -> Formula:
+    body = _expression(text)
+    left: Node | None = None
+    if isinstance(body, ast.Compare) and [type(operator) for operator in body.ops] == [ast.Eq]:
+        left, right = _value(body.left), _value(body.comparators[0])
+    else:
+        right = _value(body)
+    sides = (right,) if left is None else (left, right)
+    names = frozenset(node.name for side in sides for node in walk(side) if isinstance(node, Name))
+    return Formula(text=text, left=left, right=right, names=names)
+
+
+def _expression(text: str) -> ast.expr:
+    if len(text) > LONGEST:
+        raise _RefusalError(
+            f"it has {len(text)} characters, at most {LONGEST} are allowed; split it into named results"
+        )
+    stripped = re.sub(r"[ \t\r\n]+", " ", text).strip()
+    if not stripped:
+        raise _RefusalError("it is empty; leave the formula out where there is none")
+    if found := FORBIDDEN.search(stripped):
+        raise _RefusalError(f"the character {found.group()!r} is not allowed")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            body = ast.parse(stripped, mode="eval").body
+    except SyntaxError as error:
+        raise _RefusalError(f"it cannot be read: {error.msg}{_place(error)}") from None
+    except (ValueError, RecursionError, MemoryError, OverflowError):
+        raise _RefusalError("it cannot be read: nested too deeply, or a number too long") from None
+    _keep_number_texts(body, stripped)
+    if _levels(body) > DEEPEST:
+        raise _RefusalError(f"it is nested deeper than {DEEPEST} levels; split it into named results")
+    return body
+
+
+def _place(error: SyntaxError) -> str:
+    return f" (near character {error.offset})" if error.offset else ""
+
+
+def _keep_number_texts(body: ast.expr, text: str) -> None:
+    """Let each number carry its text as written (in ``kind``, which Python uses for strings only)."""
+    encoded = text.encode()
+    for node in ast.walk(body):
+        if isinstance(node, ast.Constant):
+            node.kind = encoded[node.col_offset : node.end_col_offset].decode().replace("_", "")
+
+
+def _levels(body: ast.AST) -> int:
+    """Count levels without recursion: the tree may be deeper than Python's stack."""
+    level, layer = 0, [body]
+    while layer and level <= DEEPEST:
+        level += 1
+        layer = [child for node in layer for child in ast.iter_child_nodes(node) if isinstance(child, ast.expr)]
+    return level
+
+
+def _value(node: ast.expr) -> Node:
+    match node:
+        case ast.Constant():
+            return _number(node)
+        case ast.Name(id=name):
+            return Constant(name) if name in CONSTANTS else Name(name)
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return Negative(_value(operand))
+        case ast.BinOp(left=left, op=operator, right=right) if type(operator) in OPERATORS:
+            return Binary(OPERATORS[type(operator)], _value(left), _value(right))
+        case ast.Call():
+            return _call(node)
+    return _refuse(node)
+
+
+def _number(node: ast.Constant) -> Number:
+    value = node.value
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise _RefusalError(f"{value!r} is not a real number")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise _RefusalError("a number in it is not finite (larger than about 1.8e308)")
+    written = node.kind or ""
+    return Number(written if PLAIN_NUMBER.fullmatch(written) else repr(value), number)
+
+
+def _call(node: ast.Call) -> Call:
+    if not isinstance(node.func, ast.Name):
+        return _refuse(node.func)
+    function = node.func.id
+    if function not in ARGUMENTS:
+        near = difflib.get_close_matches(function, ARGUMENTS, n=1)
+        hint = f"did you mean {near[0]}?" if near else f"the functions are {', '.join(sorted(ARGUMENTS))}"
+        raise _RefusalError(f"there is no function {function!r}; {hint}")
+    if node.keywords:
+        raise _RefusalError(f"{function} is called with a keyword; arguments go by their place")
+    _count_arguments(function, len(node.args))
+    if function == "cases":
+        return Call(function, tuple(_case_part(place, node.args) for place in range(len(node.args))))
+    return Call(function, tuple(_value(argument) for argument in node.args))
+
+
+def _count_arguments(function: str, count: int) -> None:
+    fewest, most = ARGUMENTS[function]
+    if function == "cases" and (count < fewest or count % 2 == 0):
+        raise _RefusalError(
+            "cases takes value, condition, value, condition, ..., otherwise (an odd number, at least three)"
+        )
+    if not fewest <= count <= most:
+        wanted = str(fewest) if fewest == most else f"at least {fewest}" if most == ANY_NUMBER else f"{fewest}..{most}"
+        raise _RefusalError(f"{function} takes {wanted} argument{'' if wanted == '1' else 's'}, here it has {count}")
+
+
+def _case_part(place: int, arguments: list[ast.expr]) -> Node:
+    is_condition = place % 2 == 1
+    return _condition(arguments[place]) if is_condition else _value(arguments[place])
+
+
+def _condition(node: ast.expr) -> Node:
+    match node:
+        case ast.Compare(left=left, ops=operators, comparators=others):
+            for operator in operators:
+                if type(operator) not in COMPARISONS:
+                    raise _RefusalError("a condition compares with <, <=, >, >=, == or !=, nothing else")
+            operands = tuple(_value(operand) for operand in (left, *others))
+            return Comparison(tuple(COMPARISONS[type(operator)] for operator in operators), operands)
+        case ast.BoolOp(op=joint, values=values):
+            word = "and" if isinstance(joint, ast.And) else "or"
+            return Logic(word, tuple(_condition(value) for value in values))
+    raise _RefusalError(f"'{ast.unparse(node)}' stands where cases needs a condition, such as x > 1")
+
+
+def _refuse(node: ast.expr) -> NoReturn:
+    what = WORDS.get(type(node))
+    if what is None and isinstance(node, ast.BinOp | ast.UnaryOp):
+        what = "an operator other than + - * / ** and the minus sign"
+    shown = ast.unparse(node)
+    raise _RefusalError(f"{what or 'this'} is not allowed: '{shown if len(shown) <= 60 else shown[:60] + ' ...'}'")

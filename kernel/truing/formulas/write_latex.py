@@ -1,0 +1,202 @@
+"""Writing LaTeX for the mathematics in Markdown: the subset that LaTeX, MathJax and KaTeX share."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Final
+
+from truing.formulas.symbols import GREEK, Piece, Style, printable, read_number, read_symbol, word_text
+
+SIGNS: Final = {
+    "+": " + ",
+    "-": " - ",
+    "dot": r" \cdot ",
+    "gap": r" \thinspace ",
+    ",": r",\thinspace ",
+    "==": " = ",
+    "!=": r" \ne ",
+    "<": r" \lt ",
+    "<=": r" \le ",
+    ">": r" \gt ",
+    ">=": r" \ge ",
+    "and": r"\ \mathrm{and}\ ",
+    "or": r"\ \mathrm{or}\ ",
+}
+_LOOK_LATIN: Final = "οΑΒΕΖΗΙΚΜΝΟΡΤΧ"
+LETTERS: Final = {
+    **{letter: f"\\{name}" for name, letter in GREEK.items()},
+    "ε": r"\varepsilon",
+    "φ": r"\varphi",
+    **dict(zip(_LOOK_LATIN, "oABEZHIKMNOPTX", strict=True)),
+}
+"""Greek letters; those that look Latin have no command of their own."""
+SUPERSCRIPTS: Final = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺", "0123456789-+", strict=True))
+ESCAPES: Final = {
+    "\\": r"{\backslash}",
+    "{": r"\lbrace{}",
+    "}": r"\rbrace{}",
+    "[": r"\lbrack{}",
+    "]": r"\rbrack{}",
+    "|": r"\vert{}",
+    "<": r"\lt{}",
+    ">": r"\gt{}",
+    "^": r"{\wedge}",
+    "~": r"{\sim}",
+    "*": r"{\ast}",
+    "`": "{'}",
+    "'": "{'}",
+    "′": "{'}",
+    '"': "{''}",
+    "″": "{''}",
+    " ": r"\ ",
+    "·": r"{\cdot}",
+    "⋅": r"{\cdot}",
+    "×": r"{\times}",
+    "±": r"{\pm}",
+    "°": r"{^{\circ}}",
+    "−": "-",
+    "–": r"\text{–}",
+    "µ": r"\mu{}",
+    **{character: f"\\{character}" for character in "$#%&_"},
+    **{letter: f"{command}{{}}" for letter, command in LETTERS.items()},
+}
+"""How each character is written inside upright text: safe for LaTeX, Markdown tables and HTML alike."""
+FUNCTIONS: Final = {
+    name: f"\\{name}"
+    for name in ("sin", "cos", "tan", "cot", "sinh", "cosh", "tanh", "arcsin", "arccos", "arctan", "ln", "exp")
+}
+WITHOUT_SPACE: Final = frozenset("°'′\"″")
+
+
+def escaped(text: str) -> str:
+    """Write any text so that it can stand inside ``\\mathrm{}``."""
+    return re.sub(f"[{''.join(SUPERSCRIPTS)}]+|.", _character, printable(text))
+
+
+def _character(found: re.Match[str]) -> str:
+    character = found.group()
+    if character[0] in SUPERSCRIPTS:
+        return f"^{{{''.join(SUPERSCRIPTS[digit] for digit in character)}}}"
+    return ESCAPES.get(character, character)
+
+
+def upright(text: str) -> str:
+    """Write any text upright."""
+    return rf"\mathrm{{{escaped(text)}}}"
+
+
+def symbol_latex(symbol: str) -> str:
+    """Write a declared symbol ("theta_11", "Delta z", "F_N,max", "z_2'") as LaTeX; any text is safe."""
+    return LatexWriter().symbol(symbol)
+
+
+def number_latex(text: str) -> str:
+    """Write a formatted number as LaTeX: "1.2e-05" as 1.2 times a power of ten; what is no number as text."""
+    number = read_number(text)
+    if number is None:
+        return upright(text)
+    digits = re.sub(r"[^\d.,]", r"\\thinspace ", number.digits).replace(",", "{,}")
+    power = rf" \times 10^{{{number.exponent.replace('−', '-')}}}" if number.exponent else ""
+    return f"{'-' if number.negative else ''}{digits}{power}"
+
+
+def _piece(piece: Piece) -> str:
+    if piece.style is Style.DIGITS or piece.text == ",":
+        return piece.text
+    if piece.text in LETTERS:
+        letter = LETTERS[piece.text]
+        return letter if letter.startswith("\\") else rf"\mathrm{{{letter}}}"
+    if piece.style is Style.ITALIC:
+        return ESCAPES.get(piece.text, piece.text)
+    return upright(piece.text)
+
+
+def _grouped(pieces: Sequence[Piece]) -> str:
+    return " ".join(_piece(piece) for piece in pieces).replace(" ,", ",")
+
+
+class LatexWriter:
+    """The marks of LaTeX; see ``layout.Writer``.
+
+    No command made of one punctuation mark stands in it (except in escapes): Markdown takes their backslash away.
+    """
+
+    def symbol(self, text: str, exponent: str | None = None) -> str:
+        """Write base, subscript, primes and exponent."""
+        symbol = read_symbol(text)
+        subscript = f"_{{{_grouped(symbol.subscript)}}}" if symbol.subscript else ""
+        raised = exponent or r"\prime " * symbol.primes
+        superscript = f"^{{{raised.strip()}}}" if raised else ""
+        return " ".join(map(_piece, symbol.base)) + subscript + superscript
+
+    def word(self, name: str) -> str:
+        """Write a name as an upright word."""
+        return upright(word_text(name))
+
+    def quantity(self, number: str, unit: str) -> str:
+        """Write a number, a thin space and an upright unit."""
+        unit = printable(unit)
+        if not unit:
+            return number_latex(number)
+        gap = "" if unit in WITHOUT_SPACE else r"\thinspace "
+        return f"{number_latex(number)}{gap}{upright(unit)}"
+
+    def constant(self, name: str) -> str:
+        """Write pi."""
+        return r"\pi"
+
+    def minus(self, operand: str) -> str:
+        """Write minus the operand."""
+        return f"-{operand}"
+
+    def infix(self, left: str, sign: str, right: str) -> str:
+        """Join two sides by a sign."""
+        return f"{left}{SIGNS[sign]}{right}"
+
+    def parenthesised(self, inner: str) -> str:
+        """Put parentheses that grow."""
+        return rf"\left( {inner} \right)"
+
+    def bars(self, inner: str) -> str:
+        """Put bars that grow."""
+        return rf"\left\vert {inner} \right\vert"
+
+    def fraction(self, above: str, below: str) -> str:
+        """Write a fraction."""
+        return rf"\frac{{{above}}}{{{below}}}"
+
+    def power(self, base: str, exponent: str) -> str:
+        """Write a power."""
+        return f"{base}^{{{exponent}}}"
+
+    def root(self, inner: str, index: str) -> str:
+        """Write a root."""
+        return rf"\sqrt[{index}]{{{inner}}}" if index else rf"\sqrt{{{inner}}}"
+
+    def function(self, name: str, exponent: str | None = None) -> str:
+        """Write the upright name of a function."""
+        if name == "∑":
+            return r"\sum"
+        if name == "log10":
+            return r"\log_{10}"
+        head = FUNCTIONS.get(name, rf"\mathrm{{{name}}}")
+        return head if exponent is None else f"{head}^{{{exponent}}}"
+
+    def applied(self, function: str, argument: str, *, bare: bool) -> str:
+        """Join a function and its argument."""
+        gap = r"\thinspace " if bare and function.startswith(r"\mathrm") else " "
+        return f"{function}{gap}{argument}"
+
+    def table(self, rows: Sequence[tuple[str, str]]) -> str:
+        """Write alternatives behind a brace."""
+        body = r" \cr ".join(f"{value} & {condition}" for value, condition in rows)
+        return rf"\begin{{cases}} {body} \end{{cases}}"
+
+    def condition(self, inner: str) -> str:
+        """Write "if" before a condition."""
+        return rf"\mathrm{{if}}\ {inner}"
+
+    def prose(self, text: str) -> str:
+        """Write plain words."""
+        return upright(text)
