@@ -1,7 +1,7 @@
 """Standard tolerance grades of ISO 286-1: how wide is IT7 at 315 mm?
 
-The values are those that ISO 286-1 prints (Table 1), not those of its formulas: the standard rounds by rules of its own,
-and drawings follow the table. Lengths are in metres here, as everywhere inside; the table below is in micrometres
+The values are those that ISO 286-1 prints (Table 1), not those of its formulas: the standard rounds by rules of its
+own, and drawings follow the table. Lengths are in metres here, as everywhere inside; the table below is in micrometres
 and millimetres, as in the standard.
 
 Validity: nominal sizes above 0 and up to 3150 mm, grades IT1 to IT18. IT14 to IT18 are not for sizes up to 1 mm; IT1 to
@@ -48,7 +48,8 @@ _SAME = 1 + 1e-9  # a size that was converted to metres may miss the limit it st
 def size_range(size: float) -> tuple[float, float]:
     """Say which range of nominal sizes a size belongs to: (over, up to and including), in metres.
 
-    A size on a limit belongs to the lower range. Raises UnitError outside 0 to 3150 mm. Source: ISO 286-1:2010, Table 1.
+    A size on a limit belongs to the lower range. Raises UnitError outside 0 to 3150 mm.
+    Source: ISO 286-1:2010, Table 1.
     """
     row = _row(size)
     return (_LIMITS_MM[row - 1] / 1000 if row else 0.0), _LIMITS_MM[row] / 1000
