@@ -182,20 +182,15 @@ class Layout:
 
     def product(self, node: Node) -> Piece:
         """Set all factors in a row: a thin gap where it reads well, a dot beside digits and words."""
-        first, *others = factors(node)
-        negative = isinstance(first, Negative)
-        row = [first.operand if isinstance(first, Negative) else first, *others]
+        row = factors(node)
         pieces = []
         for place, factor in enumerate(row):
             bare = place == len(row) - 1 or begins_with_function(row[place + 1])
-            signed = place == 0 and not negative
-            pieces.append(self.at_least(factor, Level.PRODUCT, signed=signed, bare=bare))
+            pieces.append(self.at_least(factor, Level.PRODUCT, signed=place == 0, bare=bare))
         markup = pieces[0].markup
         for before, after in pairwise(pieces):
             dot = self.dots or after.begins is not Edge.OTHER or before.ends is Edge.WORD
             markup = self.writer.infix(markup, "dot" if dot else "gap", after.markup)
-        if negative:
-            return Piece(self.writer.minus(markup), Level.PRODUCT, negative=True)
         return Piece(markup, Level.PRODUCT, pieces[0].negative, begins=pieces[0].begins, ends=pieces[-1].ends)
 
     def power(self, base: Node, exponent: Node, *, bare: bool) -> Piece:

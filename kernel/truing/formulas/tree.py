@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import reduce
 from typing import Final, TypeAlias
 
 
@@ -170,22 +171,32 @@ def _bound(node: Node, at_least: int) -> str:
 
 
 def simplified(node: Node) -> Node:
-    """Return the tree as it is printed: ``hypot`` as a root of squares, ``a / b / c`` as ``a / (b * c)``."""
+    """Return the tree as it is printed, equal in value.
+
+    ``hypot`` becomes a root of squares, ``a / b / c`` becomes ``a / (b * c)``, and a minus at the front of a product or
+    a fraction goes before the whole.
+    """
     match node:
         case Negative(operand):
             return Negative(simplified(operand))
-        case Binary("/", Binary("/", top, middle), bottom):
-            return simplified(Binary("/", top, Binary("*", middle, bottom)))
+        case Binary("*" | "/" as operator, left, right):
+            return _simplified_product(operator, simplified(left), simplified(right))
         case Binary(operator, left, right):
             return Binary(operator, simplified(left), simplified(right))
         case Call("hypot", arguments):
-            first, *others = (Binary("**", simplified(argument), Number("2", 2.0)) for argument in arguments)
-            total: Node = first
-            for square in others:
-                total = Binary("+", total, square)
-            return Call("sqrt", (total,))
+            squares = (Binary("**", simplified(argument), Number("2", 2.0)) for argument in arguments)
+            return Call("sqrt", (reduce(lambda total, square: Binary("+", total, square), squares),))
         case Call(function, arguments):
             return Call(function, tuple(simplified(argument) for argument in arguments))
         case Comparison(_, operands) | Logic(_, operands):
             return replace(node, operands=tuple(simplified(operand) for operand in operands))
     return node
+
+
+def _simplified_product(operator: str, left: Node, right: Node) -> Node:
+    match operator, left:
+        case _, Negative(operand):
+            return Negative(_simplified_product(operator, operand, right))
+        case "/", Binary("/", above, below):
+            return Binary("/", above, Binary("*", below, right))
+    return Binary(operator, left, right)

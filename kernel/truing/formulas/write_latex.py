@@ -86,6 +86,13 @@ def upright(text: str) -> str:
     return rf"\mathrm{{{escaped(text)}}}"
 
 
+def upright_unit(unit: str) -> str:
+    """Write a unit text upright; here "^" raises, as in mm^0.5."""
+    parts = re.split(r"\^(-?\d+(?:\.\d+)?|\([-\d/]+\))", printable(unit), flags=re.ASCII)
+    raised = [f"^{{{part}}}" if place % 2 else escaped(part) for place, part in enumerate(parts)]
+    return rf"\mathrm{{{''.join(raised)}}}"
+
+
 def symbol_latex(symbol: str) -> str:
     """Write a declared symbol ("theta_11", "Delta z", "F_N,max", "z_2'") as LaTeX; any text is safe."""
     return LatexWriter().symbol(symbol)
@@ -139,8 +146,8 @@ class LatexWriter:
         unit = printable(unit)
         if not unit:
             return number_latex(number)
-        gap = "" if unit in WITHOUT_SPACE else r"\thinspace "
-        return f"{number_latex(number)}{gap}{upright(unit)}"
+        gap = r" \times " if unit[0].isdigit() else "" if unit in WITHOUT_SPACE else r"\thinspace "
+        return f"{number_latex(number)}{gap}{upright_unit(unit)}"
 
     def constant(self, name: str) -> str:
         """Write pi."""

@@ -102,7 +102,7 @@ class MathMLWriter:
         unit = printable(unit)
         if not unit:
             return number_mathml(number)
-        gap = "" if unit in WITHOUT_SPACE else THIN_GAP
+        gap = "<mo>×</mo>" if unit[0].isdigit() else "" if unit in WITHOUT_SPACE else THIN_GAP
         return row(number_mathml(number), gap, f"<mtext>{escape(unit)}</mtext>")
 
     def constant(self, name: str) -> str:
@@ -153,7 +153,7 @@ class MathMLWriter:
         """Write alternatives behind a stretching brace."""
         cell = '<mtd style="text-align: left; padding: 0.2em 0.5em 0.2em 0">'
         body = "".join(f"<mtr>{cell}{value}</mtd>{cell}{condition}</mtd></mtr>" for value, condition in rows)
-        return row('<mo form="prefix" stretchy="true">{</mo>', f"<mtable>{body}</mtable>")
+        return row('<mo form="prefix" stretchy="true">{</mo>', f'<mtable displaystyle="true">{body}</mtable>')
 
     def condition(self, inner: str) -> str:
         """Write "if" before a condition."""
