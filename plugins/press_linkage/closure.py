@@ -77,15 +77,15 @@ def demands(geometry: Geometry, position: Position) -> Iterator[Demand]:
     """
     yield from nominal_demands(geometry)
     with np.errstate(invalid="ignore"):
-        yield Demand(
-            "platform arm",
-            ~(position.side_1.arm_end <= position.platform_height),
-            "the platform arm with its deviation must be longer than zero",
-        )
         for side, half in ((1, position.side_1), (2, position.side_2)):
             yield _sizes(half, side)
         for side, half in ((1, position.side_1), (2, position.side_2)):
             yield from _rod_demands(half, side)
+        yield Demand(
+            "platform arm",
+            position.side_1.arm_end > position.platform_height,
+            "the platform arm with its deviation must be longer than zero",
+        )
         for side, half in ((1, position.side_1), (2, position.side_2)):
             yield from _knee_demands(half, side)
             yield from _slider_demands(half, side)
