@@ -1,0 +1,130 @@
+"""Many cases of one calculation: every row of a file is one, and the worst of them governs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from typing import Any
+
+from truing.calculation import Calculation, calculate
+from truing.declare.fields import with_values
+from truing.errors import InfeasibleError
+from truing.evaluate import effects_in_order, evaluate_rows
+from truing.measurements import Case
+from truing.setup import Setup
+from truing.studies.bench import Check, Progress, silent
+from truing.studies.checks import limits, plain_checks
+
+
+@dataclass(frozen=True)
+class CaseResult:
+    """One case: its row in the file, what it changes, its answers in SI and its checks, or why it failed."""
+
+    row: int
+    name: str
+    values: Mapping[str, Any]
+    answers: Mapping[str, Any]
+    checks: tuple[Check, ...] = ()
+    reason: str | None = None
+
+    @property
+    def margin(self) -> float:
+        """The smallest margin of its checks; infinite where there are none."""
+        return min((check.margin for check in self.checks), default=float("inf"))
+
+
+@dataclass(frozen=True)
+class CasesTable:
+    """All cases in the order of the file; ``governing`` is the place of the one with the smallest margin."""
+
+    cases: tuple[CaseResult, ...]
+    governing: int
+
+    @property
+    def varied(self) -> tuple[str, ...]:
+        """The inputs and conditions that any case changes."""
+        return tuple(dict.fromkeys(name for case in self.cases for name in case.values))
+
+    @property
+    def failed(self) -> tuple[tuple[int, str], ...]:
+        """Rows that failed, with the reason."""
+        return tuple((case.row, case.reason) for case in self.cases if case.reason is not None)
+
+    @property
+    def passed(self) -> bool:
+        """Whether every case could be calculated and keeps its limits."""
+        return not self.failed and all(check.passed for case in self.cases for check in case.checks)
+
+
+def case_setup(setup: Setup, case: Case) -> Setup:
+    """Return the setup of one case."""
+    fields = setup.model.input_fields
+    changed = {fields[name].path: value for name, value in case.values.items() if name in fields}
+    conditions = {name: value for name, value in case.values.items() if name not in fields}
+    return replace(
+        setup,
+        inputs=with_values(setup.inputs, changed),
+        conditions={**setup.conditions, **conditions},
+        stated=setup.stated | set(case.values),
+    )
+
+
+def run_cases(
+    setup: Setup, cases: Sequence[Case], *, executor: Executor, progress: Progress = silent
+) -> tuple[Calculation, CasesTable]:
+    """Calculate every case and, in full with its studies, the governing one.
+
+    Limits on a chance need the studies of each case; without such limits all cases are one array call. Raises
+    InfeasibleError when no case can be calculated.
+    """
+    setup = effects_in_order(setup)
+    by_studies = bool(setup.studies) and any(_asks_a_chance(setup))
+    done = _one_by_one(setup, cases, executor, progress) if by_studies else _all_at_once(setup, cases)
+    alive = [place for place, case in enumerate(done) if case.reason is None]
+    if not alive:
+        raise InfeasibleError(f"none of the {len(done)} cases can be calculated; the first: {done[0].reason}")
+    governing = min(alive, key=lambda place: done[place].margin)
+    table = CasesTable(tuple(done), governing)
+    full = calculate(case_setup(setup, cases[governing]), executor=executor, progress=progress)
+    return replace(full, failed=table.failed), table
+
+
+def _asks_a_chance(setup: Setup) -> list[bool]:
+    return [getattr(item, "reliability", None) is not None for item in setup.model.objectives]
+
+
+def _one_by_one(setup: Setup, cases: Sequence[Case], executor: Executor, progress: Progress) -> list[CaseResult]:
+    done = []
+    for count, case in enumerate(cases):
+        progress("cases", count, len(cases))
+        try:
+            found = calculate(case_setup(setup, case), executor=executor)
+        except InfeasibleError as error:
+            done.append(CaseResult(case.row, case.name, case.values, {}, reason=str(error)))
+            continue
+        done.append(CaseResult(case.row, case.name, case.values, found.answers, found.checks))
+    progress("cases", len(cases), len(cases))
+    return done
+
+
+def _all_at_once(setup: Setup, cases: Sequence[Case]) -> list[CaseResult]:
+    names = dict.fromkeys(name for case in cases for name in case.values)
+    columns = {name: [case.values.get(name, setup.nominal(name)) for case in cases] for name in names}
+    rows = evaluate_rows(setup, columns, len(cases))
+    done = []
+    for place, case in enumerate(cases):
+        reason = rows.reasons.get(place)
+        if reason is not None:
+            done.append(CaseResult(case.row, case.name, case.values, {}, reason=reason))
+            continue
+        answers = {name: _plain(values[place]) for name, values in rows.results.items()}
+        own = case_setup(setup, case)
+        has_limits = bool(limits(own, answers))
+        checks = tuple(plain_checks(own, answers)) if has_limits else ()
+        done.append(CaseResult(case.row, case.name, case.values, answers, checks))
+    return done
+
+
+def _plain(value: Any) -> Any:
+    return float(value) if getattr(value, "ndim", 1) == 0 else value

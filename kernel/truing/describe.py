@@ -1,0 +1,101 @@
+"""A model in words: inputs, results, error sources, objectives, as plain data for people and programs."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any
+
+from truing.declare.fields import Axis, Found, Given, InputField, ResultField
+from truing.declare.goals import Maximise, Minimise, Require, Vary
+from truing.kernel import Offer
+
+
+def description(offer: Offer) -> dict[str, Any]:
+    """Return everything the model declares, as one JSON-ready document."""
+    model = offer.model
+    return {
+        "name": offer.name,
+        "title": model.title,
+        "summary": model.summary,
+        "plugin": {"name": offer.origin.name, "version": offer.origin.version},
+        "inputs": [_input(item) for item in model.input_fields.values()],
+        "results": [_result(item) for item in model.result_fields.values()],
+        "tolerances": [
+            {
+                "name": item.name,
+                "spread": item.spread.text,
+                "on": list(item.on),
+                "why": item.why,
+                "price": dataclasses.asdict(item.price) if item.price else None,
+            }
+            for item in model.tolerances.values()
+        ],
+        "effects": [_effect(effect) for effect in model.effects.values()],
+        "conditions": [
+            {"name": item.name, "unit": item.unit, "reference": item.reference, "note": item.note}
+            for item in model.conditions.values()
+        ],
+        "objectives": [_objective(item) for item in model.objectives],
+        "studies": [study.name for study in model.studies],
+        "cites": list(model.cites),
+        "added": [dataclasses.asdict(item) for item in offer.added],
+    }
+
+
+def bounds_text(spec: Any) -> str:
+    """Return the bounds of an input in words: "above 0, at most 3"."""
+    words = {"above": "above", "below": "below", "at_least": "at least", "at_most": "at most"}
+    said = [f"{word} {getattr(spec, key):g}" for key, word in words.items() if getattr(spec, key, None) is not None]
+    return ", ".join([*said, *(["whole number"] if getattr(spec, "whole", False) else [])])
+
+
+def _input(item: InputField) -> dict[str, Any]:
+    spec = item.spec
+    default = spec.default if isinstance(spec, Given) else None
+    return {
+        "name": item.name,
+        "symbol": item.symbol,
+        "kind": item.kind,
+        "unit": item.unit,
+        "default": list(default) if isinstance(default, tuple) else default,
+        "optional": item.is_optional,
+        "choices": list(item.choices),
+        "bounds": bounds_text(spec),
+        "note": spec.note,
+        "source": spec.source,
+    }
+
+
+def _result(item: ResultField) -> dict[str, Any]:
+    spec = item.spec
+    formula = spec.formula if isinstance(spec, Found) else ""
+    kind = ("table" if spec.is_table else "axis") if isinstance(spec, Axis) else "result"
+    return {
+        "name": item.name,
+        "symbol": item.symbol,
+        "kind": kind,
+        "unit": item.unit,
+        "note": spec.note,
+        "formula": formula,
+        "along": item.along if kind == "result" else "",
+    }
+
+
+def _effect(effect: Any) -> dict[str, Any]:
+    return {
+        "name": effect.name,
+        "acts_on": effect.place,
+        "looks_like": effect.looks_like,
+        "unknowns": [
+            {"name": item.name, "low": item.low, "high": item.high, "unit": item.unit, "amplitude": item.is_amplitude}
+            for item in effect.unknowns
+        ],
+        "needs": [item.name for item in effect.needs],
+    }
+
+
+def _objective(item: Any) -> dict[str, Any]:
+    kinds: Mapping[type[Any], str] = {Vary: "vary", Minimise: "minimise", Maximise: "maximise", Require: "require"}
+    return {"kind": kinds[type(item)], **{field.name: getattr(item, field.name) for field in dataclasses.fields(item) if field.name != "kind"},
+            **({"limit_kind": item.kind} if isinstance(item, Require) else {})}  # fmt: skip
