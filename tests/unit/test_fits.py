@@ -1,0 +1,205 @@
+"""The tolerance grades of ISO 286-1 against tables printed elsewhere and against the standard's formulas and rules."""
+
+import itertools
+import math
+
+import pytest
+from truing import fits
+from truing.errors import TruingError, UnitError
+
+LIMITS_MM = (3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500, 630, 800, 1000, 1250, 1600, 2000, 2500, 3150)
+
+# Otto Ganter, technical data "ISO-Fundamental Tolerance series, DIN ISO 286": up to 500 mm, one line per grade, um.
+CATALOGUE_UP_TO_500_MM = {
+    "IT1": "0.8 1 1 1.2 1.5 1.5 2 2.5 3.5 4.5 6 7 8",
+    "IT2": "1.2 1.5 1.5 2 2.5 2.5 3 4 5 7 8 9 10",
+    "IT3": "2 2.5 2.5 3 4 4 5 6 8 10 12 13 15",
+    "IT4": "3 4 4 5 6 7 8 10 12 14 16 18 20",
+    "IT5": "4 5 6 8 9 11 13 15 18 20 23 25 27",
+    "IT6": "6 8 9 11 13 16 19 22 25 29 32 36 40",
+    "IT7": "10 12 15 18 21 25 30 35 40 46 52 57 63",
+    "IT8": "14 18 22 27 33 39 46 54 63 72 81 89 97",
+    "IT9": "25 30 36 43 52 62 74 87 100 115 130 140 155",
+    "IT10": "40 48 58 70 84 100 120 140 160 185 210 230 250",
+    "IT11": "60 75 90 110 130 160 190 220 250 290 320 360 400",
+    "IT12": "100 120 150 180 210 250 300 350 400 460 520 570 630",
+    "IT13": "140 180 220 270 330 390 460 540 630 720 810 890 970",
+    "IT14": "250 300 360 430 520 620 740 870 1000 1150 1300 1400 1550",
+    "IT15": "400 480 580 700 840 1000 1200 1400 1600 1850 2100 2300 2500",
+    "IT16": "600 750 900 1100 1300 1600 1900 2200 2500 2900 3200 3600 4000",
+    "IT17": "1000 1200 1500 1800 2100 2500 3000 3500 4000 4600 5200 5700 6300",
+    "IT18": "1400 1800 2200 2700 3300 3900 4600 5400 6300 7200 8100 8900 9700",
+}
+
+# mechguru.com, "DIN ISO 286 standard tolerance zone size table": IT5 ... IT11 above 500 mm, one line per range, in mm.
+HANDBOOK_ABOVE_500_MM = {
+    630: "0.032 0.044 0.070 0.110 0.175 0.280 0.440",
+    800: "0.036 0.050 0.080 0.125 0.200 0.320 0.500",
+    1000: "0.040 0.056 0.090 0.140 0.230 0.360 0.560",
+    1250: "0.047 0.066 0.105 0.165 0.260 0.420 0.660",
+    1600: "0.055 0.078 0.125 0.195 0.310 0.500 0.780",
+    2000: "0.065 0.092 0.150 0.230 0.370 0.600 0.920",
+    2500: "0.078 0.110 0.175 0.280 0.440 0.700 1.100",
+    3150: "0.096 0.135 0.210 0.330 0.540 0.860 1.350",
+}
+
+# github.com/Ralul/TI-84, ISO-286.py: IT1 ... IT4 above 500 mm, one line per range, um.
+CALCULATOR_ABOVE_500_MM = {
+    630: "9 11 16 22",
+    800: "10 13 18 25",
+    1000: "11 15 21 28",
+    1250: "13 18 24 33",
+    1600: "15 21 29 39",
+    2000: "18 25 35 46",
+    2500: "22 30 41 55",
+    3150: "26 36 50 68",
+}
+
+# The values used for the links of a servo press: IT7, IT6, IT5 in mm.
+PRESS_LINKS = {
+    1800: (0.150, 0.092, 0.065),
+    1400: (0.125, 0.078, 0.055),
+    900: (0.090, 0.056, 0.040),
+    550: (0.070, 0.044, 0.032),
+    360: (0.057, 0.036, 0.025),
+}
+
+# ISO 286-1:1988, A.3: standard tolerances in units of the standard tolerance factor.
+FACTORS = dict(
+    zip(fits.GRADES[4:], (7, 10, 16, 25, 40, 64, 100, 160, 250, 400, 640, 1000, 1600, 2500), strict=True),
+)
+
+
+def tolerance_factor(upper_mm: float) -> float:
+    """i up to 500 mm, I above, in micrometres; D is the geometric mean of the range (1 to 3 mm in the first)."""
+    lower_mm = ([1, *LIMITS_MM])[LIMITS_MM.index(upper_mm)]
+    mean = math.sqrt(lower_mm * upper_mm)
+    return 0.45 * mean ** (1 / 3) + 0.001 * mean if upper_mm <= 500 else 0.004 * mean + 2.1
+
+
+def width_um(grade: str, size_mm: float) -> float:
+    return fits.tolerance(grade, size_mm / 1000) * 1e6
+
+
+@pytest.mark.parametrize(("grade", "line"), CATALOGUE_UP_TO_500_MM.items())
+def test_table_up_to_500_mm(grade, line):
+    expected = [float(number) for number in line.split()]
+    assert [width_um(grade, size) for size in LIMITS_MM[:13]] == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(("upper_mm", "line"), HANDBOOK_ABOVE_500_MM.items())
+def test_table_above_500_mm(upper_mm, line):
+    expected = [float(number) * 1000 for number in line.split()]
+    grades = [f"IT{number}" for number in range(5, 12)]
+    assert [width_um(grade, upper_mm) for grade in grades] == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(("upper_mm", "line"), CALCULATOR_ABOVE_500_MM.items())
+def test_table_of_fine_grades_above_500_mm(upper_mm, line):
+    expected = [float(number) for number in line.split()]
+    assert [width_um(grade, upper_mm) for grade in fits.GRADES[:4]] == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(("size_mm", "expected_mm"), PRESS_LINKS.items())
+def test_links_of_a_press(size_mm, expected_mm):
+    widths = [fits.tolerance(grade, size_mm / 1000) * 1000 for grade in ("IT7", "IT6", "IT5")]
+    assert widths == pytest.approx(expected_mm, rel=1e-12)
+
+
+@pytest.mark.parametrize("upper_mm", LIMITS_MM)
+@pytest.mark.parametrize("grade", fits.GRADES[4:])
+def test_every_width_belongs_to_the_formula_of_its_own_range(grade, upper_mm):
+    """The standard rounds by more than half a digit in places, never so far that another range would fit better."""
+    exact = {limit: FACTORS[grade] * tolerance_factor(limit) for limit in LIMITS_MM}
+    printed = width_um(grade, upper_mm)
+    assert min(LIMITS_MM, key=lambda limit: abs(math.log(printed / exact[limit]))) == upper_mm
+
+
+@pytest.mark.parametrize("upper_mm", LIMITS_MM[1:13])
+def test_it5_by_the_formula(upper_mm):
+    """Rounded to whole micrometres in the standard's table, except in the first range, where D is a convention."""
+    assert width_um("IT5", upper_mm) == round(7 * tolerance_factor(upper_mm))
+
+
+@pytest.mark.parametrize("upper_mm", LIMITS_MM[13:])
+@pytest.mark.parametrize(("grade", "factor"), [("IT1", 2), ("IT2", 2.7), ("IT3", 3.7), ("IT4", 5), ("IT5", 7)])
+def test_fine_grades_above_500_mm_by_the_formula(grade, factor, upper_mm):
+    """ISO 286-1:1988, A.3.3, values for experimental use: nearer to their own formula than to a neighbour's."""
+    own = abs(math.log(width_um(grade, upper_mm) / (factor * tolerance_factor(upper_mm))))
+    assert own < math.log(7 / 5) / 2
+
+
+@pytest.mark.parametrize("upper_mm", LIMITS_MM[:13])
+def test_it1_by_the_formula(upper_mm):
+    """0.8 + 0.020 D for sizes up to 500 mm; the values are rounded to preferred numbers, downwards for large sizes."""
+    lower_mm = ([1, *LIMITS_MM])[LIMITS_MM.index(upper_mm)]
+    exact = 0.8 + 0.020 * math.sqrt(lower_mm * upper_mm)
+    assert width_um("IT1", upper_mm) == pytest.approx(exact, rel=0.2)
+
+
+@pytest.mark.parametrize("upper_mm", LIMITS_MM)
+@pytest.mark.parametrize("number", range(6, 14))
+def test_ten_times_the_width_every_fifth_grade(number, upper_mm):
+    """ISO 286-1: from IT6 upwards; the one printed exception is IT6 of 3 to 6 mm, 8 um beside 75 um at IT11."""
+    if (number, upper_mm) == (6, 6):
+        assert (width_um("IT6", 6), width_um("IT11", 6)) == pytest.approx((8, 75))
+    else:
+        assert width_um(f"IT{number + 5}", upper_mm) == pytest.approx(10 * width_um(f"IT{number}", upper_mm))
+
+
+def test_wider_with_every_grade_and_never_narrower_with_size():
+    table = [[width_um(grade, size) for grade in fits.GRADES] for size in LIMITS_MM]
+    for row in table:
+        assert all(left < right for left, right in itertools.pairwise(row))
+    for above, below in itertools.pairwise(table):
+        assert all(smaller <= larger for smaller, larger in zip(above, below, strict=True))
+
+
+def test_a_size_on_a_limit_belongs_to_the_lower_range():
+    assert fits.size_range(0.315) == (0.25, 0.315)
+    assert fits.size_range(math.nextafter(0.315, 1)) == (0.25, 0.315), "a rounding error of the conversion is no size"
+    assert fits.size_range(0.3151) == (0.315, 0.4)
+    assert fits.size_range(0.0005) == (0.0, 0.003)
+    assert fits.size_range(3.15) == (2.5, 3.15)
+
+
+@pytest.mark.parametrize("limit", LIMITS_MM)
+def test_every_limit_in_millimetres_stays_in_its_range(limit):
+    for metres in (limit / 1000, limit * 0.001, limit * 1e-3 + 1e-17):
+        assert fits.size_range(metres)[1] == limit / 1000
+
+
+@pytest.mark.parametrize("size", [0.0, -0.1, 3.1501, 10.0, math.nan, math.inf, -math.inf])
+def test_sizes_outside_the_standard(size):
+    for refused in (fits.size_range, fits.tolerances, lambda value: fits.tolerance("IT7", value)):
+        with pytest.raises(UnitError, match="above 0 and up to 3150 mm"):
+            refused(size)
+
+
+def test_coarse_grades_are_not_for_sizes_up_to_1_mm():
+    with pytest.raises(UnitError, match=r"gives IT14 only for sizes above 1 mm; this size is 1 mm"):
+        fits.tolerance("IT14", 0.001)
+    assert fits.tolerance("IT13", 0.001) == pytest.approx(140e-6)
+    assert fits.tolerance("IT14", 0.0011) == pytest.approx(250e-6)
+    assert list(fits.tolerances(0.001)) == list(fits.GRADES[:13])
+
+
+@pytest.mark.parametrize("grade", ["IT19", "IT0", "IT01", "7", "", "H7", "IT 7x"])
+def test_unknown_grades(grade):
+    for refused in (fits.finer, fits.coarser, lambda name: fits.tolerance(name, 0.1)):
+        with pytest.raises(TruingError, match="is not a tolerance grade"):
+            refused(grade)
+
+
+def test_neighbours():
+    assert fits.finer("IT7") == "IT6"
+    assert fits.coarser("IT7") == "IT8"
+    assert fits.finer("IT1") is None
+    assert fits.coarser("IT18") is None
+    assert fits.finer(" it10 ") == "IT9"
+
+
+def test_all_grades_of_a_size():
+    widths = fits.tolerances(0.36)
+    assert tuple(widths) == fits.GRADES
+    assert widths["IT7"] == fits.tolerance("IT7", 0.36) == 57e-6
