@@ -1,0 +1,560 @@
+"""Reading and printing quantities: what engineers write, what must be refused and with which sentence."""
+
+import math
+import re
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from truing import unit_names, units
+from truing.errors import TruingError, UnitError
+from truing.unit_meaning import _suggestions
+from truing.units import Quantity
+
+# Definitions: SI Brochure (9th edition), and for the others NIST SP 811, appendix B.8 (exact where the unit is exact).
+IN_SI = [
+    ("3136 N*m", "N*m", 3136.0),
+    ("360 mm", "mm", 0.36),
+    ("0.36 m", "mm", 0.36),
+    ("1 in", "mm", 0.0254),
+    ("1 ft", "m", 0.3048),
+    ("1 mil", "um", 25.4e-6),
+    ("30 µm", "mm", 30e-6),
+    ("30 μm", "mm", 30e-6),
+    ("30 um", "mm", 30e-6),
+    ("30 micron", "mm", 30e-6),
+    ("5 nm", "mm", 5e-9),
+    ("28 mm^2", "mm^2", 28e-6),
+    ("28 mm²", "mm^2", 28e-6),
+    ("28 mm**2", "mm^2", 28e-6),
+    ("28 mm2", "m2", 28e-6),
+    ("7 mm³", "m^3", 7e-9),
+    ("4 cm4", "mm4", 4e-8),
+    ("4 cm^4", "m^4", 4e-8),
+    ("210 N/mm²", "MPa", 210e6),
+    ("210 N/mm2", "MPa", 210e6),
+    ("206 GPa", "N/mm^2", 206e9),
+    ("1 bar", "Pa", 1e5),
+    ("1 psi", "Pa", 6894.757293168361),
+    ("1 atm", "Pa", 101325.0),
+    ("1 kgf", "N", 9.80665),
+    ("1 lbf", "N", 4.4482216152605),
+    ("5 Nm", "N*m", 5.0),
+    ("5 Nmm", "N*m", 5e-3),
+    ("5 kNm", "N*m", 5e3),
+    ("5 N·m", "N*m", 5.0),
+    ("5 N m", "N*m", 5.0),
+    ("5 N-m", "N*m", 5.0),
+    ("5 N⋅m", "N*m", 5.0),
+    ("3000 rpm", "1/s", 50.0),
+    ("3000 r/min", "rpm", 50.0),
+    ("3000 rev/min", "rpm", 50.0),
+    ("3000 1/min", "rpm", 50.0),
+    ("3000 /min", "rpm", 50.0),
+    ("3000 min^-1", "rpm", 50.0),
+    ("3000 min⁻¹", "rpm", 50.0),
+    ("3000 min-1", "rpm", 50.0),
+    ("2 turn", "", 2.0),
+    ("2 rev", "", 2.0),
+    ("1e6 cycle", "", 1e6),
+    ("180 deg", "rad", math.pi),
+    ("180°", "rad", math.pi),
+    ("60'", "deg", math.pi / 180),
+    ("60 arcmin", "deg", math.pi / 180),
+    ("3600''", "deg", math.pi / 180),
+    ('3600"', "deg", math.pi / 180),
+    ("3600 arcsec", "deg", math.pi / 180),
+    ("30 urad", "rad", 30e-6),
+    ("30 µrad", "rad", 30e-6),
+    ("3 mrad", "deg", 3e-3),
+    ("5 %", "", 0.05),
+    ("5 ‰", "", 0.005),
+    ("5 ppm", "", 5e-6),
+    ("5 [-]", "", 5.0),
+    ("5 -", "", 5.0),
+    ("5 [1]", "%", 5.0),
+    ("5", "", 5.0),
+    ("47 kΩ", "ohm", 47e3),
+    ("60 l/min", "m^3/s", 1e-3),
+    ("50 W/(m·K)", "W/(m*K)", 50.0),
+    ("1 N/µm", "N/m", 1e6),
+    ("12e-6 K⁻¹", "1/K", 12e-6),
+    ("12 1e-6/K", "1/K", 12e-6),
+    ("12 10^-6 1/K", "1/K", 12e-6),
+    ("12 10⁻⁶/K", "1/K", 12e-6),
+    ("12 um/(m*K)", "1/K", 12e-6),
+    ("12 um/(m·°C)", "1/K", 12e-6),
+    ("1.2×10^-5 1/K", "1/K", 1.2e-5),
+    ("1.2x10^-5 1/K", "1/K", 1.2e-5),
+    ("1.2·10⁻⁵ 1/K", "1/K", 1.2e-5),
+    ("10^-3 m", "mm", 1e-3),
+    ("-1.5E+2 mm", "mm", -0.15),
+    ("+.5 mm", "mm", 5e-4),
+    ("5.mm", "mm", 5e-3),
+    ("5*mm", "mm", 5e-3),
+    ("−5 mm", "mm", -5e-3),
+    ("5 mm", "mm", 5e-3),
+    ("1 h", "s", 3600.0),
+    ("1 min", "s", 60.0),
+    ("1 d", "h", 86400.0),
+    ("1 year", "d", 365.25 * 86400),
+    ("5 g", "kg", 5e-3),
+    ("5 t", "kg", 5e3),
+    ("1 kWh", "J", 3.6e6),
+    ("1 PS", "W", 735.49875),
+    ("1 cSt", "m^2/s", 1e-6),
+    ("1 mPa*s", "Pa*s", 1e-3),
+    ("5 kg m-3", "kg/m^3", 5.0),
+    ("30 MPa*m^0.5", "Pa*m^(1/2)", 30e6),
+    ("1 m/s/s", "m/s^2", 1.0),
+    ("1 (m/s)^2", "m^2/s^2", 1.0),
+    ("1 (m/s)²", "J/kg", 1.0),
+    ("90 N*m/deg", "N*m/rad", 90 * 180 / math.pi),
+    ("16.14 yuan", "CNY", 16.14),
+    ("5 €", "EUR", 5.0),
+    ("5 $", "USD", 5.0),
+    ("1 furlong", "m", 201.168402336805),
+    ("2 meters", "m", 2.0),
+    ("20 degC", "degC", 293.15),
+    ("20 °C", "degC", 293.15),
+    ("20 deg C", "degC", 293.15),
+    ("68 °F", "degC", 293.15),
+    ("293.15 K", "degF", 293.15),
+    ("0 K", "degC", 0.0),
+    ("-459.67 degF", "degC", 0.0),
+    ("5 K", "K", 5.0),
+    ("5 delta_degC", "K", 5.0),
+    ("9 delta_degF", "K", 5.0),
+    ("5 K", "delta_degC", 5.0),
+]
+
+REFUSED = [
+    ("", "mm", "the text is empty; expected a length such as '1 mm'"),
+    ("   ", "mm", "the text is empty; expected a length such as '1 mm'"),
+    ("360", "mm", "'360' has no unit; expected a length such as '360 mm'"),
+    ("0.3", "rad", "'0.3' has no unit; expected an angle such as '0.3 rad'"),
+    ("20", "degC", "'20' has no unit; expected a temperature level such as '20 degC'"),
+    ("88", "%", "'88' has no unit; expected a pure number such as '88 %'"),
+    ("3 kN", "mm", "'3 kN' is a force (kN), expected a length (mm)"),
+    ("10 m m", "mm", "'10 m m' is an area (m·m), expected a length (mm)"),
+    ("5 mm", "", "'5 mm' is a length (mm), expected a pure number"),
+    ("5 deg", "", "'5 deg' is an angle (°), expected a pure number"),
+    ("5 %", "deg", "'5 %' is a pure number (%), expected an angle (°)"),
+    ("5 EUR", "USD", "'5 EUR' is an amount of money (EUR), expected an amount of money (USD)"),
+    ("5 mms", "mm", "unknown unit 'mms'; did you mean 'mm'?"),
+    ("5 MM", "mm", "unknown unit 'MM'; did you mean 'mm'?"),
+    ("5 KN", "N", "unknown unit 'KN'; did you mean 'kN'?"),
+    ("5 mpa", "MPa", "unknown unit 'mpa'; did you mean 'MPa'?"),
+    ("5 nmm", "N*m", "unknown unit 'nmm'; did you mean 'Nmm'?"),
+    ("5 newtn", "N", "unknown unit 'newtn'; did you mean 'newtons'?"),
+    ("5 foo", "N", "unknown unit 'foo'"),
+    ("5 c", "m/s", "unknown unit 'c'; did you mean 'C'?"),
+    ("5 speed_of_light", "m/s", "unknown unit 'speed_of_light'"),
+    ("3 dB", "", "unknown unit 'dB'; did you mean 'd'?"),
+    ("5 nm", "N*m", "'5 nm' is a length (nm), expected a torque (N·m); did you mean 'Nm'?"),
+    ("20 C", "degC", "'20 C' is an electric charge (C), expected a temperature level (°C); did you mean 'degC'?"),
+    (
+        "10 rad/s",
+        "rpm",
+        "'10 rad/s' is an angular speed (rad/s), expected a rotational speed (rpm); divide by 2 pi: 1.591549 1/s",
+    ),
+    (
+        "3000 rpm",
+        "rad/s",
+        "'3000 rpm' is a rotational speed (rpm), expected an angular speed (rad/s); multiply by 2 pi: 314.1593 rad/s",
+    ),
+    (
+        "5 N*m/rad",
+        "N*m",
+        "'5 N*m/rad' is a torsional stiffness (N·m/rad), expected a torque (N·m); the two differ by an angle",
+    ),
+    ("5 degC", "K", "'5 degC' is a temperature level; a difference is written 5 K"),
+    ("5 °F", "K", "'5 °F' is a temperature level; a difference is written 5 delta_degF"),
+    ("5 delta_degC", "degC", "'5 delta_degC' is a temperature difference; a level is written 5 degC"),
+    ("-300 degC", "degC", "'-300 degC' lies below absolute zero"),
+    ("9**9**9 kN", "kN", "'9**9**9 kN' is not a number followed by a unit"),
+    ("9^9 kN", "kN", "'9^9 kN' is not a number followed by a unit"),
+    ("10^9^9 kN", "kN", "'10^9^9 kN' is not a number followed by a unit"),
+    ("5*3 mm", "mm", "'5*3 mm' is not a number followed by a unit"),
+    ("nan mm", "mm", "'nan mm' is not a finite number"),
+    ("NaN", "mm", "'NaN' is not a finite number"),
+    ("-inf mm", "mm", "'-inf mm' is not a finite number"),
+    ("Infinity", "mm", "'Infinity' is not a finite number"),
+    ("∞ mm", "mm", "'∞ mm' is not a finite number"),
+    ("1e400 mm", "mm", "'1e400 mm' is too large for a number"),
+    ("1e-400 mm", "mm", "'1e-400 mm' is too small for a number"),
+    ("1e308 km", "mm", "'1e308 km' is too large for a number in SI units"),
+    ("1e-323 nm", "mm", "'1e-323 nm' is too small for a number in SI units"),
+    ("0,36 m", "m", "'0,36 m' has a decimal comma; write '0.36 m'"),
+    (",5 mm", "mm", "',5 mm' has a decimal comma; write '0.5 mm'"),
+    ("1,234.5 mm", "mm", "'1,234.5 mm' holds commas; write '1234.5 mm'"),
+    ("5_000 mm", "mm", "'5_000 mm' holds an underscore; write the number with digits alone"),
+    ("1 000 mm", "mm", "'1 000 mm' holds a second number; write one number, without blanks, and then its unit"),
+    ("2 100 mm", "mm", "'2 100 mm' holds a second number; write one number, without blanks, and then its unit"),
+    ("five mm", "mm", "'five mm' does not begin with a number; write it like '5 mm'"),
+    ("mm", "mm", "'mm' does not begin with a number; write it like '5 mm'"),
+    ("5 W/m·K", "W/(m*K)", "'W/m·K' is ambiguous; put what is below the '/' in parentheses, as in 'W/(m*K)'"),
+    ("5 J/kg K", "J/(kg*K)", "'J/kg K' is ambiguous; put what is below the '/' in parentheses, as in 'W/(m*K)'"),
+    ("5 Nmm²", "N*mm^2", "'Nmm²' is ambiguous; write 'Nmm' as 'N*mm' with its exponents"),
+    ("5 60 s", "s", "'5 60 s' holds a second number; write one number, without blanks, and then its unit"),
+    ("5 N*3", "N", "the unit 'N*3' may carry a power of ten, but not the number '3'"),
+    ("5 m^13", "m", "the unit 'm^13' has an exponent beyond 12"),
+    ("5 (m^9)^9", "m", "the unit '(m^9)^9' has an exponent beyond 12"),
+    ("5 m^999999999", "m", "the unit 'm^999999999' has an exponent beyond 12"),
+    ("5 m^(1/0)", "m", "'m^(1/0)' is not a unit: an exponent divides by zero"),
+    ("5 1e-99 m", "m", "the unit '1e-99 m' carries too large a power of ten"),
+    ("5 m**", "m", "'m^' is not a unit; write it like 'N*m', 'mm^2' or 'W/(m*K)'"),
+    ("5 (m", "m", "'(m' is not a unit; write it like 'N*m', 'mm^2' or 'W/(m*K)'"),
+    ("5 m)", "m", "'m)' is not a unit; write it like 'N*m', 'mm^2' or 'W/(m*K)'"),
+    ("5 m//s", "m/s", "'m//s' is not a unit; write it like 'N*m', 'mm^2' or 'W/(m*K)'"),
+    ("5 __import__('os')", "m", "unknown unit '__import__'"),
+    ("5 m; 6", "m", "'5 m; 6' holds ';', which stands in no number or unit"),
+    ("5 <b>m</b>", "m", "'5 <b>m</b>' holds '<', which stands in no number or unit"),
+    ("5 \x00m", "m", "'5 ?m' holds '?', which stands in no number or unit"),
+]
+
+
+@pytest.mark.parametrize(("text", "unit", "expected"), IN_SI)
+def test_what_engineers_write(text, unit, expected):
+    assert units.read_quantity(text, unit) == pytest.approx(expected, rel=1e-14, abs=1e-300)
+
+
+@pytest.mark.parametrize(("text", "unit", "sentence"), REFUSED)
+def test_what_is_refused(text, unit, sentence):
+    with pytest.raises(UnitError) as caught:
+        units.read_quantity(text, unit)
+    assert str(caught.value) == sentence
+
+
+@pytest.mark.parametrize("text", ["360 ± 0.05 mm", "360 mm +/- 0.05", "360 +- 0.05 mm", "360±0.05 mm", "± 0.05 mm"])
+def test_a_band_belongs_to_the_tolerances(text):
+    with pytest.raises(UnitError, match=r"holds a tolerance; .* under \[tolerances\]$"):
+        units.read_quantity(text, "mm")
+
+
+def test_a_long_text_is_refused_and_cut_in_the_sentence():
+    with pytest.raises(UnitError, match=r"is too long for a number with a unit \(100000 characters\)") as caught:
+        units.read_quantity("9" * 100_000, "mm")
+    assert len(str(caught.value)) < 150
+
+
+def test_errors_are_of_the_family_and_value_errors():
+    for family in (TruingError, ValueError):
+        with pytest.raises(family):
+            units.check_unit("mms")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("3136 N*m", Quantity(3136.0, "N*m")),
+        ("5", Quantity(5.0, "")),
+        (" 5mm ", Quantity(5.0, "mm")),
+        ("5 µm", Quantity(5.0, "um")),
+        ("5 m**2", Quantity(5.0, "m^2")),
+        ("5 [-]", Quantity(5.0, "[-]")),
+        ("1e3kN", Quantity(1000.0, "kN")),
+        ("5 unheard_of", Quantity(5.0, "unheard_of")),
+    ],
+)
+def test_splitting(text, expected):
+    assert units.split_quantity(text) == expected
+
+
+def test_one_literal_is_one_number():
+    """A text, a default in code and the SI number agree to the last digit, so that input hashes agree."""
+    for number in (0.36, 28.0, 1.25e-3, 7.1):
+        assert units.read_quantity(f"{number!r} mm", "mm") == units.to_si(number, "mm") == number / 1000
+    assert units.read_quantity("28 mm^2", "mm^2") == 28e-6
+    assert units.from_si(units.to_si(28.0, "mm^2"), "mm^2") == 28.0
+
+
+@pytest.mark.parametrize("unit", ["mm", "kN", "deg", "degC", "degF", "um/K", "%", "rpm", "1e-6/K", "EUR", "in"])
+def test_arrays_go_as_numbers_do_and_come_back(unit):
+    values = np.array([[1.5, -2.25, 300.0], [0.0, 1e-3, 7e5]])
+    kept = values.copy()
+    inside = units.to_si(values, unit)
+    assert isinstance(inside, np.ndarray)
+    np.testing.assert_array_equal(values, kept)
+    np.testing.assert_array_equal(inside.ravel(), [units.to_si(float(value), unit) for value in values.ravel()])
+    np.testing.assert_allclose(units.from_si(inside, unit), values, rtol=1e-13, atol=1e-12)
+
+
+def test_the_kind_of_number_is_kept():
+    assert type(units.to_si(3, "mm")) is float
+    assert type(units.from_si(np.float64(3), "mm")) is float
+    assert units.to_si(np.array([1, 2]), "mm").dtype == np.float64
+    assert units.from_si(np.array([1, 2]), "mm").dtype == np.float64
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"),
+    [("mm", 1e-3), ("degC", 1.0), ("degF", 5 / 9), ("deg", math.pi / 180), ("rpm", 1 / 60), ("MPa", 1e6), ("", 1.0)],
+)
+def test_the_size_of_one_step(unit, factor):
+    assert units.unit_factor(unit) == factor
+
+
+def test_powers_of_ten_in_a_header():
+    assert units.to_si(11.5, "1e-6/K") == pytest.approx(11.5e-6, rel=1e-15)
+    assert units.to_si(11.5, "10^-6 1/K") == pytest.approx(11.5e-6, rel=1e-15)
+    assert units.to_si(2.0, "10^3 N") == 2000.0
+    assert units.to_si(2.0, "1e-3") == 2e-3
+    for pure in ("", "[]", "[-]", "[1]", "-", "1"):
+        assert units.to_si(2.0, pure) == 2.0
+
+
+@pytest.mark.parametrize(
+    ("given_unit", "unit", "words"),
+    [
+        ("mm", "N", "'mm' is a length (mm), expected a force (N)"),
+        ("degC", "K", "'degC' is a temperature level; a difference is written in K"),
+        ("delta_degC", "degC", "'delta_degC' is a temperature difference; a level is written in degC"),
+        ("rpm", "rad/s", "'rpm' is a rotational speed (rpm), expected an angular speed (rad/s); multiply by 2 pi"),
+        ("mms", "mm", "unknown unit 'mms'; did you mean 'mm'?"),
+    ],
+)
+def test_the_unit_of_a_column(given_unit, unit, words):
+    with pytest.raises(UnitError, match=f"^{re.escape(words)}$"):
+        units.demand_dimension(given_unit, unit)
+
+
+@pytest.mark.parametrize(
+    ("given_unit", "unit"), [("K", "degC"), ("degF", "degC"), ("[-]", "%"), ("um", "mm"), ("J", "Nm")]
+)
+def test_the_unit_of_a_column_that_fits(given_unit, unit):
+    units.demand_dimension(given_unit, unit)
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "same"),
+    [
+        ("mm", "in", True),
+        ("N*m", "J", True),
+        ("degC", "K", True),
+        ("rpm", "Hz", True),
+        ("rpm", "rad/s", False),
+        ("deg", "", False),
+        ("deg", "arcmin", True),
+        ("N*m/rad", "N*m/deg", True),
+        ("N*m/rad", "N*m", False),
+        ("EUR", "CNY", False),
+        ("EUR", "", False),
+        ("%", "", True),
+        ("sr", "rad^2", True),
+    ],
+)
+def test_same_dimension(left, right, same):
+    assert units.same_dimension(left, right) is same
+    assert units.same_dimension(right, left) is same
+
+
+@pytest.mark.parametrize(
+    ("unit", "words"),
+    [
+        ("mm", "a length"),
+        ("kN", "a force"),
+        ("N*m", "a torque"),
+        ("kWh", "an energy or work"),
+        ("deg", "an angle"),
+        ("N/mm^2", "a pressure or stress"),
+        ("degC", "a temperature level"),
+        ("K", "a temperature difference"),
+        ("", "a pure number"),
+        ("%", "a pure number"),
+        ("rpm", "a rotational speed"),
+        ("Hz", "a frequency"),
+        ("rad/s", "an angular speed"),
+        ("um/K", "a length per kelvin"),
+        ("N*m/rad", "a torsional stiffness"),
+        ("yuan", "an amount of money"),
+        ("m^5/s", "[length]**5/[time]"),
+        ("rad^3/m^0.5", "[angle]**3/[length]**0.5"),
+        ("EUR/h", "[EUR]/[time]"),
+    ],
+)
+def test_human_dimension(unit, words):
+    assert units.human_dimension(unit) == words
+
+
+def test_every_kind_of_quantity_has_one_name():
+    words = [units.human_dimension(unit) for unit, _ in unit_names.KINDS]
+    assert words.count("a torque") == 1
+    assert len({text for text, _ in unit_names.KINDS}) == len(unit_names.KINDS)
+    for unit, expected in unit_names.KINDS:
+        if unit != "1/s":
+            assert units.human_dimension(unit) == expected
+
+
+@pytest.mark.parametrize(
+    ("unit", "text", "latex"),
+    [
+        ("N*m", "N·m", r"\mathrm{N\,m}"),
+        ("Nm", "N·m", r"\mathrm{N\,m}"),
+        ("um", "µm", r"\mathrm{\mu{}m}"),
+        ("m/s**2", "m/s²", r"\mathrm{m/s^{2}}"),
+        ("m/s^2", "m/s²", r"\mathrm{m/s^{2}}"),
+        ("m s^-2", "m/s²", r"\mathrm{m/s^{2}}"),
+        ("degC", "°C", r"\mathrm{{}^{\circ}C}"),
+        ("deg", "°", r"\mathrm{{}^{\circ}}"),
+        ("arcmin", "′", r"\mathrm{{}^{\prime}}"),
+        ("", "", ""),
+        ("[-]", "", ""),
+        ("1", "", ""),
+        ("%", "%", r"\mathrm{\%}"),
+        ("W/(m*K)", "W/(m·K)", r"\mathrm{W/(m\,K)}"),
+        ("K^-1", "1/K", r"\mathrm{1/K}"),
+        ("1e-6/K", "10⁻⁶/K", r"\mathrm{10^{-6}/K}"),
+        ("10^3 N", "10³·N", r"\mathrm{10^{3}\,N}"),
+        ("MPa*m^0.5", "MPa·m^0.5", r"\mathrm{MPa\,m^{0.5}}"),
+        ("kohm", "kΩ", r"\mathrm{k\Omega{}}"),
+        ("delta_degC", "K", r"\mathrm{K}"),
+        ("mm^4", "mm⁴", r"\mathrm{mm^{4}}"),
+        ("rpm", "rpm", r"\mathrm{rpm}"),
+        ("€", "EUR", r"\mathrm{EUR}"),
+    ],
+)
+def test_printed_units(unit, text, latex):
+    assert units.unit_text(unit) == text
+    assert units.unit_latex(unit) == latex
+
+
+@pytest.mark.parametrize("unit", [text for text, _ in unit_names.KINDS] + ["um/degC", "1e-6/K", "N/mm²", "kN*m/deg"])
+def test_a_printed_unit_can_be_read_again(unit):
+    assert units.same_dimension(units.unit_text(unit), unit)
+    assert units.unit_factor(units.unit_text(unit)) == pytest.approx(units.unit_factor(unit), rel=1e-15)
+
+
+def test_every_unit_that_is_suggested_exists():
+    assert len(_suggestions()) > 300
+    for name in _suggestions():
+        units.check_unit(name)
+        assert units.unit_factor(name) > 0
+
+
+def test_names_that_pint_takes_for_something_else():
+    """Nm is a textile count, cycle rev turn are 2 pi, pa is a picoyear and MM a megamolar in pint."""
+    assert units.same_dimension("Nm", "J")
+    assert units.unit_factor("rev") == units.unit_factor("cycle") == units.unit_factor("turn") == 1.0
+    for name in ("pa", "MM", "c", "R", "k", "e", "pi", "zeta", "lambda", "b", "decibel", "dB", "degree_Reaumur"):
+        with pytest.raises(UnitError):
+            units.check_unit(name)
+
+
+@pytest.mark.parametrize(
+    "name", [name for name, (definition, _) in unit_names.SYMBOLS.items() if definition.isidentifier()]
+)
+def test_sizes_agree_with_pint(name):
+    """The table of names points at the unit it means: the symbol, read by pint itself, has the same size."""
+    definition = unit_names.SYMBOLS[name][0]
+    size = units.registry().Quantity(1.0, definition).to_base_units().magnitude
+    assert units.unit_factor(name) == pytest.approx(size, rel=1e-14)
+
+
+def test_pint_quantities_prove_dimensions():
+    torque = units.pint_quantity(3.0, "N*mm") / units.pint_quantity(2.0, "m")
+    assert torque.dimensionality == units.registry().newton.dimensionality
+    assert torque.to_base_units().magnitude == 1.5
+    assert units.pint_quantity(0.3, "deg").dimensionless
+    assert units.pint_quantity(293.15, "degC").units == units.registry().kelvin
+    price = units.pint_quantity(3.0, "EUR") / units.pint_quantity(2.0, "CNY")
+    assert not price.dimensionless
+    assert str(units.pint_quantity(1.0, "Pa*m^0.5").dimensionality) == "[mass] / [length] ** 0.5 / [time] ** 2"
+
+
+def test_one_registry():
+    assert units.registry() is units.registry()
+
+
+def test_importing_costs_neither_pint_nor_numpy():
+    script = "import sys, truing.units, truing.fits; print([n for n in ('pint', 'numpy') if n in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_a_broken_cache_does_not_stop_a_calculation(tmp_path):
+    """An ordinary file stands where the cache of pint would be a folder."""
+    (tmp_path / "cache").write_text("no folder", encoding="utf-8")
+    script = "import truing.units as u; print(u.read_quantity('5 mm', 'mm'))"
+    environment = {"XDG_CACHE_HOME": str(tmp_path / "cache"), "HOME": str(tmp_path), "PATH": ""}
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False, env=environment)
+    assert done.stdout.strip() == "0.005", done.stderr
+
+
+ALPHABET = "0123456789.+-*/^()[]eE xmkNPadgsKrCF°µ·×²⁻'\"%_,±~\n\u00a0nifµΩ$€"
+WORDS = [
+    "5",
+    "1e3",
+    "10^",
+    "**",
+    "mm",
+    "kN",
+    "N",
+    "m",
+    "degC",
+    "/",
+    "*",
+    "(",
+    ")",
+    "^2",
+    "²",
+    " ",
+    "-",
+    "nan",
+    "rad",
+    "1",
+]
+ANY_TEXT = st.one_of(
+    st.text(max_size=250),
+    st.text(alphabet=ALPHABET, max_size=60),
+    st.lists(st.sampled_from(WORDS), max_size=12).map("".join),
+    st.text(alphabet=ALPHABET, max_size=30).map(lambda tail: "5 " + tail),
+)
+
+
+@settings(max_examples=1500, deadline=None)
+@given(text=ANY_TEXT, unit=st.sampled_from(["mm", "", "degC", "rad", "rpm", "N*m", "K", "EUR"]))
+@example(text="9**9**9 kN", unit="mm")
+@example(text="9" * 200, unit="mm")
+@example(text="5 " + "(" * 190, unit="mm")
+@example(text="5 " + "m*" * 99, unit="mm")
+@example(text="5 " + "m^12 " * 39, unit="mm")
+@example(text="5 m^0.3333333333333333333333333333333333", unit="mm")
+@example(text="\ud800", unit="mm")
+@example(text="٣ mm", unit="mm")
+def test_any_text_is_a_number_or_one_sentence_at_once(text, unit):
+    begin = time.perf_counter()
+    try:
+        value = units.read_quantity(text, unit)
+    except UnitError as error:
+        sentence = str(error)
+        assert "\n" not in sentence
+        assert sentence.isprintable()
+        assert len(sentence) < 300
+    else:
+        assert math.isfinite(value)
+    assert time.perf_counter() - begin < 1
+
+
+@settings(max_examples=800, deadline=None)
+@given(unit=ANY_TEXT)
+def test_any_unit_text_is_a_unit_or_one_sentence(unit):
+    try:
+        units.check_unit(unit)
+    except UnitError:
+        return
+    assert units.unit_factor(unit) > 0
+    assert units.same_dimension(units.unit_text(unit), unit)
+    assert units.unit_latex(unit).count("{") == units.unit_latex(unit).count("}")
+    assert units.human_dimension(unit)
+
+
+@given(value=st.floats(allow_nan=False, allow_infinity=False, min_value=-1e100, max_value=1e100))
+def test_a_printed_number_is_read_back(value):
+    text = f"{value!r} mm"
+    if value == 0 or abs(value) > 1e-300:
+        assert units.read_quantity(text, "mm") == value / 1000
