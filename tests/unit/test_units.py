@@ -1,6 +1,7 @@
 """Reading and printing quantities: what engineers write, what must be refused and with which sentence."""
 
 import math
+import os
 import re
 import subprocess
 import sys
@@ -476,13 +477,24 @@ def test_importing_costs_neither_pint_nor_numpy():
     assert done.stdout.strip() == "[]"
 
 
-def test_a_broken_cache_does_not_stop_a_calculation(tmp_path):
-    """An ordinary file stands where the cache of pint would be a folder."""
-    (tmp_path / "cache").write_text("no folder", encoding="utf-8")
-    script = "import truing.units as u; print(u.read_quantity('5 mm', 'mm'))"
-    environment = {"XDG_CACHE_HOME": str(tmp_path / "cache"), "HOME": str(tmp_path), "PATH": ""}
+def read_in_a_new_process(cache):
+    script = "import truing.units as u; print(u.read_quantity('5 mm', 'mm'), u.registry().cache_folder)"
+    environment = {**os.environ, "XDG_CACHE_HOME": str(cache)}
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False, env=environment)
-    assert done.stdout.strip() == "0.005", done.stderr
+    return done.stdout.split() or done.stderr
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the folder of the cache is set by XDG_CACHE_HOME")
+def test_a_broken_cache_does_not_stop_a_calculation(tmp_path):
+    """An ordinary file where the cache would be a folder; a cache file that another process left half-written."""
+    (tmp_path / "file").write_text("no folder", encoding="utf-8")
+    assert read_in_a_new_process(tmp_path / "file") == ["0.005", "None"]
+    assert read_in_a_new_process(tmp_path / "good")[0] == "0.005"
+    torn = [path for path in (tmp_path / "good").rglob("*") if path.is_file() and path.suffix != ".json"]
+    assert torn, "the cache was written"
+    for path in torn:
+        path.write_bytes(path.read_bytes()[:20])
+    assert read_in_a_new_process(tmp_path / "good")[0] == "0.005"
 
 
 ALPHABET = "0123456789.+-*/^()[]eE xmkNPadgsKrCF°µ·×²⁻'\"%_,±~\n\u00a0nifµΩ$€"
