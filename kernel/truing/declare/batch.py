@@ -25,10 +25,17 @@ class FailedRows:
         self.codes: NDArray[np.int32] = np.zeros(rows, dtype=np.int32)
         self.sentences: list[str] = []
 
-    def add(self, failed: NDArray[np.bool_], sentence: str) -> None:
-        """Note ``sentence`` for every failed row that has none yet; a scalar condition concerns all rows."""
+    def add(self, failed: Any, sentence: str) -> None:
+        """Note ``sentence`` for every failed row that has none yet.
+
+        ``failed`` is one bool for all rows, (rows,), (rows, k), or (k,) along an axis that no column reaches.
+        """
         import numpy as np
 
+        if failed.ndim > 1:
+            failed = failed.any(axis=tuple(range(1, failed.ndim)))
+        elif failed.ndim and len(failed) != len(self.codes):
+            failed = failed.any(keepdims=True)
         fresh = np.broadcast_to(failed, self.codes.shape) & (self.codes == 0)
         if fresh.any():
             self.sentences.append(sentence)
@@ -68,15 +75,14 @@ def feasible(holds: Any, sentence: str) -> None:
     failed = _WATCH.get()
     if failed is None:
         raise InfeasibleError(sentence)
-    broken = ~values
-    failed.add(broken if broken.ndim < 2 else broken.any(axis=tuple(range(1, broken.ndim))), sentence)
+    failed.add(np.logical_not(values), sentence)
 
 
 def either(value: Float, otherwise: Float) -> Float:
     """Return ``value`` where it is given (not NaN), else ``otherwise``."""
     import numpy as np
 
-    if isinstance(value, float):
+    if isinstance(value, (int, float)):
         return otherwise if value != value else value
     return np.where(np.isnan(value), otherwise, value)
 

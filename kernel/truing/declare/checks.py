@@ -2,40 +2,48 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import is_dataclass
+from inspect import signature
 from typing import TYPE_CHECKING, Any
 
+from truing.declare.fields import hints_of
 from truing.declare.goals import Maximise, Minimise, Require, Vary
+from truing.declare.near_miss import near_miss
 from truing.declare.sources import Condition, Effect, Tolerance
-from truing.declare.spreads import Band, ByChoice, Drawn, Grade, Spread
+from truing.declare.specs import Axis, Found
+from truing.declare.spreads import Band, ByChoice, Grade, Spread
 from truing.errors import DeclarationError
 
 if TYPE_CHECKING:
     from truing.declare.fields import InputField, ResultField
     from truing.declare.model import Model
 
-RESERVED = {"sheet", "inputs", "tolerances", "conditions", "effects", "calibrated", "studies", "units", "plugin"}
-
-
-def near_miss(name: str, known: Iterable[str]) -> str:
-    """Return " Did you mean 'x'?" for a misspelt name, or nothing."""
-    close = difflib.get_close_matches(name, list(known), n=1, cutoff=0.6)
-    return f" Did you mean '{close[0]}'?" if close else ""
+TOTAL_PRICE = "tolerance_price"
 
 
 def check_model(model: Model[Any, Any]) -> None:
     """Refuse a model in which something names what does not exist, all such places at once."""
-    faults = [*_of_names(model), *_of_errors(model), *_of_objectives(model), *_of_sheet(model), *_of_formulas(model)]
+    faults = [
+        *_of_names(model),
+        *_of_axes(model),
+        *_of_errors(model),
+        *_of_objectives(model),
+        *_of_sheet(model),
+        *_of_formulas(model),
+    ]
     if faults:
         raise DeclarationError(f"model '{model.name}': " + "; ".join(faults))
 
 
 def _of_names(model: Model[Any, Any]) -> Iterator[str]:
-    if not model.name.replace("_", "").replace(".", "").isalnum():
+    if not model.name.replace("_", "").isalnum():
         yield f"the name '{model.name}' may hold letters, digits and underscores only"
-    for name in set(model.input_fields) & set(model.result_fields):
-        yield f"'{name}' is an input and a result; one of them needs another name"
+    for name in model.input_fields:
+        if name in model.result_fields:
+            yield f"'{name}' is an input and a result; one of them needs another name"
+    if TOTAL_PRICE in {*model.input_fields, *model.result_fields}:
+        yield f"the name '{TOTAL_PRICE}' is kept for the sum of the prices"
     for name in _twice(source.name for source in model.errors):
         yield f"two error sources are called '{name}'"
     for name in _twice(study.name for study in model.studies):
@@ -47,17 +55,49 @@ def _twice(names: Iterable[str]) -> list[str]:
     return [name for name in names if name in seen or seen.add(name)]  # type: ignore[func-returns-value]
 
 
+def _of_axes(model: Model[Any, Any]) -> Iterator[str]:
+    """Say which results and series run along an axis that nobody declares."""
+    fields = model.own_result_fields
+    axes = {name for name, item in fields.items() if isinstance(item.spec, Axis)}
+    axes |= {name for name, item in model.input_fields.items() if item.kind == "series"}
+    for name, result in fields.items():
+        own = f"{result.along}_{result.scope}" if result.scope else result.along
+        if isinstance(result.spec, Found) and result.along and not {own, result.along} & axes:
+            yield f"the result '{name}' runs along '{result.along}', which is no axis.{near_miss(result.along, axes)}"
+    for name, item in model.input_fields.items():
+        along = item.spec.along
+        if along and along not in axes:
+            yield f"the input '{name}' runs along '{along}', which is no axis.{near_miss(along, axes)}"
+
+
 def _of_errors(model: Model[Any, Any]) -> Iterator[str]:
     conditions: dict[str, Condition] = {}
     for source in model.errors:
         if isinstance(source, Tolerance):
             yield from of_tolerance(source, model)
         elif isinstance(source, Effect):
+            yield from of_effect(source, model)
             for condition in source.needs:
                 if conditions.setdefault(condition.name, condition) != condition:
                     yield f"the condition '{condition.name}' is declared in two ways"
-                if condition.name in model.input_fields:
-                    yield f"the condition '{condition.name}' has the name of an input"
+        else:
+            yield f"{source!r} is neither a Tolerance nor an Effect"
+
+
+def of_effect(source: Effect[Any, Any], model: Model[Any, Any]) -> Iterator[str]:
+    """Say what keeps an effect from acting on the model: names that are taken, inputs and results of another one."""
+    for condition in source.needs:
+        for known, kind in ((model.input_fields, "an input"), (model.result_fields, "a result")):
+            if condition.name in known:
+                yield f"the condition '{condition.name}' has the name of {kind}"
+    expected = [model.input_type, model.result_type][: 1 if source.place == "inputs" else 2]
+    for parameter, wanted in zip(signature(source.function).parameters.values(), expected, strict=False):
+        try:
+            given = hints_of(source.function).get(parameter.name)
+        except TypeError:  # a callable without annotations, such as a partial: nothing to compare
+            return
+        if isinstance(given, type) and is_dataclass(given) and given is not wanted:
+            yield f"effect '{source.name}' acts on {given.__qualname__}, but the model has {wanted.__qualname__}"
 
 
 def of_tolerance(source: Tolerance, model: Model[Any, Any]) -> Iterator[str]:
@@ -69,22 +109,43 @@ def of_tolerance(source: Tolerance, model: Model[Any, Any]) -> Iterator[str]:
             yield f"tolerance '{source.name}' is on '{name}', which is no input.{near_miss(name, model.input_fields)}"
         elif item is not None and not item.varies:
             yield f"tolerance '{source.name}' is on '{name}', which cannot scatter: only a Float can"
-    for name in _named_by(source.spread):
-        if name not in model.input_fields:
-            yield f"tolerance '{source.name}' names '{name}', which is no input.{near_miss(name, model.input_fields)}"
+    for fault in _of_spread(source.spread, model):
+        yield f"tolerance '{source.name}' {fault}"
+    names = _names_in(source.price.formula) if source.price else frozenset({"width"})
+    if isinstance(names, str):
+        yield f"the price of tolerance '{source.name}': {names}"
+    elif names != {"width"}:
+        named = ", ".join(sorted(names)) or "nothing"
+        yield f"the price of tolerance '{source.name}' names {named}; it is a formula in width"
 
 
-def _named_by(spread: Spread) -> Iterator[str]:
-    if isinstance(spread, ByChoice):
-        yield spread.chooser
+def _of_spread(spread: Spread, model: Model[Any, Any]) -> Iterator[str]:
+    if not hasattr(spread, "resolve"):
+        yield f"has the spread {spread!r}; write normal(...), plus_minus(...), grade(...) or another of the words"
+    elif isinstance(spread, ByChoice):
+        chooser = model.input_fields.get(spread.chooser)
+        if chooser is None:
+            yield f"names '{spread.chooser}', which is no input.{near_miss(spread.chooser, model.input_fields)}"
+        elif not chooser.choices:
+            yield f"is chosen by '{spread.chooser}', which offers no choices"
+        elif set(chooser.choices) != set(spread.spreads):
+            offered = ", ".join(chooser.choices)
+            yield f"has a spread for {', '.join(spread.spreads)}, but '{chooser.name}' offers {offered}"
         for inner in spread.spreads.values():
-            yield from _named_by(inner)
-    elif isinstance(spread, Grade) and spread.size:
-        yield spread.size
-    elif isinstance(spread, Band) and spread.at_radius:
-        yield spread.at_radius
-    elif not isinstance(spread, (Band, Grade, Drawn)) and not hasattr(spread, "resolve"):
-        raise DeclarationError(f"{spread!r} is no spread")
+            yield from _of_spread(inner, model)
+    name = spread.size if isinstance(spread, Grade) else spread.at_radius if isinstance(spread, Band) else ""
+    if name and name not in model.input_fields:
+        yield f"names '{name}', which is no input.{near_miss(name, model.input_fields)}"
+
+
+def _names_in(formula: str) -> frozenset[str] | str:
+    """Return the names in a formula, or why it cannot be read."""
+    from truing.formulas import parse
+
+    try:
+        return frozenset(parse(formula).names)
+    except DeclarationError as error:
+        return str(error)
 
 
 def _of_objectives(model: Model[Any, Any]) -> Iterator[str]:
@@ -95,13 +156,44 @@ def _of_objectives(model: Model[Any, Any]) -> Iterator[str]:
 def of_objective(objective: Any, inputs: Mapping[str, InputField], results: Mapping[str, ResultField]) -> Iterator[str]:
     """Say what an objective names that the model does not have."""
     if isinstance(objective, Vary):
-        if objective.input not in inputs:
-            yield f"Vary names '{objective.input}', which is no input.{near_miss(objective.input, inputs)}"
-        return
-    assert isinstance(objective, (Minimise, Maximise, Require))
-    if objective.result not in results and objective.result != "tolerance_price":
-        yield f"an objective names '{objective.result}', which is no result.{near_miss(objective.result, results)}"
-    if isinstance(objective, Require) and isinstance(objective.reliability, str) and objective.reliability not in inputs:
+        yield from _of_vary(objective, inputs)
+    elif isinstance(objective, (Minimise, Maximise)):
+        known = {**inputs, **results}
+        if objective.result not in known and objective.result != TOTAL_PRICE:
+            what = f"{type(objective).__name__} names '{objective.result}'"
+            yield f"{what}, which is neither input nor result.{near_miss(objective.result, known)}"
+    elif isinstance(objective, Require):
+        yield from _of_require(objective, inputs, results)
+    else:
+        yield f"{objective!r} is no objective; write Vary, Minimise, Maximise or Require"
+
+
+def _of_vary(objective: Vary, inputs: Mapping[str, InputField]) -> Iterator[str]:
+    if objective.input not in inputs:
+        yield f"Vary names '{objective.input}', which is no input.{near_miss(objective.input, inputs)}"
+    elif not inputs[objective.input].varies:
+        yield f"Vary names '{objective.input}', which is no number that may vary"
+    names = _names_in(objective.by) if objective.by else frozenset()
+    if isinstance(names, str):
+        yield f"Vary('{objective.input}'): {names}"
+    elif strange := sorted(names - set(inputs)):
+        yield f"Vary('{objective.input}') follows {strange[0]}, which is no input.{near_miss(strange[0], inputs)}"
+
+
+def _of_require(
+    objective: Require, inputs: Mapping[str, InputField], results: Mapping[str, ResultField]
+) -> Iterator[str]:
+    if objective.result not in results and objective.result != TOTAL_PRICE:
+        yield f"Require names '{objective.result}', which is no result.{near_miss(objective.result, results)}"
+    limit, known = objective.limit, {**inputs, **results}
+    if not any(sign.isdigit() for sign in limit) and limit not in known:
+        what = f"Require('{objective.result}') has the limit '{limit}'"
+        yield f"{what}, which is neither a quantity nor an input or result.{near_miss(limit, known)}"
+    if (
+        isinstance(objective, Require)
+        and isinstance(objective.reliability, str)
+        and objective.reliability not in inputs
+    ):
         yield f"Require('{objective.result}') takes its reliability from '{objective.reliability}', which is no input"
 
 
@@ -127,9 +219,13 @@ def _of_formulas(model: Model[Any, Any]) -> Iterator[str]:
             continue
         try:
             scope = formula_scope(model, item)
-            missing = [name for name in parse(text).names if name not in scope]
+            formula = parse(text)
+            missing = [name for name in formula.names if name not in scope]
         except DeclarationError as error:
             yield f"formula of '{item.name}': {error}"
             continue
         if missing:
-            yield f"formula of '{item.name}' names {', '.join(sorted(missing))}, which is neither input nor result"
+            named = ", ".join(sorted(missing)) + f", which is neither input nor result.{near_miss(missing[0], scope)}"
+            yield f"formula of '{item.name}' names {named}"
+        elif formula.left is None and any(scope[name] is item for name in formula.names):
+            yield f"formula of '{item.name}' names itself; write an equation with == for what is solved"

@@ -5,113 +5,19 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, replace
-from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, TypeVar, dataclass_transform, get_args, get_origin
+from typing import Any, Literal, TypeVar, dataclass_transform, get_args, get_origin
 
-from truing.errors import DeclarationError
+from truing.declare.near_miss import near_miss
+from truing.declare.specs import KEY, Axis, Float, Found, Given, Kind, Loaded, Part, Spec, in_si
+from truing.errors import DeclarationError, UsageError
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Float: TypeAlias = float | NDArray[np.float64]
-else:
-    Float = Annotated[float, "a number or an array: may vary inside a batch"]
+__all__ = [
+    "KEY", "Axis", "Float", "Found", "Given", "InputField", "Kind", "Loaded", "Part", "ResultField", "Spec", "axis",
+    "found", "given", "hints_of", "in_si", "input_fields", "inputs", "loaded", "make", "part", "read",
+    "result_fields", "results", "rows", "spec_of", "with_values",
+]  # fmt: skip
 
 T = TypeVar("T")
-KEY = "truing"
-Kind = Literal["float", "whole", "integer", "switch", "choice", "text", "series", "file"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Given:
-    """One input as declared; ``default`` and the bounds are in ``unit``."""
-
-    default: Any
-    unit: str | None
-    symbol: str = ""
-    note: str = ""
-    source: str = ""
-    above: float | None = None
-    below: float | None = None
-    at_least: float | None = None
-    at_most: float | None = None
-    whole: bool = False
-    along: str = ""
-
-    def initial(self) -> Any:
-        """Return the default as the function sees it: SI, NaN where nothing is given."""
-        return in_si(self.default, self.unit, bool(self.along))
-
-
-@dataclass(frozen=True, kw_only=True)
-class Loaded:
-    """An input that is read from a data file by ``reader(path, **options)``."""
-
-    reader: Callable[..., Any]
-    note: str = ""
-    source: str = ""
-    default: Any = MISSING
-    symbol: str = ""
-    unit: str | None = None
-    along: str = ""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Found:
-    """One result as declared; ``formula`` is what the sheet prints and a test evaluates."""
-
-    unit: str
-    symbol: str = ""
-    note: str = ""
-    formula: str = ""
-    numeric: bool = False
-    along: str = ""
-    method: str = ""
-    source: str = ""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Axis:
-    """A result that other results run along: shape (k,)."""
-
-    unit: str
-    symbol: str = ""
-    note: str = ""
-    is_table: bool = False
-
-
-@dataclass(frozen=True, kw_only=True)
-class Part:
-    """A nested group of fields: one gear, one side."""
-
-    of: type[Any]
-    index: str
-    suffix: str | None
-    defaults: Mapping[str, Any]
-
-
-Spec: TypeAlias = Given | Loaded | Found | Axis | Part
-
-
-def in_si(value: Any, unit: str | None, is_series: bool = False) -> Any:
-    """Turn a declared value, a text with a unit or None (not given: NaN) into what the function sees."""
-    if value is None:
-        return float("nan")
-    if unit is None or isinstance(value, bool):
-        return value
-    if isinstance(value, str):
-        from truing.units import read_quantity
-
-        return read_quantity(value, unit)
-    if is_series:
-        import numpy as np
-
-        return np.array([in_si(item, unit) for item in value], dtype=float)
-    if isinstance(value, int) and unit in {"", "1", "-"}:
-        return value
-    from truing.units import to_si
-
-    return to_si(value, unit)
 
 
 def given(
@@ -139,7 +45,9 @@ def given(
     return field(default_factory=spec.initial, metadata={KEY: spec})
 
 
-def loaded(reader: Callable[..., Any], *, default: Any = MISSING, symbol: str = "", note: str = "", source: str = "") -> Any:
+def loaded(
+    reader: Callable[..., Any], *, default: Any = MISSING, symbol: str = "", note: str = "", source: str = ""
+) -> Any:
     """Declare an input that ``reader(path, **options)`` makes from a data file, once, as a frozen value."""
     spec = Loaded(reader=reader, default=default, symbol=symbol, note=note, source=source)
     if default is MISSING:
@@ -181,29 +89,62 @@ def part(of: type[T], index: str = "", *, suffix: str | None = None, **defaults:
     ``index`` is put behind the symbols, ``suffix`` replaces the attribute's name, ``defaults`` replace those of ``of``.
     """
     spec = Part(of=of, index=index, suffix=suffix, defaults=defaults)
-    if not all(isinstance(spec_of(item), (Given, Loaded, Part)) for item in dataclasses.fields(of)):
+    specs = _specs(of)
+    for name in defaults:
+        if name not in specs:
+            raise DeclarationError(f"part({of.__name__}): it has no input '{name}'.{near_miss(name, specs)}")
+        if not isinstance(specs[name], Given):
+            raise DeclarationError(
+                f"part({of.__name__}): '{name}' is no plain input, so its default cannot be replaced"
+            )
+    if not _is_inputs(of):
         return field(metadata={KEY: spec})
-    return field(default_factory=lambda: initial_part(spec), metadata={KEY: spec})
+    return field(default_factory=lambda: make(of, {}, defaults), metadata={KEY: spec})
 
 
-def initial_part(spec: Part) -> Any:
-    """Make the nested inputs with the defaults that the part replaces."""
-    specs = {item.name: spec_of(item) for item in dataclasses.fields(spec.of)}
-    values = {name: _replaced(specs[name], value).initial() for name, value in spec.defaults.items()}
-    return spec.of(**values)
+def _is_inputs(cls: type[Any]) -> bool:
+    """Whether a declared class holds inputs: decided by its first plain field."""
+    for spec in _specs(cls).values():
+        return _is_inputs(spec.of) if isinstance(spec, Part) else isinstance(spec, (Given, Loaded))
+    return False
 
 
-def _replaced(spec: Spec, default: Any) -> Given:
-    if not isinstance(spec, Given):
-        raise DeclarationError("a part can replace the defaults of plain inputs only")
-    return replace(spec, default=default)
+def _specs(cls: type[Any]) -> dict[str, Spec]:
+    """Return the declarations of a class by attribute; refuses a class that declares nothing."""
+    if not dataclasses.is_dataclass(cls):
+        raise DeclarationError(f"{_spoken(cls)} is declared neither by @inputs nor by @results")
+    return {item.name: spec_of(item) for item in dataclasses.fields(cls)}
+
+
+def _spoken(cls: Any) -> str:
+    return f"{cls.__module__}.{cls.__qualname__}" if isinstance(cls, type) else repr(cls)
+
+
+def make(cls: type[T], values: Mapping[tuple[str, ...], Any], defaults: Mapping[str, Any] | None = None) -> T:
+    """Make inputs from SI values by path; ``defaults`` replace declared ones, what is not named is as declared.
+
+    Raises UsageError where a data file without a default is missing.
+    """
+    own: dict[str, Any] = {}
+    for name, spec in _specs(cls).items():
+        if isinstance(spec, Part):
+            inner = {path[1:]: value for path, value in values.items() if path[0] == name and len(path) > 1}
+            own[name] = make(spec.of, inner, spec.defaults)
+        elif isinstance(spec, Given) and defaults and name in defaults:
+            own[name] = replace(spec, default=defaults[name]).initial()
+        elif isinstance(spec, Loaded) and spec.default is MISSING and (name,) not in values:
+            raise UsageError(f"the input '{name}' is read from a data file and has no default; give the file")
+    own.update({path[0]: value for path, value in values.items() if len(path) == 1})
+    return cls(**own)
 
 
 def spec_of(item: dataclasses.Field[Any]) -> Spec:
     """Return the declaration behind a dataclass field."""
     spec: Spec | None = item.metadata.get(KEY)
     if spec is None:
-        raise DeclarationError(f"field '{item.name}' is not declared: write given(...), loaded(...), found(...) or part(...)")
+        raise DeclarationError(
+            f"field '{item.name}' is not declared: write given(...), loaded(...), found(...) or part(...)"
+        )
     return spec
 
 
@@ -220,14 +161,18 @@ def results(cls: type[T]) -> type[T]:
 
 
 def _declared(cls: type[T], allowed: tuple[type[Any], ...]) -> type[T]:
-    made = dataclass(frozen=True, kw_only=True)(cls)
-    for item in dataclasses.fields(made):  # type: ignore[arg-type]  # the line above made it a dataclass
-        try:
-            spec = spec_of(item)
-        except DeclarationError as error:
-            raise DeclarationError(f"{cls.__module__}.{cls.__qualname__}: {error}") from None
+    where, is_inputs = _spoken(cls), Given in allowed
+    try:
+        made = dataclass(frozen=True, kw_only=True)(cls)
+        specs = _specs(made)
+    except (TypeError, DeclarationError) as error:  # dataclass refuses a field without annotation by a TypeError
+        raise DeclarationError(f"{where}: {error}") from None
+    for name, spec in specs.items():
+        words = "inputs come from given, loaded or part" if is_inputs else "results come from found, axis, rows or part"
         if not isinstance(spec, allowed):
-            raise DeclarationError(f"{cls.__module__}.{cls.__qualname__}: '{item.name}' is declared with the wrong word")
+            raise DeclarationError(f"{where}: '{name}' is declared with the wrong word; {words}")
+        if isinstance(spec, Part) and _is_inputs(spec.of) is not is_inputs:
+            raise DeclarationError(f"{where}: the part '{name}' of {spec.of.__name__} mixes inputs and results")
     return made
 
 
@@ -290,25 +235,35 @@ class _Place:
 
 def _walk(cls: type[Any], path: tuple[str, ...] = (), suffixes: tuple[str, ...] = (), index: str = "",
           defaults: Mapping[str, Any] | None = None) -> Iterator[_Place]:  # fmt: skip
-    from typing import get_type_hints
-
-    hints = get_type_hints(cls, include_extras=True)
-    for item in dataclasses.fields(cls):
-        spec = spec_of(item)
-        here = (*path, item.name)
+    specs = _specs(cls)
+    hints = hints_of(cls)
+    for name, spec in specs.items():
+        here = (*path, name)
         if isinstance(spec, Part):
-            suffix = item.name if spec.suffix is None else spec.suffix
-            yield from _walk(spec.of, here, (*suffixes, suffix), index + spec.index, spec.defaults)
+            suffix = name if spec.suffix is None else spec.suffix
+            inner = (*suffixes, suffix) if suffix else suffixes
+            yield from _walk(spec.of, here, inner, index + spec.index, spec.defaults)
             continue
-        if defaults and item.name in defaults:
-            spec = _replaced(spec, defaults[item.name])
-        yield _Place(here, suffixes, index, spec, hints[item.name])
+        if isinstance(spec, Given) and defaults and name in defaults:
+            spec = replace(spec, default=defaults[name])
+        yield _Place(here, suffixes, index, spec, hints[name])
 
 
 def _indexed(symbol: str, index: str) -> str:
     if not symbol or not index:
         return symbol
     return f"{symbol}{index}" if "_" in symbol else f"{symbol}_{index}"
+
+
+def hints_of(item: Any) -> dict[str, Any]:
+    """Return the annotations of a class or function; a name that is not found is a fault of the declaration."""
+    from typing import get_type_hints
+
+    try:
+        return get_type_hints(item, include_extras=True)
+    except NameError as error:
+        name = getattr(item, "__qualname__", repr(item))
+        raise DeclarationError(f"{name}: {error}; annotations must name what the module itself imports") from error
 
 
 def _kind(place: _Place) -> tuple[Kind, tuple[str, ...]]:
@@ -324,7 +279,20 @@ def _kind(place: _Place) -> tuple[Kind, tuple[str, ...]]:
     kinds: dict[Any, Kind] = {bool: "switch", int: "integer", str: "text"}
     if annotation in kinds:
         return kinds[annotation], ()
-    return "series", ()
+    if (get_origin(annotation) or annotation) in {tuple, list, _array_type()}:
+        return "series", ()
+    raise DeclarationError(
+        f"input '{place.path[-1]}' is annotated {annotation}; "
+        "write Float, int, bool, str, Literal[...], a tuple, or loaded(...) for a data file"
+    )
+
+
+def _array_type() -> Any:
+    """Return numpy's array type if anybody has imported numpy; without it nothing can be annotated with it."""
+    import sys
+
+    numpy = sys.modules.get("numpy")
+    return numpy.ndarray if numpy is not None else None
 
 
 def input_fields(cls: type[Any]) -> dict[str, InputField]:
@@ -333,12 +301,19 @@ def input_fields(cls: type[Any]) -> dict[str, InputField]:
     for place in _walk(cls):
         name = "_".join((place.path[-1], *place.suffixes))
         _refuse_twice(name, fields)
-        assert isinstance(place.spec, (Given, Loaded))
+        if not isinstance(place.spec, (Given, Loaded)):
+            raise DeclarationError(f"'{name}' of {_spoken(cls)} is no input: the class must be declared by @inputs")
         kind, choices = _kind(place)
         if kind in {"float", "whole"} and place.spec.unit is None:
-            raise DeclarationError(f"input '{name}' has no unit: write given(default, \"mm\"), or \"\" for a pure number")
+            raise DeclarationError(f'input \'{name}\' has no unit: write given(default, "mm"), or "" for a pure number')
+        if kind in {"switch", "choice", "text", "integer"} and place.spec.unit:
+            raise DeclarationError(f"input '{name}' has the unit '{place.spec.unit}', but its annotation allows none")
+        if choices and str(getattr(place.spec, "default", "")) not in choices:
+            raise DeclarationError(f"input '{name}' is by default none of {', '.join(choices)}")
         symbol = _indexed(place.spec.symbol, place.index)
-        fields[name] = InputField(name=name, path=place.path, spec=place.spec, kind=kind, symbol=symbol, choices=choices)
+        fields[name] = InputField(
+            name=name, path=place.path, spec=place.spec, kind=kind, symbol=symbol, choices=choices
+        )
     return fields
 
 
@@ -348,7 +323,8 @@ def result_fields(cls: type[Any]) -> dict[str, ResultField]:
     for place in _walk(cls):
         name = "_".join((place.path[-1], *place.suffixes))
         _refuse_twice(name, fields)
-        assert isinstance(place.spec, (Found, Axis))
+        if not isinstance(place.spec, (Found, Axis)):
+            raise DeclarationError(f"'{name}' of {_spoken(cls)} is no result: the class must be declared by @results")
         symbol = _indexed(place.spec.symbol, place.index)
         fields[name] = ResultField(
             name=name, path=place.path, spec=place.spec, symbol=symbol, scope="_".join(place.suffixes)

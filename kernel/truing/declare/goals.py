@@ -29,7 +29,8 @@ class Vary:
     by: str = ""
 
     def __post_init__(self) -> None:
-        if bool(self.by) == bool(self.low and self.high):
+        bounds = [self.low, self.high]
+        if any(bounds) if self.by else not all(bounds):
             raise DeclarationError(f"Vary('{self.input}') takes either low and high or by=\"formula\"")
 
 
@@ -69,9 +70,13 @@ class Require:
         within: str = "",
         reliability: float | str | None = None,
     ) -> None:
-        stated = [(kind, text) for kind, text in (("at_most", at_most), ("at_least", at_least), ("within", within)) if text]
+        stated = [
+            (kind, text) for kind, text in (("at_most", at_most), ("at_least", at_least), ("within", within)) if text
+        ]
         if len(stated) != 1:
             raise DeclarationError(f"Require('{result}') takes one of at_most, at_least and within")
+        if isinstance(reliability, (int, float)) and not 0 < reliability < 1:
+            raise DeclarationError(f"Require('{result}'): the reliability {reliability} must lie between 0 and 1")
         values = {"result": result, "kind": stated[0][0], "limit": stated[0][1], "reliability": reliability}
         for key, value in values.items():
             object.__setattr__(self, key, value)

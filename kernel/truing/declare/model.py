@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, Literal, Protocol, TypeVar, get_type_hints
+from typing import TYPE_CHECKING, Any, Generic, Literal, Protocol, TypeVar
 
 from truing.declare.checks import check_model
-from truing.declare.fields import InputField, ResultField, in_si, input_fields, read, result_fields, with_values
+from truing.declare.fields import InputField, ResultField, hints_of, in_si, input_fields, make, read, result_fields
 from truing.declare.goals import Objective
+from truing.declare.near_miss import near_miss
 from truing.declare.published import Finding, Published
 from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance
-from truing.errors import DeclarationError
+from truing.errors import DeclarationError, UsageError
 
 if TYPE_CHECKING:
     from truing.declare.blocks import Block
@@ -100,7 +101,6 @@ class Model(Generic[I, R]):
     derivatives: Callable[[I], Mapping[str, Mapping[str, Any]]] | None = None
     example: Path | None = None
     summary: str = ""
-    _checked: bool = field(default=True, repr=False)
 
     def __post_init__(self) -> None:
         check_model(self)
@@ -116,10 +116,12 @@ class Model(Generic[I, R]):
         return self._annotated()[1]
 
     def _annotated(self) -> tuple[type[Any], type[Any]]:
-        hints = get_type_hints(self.function)
+        hints = hints_of(self.function)
         answer = hints.pop("return", None)
         if len(hints) != 1 or answer is None:
-            raise DeclarationError(f"{self.name}: the function takes one annotated class of inputs and returns one of results")
+            raise DeclarationError(
+                f"{self.name}: the function takes one annotated class of inputs and returns one of results"
+            )
         return next(iter(hints.values())), answer
 
     @cached_property
@@ -138,9 +140,11 @@ class Model(Generic[I, R]):
         given: dict[str, dict[str, ResultField]] = {}
         for study in self.studies:
             if study.gives is not None:
-                answer = get_type_hints(study.gives).get("return")
+                answer = hints_of(study.gives).get("return")
                 if answer is None:
-                    raise DeclarationError(f"{self.name}: {study.gives.__name__} must say which @results class it returns")
+                    raise DeclarationError(
+                        f"{self.name}: {study.gives.__name__} must say which @results class it returns"
+                    )
                 given[study.name] = result_fields(answer)
         return given
 
@@ -172,15 +176,15 @@ class Model(Generic[I, R]):
 
     def inputs(self, **values: Any) -> I:
         """Make inputs by flat name; texts carry units (``load="3 kN"``), numbers are SI, the rest is default."""
-        unknown = set(values) - set(self.input_fields)
-        if unknown:
-            raise TypeError(f"{self.name} has no input {', '.join(sorted(unknown))}")
         changed = {}
         for name, value in values.items():
-            item = self.input_fields[name]
-            has_unit = isinstance(value, str) and item.kind in {"float", "whole", "series"}
-            changed[item.path] = in_si(value, item.unit) if has_unit else value
-        return with_values(self.input_type(), changed)
+            item = self.input_fields.get(name)
+            if item is None:
+                raise UsageError(f"{self.name} has no input '{name}'.{near_miss(name, self.input_fields)}")
+            if item.choices and str(value) not in item.choices:
+                raise UsageError(f"'{name}' of {self.name} is one of {', '.join(item.choices)}, not '{value}'")
+            changed[item.path] = _in_si(value, item)
+        return make(self.input_type, changed)
 
     def read_inputs(self, inputs: I) -> dict[str, Any]:
         """Return every input by flat name, SI."""
@@ -189,3 +193,19 @@ class Model(Generic[I, R]):
     def read_results(self, results: R) -> dict[str, Any]:
         """Return every result of the function by flat name, SI."""
         return {name: read(results, item.path) for name, item in self.own_result_fields.items()}
+
+
+def _in_si(value: Any, item: InputField) -> Any:
+    """Turn texts, alone or in a series, into SI; everything else is SI already."""
+    if item.kind not in {"float", "whole", "series"}:
+        return value
+    if isinstance(value, str):
+        return in_si(value, item.unit)
+    if not isinstance(value, (tuple, list)):
+        return value
+    numbers = tuple(in_si(number, item.unit) if isinstance(number, str) else number for number in value)
+    if not item.spec.along:
+        return numbers
+    import numpy as np
+
+    return np.array(numbers, dtype=float)

@@ -12,7 +12,8 @@ class Published:
     """One printed number.
 
     ``result`` names the result of ours it is compared with and ``value`` is in ``unit``. ``settings`` are what it holds
-    for: input names, and ``tolerances.NAME`` for spreads. ``agrees_to`` is the relative difference that counts as a match.
+    for: input names, and ``tolerances.NAME`` for spreads. ``agrees_to`` is the relative difference that counts as a
+    match.
     ``verdict`` is what we state of it: "matches", or "differs" with the reason in ``why``; ``calc verify`` fails when
     the stated verdict is not what comes out.
     """

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Concatenate, Generic, Literal, TypeAlias, TypeVar
 
 from truing.declare.goals import Price
@@ -37,7 +39,14 @@ class Tolerance:
         price: Price | None = None,
         source: str = "",
     ) -> None:
-        values = {"name": name, "spread": spread, "on": tuple(on or (name,)), "why": why, "price": price, "source": source}
+        values = {
+            "name": name,
+            "spread": spread,
+            "on": tuple(on or (name,)),
+            "why": why,
+            "price": price,
+            "source": source,
+        }
         for key, value in values.items():
             object.__setattr__(self, key, value)
 
@@ -56,8 +65,10 @@ class Unknown:
     note: str = ""
 
     def __post_init__(self) -> None:
-        if not self.low < self.high:
-            raise DeclarationError(f"unknown '{self.name}': the lower bound {self.low} must lie below {self.high}")
+        if not (self.low < self.high and math.isfinite(self.low) and math.isfinite(self.high)):
+            raise DeclarationError(
+                f"unknown '{self.name}': its bounds are {self.low} and {self.high}; two finite numbers, lower first"
+            )
 
     @property
     def is_amplitude(self) -> bool:
@@ -67,7 +78,7 @@ class Unknown:
 
 @dataclass(frozen=True)
 class Condition:
-    """Something measured that is no input of the model, with the reference at which its effects vanish (in ``unit``)."""
+    """Something measured that is no input of the model; at its ``reference`` (in ``unit``) its effects vanish."""
 
     name: str
     unit: str
@@ -75,7 +86,7 @@ class Condition:
     note: str = ""
     derived: str = ""
 
-    @property
+    @cached_property
     def zero(self) -> float:
         """The reference in SI, as effects see the condition itself."""
         from truing.units import to_si
@@ -152,18 +163,24 @@ def _check_effect(effect: Effect[Any, Any]) -> None:
         raise DeclarationError(f"effect '{effect.name}' has {len(effect.unknowns)} unknowns; one to three can be found")
     if not any(unknown.is_amplitude for unknown in effect.unknowns):
         raise DeclarationError(f"effect '{effect.name}' has no amplitude: one unknown's bounds must contain 0")
-    wanted = {item.name for item in (*effect.unknowns, *effect.needs)}
+    wanted = {unknown.name for unknown in effect.unknowns} | {need.name for need in effect.needs}
     if len(wanted) != len(effect.unknowns) + len(effect.needs):
         raise DeclarationError(f"effect '{effect.name}' names an unknown or condition twice")
+    _check_keywords(effect, wanted)
+
+
+def _check_keywords(effect: Effect[Any, Any], wanted: set[str]) -> None:
+    """Refuse a function whose keywords are not the unknowns and conditions; further ones need a default."""
     parameters = list(inspect.signature(effect.function).parameters.values())
-    leading = 1 if effect.place == "inputs" else 2
-    named = parameters[leading:]
+    named = parameters[1 if effect.place == "inputs" else 2 :]
     if any(item.kind is inspect.Parameter.VAR_KEYWORD for item in named):
         return
-    if {item.name for item in named} != wanted:
+    needed = {item.name for item in named if item.default is inspect.Parameter.empty}
+    if not needed <= wanted <= {item.name for item in named}:
         have = ", ".join(item.name for item in named) or "none"
+        function = getattr(effect.function, "__name__", repr(effect.function))
         raise DeclarationError(
-            f"effect '{effect.name}': {effect.function.__name__} takes the keywords {have}, "
+            f"effect '{effect.name}': {function} takes the keywords {have}, "
             f"but its unknowns and conditions are {', '.join(sorted(wanted))}"
         )
 

@@ -114,8 +114,10 @@ class Band:
         quantity = split_quantity(self.amount)
         if quantity.unit == "%" and target.unit != "%":
             if not target.nominal:
-                raise UnitError(f"{self.amount} of '{target.name}' is nothing, because its nominal is 0; write a quantity")
-            return abs(quantity.value / 100 * target.nominal)
+                raise UnitError(
+                    f"{self.amount} of '{target.name}' is nothing, because its nominal is 0; write a quantity"
+                )
+            return _positive(quantity.value, self.amount) / 100 * abs(target.nominal)
         if not self.at_radius:
             return _positive(difference(self.amount, target.unit), self.amount)
         radius = float(target.value_of(self.at_radius))
@@ -135,9 +137,14 @@ class Grade:
         return self.grade
 
     def width(self, target: Target) -> float:
-        """Return the full width in metres."""
+        """Return the full width in metres; raises UnitError where the input is no length."""
         from truing.fits import tolerance
+        from truing.units import same_dimension
 
+        if not same_dimension(target.unit, "m"):
+            raise UnitError(
+                f"{self.grade} is a grade for lengths; '{target.name}' is in {target.unit or 'pure numbers'}"
+            )
         return tolerance(self.grade, self.size_of(target))
 
     def size_of(self, target: Target) -> float:
@@ -197,6 +204,8 @@ class ByChoice:
 
     def chosen(self, value: str) -> Spread:
         """Return the spread for this value of the choosing input."""
+        if value not in self.spreads:
+            raise DeclarationError(f"no spread is declared for {self.chooser} = '{value}'")
         return self.spreads[value]
 
     def resolve(self, target: Target) -> Distribution | None:
@@ -219,7 +228,10 @@ class Drawn:
         """Return a normal stand-in with the mean and standard deviation of 4096 fixed draws."""
         import numpy as np
 
-        deviations = np.asarray(self.function(np.random.default_rng(0), 4096)[target.name])
+        drawn = self.function(np.random.default_rng(0), 4096)
+        if target.name not in drawn:
+            raise DeclarationError(f"{self.function.__name__} draws {', '.join(drawn)}, but not '{target.name}'")
+        deviations = np.asarray(drawn[target.name], dtype=float)
         return Distribution(target.nominal + float(deviations.mean()), float(deviations.std(ddof=1)))
 
 
@@ -298,7 +310,10 @@ def read_spread(text: str | Mapping[str, Any], declared: Spread) -> Spread:
     if words == "off":
         return Off()
     if words.upper().startswith("IT") and words[2:].strip().isdigit():
-        return Grade("IT" + words[2:].strip(), _settled(declared, "size"))
+        from truing.fits import tolerance
+
+        tolerance(name := "IT" + words[2:].strip(), 0.1)  # refuses IT19 at once; every grade exists at 100 mm
+        return Grade(name, _settled(declared, "size"))
     if words.startswith("zone"):
         ends = [end.strip() for end in words[4:].split("..")]
         return _zone_table({"zone": ends}, declared)
@@ -309,9 +324,10 @@ def _band(words: str, text: str, declared: Spread) -> Band:
     from truing.units import split_quantity
 
     shape: Shape = "normal"
-    for other in ("uniform", "lognormal", "normal"):
+    shapes: tuple[Shape, ...] = ("uniform", "lognormal", "normal")
+    for other in shapes:
         if words.startswith(other + " "):
-            shape, words = other, words[len(other) :].strip()  # type: ignore[assignment]  # one of the three
+            shape, words = other, words[len(other) :].strip()
             break
     says: tuple[Literal["±", "sd", "band"], ...] = ("±", "sd", "band")
     for word in says:
@@ -321,13 +337,18 @@ def _band(words: str, text: str, declared: Spread) -> Band:
             return Band(amount, word, shape, _settled(declared, "at_radius"))
     raise UnitError(
         f"'{text}' is no tolerance; write '±0.05 mm', 'sd 3 %', 'band 0.125 mm', 'IT6', "
-        "{zone = [\"0 um\", \"6 um\"]} or 'off'"
+        '{zone = ["0 um", "6 um"]} or \'off\''
     )
 
 
 def _zone_table(table: Mapping[str, Any], declared: Spread) -> Zone:
     ends = table.get("zone") if isinstance(table, Mapping) else None
-    if not isinstance(ends, list) or len(ends) != 2 or set(table) != {"zone"} or not all(isinstance(e, str) for e in ends):
+    if (
+        not isinstance(ends, list)
+        or len(ends) != 2
+        or set(table) != {"zone"}
+        or not all(isinstance(e, str) for e in ends)
+    ):
         raise UnitError('a zone is written {zone = ["0 um", "6 um"]}')
     return replace(declared, low=ends[0], high=ends[1]) if isinstance(declared, Zone) else Zone(ends[0], ends[1])
 

@@ -1,0 +1,112 @@
+"""The declarations behind the words of a field, and how a declared value becomes SI."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, dataclass
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Float: TypeAlias = float | NDArray[np.float64]
+else:
+    Float = Annotated[float, "a number or an array: may vary inside a batch"]
+
+KEY = "truing"
+Kind = Literal["float", "whole", "integer", "switch", "choice", "text", "series", "file"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given:
+    """One input as declared; ``default`` and the bounds are in ``unit``."""
+
+    default: Any
+    unit: str | None
+    symbol: str = ""
+    note: str = ""
+    source: str = ""
+    above: float | None = None
+    below: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    whole: bool = False
+    along: str = ""
+
+    def initial(self) -> Any:
+        """Return the default as the function sees it: SI, NaN where nothing is given."""
+        return in_si(self.default, self.unit, bool(self.along))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Loaded:
+    """An input that is read from a data file by ``reader(path, **options)``."""
+
+    reader: Callable[..., Any]
+    note: str = ""
+    source: str = ""
+    default: Any = MISSING
+    symbol: str = ""
+    unit: str | None = None
+    along: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Found:
+    """One result as declared; ``formula`` is what the sheet prints and a test evaluates."""
+
+    unit: str
+    symbol: str = ""
+    note: str = ""
+    formula: str = ""
+    numeric: bool = False
+    along: str = ""
+    method: str = ""
+    source: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axis:
+    """A result that other results run along: shape (k,)."""
+
+    unit: str
+    symbol: str = ""
+    note: str = ""
+    is_table: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    """A nested group of fields: one gear, one side."""
+
+    of: type[Any]
+    index: str
+    suffix: str | None
+    defaults: Mapping[str, Any]
+
+
+Spec: TypeAlias = Given | Loaded | Found | Axis | Part
+
+
+def in_si(value: Any, unit: str | None, is_series: bool = False) -> Any:
+    """Turn a declared value, a text with a unit or None (not given: NaN) into what the function sees."""
+    if value is None:
+        return float("nan")
+    if unit is None or isinstance(value, bool):
+        return value
+    if is_series and not isinstance(value, str):
+        import numpy as np
+
+        return np.array([in_si(item, unit) for item in value], dtype=float)
+    if isinstance(value, (tuple, list)):
+        return tuple(in_si(item, unit) for item in value)
+    if isinstance(value, str):
+        from truing.units import read_quantity
+
+        return read_quantity(value, unit)
+    if isinstance(value, int) and unit in {"", "1", "-"}:
+        return value
+    from truing.units import to_si
+
+    return to_si(value, unit)
