@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from truing import unit_names, units
+from truing import units
 from truing.errors import TruingError, UnitError
-from truing.unit_meaning import _suggestions
-from truing.units import Quantity
+from truing.units import Quantity, names
+from truing.units.meaning import _suggestions
 
 # Definitions: SI Brochure (9th edition), and for the others NIST SP 811, appendix B.8 (exact where the unit is exact).
 IN_SI = [
@@ -383,10 +383,10 @@ def test_human_dimension(unit, words):
 
 
 def test_every_kind_of_quantity_has_one_name():
-    words = [units.human_dimension(unit) for unit, _ in unit_names.KINDS]
+    words = [units.human_dimension(unit) for unit, _ in names.KINDS]
     assert words.count("a torque") == 1
-    assert len({text for text, _ in unit_names.KINDS}) == len(unit_names.KINDS)
-    for unit, expected in unit_names.KINDS:
+    assert len({text for text, _ in names.KINDS}) == len(names.KINDS)
+    for unit, expected in names.KINDS:
         if unit != "1/s":
             assert units.human_dimension(unit) == expected
 
@@ -424,7 +424,7 @@ def test_printed_units(unit, text, latex):
     assert units.unit_latex(unit) == latex
 
 
-@pytest.mark.parametrize("unit", [text for text, _ in unit_names.KINDS] + ["um/degC", "1e-6/K", "N/mm²", "kN*m/deg"])
+@pytest.mark.parametrize("unit", [text for text, _ in names.KINDS] + ["um/degC", "1e-6/K", "N/mm²", "kN*m/deg"])
 def test_a_printed_unit_can_be_read_again(unit):
     assert units.same_dimension(units.unit_text(unit), unit)
     assert units.unit_factor(units.unit_text(unit)) == pytest.approx(units.unit_factor(unit), rel=1e-15)
@@ -446,12 +446,10 @@ def test_names_that_pint_takes_for_something_else():
             units.check_unit(name)
 
 
-@pytest.mark.parametrize(
-    "name", [name for name, (definition, _) in unit_names.SYMBOLS.items() if definition.isidentifier()]
-)
+@pytest.mark.parametrize("name", [name for name, (definition, _) in names.SYMBOLS.items() if definition.isidentifier()])
 def test_sizes_agree_with_pint(name):
     """The table of names points at the unit it means: the symbol, read by pint itself, has the same size."""
-    definition = unit_names.SYMBOLS[name][0]
+    definition = names.SYMBOLS[name][0]
     size = units.registry().Quantity(1.0, definition).to_base_units().magnitude
     assert units.unit_factor(name) == pytest.approx(size, rel=1e-14)
 

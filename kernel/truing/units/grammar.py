@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from truing.errors import UnitError
-from truing.unit_names import SPELLINGS
+from truing.units.names import SPELLINGS
 
 LONGEST = 200
 LARGEST_EXPONENT = 12

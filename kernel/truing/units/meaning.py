@@ -14,10 +14,9 @@ from functools import lru_cache
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
-from truing import unit_grammar as grammar
-from truing import unit_names as names
 from truing.errors import UnitError
-from truing.unit_grammar import shown
+from truing.units import grammar, names
+from truing.units.grammar import shown
 
 if TYPE_CHECKING:
     import pint

@@ -18,11 +18,10 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, overload
 
-from truing import unit_grammar as grammar
-from truing import unit_names as names
 from truing.errors import UnitError
-from truing.unit_grammar import Quantity, shown
-from truing.unit_meaning import Dimension, Meaning, case_variants, meaning, registry, split_prefix, without_prefix
+from truing.units import grammar, names
+from truing.units.grammar import Quantity, shown
+from truing.units.meaning import Dimension, Meaning, case_variants, meaning, registry, split_prefix, without_prefix
 
 if TYPE_CHECKING:
     import numpy as np
