@@ -1,0 +1,388 @@
+"""Reads printed formulas back, as a person would: only what is visible counts, no hidden grouping.
+
+Two tokenizers (MathML, LaTeX) feed one parser. ``<mrow>`` and braces that only group are invisible and therefore
+ignored; an exponent belongs to the one thing it stands on; what a person could read in two ways is refused.
+The result is Python text for ``eval``.
+"""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+FUNCTIONS = {
+    **{name: name for name in ("sin", "cos", "tan", "cot", "sinh", "cosh", "tanh", "inv", "exp", "min", "max", "mean")},
+    **{"ln": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "atan2": "atan2", "sgn": "sign", "∑": "sum"},
+}
+WORDS = {"if", "otherwise", "if given", "and", "or"}
+COMPARISONS = {"=": "==", "≠": "!=", "<": "<", "≤": "<=", ">": ">", "≥": ">="}
+INVISIBLE_TIMES = "\u2062"
+Token = tuple[str, Any]
+
+
+class MisprintError(Exception):
+    """A person could not read this, or could read it in two ways."""
+
+
+@dataclass
+class Reader:
+    """What the names look like in print, and which units may follow numbers."""
+
+    names: Mapping[str, str]
+    units: frozenset[str] = frozenset()
+    tokens: list[Token] = field(default_factory=list)
+
+    def python(self, tokens: Iterable[Token]) -> str:
+        """Turn tokens into Python; an equation becomes a difference."""
+        parser = Parser(list(tokens), self)
+        left = parser.expression()
+        if parser.at("op", "="):
+            parser.take()
+            left = f"(({left}) - ({parser.expression()}))"
+        parser.end()
+        return left
+
+    def upright(self, text: str) -> Token:
+        """Tell what an upright text is: a function, a word of the alternatives, a name, a unit."""
+        bare = text.replace("\xa0", " ").strip()
+        if bare in FUNCTIONS:
+            return ("function", FUNCTIONS[bare])
+        if bare in WORDS:
+            return ("word", bare)
+        if bare in self.units:
+            return ("unit", bare)
+        return ("name" if bare in self.names or len(bare) == 1 else "text", bare)
+
+    def mathml(self, markup: str) -> str:
+        """Read MathML."""
+        return self.python(self.elements(ElementTree.fromstring(f"<r>{markup}</r>")))
+
+    def elements(self, parent: Iterable[ElementTree.Element]) -> list[Token]:
+        """Flatten all children into tokens."""
+        return [token for child in parent for token in self.element(child)]
+
+    def element(self, element: ElementTree.Element) -> list[Token]:
+        """Turn one element into tokens."""
+        text = "".join(element.itertext()).strip()
+        parts = list(element)
+        match element.tag:
+            case "mrow":
+                return self.elements(parts)
+            case "mn":
+                return [("number", text)]
+            case "mi" | "mtext":
+                return [self.upright(text)]
+            case "mo":
+                return self.operator(text, element)
+            case "mspace":
+                return []
+            case "mfrac":
+                above, below = (self.python(self.element(part)) for part in parts)
+                return [("block", f"(({above}) / ({below}))")]
+            case "msqrt":
+                return [("block", f"sqrt({self.python(self.elements(parts))})")]
+            case "mroot":
+                assert parts[1].text == "3"
+                return [("block", f"cbrt({self.python(self.element(parts[0]))})")]
+            case "msub" if text == "log10":
+                return [("function", "log10")]
+            case "msub":
+                return [("name", self.visible(parts[0]) + "_" + self.visible(parts[1]))]
+            case "msup" | "msubsup":
+                return self.raised(parts)
+            case "mtable":
+                rows = [[self.elements(cell) for cell in row] for row in element]
+                return [("cases", rows)]
+        raise MisprintError(f"element {element.tag} is not MathML Core as we use it")
+
+    def visible(self, element: ElementTree.Element) -> str:
+        return "".join(element.itertext()).strip()
+
+    def operator(self, text: str, element: ElementTree.Element) -> list[Token]:
+        if text == "\u2061":
+            return []
+        if text in "(|" and element.get("form") == "prefix":
+            return [("open", text)]
+        if text in ")|":
+            return [("close", text)]
+        if text == "∑":
+            return [("function", "sum")]
+        return [("op", {"−": "-", INVISIBLE_TIMES: "gap"}.get(text, text))]
+
+    def raised(self, parts: list[ElementTree.Element]) -> list[Token]:
+        *base, exponent = parts
+        key = "_".join(self.visible(part) for part in base)
+        if set(self.visible(exponent)) == {"′"}:
+            return [("name", key + self.visible(exponent))]
+        tokens = [("name", key)] if len(base) == 2 else self.element(base[0])
+        return [*tokens, ("sup", self.element(exponent))]
+
+    def latex(self, text: str) -> str:
+        """Read LaTeX."""
+        return self.python(Latex(re.findall(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\s+|.", text), self).tokens_until(None))
+
+
+COMMANDS = {r"\cdot": "⋅", r"\times": "×", r"\thinspace": "gap", r"\ne": "≠", r"\lt": "<", r"\gt": ">"}
+COMMANDS |= {r"\le": "≤", r"\ge": "≥"}
+LETTERS = {r"\theta": "θ", r"\xi": "ξ", r"\pi": "π", r"\Delta": "Δ", r"\alpha": "α"}
+
+
+@dataclass
+class Latex:
+    """Turns LaTeX into the same tokens."""
+
+    parts: list[str]
+    reader: Reader
+
+    def pop(self) -> str:
+        return self.parts.pop(0)
+
+    def group(self) -> list[Token]:
+        assert self.pop() == "{"
+        return self.tokens_until("}")
+
+    def raw(self) -> str:
+        assert self.pop() == "{"
+        depth, text = 1, ""
+        while depth:
+            part = self.pop()
+            depth += {"{": 1, "}": -1}.get(part, 0)
+            text += part if depth else ""
+        return re.sub(r"\\cdot", "·", text.replace(r"\ ", " ")).replace("{·}", "·")
+
+    def tokens_until(self, end: str | None) -> list[Token]:
+        tokens: list[Token] = []
+        while self.parts:
+            part = self.pop()
+            if part == end:
+                return tokens
+            if not part.isspace():
+                self.one(part, tokens)
+        assert end is None
+        return tokens
+
+    def one(self, part: str, tokens: list[Token]) -> None:
+        if part in (r"\left", r"\right"):
+            bracket = self.pop()
+            tokens.append(("open" if part == r"\left" else "close", "|" if bracket == r"\vert" else bracket))
+        elif part == r"\frac":
+            above, below = self.reader.python(self.group()), self.reader.python(self.group())
+            tokens.append(("block", f"(({above}) / ({below}))"))
+        elif part == r"\sqrt":
+            index = "".join(self.pop() for _ in range(3)) if self.parts[0] == "[" else ""
+            tokens.append(("block", f"{'cbrt' if index == '[3]' else 'sqrt'}({self.reader.python(self.group())})"))
+        elif part == r"\begin":
+            assert self.raw() == "cases"
+            tokens.append(("cases", self.rows()))
+        elif part == r"\mathrm":
+            tokens.append(self.reader.upright(self.raw()))
+        elif part == "^":
+            self.superscript(tokens)
+        elif part == "_":
+            self.subscript(tokens)
+        else:
+            self.plain(part, tokens)
+
+    def plain(self, part: str, tokens: list[Token]) -> None:
+        if part in COMMANDS or part in "+-=,":
+            tokens.append(("op", COMMANDS.get(part, part)))
+        elif part in LETTERS or part.isalpha():
+            tokens.append(("name", LETTERS.get(part, part)))
+        elif part[0].isdigit():
+            tokens.append(("number", part))
+        elif part in (r"\sum", r"\log") or part[1:] in FUNCTIONS:
+            tokens.append(("function", {r"\sum": "sum", r"\log": "log10"}.get(part) or FUNCTIONS[part[1:]]))
+        elif part != "\\ ":
+            raise MisprintError(f"{part!r} is not of our subset")
+
+    def superscript(self, tokens: list[Token]) -> None:
+        inner = self.group() if self.parts[1] != r"\prime" else self.raw()
+        if isinstance(inner, str):
+            tokens[-1] = ("name", tokens[-1][1] + "′" * inner.count(r"\prime"))
+        else:
+            tokens.append(("sup", inner))
+
+    def subscript(self, tokens: list[Token]) -> None:
+        text = re.sub(r"\\mathrm|[{} ]", "", self.raw())
+        kind, base = tokens[-1]
+        if kind == "function":
+            assert (base, text) == ("log10", "10")
+        else:
+            tokens[-1] = (kind, f"{base}_{text}")
+
+    def rows(self) -> list[list[list[Token]]]:
+        rows: list[list[list[Token]]] = [[[]]]
+        while (part := self.pop()) != r"\end":
+            if part == "&":
+                rows[-1].append([])
+            elif part == r"\cr":
+                rows.append([[]])
+            elif not part.isspace():
+                self.one(part, rows[-1][-1])
+        assert self.raw() == "cases"
+        return rows
+
+
+@dataclass
+class Parser:
+    """The rules a reader has learnt at school."""
+
+    tokens: list[Token]
+    reader: Reader
+
+    def at(self, kind: str, *values: str) -> bool:
+        return bool(self.tokens) and self.tokens[0][0] == kind and (not values or self.tokens[0][1] in values)
+
+    def take(self) -> Any:
+        return self.tokens.pop(0)[1]
+
+    def end(self) -> None:
+        if self.tokens:
+            raise MisprintError(f"left over: {self.tokens}")
+
+    def expression(self) -> str:
+        """Read terms joined by + and -; a sign may stand at the very front only."""
+        result = self.signed_term()
+        while self.at("op", "+", "-"):
+            sign = self.take()
+            result = f"{result} {sign} {self.term()}"
+        return f"({result})"
+
+    def signed_term(self) -> str:
+        if self.at("op", "-"):
+            self.take()
+            return f"-{self.term()}"
+        return self.term()
+
+    def term(self) -> str:
+        result, bare = self.factor()
+        while self.at("op", "⋅", "×", "gap"):
+            self.take()
+            if bare and not self.at("function"):
+                raise MisprintError("sin x y: what belongs to the sine?")
+            factor, bare = self.factor()
+            result = f"{result} * {factor}"
+        return f"({result})"
+
+    def factor(self) -> tuple[str, bool]:
+        """Read one factor with its exponent or its unit."""
+        if self.at("function"):
+            return self.function()
+        kind = self.tokens[0][0] if self.tokens else "nothing"
+        result = self.primary()
+        if self.at("sup"):
+            if kind in ("block", "cases"):
+                raise MisprintError("an exponent on a fraction or a root without parentheses")
+            result = f"({result} ** {self.reader.python(self.take())})"
+        if self.at("sup"):
+            raise MisprintError("two exponents in a row")
+        self.unit(kind)
+        return result, False
+
+    def unit(self, kind: str) -> None:
+        if self.at("op", "gap") and len(self.tokens) > 1 and self.tokens[1][0] == "unit":
+            self.take()
+        if self.at("unit"):
+            self.take()
+            if kind != "number" or self.at("sup"):
+                raise MisprintError("a unit without its number, or with an exponent that could be the number's")
+
+    def primary(self) -> str:
+        if self.at("number"):
+            return f"N('{self.take()}')"
+        if self.at("name"):
+            key = self.take()
+            if key == "Δ":
+                key += self.take()
+            return self.reader.names[key]
+        if self.at("block"):
+            return str(self.take())
+        if self.at("open", "("):
+            return self.bracketed("(")[0]
+        if self.at("open", "|"):
+            return f"abs({self.bracketed('|')[0]})"
+        if self.at("cases") or self.at("op", "{"):
+            return self.cases()
+        raise MisprintError(f"cannot stand here: {self.tokens[:3]}")
+
+    def bracketed(self, bracket: str) -> list[str]:
+        assert self.take() == bracket
+        parts = [self.expression()]
+        while self.at("op", ","):
+            self.take()
+            if self.at("op", "gap"):
+                self.take()
+            parts.append(self.expression())
+        if not self.at("close", ")" if bracket == "(" else bracket):
+            raise MisprintError(f"a bracket is not closed: {self.tokens[:3]}")
+        self.take()
+        return parts
+
+    def function(self) -> tuple[str, bool]:
+        name = self.take()
+        exponent = self.reader.python(self.take()) if self.at("sup") else ""
+        if self.at("op", "gap"):
+            self.take()
+        bare = not self.at("open", "(")
+        if bare and not (self.at("name") or self.at("number")):
+            raise MisprintError("a function without parentheses takes one symbol or number")
+        arguments = [self.primary()] if bare else self.bracketed("(")
+        if self.at("sup"):
+            raise MisprintError("sin x with an exponent behind: of the sine or of x?")
+        result = f"{name}({', '.join(arguments)})"
+        return (f"({result} ** {exponent})" if exponent else result), bare
+
+    def cases(self) -> str:
+        if self.at("op", "{"):
+            self.take()
+        arguments = []
+        rows = self.take()
+        for value, condition in rows:
+            word = condition[0][1]
+            arguments.append(self.reader.python(value))
+            if word == "if given":
+                return f"either({arguments[0]}, {self.reader.python(rows[1][0])})"
+            if word == "if":
+                parser = Parser(condition[1:], self.reader)
+                arguments.append(parser.alternatives())
+                parser.end()
+        return f"cases({', '.join(arguments)})"
+
+    def alternatives(self) -> str:
+        result = self.conjunction()
+        while self.at("word", "or"):
+            self.take()
+            result = f"{result} or {self.conjunction()}"
+        return f"({result})"
+
+    def conjunction(self) -> str:
+        result = self.comparison()
+        while self.at("word", "and"):
+            self.take()
+            result = f"{result} and {self.comparison()}"
+        return f"({result})"
+
+    def comparison(self) -> str:
+        if self.at("open", "(") and (inside := self.logic_in_parentheses()):
+            return inside
+        result = self.expression()
+        while self.at("op", *COMPARISONS):
+            result = f"{result} {COMPARISONS[self.take()]} {self.expression()}"
+        return f"({result})"
+
+    def logic_in_parentheses(self) -> str:
+        """Read ``(a < b or c < d)`` if that is what the parentheses hold."""
+        depth = 0
+        for place, (kind, value) in enumerate(self.tokens):
+            depth += {"open": 1, "close": -1}.get(kind, 0)
+            if depth == 1 and (kind == "word" or (kind == "op" and value in COMPARISONS)):
+                self.take()
+                result = self.alternatives()
+                assert self.take() == ")"
+                return result
+            if depth == 0:
+                break
+        return ""

@@ -1,0 +1,235 @@
+"""The printed formula is the computed one: random formulas are printed, read back by eye's rules, and compared.
+
+The first comparison is exact: numbers live in a finite field (modulo a prime of 61 bits), functions are arbitrary maps
+of it, so a misplaced parenthesis changes the answer almost surely and rounding cannot hide it. The second compares
+with ``evaluate`` in floating point.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import zlib
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from formula_reader import MisprintError, Reader
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+
+from truing.formulas import evaluate, latex, mathml, parse, substituted_latex, substituted_mathml
+
+SYMBOLS = {"load": "F", "early": "h_0", "angle": "theta_11", "way": "Delta z", "teeth": "z_2'", "limit": "F_N,max"}
+SYMBOLS |= {"ratio": "xi_lh", "rate": "k_R"}
+SEEN = {"F": "load", "h_0": "early", "θ_11": "angle", "Δz": "way", "z_2′": "teeth", "F_N,max": "limit"}
+SEEN |= {"ξ_lh": "ratio", "k_R": "rate", "outer radius": "outer_radius", "width": "width", "π": "pi"}
+NAMES = [*SYMBOLS, "outer_radius", "width"]
+UNARY = ["sqrt", "cbrt", "exp", "log", "log10", "abs", "sign", "sin", "cos", "tan", "cot", "asin", "acos", "atan"]
+UNARY += ["sinh", "cosh", "tanh", "inv", "sum", "mean", "min", "max"]
+PRIME = 2**61 - 1
+
+
+class Residue:
+    """A number modulo a prime, with Python's operators."""
+
+    def __init__(self, value: int) -> None:
+        self.value = value % PRIME
+
+    def __add__(self, other: Residue) -> Residue:
+        return Residue(self.value + other.value)
+
+    def __sub__(self, other: Residue) -> Residue:
+        return Residue(self.value - other.value)
+
+    def __mul__(self, other: Residue) -> Residue:
+        return Residue(self.value * other.value)
+
+    def __truediv__(self, other: Residue) -> Residue:
+        return Residue(self.value * pow(other.value, PRIME - 2, PRIME))
+
+    def __neg__(self) -> Residue:
+        return Residue(-self.value)
+
+    def __pow__(self, other: Residue) -> Residue:
+        exponent = other.value if other.value < 1000 else other.value - PRIME
+        if abs(exponent) < 1000:
+            return Residue(pow(self.value, exponent % (PRIME - 1), PRIME))
+        return some_map("power")(self, other)
+
+    def __lt__(self, other: Residue) -> bool:
+        return self.value < other.value
+
+    def __le__(self, other: Residue) -> bool:
+        return self.value <= other.value
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Residue) and self.value == other.value
+
+    def __hash__(self) -> int:
+        return self.value
+
+
+def number(text: str) -> Residue:
+    exact = Fraction(text)
+    return Residue(exact.numerator) / Residue(exact.denominator)
+
+
+def some_map(name: str) -> Callable[..., Residue]:
+    """An arbitrary function of residues, different for every name and sensitive to the order of its arguments."""
+    seed = zlib.crc32(name.encode()) + 2
+
+    def mapped(*arguments: Residue) -> Residue:
+        total = seed
+        for argument in arguments:
+            total = (total * seed + argument.value) % PRIME
+            total = (total * total * total + seed) % PRIME
+        return Residue(total)
+
+    return mapped
+
+
+def choose(*arguments: Any) -> Any:
+    for value, condition in zip(arguments[:-1:2], arguments[1::2], strict=True):
+        if condition:
+            return value
+    return arguments[-1]
+
+
+EXACT: dict[str, Any] = {name: some_map(name) for name in [*UNARY, "atan2", "either"]}
+EXACT |= {"cases": choose, "N": number, "pi": some_map("pi")()}
+EXACT |= {"hypot": lambda x, y: EXACT["sqrt"](x * x + y * y)}
+EXACT |= {name: some_map(f"value of {name}")() for name in NAMES}
+
+
+def exact(text: str, **names: Any) -> Residue:
+    with_numbers = re.sub(r"(?<![\w.'])(\d+(?:\.\d+)?(?:e-?\d+)?)(?!')", r"N('\1')", text)
+    result = eval(with_numbers, {"__builtins__": {}}, {**EXACT, **names})
+    assert isinstance(result, Residue)
+    return result
+
+
+LEAVES = st.sampled_from([*NAMES, *NAMES, "2", "3", "0.5", "10", "1.5", "1e-3", "pi"])
+KINDS = st.sampled_from(["leaf", "binary", "binary", "binary", "power", "minus", "unary", "pair", "cases"])
+
+
+@st.composite
+def expressions(draw: st.DrawFn, depth: int = 4) -> str:
+    """Random formulas with a parenthesis around every operand, so that printing may keep none of them by chance."""
+
+    def inner() -> str:
+        return draw(expressions(depth - 1))
+
+    match draw(KINDS) if depth else "leaf":
+        case "leaf":
+            return draw(LEAVES)
+        case "binary":
+            return f"({inner()}) {draw(st.sampled_from('+-*/'))} ({inner()})"
+        case "power":
+            exponent = draw(st.sampled_from(["2", "3", "-1", "0.5", ""]))
+            return f"({inner()}) ** ({exponent or inner()})"
+        case "minus":
+            return f"-({inner()})"
+        case "unary":
+            return f"{draw(st.sampled_from(UNARY))}({inner()})"
+        case "pair":
+            return f"{draw(st.sampled_from(['min', 'max', 'atan2', 'hypot', 'either']))}({inner()}, {inner()})"
+    more = f"{inner()}, {draw(conditions(depth - 1))}, " if draw(st.booleans()) else ""
+    return f"cases({inner()}, {draw(conditions(depth - 1))}, {more}{inner()})"
+
+
+@st.composite
+def conditions(draw: st.DrawFn, depth: int) -> str:
+    """Random comparisons, chained or joined."""
+    sides = [f"({draw(expressions(min(depth, 1)))})" for _ in range(3)]
+    signs = [draw(st.sampled_from(["<", "<=", ">", ">=", "==", "!="])) for _ in range(2)]
+    if depth and draw(st.booleans()):
+        return f"({draw(conditions(depth - 1))}) {draw(st.sampled_from(['and', 'or']))} ({draw(conditions(depth - 1))})"
+    return f"{sides[0]} {signs[0]} {sides[1]}" + (f" {signs[1]} {sides[2]}" if draw(st.booleans()) else "")
+
+
+TRAPS = ["load - (rate - width)", "load - (rate + width)", "(load + rate) * width", "-(load + rate)", "(-load)**2"]
+TRAPS += ["-load**2", "(load / rate)**2", "2**-load", "(load**rate)**2", "load**rate**2", "load / rate / width"]
+TRAPS += ["load / (rate / width)", "sin(load)**2 * rate", "sin(load)**-1", "sin(load**2)", "sin(load * rate) * width"]
+TRAPS += ["sin(load) * width", "sin(load) * cos(rate) * width", "-load * -rate", "load + -rate * width", "way**2"]
+TRAPS += ["load + (-rate + width)", "load * (-rate) * width", "sqrt(load)**2", "teeth**2", "outer_radius**2", "pi**2"]
+TRAPS += ["(2 * load) * 3", "2 * 3", "1e-3**2", "1e-3 * load", "load * 2 ** 3", "log10(load)**2", "exp(load)**2"]
+TRAPS += ["max(load, rate)**2", "cases(load, rate < 2, width) + 1", "abs(load)**2", "abs(abs(load) - abs(rate))"]
+TRAPS += ["cases(load, (rate < 1 or rate > 2) and width < 3, rate)", "sum(load) * rate", "sin(outer_radius) * load"]
+TRAPS += ["(load * rate)**2", "-(-load)", "-(load * rate) + width", "sin(-load)", "load**(1 / 3)", "(-load)**2 / -rate"]
+TRAPS += [
+    "sin(2) * 3",
+    "sin(load) * sin(rate)**-1",
+    "sin(load) * sin(rate)**2",
+    "hypot(load, rate)**2",
+    "sin(cos(load))",
+]
+
+
+def traps(*seconds: Any) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Try every trap in any case, each with every one of the further arguments."""
+
+    def decorate(function: Callable[..., None]) -> Callable[..., None]:
+        for text in TRAPS:
+            for more in [(second,) for second in seconds] or [()]:
+                function = example(text, *more)(function)
+        return function
+
+    return decorate
+
+
+@traps()
+@given(expressions())
+@settings(max_examples=300, deadline=None)
+def test_symbols_read_back_exactly(text: str) -> None:
+    reader = Reader(SEEN)
+    formula = parse(text)
+    wanted = exact(text)
+    assert exact(reader.mathml(mathml(formula, SYMBOLS))) == wanted
+    assert exact(reader.latex(latex(formula, SYMBOLS))) == wanted
+
+
+UNITS = frozenset({"N·m", "mm", "°", "GPa", "%"})
+SHOWN = ["360", "2.5", "-12.5", "1.2e-05", "-3.4E+7", "0.001", "-0"]
+
+
+@traps([("-12.5", "mm")] * 10, [("1.2e-05", "")] * 10, [("360", "")] * 10, [("-3.4E+7", "°")] * 10)
+@given(expressions(), st.lists(st.tuples(st.sampled_from(SHOWN), st.sampled_from(["", *UNITS])), min_size=len(NAMES)))
+@settings(max_examples=300, deadline=None)
+def test_numbers_read_back_exactly(text: str, shown: list[tuple[str, str]]) -> None:
+    numbers = dict(zip(NAMES, shown, strict=False))
+    formula = parse(text)
+    values: dict[str, Any] = {name: number(shown) for name, (shown, _) in numbers.items()}
+    values["either"] = lambda first, second: first
+    wanted = exact(text, **values)
+    reader = Reader({"π": "pi"}, UNITS | {r"\%", r"{^{\circ}}"})
+    assert exact(reader.mathml(substituted_mathml(formula, numbers)), **values) == wanted
+    assert exact(reader.latex(substituted_latex(formula, numbers)), **values) == wanted
+
+
+FLOATS: dict[str, Any] = {name: getattr(np, name) for name in ("sqrt", "cbrt", "exp", "log", "log10", "abs", "sign")}
+FLOATS |= {name: getattr(np, name) for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh")}
+FLOATS |= {"asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "cases": choose, "pi": math.pi}
+FLOATS |= {"cot": lambda x: 1 / np.tan(x), "inv": lambda x: np.tan(x) - x, "sum": lambda x: x, "mean": lambda x: x}
+FLOATS |= {"min": lambda *x: np.min(x), "max": lambda *x: np.max(x), "N": np.float64}
+FLOATS |= {"either": lambda x, y: y if np.isnan(x) else x}
+VALUES = st.lists(st.floats(0.05, 5.0), min_size=len(NAMES), max_size=len(NAMES))
+
+
+@traps([0.3 + 0.17 * place for place in range(10)])
+@given(expressions(), VALUES)
+@settings(max_examples=200, deadline=None)
+def test_symbols_read_back_with_the_value_of_evaluate(text: str, values: list[float]) -> None:
+    formula = parse(text)
+    point = dict(zip(NAMES, values, strict=True))
+    wanted = evaluate(formula, point)
+    moved = evaluate(formula, {name: value * (1 + 1e-9 * math.sin(value * 1e6)) for name, value in point.items()})
+    assume(math.isnan(wanted) or abs(moved - wanted) <= 1e-7 * abs(wanted))  # cancellation hides behind no tolerance
+    for read in (Reader(SEEN).mathml(mathml(formula, SYMBOLS)), Reader(SEEN).latex(latex(formula, SYMBOLS))):
+        with np.errstate(all="ignore"):
+            found = eval(
+                read, {"__builtins__": {}}, FLOATS | {name: np.float64(value) for name, value in point.items()}
+            )
+        assert found == pytest.approx(wanted, rel=1e-9, nan_ok=True), read
