@@ -9,7 +9,7 @@ from typing import Any
 
 from truing.declare.fields import read
 from truing.declare.model import Record
-from truing.evaluate import effects_in_order, evaluate
+from truing.evaluate import evaluate
 from truing.executors import open_executor
 from truing.setup import Setup
 from truing.studies.bench import Bench, Check, Outcome, Progress, silent
@@ -44,7 +44,6 @@ def calculate(setup: Setup, *, executor: Executor | None = None, progress: Progr
 
     Raises InfeasibleError where the inputs describe something impossible, PluginError where the plugin's code fails.
     """
-    setup = effects_in_order(setup)
     results = evaluate(setup)
     answers = setup.model.read_results(results)
     outcomes: dict[str, Outcome] = {}
@@ -81,7 +80,8 @@ def _checks(setup: Setup, answers: Mapping[str, Any], outcomes: Mapping[str, Out
 
 
 def _warnings(setup: Setup, outcomes: Mapping[str, Outcome]) -> list[str]:
-    return [*setup.warnings, *_idle_effects(setup), *(text for outcome in outcomes.values() for text in outcome.warnings())]
+    of_studies = [text for outcome in outcomes.values() for text in outcome.warnings()]
+    return [*setup.warnings, *_idle_effects(setup), *of_studies]
 
 
 def _idle_effects(setup: Setup) -> list[str]:

@@ -10,7 +10,7 @@ from typing import Any
 from truing.calculation import Calculation, calculate
 from truing.declare.fields import with_values
 from truing.errors import InfeasibleError
-from truing.evaluate import effects_in_order, evaluate_rows
+from truing.evaluate import evaluate_rows
 from truing.measurements import Case
 from truing.setup import Setup
 from truing.studies.bench import Check, Progress, silent
@@ -78,7 +78,6 @@ def run_cases(
     Limits on a chance need the studies of each case; without such limits all cases are one array call. Raises
     InfeasibleError when no case can be calculated.
     """
-    setup = effects_in_order(setup)
     by_studies = bool(setup.studies) and any(_asks_a_chance(setup))
     done = _one_by_one(setup, cases, executor, progress) if by_studies else _all_at_once(setup, cases)
     alive = [place for place, case in enumerate(done) if case.reason is None]

@@ -77,7 +77,11 @@ class PluginError(TruingError):
 
 
 class DeclarationError(PluginError):
-    """A calculation is declared wrongly: found before anything runs."""
+    """A calculation is declared wrongly: found before anything runs. ``place`` is file and line where known."""
+
+    def __init__(self, sentence: str, place: tuple[str, int | None] | None = None) -> None:
+        super().__init__(sentence)
+        self.place = place
 
 
 class ConvergenceError(TruingError):

@@ -5,14 +5,15 @@ Columns of a batch are named by input, by condition, or by ``effects.NAME.UNKNOW
 
 from __future__ import annotations
 
-import traceback
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from truing.blame import home_of, place_of
 from truing.declare.batch import watching
-from truing.declare.fields import Axis, with_values
-from truing.errors import InfeasibleError, PluginError, TruingError
+from truing.declare.fields import Axis, Kind, read, with_values
+from truing.declare.near_miss import near_miss
+from truing.errors import InfeasibleError, PluginError, TruingError, UsageError
 from truing.setup import Setup, SwitchedOn
 
 if TYPE_CHECKING:
@@ -47,10 +48,12 @@ def evaluate(setup: Setup, *, reading: bool = False) -> Any:
 
     with np.errstate(all="ignore"):
         results = _apply(setup, {}, reading=reading)
-    for name, value in setup.model.read_results(results).items():
-        if not np.all(np.isfinite(np.asarray(value, dtype=float))):
+    flat = setup.model.read_results(results)
+    for name in flat:
+        if not np.isfinite(_as_rows(setup, name, flat, 1)).all():
             raise InfeasibleError(f"the result '{name}' of {setup.model.name} is not finite for these inputs")
-    return results
+    fields = setup.model.own_result_fields
+    return with_values(results, {fields[name].path: float(flat[name]) for name in flat if np.ndim(flat[name]) == 0})
 
 
 def evaluate_rows(
@@ -64,106 +67,185 @@ def evaluate_rows(
     """Run ``rows`` calculations, as one array call wherever the declaration allows it.
 
     A column holds (rows,) values or one value for all. Only ``wanted`` results are returned (all by default). Failed
-    rows are NaN in every result and keep their reason.
+    rows are NaN in every result and keep their reason; a table shorter than the longest is filled up with NaN.
+    Raises UsageError for a column that nobody knows or that has another length.
     """
     import numpy as np
 
     names = [name for name in setup.model.own_result_fields if wanted is None or name in wanted]
-    gathered: dict[str, Any] = {}
+    fixed, arrays = _sorted_columns(setup, columns, rows)
+    gathered: dict[str, list[NDArray[np.float64]]] = {name: [] for name in names}
     failed = np.zeros(rows, dtype=bool)
     reasons: dict[int, str] = {}
-    for index, part in _uniform_parts(setup, columns, rows):
-        count = rows if index is None else len(index)
-        answers, part_failed, part_reasons = _one_call(setup, part, count, names, reading=reading)
-        where = slice(None) if index is None else index
-        failed[where] = part_failed
-        reasons.update({(row if index is None else int(index[row])): text for row, text in part_reasons.items()})
+    order: list[NDArray[np.intp]] = []
+    for index, part in _uniform_parts(setup, fixed, arrays, rows):
+        if len(index) == rows > 0:
+            return Rows(*_one_call(setup, part, rows, names, reading=reading))
+        answers, part_failed, part_reasons = _one_call(setup, part, len(index), names, reading=reading)
+        failed[index] = part_failed
+        reasons.update({int(index[row]): text for row, text in part_reasons.items()})
+        order.append(index)
         for name, values in answers.items():
-            if index is None:
-                gathered[name] = values
-            elif name not in gathered or gathered[name].shape[1:] == values.shape[1:]:
-                gathered.setdefault(name, np.full((rows, *values.shape[1:]), np.nan))[where] = values
-    return Rows(gathered, failed, dict(sorted(reasons.items())))
+            gathered[name].append(values)
+    results = {name: _joined(pieces, order, rows) for name, pieces in gathered.items()}
+    return Rows(results, failed, dict(sorted(reasons.items())))
+
+
+def _joined(pieces: list[NDArray[np.float64]], order: list[NDArray[np.intp]], rows: int) -> NDArray[np.float64]:
+    """Put the answers of the parts back in the order of the rows."""
+    import numpy as np
+
+    inner = max((piece.shape[1:] for piece in pieces), default=())
+    joined = np.full((rows, *inner), np.nan)
+    for index, piece in zip(order, pieces, strict=True):
+        if inner:
+            joined[index, : piece.shape[1]] = piece
+        else:
+            joined[index] = piece
+    return joined
 
 
 def _one_call(
     setup: Setup, columns: Mapping[str, Any], rows: int, names: Collection[str], *, reading: bool
 ) -> tuple[dict[str, Any], NDArray[np.bool_], dict[int, str]]:
+    """Call the model once for ``rows`` rows; where no column differs between rows, for one that answers for all."""
     import numpy as np
 
-    with np.errstate(all="ignore"), watching(rows) as log:
+    alike = not any(isinstance(values, np.ndarray) for values in columns.values())
+    called = 1 if alike else rows
+    with np.errstate(all="ignore"), watching(called) as log:
         results = _apply(setup, columns, reading=reading)
         flat = setup.model.read_results(results)
-        answers = {name: _as_rows(setup, name, flat[name], rows) for name in names}
+        answers = {name: _as_rows(setup, name, flat, called) for name in names}
         for name, values in answers.items():
             finite = np.isfinite(values)
             if not finite.all():
-                whole = finite if finite.ndim == 1 else finite.all(axis=tuple(range(1, finite.ndim)))
-                log.add(~whole, f"the result '{name}' is not finite")
-    failed = log.codes > 0
-    reasons: dict[int, str] = {}
-    if failed.any():
-        reasons = {int(row): log.sentences[log.codes[row] - 1] for row in np.flatnonzero(failed)}
+                log.add(~finite, f"the result '{name}' is not finite")
+    codes = np.broadcast_to(log.codes, (rows,))
+    failed = codes > 0
+    if alike:
+        answers = {name: np.broadcast_to(values, (rows, *values.shape[1:])) for name, values in answers.items()}
+    reasons = {int(row): log.sentences[codes[row] - 1] for row in np.flatnonzero(failed)}
+    if reasons:
         for name, values in answers.items():
             answers[name] = values = np.array(values)
             values[failed] = np.nan
     return answers, failed, reasons
 
 
-def _as_rows(setup: Setup, name: str, value: Any, rows: int) -> NDArray[np.float64]:
+def _as_rows(setup: Setup, name: str, flat: Mapping[str, Any], rows: int) -> NDArray[np.float64]:
+    """Bring a result to shape (rows,) or (rows, k); raises PluginError for any other shape."""
     import numpy as np
 
-    array = np.asarray(value, dtype=float)
-    if array.ndim and array.shape[0] == rows and not (setup.model.own_result_fields[name].along and array.ndim == 1):
-        return array
-    return np.broadcast_to(array, (rows, *array.shape))
+    item = setup.model.own_result_fields[name]
+    try:
+        array = np.asarray(flat[name], dtype=float)
+        if not item.along:
+            return np.broadcast_to(array, (rows,))
+        own = f"{item.along}_{item.scope}"
+        axis = flat.get(own, flat.get(item.along, array))
+        return np.broadcast_to(array, (rows, np.asarray(axis).shape[-1] if np.ndim(axis) else 1))
+    except (TypeError, ValueError):
+        shape = getattr(flat[name], "shape", None)
+        what = f"has the shape {shape}" if shape is not None else f"is {flat[name]!r:.60}"
+        wanted = "(n, k), with column(x) for a value per row" if item.along else "a number or an array (n,)"
+        raise PluginError(
+            f"{setup.model.name}: the result '{name}' {what} in a call of {rows}; it is {wanted}"
+        ) from None
 
 
-def _uniform_parts(setup: Setup, columns: Mapping[str, Any], rows: int) -> Iterator[tuple[Any, dict[str, Any]]]:
-    """Split a batch so that everything but Float inputs has one value; tables are made row by row."""
+def _sorted_columns(setup: Setup, columns: Mapping[str, Any], rows: int) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Check the columns and part them: those a batch is split by, and numbers (arrays where they differ)."""
     import numpy as np
 
     fields = setup.model.input_fields
-    fixed = {name: values for name, values in columns.items() if name in fields and not fields[name].varies}
-    arrays = {name: np.asarray(values, dtype=float) for name, values in columns.items() if name not in fixed}
-    makes_table = any(isinstance(item.spec, Axis) and item.spec.is_table for item in setup.model.own_result_fields.values())
-    if makes_table:
-        groups = [np.array([row]) for row in range(rows)]
-    elif fixed:
-        groups = _groups(fixed, rows)
-    else:
-        yield None, arrays
-        return
-    for index in groups:
-        part = {name: _taken(values, index, alone=makes_table) for name, values in arrays.items()}
-        for name, values in fixed.items():
-            part[name] = values[index[0]] if isinstance(values, (list, tuple, np.ndarray)) else values
-        yield index, part
+    unknowns = {effect_column(on.effect.name, each.name) for on in setup.effects for each in on.effect.unknowns}
+    fixed: dict[str, Any] = {}
+    arrays: dict[str, Any] = {}
+    for name, values in columns.items():
+        if name in fields and not fields[name].varies:
+            fixed[name] = values
+            continue
+        if name not in fields and name not in setup.model.conditions and name not in unknowns:
+            near = near_miss(name, [*fields, *setup.model.conditions, *unknowns])
+            raise UsageError(f"the column '{name}' is no input, condition or effect that is on.{near}")
+        numbers = np.asarray(values, dtype=float)
+        if numbers.shape not in {(), (rows,)}:
+            raise UsageError(f"the column '{name}' has the shape {numbers.shape}; expected one value or ({rows},)")
+        arrays[name] = numbers if numbers.ndim else np.float64(numbers)
+    return fixed, arrays
 
 
-def _taken(values: NDArray[np.float64], index: NDArray[Any], *, alone: bool) -> Any:
-    if not values.ndim:
-        return values
-    return float(values[index[0]]) if alone else values[index]
-
-
-def _groups(fixed: Mapping[str, Any], rows: int) -> list[NDArray[Any]]:
+def _uniform_parts(
+    setup: Setup, fixed: Mapping[str, Any], arrays: Mapping[str, Any], rows: int
+) -> Iterator[tuple[NDArray[np.intp], dict[str, Any]]]:
+    """Split a batch so that everything but Float inputs has one value; tables are made row by row."""
     import numpy as np
 
+    per_row = {name: _each(values, setup.model.input_fields[name].kind) for name, values in fixed.items()}
+    for name, values in per_row.items():
+        if values is not None and len(values) != rows:
+            raise UsageError(f"the column '{name}' has {len(values)} values for {rows} rows")
+    common = {name: values for name, values in fixed.items() if per_row[name] is None}
+    differing = {name: values for name, values in per_row.items() if values is not None}
+    alone = any(isinstance(item.spec, Axis) and item.spec.is_table for item in setup.model.own_result_fields.values())
+    groups = [np.array([row]) for row in range(rows)] if alone else _groups(differing, rows)
+    for index in groups:
+        part = {name: _taken(values, index, rows, alone=alone) for name, values in arrays.items()}
+        yield index, {**common, **part, **{name: values[index[0]] for name, values in differing.items()}}
+
+
+def _each(values: Any, kind: Kind) -> list[Any] | None:
+    """Return the value of each row, or None where there is one for all; a series is a value itself."""
+    import numpy as np
+
+    if isinstance(values, np.ndarray):
+        if kind == "series" and values.ndim == 1:
+            return None
+        return list(values) if kind == "series" else values.tolist() if values.ndim else None
+    if kind in {"series", "file"}:
+        return values if isinstance(values, list) else None
+    return list(values) if isinstance(values, (list, tuple)) else None
+
+
+def _taken(values: Any, index: NDArray[Any], rows: int, *, alone: bool) -> Any:
+    import numpy as np
+
+    if not isinstance(values, np.ndarray) or (len(index) == rows and not alone):
+        return values
+    return values[index[0]] if alone else values[index]
+
+
+def _groups(differing: Mapping[str, list[Any]], rows: int) -> list[NDArray[Any]]:
+    """Return the row numbers that share the values of every differing column, in the order they first appear."""
+    import numpy as np
+
+    if not differing:
+        return [np.arange(rows)] if rows else []
     places: dict[tuple[Any, ...], list[int]] = {}
     for row in range(rows):
-        key = tuple(v[row] if isinstance(v, (list, tuple, np.ndarray)) else v for v in fixed.values())
-        places.setdefault(key, []).append(row)
+        places.setdefault(tuple(_key(values[row]) for values in differing.values()), []).append(row)
     return [np.array(indices) for indices in places.values()]
+
+
+def _key(value: Any) -> Any:
+    import numpy as np
+
+    if isinstance(value, np.ndarray):
+        return value.shape, value.tobytes()
+    try:
+        hash(value)
+    except TypeError:
+        return id(value)
+    return value
 
 
 def _apply(setup: Setup, columns: Mapping[str, Any], *, reading: bool) -> Any:
     """Inputs, effects on inputs, model, effects on results, effects on the reading: in this order."""
-    model, fields = setup.model, setup.model.input_fields
-    changed = {fields[name].path: value for name, value in columns.items() if name in fields}
-    inputs = with_values(setup.inputs, changed) if changed else setup.inputs
+    model = setup.model
     switched = [(item, _keywords(item, setup, columns)) for item in setup.effects]
     try:
+        inputs = _inputs(setup, columns)
         for item, keywords in switched:
             if item.effect.place == "inputs":
                 inputs = item.effect.function(inputs, **keywords)
@@ -175,23 +257,34 @@ def _apply(setup: Setup, columns: Mapping[str, Any], *, reading: bool) -> Any:
     except TruingError:
         raise
     except Exception as error:
-        frame = traceback.extract_tb(error.__traceback__)[-1]
-        raise PluginError(
-            f"{frame.filename}:{frame.lineno}: {model.name} failed: {type(error).__name__}: {error}"
-        ) from error
+        functions = [model.function, *(item.effect.function for item in setup.effects)]
+        file, line = place_of(error, [home for function in functions if (home := home_of(function))])
+        where = f"{file}:{line}: " if file else ""
+        raise PluginError(f"{where}{model.name} failed: {type(error).__name__}: {error}") from error
+    if not isinstance(results, model.result_type):
+        raise PluginError(f"{model.name} returned {results!r:.60}, which is no {model.result_type.__name__}")
     return results
 
 
+def _inputs(setup: Setup, columns: Mapping[str, Any]) -> Any:
+    """Make the inputs of a call; numbers are numpy's, so that 1/0 is infinite alone as it is in a batch."""
+    import numpy as np
+
+    changed: dict[tuple[str, ...], Any] = {}
+    for name, item in setup.model.input_fields.items():
+        value = columns.get(name)
+        if value is None and item.varies:
+            value = read(setup.inputs, item.path)
+            value = value if isinstance(value, np.ndarray) else np.float64(value)
+        if value is not None:
+            changed[item.path] = value
+    return with_values(setup.inputs, changed)
+
+
 def _keywords(item: SwitchedOn, setup: Setup, columns: Mapping[str, Any]) -> dict[str, Any]:
-    unknowns = {
-        unknown.name: columns.get(effect_column(item.effect.name, unknown.name), item.values[unknown.name])
-        for unknown in item.effect.unknowns
-    }
-    conditions = {need.name: columns.get(need.name, setup.conditions[need.name]) for need in item.effect.needs}
-    return {**unknowns, **conditions}
+    import numpy as np
 
-
-def effects_in_order(setup: Setup) -> Setup:
-    """Return the setup with its effects in the order of the model's declaration."""
-    order = list(setup.model.effects)
-    return replace(setup, effects=tuple(sorted(setup.effects, key=lambda item: order.index(item.effect.name))))
+    name = item.effect.name
+    values = {unknown.name: (effect_column(name, unknown.name), item.values) for unknown in item.effect.unknowns}
+    values |= {need.name: (need.name, setup.conditions) for need in item.effect.needs}
+    return {key: columns.get(column, np.float64(held[key])) for key, (column, held) in values.items()}

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-import traceback
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from importlib import metadata
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from truing.declare.checks import near_miss, of_objective, of_section, of_tolerance
+from truing.blame import Place, line_of, place_of
 from truing.declare.model import Model, Section
+from truing.declare.near_miss import near_miss
 from truing.declare.sources import Effect, Tolerance
 from truing.errors import DeclarationError, PluginError, UnknownPluginError
+from truing.loading import check_hooks, load_file
+
+if TYPE_CHECKING:
+    from pluggy import HookImpl
 
 GROUP = "truing.plugins"
 
@@ -75,14 +79,17 @@ class Kernel:
         from truing import hookspecs
 
         self.strict = strict
-        self.broken: list[Broken] = []
         self.origins: dict[str, Origin] = {}
         self._manager = pluggy.PluginManager("truing")
         self._manager.add_hookspecs(hookspecs)
+        self._not_loaded: list[Broken] = []
+        self._left_out: list[Broken] = []
         self._offers: dict[str, Offer] | None = None
-        for plugin in plugins:
-            name = getattr(plugin, "__name__", type(plugin).__name__)
-            self.add(Origin(name, "", "", getattr(plugin, "__file__", None) or name, f"module:{name}"), lambda p=plugin: p)
+        modules = list(plugins)
+        names = [getattr(module, "__name__", type(module).__name__) for module in modules]
+        for name, module in zip(names, modules, strict=True):
+            ref = "module:" + ",".join([name, *(other for other in names if other != name)])
+            self.add(Origin(name, "", "", getattr(module, "__file__", None) or name, ref), _giving(module))
 
     @classmethod
     def installed(cls, *, strict: bool = False) -> Kernel:
@@ -93,9 +100,9 @@ class Kernel:
         return kernel
 
     def add_file(self, path: Path) -> Origin:
-        """Load one Python file as a plugin; it needs no packaging."""
+        """Load one Python file as a plugin; it needs no packaging. Its folder may hold modules it imports."""
         origin = Origin(path.stem, "", "", str(path), f"file:{path.resolve()}")
-        self.add(origin, lambda: _load_file(path))
+        self.add(origin, lambda: load_file(path))
         return origin
 
     def add(self, origin: Origin, load: Callable[[], Any]) -> None:
@@ -103,98 +110,135 @@ class Kernel:
         twin = self.origins.get(origin.name)
         try:
             if twin is not None:
-                raise DeclarationError(f"the name '{origin.name}' is taken by {twin.file} {twin.version}")
+                raise DeclarationError(f"the plugin name '{origin.name}' is taken by {twin.distribution or twin.file}")
             plugin = load()
+            check_hooks(self._manager, plugin, origin.name)
             self._manager.register(plugin, name=origin.name)
-        except Exception as error:  # noqa: BLE001  # whatever a guest's import raises must not stop the house
-            self._leave_out(origin, error)
+        except (Exception, SystemExit) as error:
+            self._note(self._not_loaded, origin, error)
             return
         self._offers = None
         self.origins[origin.name] = replace(origin, file=getattr(plugin, "__file__", None) or origin.file)
 
     @property
+    def broken(self) -> list[Broken]:
+        """Every plugin, and every part of one, that was left out, and why; asks all plugins first."""
+        _ = self.offers
+        return [*self._not_loaded, *self._left_out]
+
+    @property
     def offers(self) -> dict[str, Offer]:
         """Every model by the name the command line uses."""
         if self._offers is None:
-            self._offers = dict(self._make_offers())
+            self._left_out.clear()
+            self._offers = self._make_offers()
         return self._offers
 
     def offer(self, name: str) -> Offer:
         """Return one model by name; raises UnknownPluginError, saying why where it was left out."""
-        if name in self.offers:
-            return self.offers[name]
+        offers = self.offers
+        full = [offer for offer in offers.values() if name in {offer.name, f"{offer.origin.name}.{offer.model.name}"}]
+        if full:
+            return full[0]
+        named = [key for key, offer in offers.items() if offer.model.name == name]
+        if len(named) > 1:
+            raise UnknownPluginError(f"the name '{name}' is used twice, by {' and '.join(named)}; write one of these")
+        alone = [key for key, offer in offers.items() if offer.origin.name == name] or named
+        if len(alone) == 1:
+            return offers[alone[0]]
+        if alone:
+            raise UnknownPluginError(f"the plugin '{name}' offers {' and '.join(alone)}; write one of these")
         for broken in self.broken:
             if broken.plugin == name.partition(".")[0]:
                 raise PluginError(str(broken))
-        alone = [offer for key, offer in self.offers.items() if key.partition(".")[0] == name]
-        if len(alone) == 1:
-            return alone[0]
-        owners = [key for key, offer in self.offers.items() if offer.model.name == name]
-        if len(owners) > 1:
-            raise UnknownPluginError(f"the name '{name}' is used twice, by {' and '.join(owners)}; write one of these")
-        if owners:
-            return self.offers[owners[0]]
-        known = ", ".join(sorted(self.offers)) or "none"
-        raise UnknownPluginError(f"no plugin offers '{name}'.{near_miss(name, self.offers)} Installed: {known}.")
+        known = ", ".join(sorted(offers)) or "none"
+        raise UnknownPluginError(f"no plugin offers '{name}'.{near_miss(name, offers)} Installed: {known}.")
 
-    def _leave_out(self, origin: Origin, error: BaseException) -> None:
-        if self.strict:
-            raise PluginError(f"plugin '{origin.name}' {origin.version}: {type(error).__name__}: {error}") from error
-        file, line = _place(error, origin.file)
+    def _note(self, where: list[Broken], origin: Origin, error: BaseException, place: Place | None = None) -> None:
         reason = f"{type(error).__name__}: {error}"
-        self.broken.append(Broken(origin.name, origin.version, file, line, reason))
+        file, line = place or getattr(error, "place", None) or place_of(error, _homes(origin))
+        broken = Broken(origin.name, origin.version, file or _file_of(origin), line if file else None, reason)
+        if self.strict:
+            raise PluginError(str(broken)) from error
+        where.append(broken)
 
-    def _answers(self, hook: str, **arguments: Any) -> Iterator[tuple[Origin, list[Any]]]:
+    def _answers(self, hook: str, **arguments: Any) -> Iterator[tuple[Origin, HookImpl, list[Any]]]:
         """Ask every plugin on its own, in the order of their names."""
         caller = getattr(self._manager.hook, hook)
         for implementation in sorted(caller.get_hookimpls(), key=lambda item: item.plugin_name):
             origin = self.origins[implementation.plugin_name]
             wanted = {name: arguments[name] for name in implementation.argnames if name in arguments}
             try:
-                answer = list(implementation.function(**wanted))
-            except Exception as error:  # noqa: BLE001  # as above
-                self._leave_out(origin, error)
+                answer = implementation.function(**wanted)
+                if isinstance(answer, str) or not isinstance(answer, Iterable):
+                    raise DeclarationError(f"{hook} returned {answer!r:.60}; it returns a list")
+                items = list(answer)
+            except Exception as error:
+                place = place_of(error, _homes(origin))
+                self._note(self._left_out, origin, error, place if place[0] else line_of(implementation.function))
                 continue
-            yield origin, answer
+            yield origin, implementation, items
 
-    def _make_offers(self) -> Iterator[tuple[str, Offer]]:
-        found: list[tuple[Origin, Model[Any, Any]]] = []
-        for origin, models in self._answers("truing_models"):
+    def _make_offers(self) -> dict[str, Offer]:
+        found: list[tuple[Origin, HookImpl, Model[Any, Any]]] = []
+        for origin, hook, models in self._answers("truing_models"):
             for model in models:
-                if isinstance(model, Model):
-                    found.append((origin, model))
+                fault = self._fault_of_model(model, [twin for owner, _, twin in found if owner == origin])
+                if fault:
+                    self._note(self._left_out, origin, DeclarationError(fault), line_of(hook.function))
                 else:
-                    self._leave_out(origin, TypeError(f"truing_models returned {model!r}, which is no Model"))
-        for origin, model in found:
-            owners = [other for other, twin in found if twin.name == model.name]
-            own_name = model.name == origin.name and len(owners) == 1
-            key = model.name if own_name else f"{origin.name}.{model.name}"
+                    found.append((origin, hook, model))
+        offers: dict[str, Offer] = {}
+        for origin, hook, model in found:
+            owners = [owner for owner, _, twin in found if twin.name == model.name]
             if len(owners) > 1:
-                first, second = owners[:2]
-                reason = f"the model name '{model.name}' is used twice, by {first.name} ({first.file}) and {second.name} ({second.file})"
-                self.broken.append(Broken(origin.name, origin.version, origin.file, None, reason))
+                both = " and ".join(f"{owner.name} ({owner.distribution or owner.file})" for owner in owners)
+                fault = f"the model name '{model.name}' is used by {both}; write {origin.name}.{model.name}"
+                self._note(self._left_out, origin, DeclarationError(fault), line_of(hook.function))
+            is_main = model.name == origin.name and len(owners) == 1
+            key = model.name if is_main else f"{origin.name}.{model.name}"
             equipped, added = self._equip(model, origin)
-            yield key, Offer(key, equipped, origin, added)
+            offers[key] = Offer(key, equipped, origin, added)
+        return offers
+
+    @staticmethod
+    def _fault_of_model(model: Any, twins: Sequence[Model[Any, Any]]) -> str:
+        if not isinstance(model, Model):
+            return f"truing_models returned {model!r:.60}, which is no Model"
+        return f"it offers two models called '{model.name}'" if any(twin.name == model.name for twin in twins) else ""
 
     def _equip(self, model: Model[Any, Any], owner: Origin) -> tuple[Model[Any, Any], tuple[Added, ...]]:
         """Add what guests say of the model, leaving out what does not fit, by name."""
         added: list[Added] = []
-        places = {
-            "truing_error_sources": ("errors", _faults_of_source),
-            "truing_objectives": ("objectives", _faults_of_objective),
-            "truing_reports": ("sheet", _faults_of_section),
-        }
-        for hook, (place, faults_of) in places.items():
-            for origin, answer in self._answers(hook, model=model):
-                for item in answer:
-                    faults = faults_of(item, model)
-                    if faults:
-                        self._leave_out(origin, DeclarationError(f"left out of '{model.name}': {faults[0]}"))
+        for hook in ("truing_error_sources", "truing_objectives", "truing_reports"):
+            for origin, implementation, items in self._answers(hook, model=model):
+                for item in items:
+                    try:
+                        model = _with(model, hook, item)
+                    except DeclarationError as error:
+                        fault = DeclarationError(f"'{_name_of(item)}' is left out of '{model.name}': {error}")
+                        self._note(self._left_out, origin, fault, line_of(implementation.function))
                         continue
-                    model = replace(model, **{place: [*getattr(model, place), item]})
                     if origin != owner:
                         added.append(Added(_name_of(item), origin.name, origin.version))
         return model, tuple(added)
+
+
+def _giving(plugin: ModuleType) -> Callable[[], ModuleType]:
+    return lambda: plugin
+
+
+def _with(model: Model[Any, Any], hook: str, item: Any) -> Model[Any, Any]:
+    """Return the model with what one hook adds; raises DeclarationError where it does not fit."""
+    if hook == "truing_error_sources":
+        if not isinstance(item, (Tolerance, Effect)):
+            raise DeclarationError(f"{item!r:.60} is neither a Tolerance nor an Effect")
+        return replace(model, errors=[*model.errors, item])
+    if hook == "truing_objectives":
+        return replace(model, objectives=[*model.objectives, item])
+    if not isinstance(item, Section):
+        raise DeclarationError(f"{item!r:.60} is no Section")
+    return replace(model, sheet=[*model.sheet, item])
 
 
 def entry_points() -> list[metadata.EntryPoint]:
@@ -212,69 +256,42 @@ def _origin(entry: metadata.EntryPoint) -> Origin:
     return Origin(entry.name, version, _dist_name(entry), entry.value, f"entry:{entry.name}")
 
 
-def _load_file(path: Path) -> ModuleType:
+def _homes(origin: Origin) -> list[Path]:
+    """Return where a plugin's own code lies, as far as that is known without running it."""
+    file = Path(_file_of(origin))
+    if not file.is_file():
+        return []
+    return [file.parent if file.name == "__init__.py" else file]
+
+
+def _file_of(origin: Origin) -> str:
+    """Return the plugin's file; before it is loaded, the one its entry point would import."""
     import importlib.util
-    import sys
 
-    if not path.is_file():
-        raise UnknownPluginError(f"{path}: no such file")
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    if spec is None or spec.loader is None:
-        raise UnknownPluginError(f"{path}: not a Python file")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[path.stem] = module
-    spec.loader.exec_module(module)
-    if not any(hasattr(module, hook) for hook in ("truing_models", "truing_error_sources")):
-        raise DeclarationError(f"{path} offers nothing: it needs a function truing_models() marked with @hookimpl")
-    return module
-
-
-def _place(error: BaseException, fallback: str) -> tuple[str, int | None]:
-    if isinstance(error, SyntaxError) and error.filename:
-        return error.filename, error.lineno
-    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if _is_guest(frame.filename)]
-    return (frames[-1].filename, frames[-1].lineno) if frames else (fallback, None)
-
-
-def _is_guest(filename: str) -> bool:
-    parts = Path(filename).parts
-    return not filename.startswith("<") and "truing" not in parts[-3:-1] and not {"pluggy", "importlib"} & set(parts)
+    if Path(origin.file).is_file():
+        return origin.file
+    try:
+        spec = importlib.util.find_spec(origin.file.partition(":")[0].partition(".")[0])
+    except (ImportError, ValueError):
+        return origin.file
+    return (spec.origin if spec is not None else None) or origin.file
 
 
 def _name_of(item: Any) -> str:
     return str(getattr(item, "name", None) or getattr(item, "title", None) or getattr(item, "result", None) or item)
 
 
-def _faults_of_source(item: Any, model: Model[Any, Any]) -> Sequence[str]:
-    if not isinstance(item, (Tolerance, Effect)):
-        return [f"{item!r} is neither a Tolerance nor an Effect"]
-    if any(source.name == item.name for source in model.errors):
-        return [f"the error source '{item.name}' exists already"]
-    if isinstance(item, Tolerance):
-        return list(of_tolerance(item, model))
-    taken = [need.name for need in item.needs if model.conditions.get(need.name, need) != need]
-    return [f"effect '{item.name}' declares the condition '{taken[0]}' in another way"] if taken else []
-
-
-def _faults_of_objective(item: Any, model: Model[Any, Any]) -> Sequence[str]:
-    return list(of_objective(item, model.input_fields, model.result_fields))
-
-
-def _faults_of_section(item: Any, model: Model[Any, Any]) -> Sequence[str]:
-    if not isinstance(item, Section):
-        return [f"{item!r} is no Section"]
-    return list(of_section(item, model.result_fields))
-
-
 def kernel_for(ref: str, *, strict: bool = False) -> Kernel:
-    """Return a kernel that knows the plugin of this ``Origin.ref`` besides what is installed."""
+    """Return the kernel that knows the plugin of this ``Origin.ref``, in another process too.
+
+    An installed plugin and a single file stand beside everything installed; modules stand alone, as they were given.
+    """
     kind, _, value = ref.partition(":")
+    if kind == "module":
+        from importlib import import_module
+
+        return Kernel([import_module(name) for name in value.split(",")], strict=strict)
     kernel = Kernel.installed(strict=strict)
     if kind == "file":
         kernel.add_file(Path(value))
-    elif kind == "module":
-        from importlib import import_module
-
-        module = import_module(value)
-        kernel.add(Origin(value, "", "", module.__file__ or value, ref), lambda: module)
     return kernel

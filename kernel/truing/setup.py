@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import isnan
 from typing import Any
 
 from truing.declare.model import Model, Study
+from truing.declare.near_miss import near_miss
 from truing.declare.sources import Effect
 from truing.declare.spreads import Distribution, Off, Spread, Target
+from truing.errors import UsageError
 from truing.kernel import Added, Origin
 
 
@@ -44,6 +47,18 @@ class Setup:
     files: Mapping[str, str] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        """Put the effects in the order in which the model declares them: they act in this order."""
+        order = list(self.model.effects)
+        names = [item.effect.name for item in self.effects]
+        for name in names:
+            if name not in order:
+                raise UsageError(f"{self.model.name} has no effect '{name}'.{near_miss(name, order)}")
+            if names.count(name) > 1:
+                raise UsageError(f"the effect '{name}' is switched on twice")
+        ordered = sorted(self.effects, key=lambda item: order.index(item.effect.name))
+        object.__setattr__(self, "effects", tuple(ordered))
+
     def nominal(self, name: str) -> Any:
         """Return the nominal value in SI of an input or condition."""
         if name in self.model.input_fields:
@@ -67,13 +82,14 @@ class Setup:
         return Target(name, float(self.nominal(name)), self.unit_of(name), self.nominal)
 
     def distributions(self) -> dict[str, dict[str, Distribution]]:
-        """Return, by tolerance and input, every scatter that is not off."""
+        """Return, by tolerance and input, every scatter that is not off; an input left open does not scatter."""
         found: dict[str, dict[str, Distribution]] = {}
         for tolerance in self.model.tolerances.values():
             spread = self.spreads.get(tolerance.name, tolerance.spread)
             if isinstance(spread, Off):
                 continue
-            resolved = {name: spread.resolve(self.target(name)) for name in tolerance.on}
+            targets = [self.target(name) for name in tolerance.on]
+            resolved = {target.name: spread.resolve(target) for target in targets if not isnan(target.nominal)}
             kept = {name: distribution for name, distribution in resolved.items() if distribution is not None}
             if kept:
                 found[tolerance.name] = kept

@@ -1,0 +1,72 @@
+"""Loading one plugin: a Python file without packaging, and what must be true of the hooks of any plugin."""
+
+from __future__ import annotations
+
+import inspect
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from truing.blame import line_of
+from truing.declare.near_miss import near_miss
+from truing.errors import DeclarationError, UnknownPluginError
+
+if TYPE_CHECKING:
+    from pluggy import PluginManager
+
+
+def load_file(path: Path) -> ModuleType:
+    """Import one Python file by its path, under its own name unless that is taken by another module.
+
+    Raises UnknownPluginError for what is no Python file; whatever the file itself raises goes through.
+    """
+    import importlib.util
+    import sys
+
+    if not path.is_file():
+        raise UnknownPluginError(f"{path}: no such file")
+    path = path.resolve()
+    taken = sys.modules.get(path.stem)
+    if taken is not None and getattr(taken, "__file__", None) == str(path):
+        return taken
+    name = path.stem if taken is None and importlib.util.find_spec(path.stem) is None else f"truing_file_{path.stem}"
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise UnknownPluginError(f"{path}: not a Python file")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    if str(path.parent) not in sys.path:
+        sys.path.append(str(path.parent))
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
+    return module
+
+
+def check_hooks(manager: PluginManager, plugin: Any, name: str) -> None:
+    """Refuse a plugin with a misspelt hook, one without its mark, one with foreign arguments, or with none at all.
+
+    Raises DeclarationError, which knows file and line.
+    """
+    hooks = {key: caller.spec for key, caller in vars(manager.hook).items() if getattr(caller, "spec", None)}
+    marked = [key for key in dir(plugin) if manager.parse_hookimpl_opts(plugin, key) is not None]
+    for key in marked:
+        function = getattr(plugin, key)
+        if key not in hooks:
+            raise DeclarationError(f"'{key}' is no hook.{near_miss(key, hooks)}", line_of(function))
+        known = tuple(hooks[key].argnames)
+        strange = [argument for argument in inspect.signature(function).parameters if argument not in known]
+        if strange:
+            takes = ", ".join(known) or "nothing"
+            raise DeclarationError(f"{key}() asks for '{strange[0]}'; this hook is given {takes}", line_of(function))
+    for key in hooks:
+        function = getattr(plugin, key, None)
+        if inspect.isfunction(function) and key not in marked:
+            raise DeclarationError(f"{key}() is not marked: write @hookimpl above it", line_of(function))
+    if not marked:
+        place = (getattr(plugin, "__file__", None) or name, None)
+        raise DeclarationError(
+            "it offers nothing: it needs a function such as truing_models() marked with @hookimpl", place
+        )
