@@ -1,0 +1,86 @@
+"""Numbers as an engineer writes them: as many digits as carry meaning, a power of ten only where it helps."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+ABSENT = "–"
+"""What stands where there is no number: an input that was not given, a search that did not arrive."""
+
+RESULT_DIGITS = 5
+STATED_DIGITS = 10
+_NUMBER = re.compile(r"(?P<minus>-?)(?P<digits>\d[\d.]*)(?:e(?P<sign>[+-]?)0*(?P<exponent>\d+))?", re.ASCII)
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def format_number(value: Any, digits: int = 4) -> str:
+    """Write a number with so many significant digits: 0.7381, 12.5, 3137, 1.2e-05; none that is not finite (–).
+
+    Digits before the decimal point are never dropped below ten million (31372.4 becomes 31372), zeros behind it are.
+    Whole numbers (``int``) are written out. The minus is the ASCII one, so that the text can be read back.
+    """
+    if value is None:
+        return ABSENT
+    if _is_whole_type(value):
+        return str(int(value))
+    number = float(value)
+    if not math.isfinite(number):
+        return ABSENT
+    if number == 0:
+        return "0"
+    rounded = float(f"{number:.{max(digits, 1) - 1}e}")
+    if not 1e-4 <= abs(rounded) < 1e7:
+        return _with_exponent(number, digits)
+    before = math.floor(math.log10(abs(rounded))) + 1
+    text = f"{number:.{max(digits - before, 0)}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def _is_whole_type(value: Any) -> bool:
+    return isinstance(value, int) or getattr(getattr(value, "dtype", None), "kind", "") in {"i", "u"}
+
+
+def _with_exponent(number: float, digits: int) -> str:
+    mantissa, _, exponent = f"{number:.{max(digits, 1) - 1}e}".partition("e")
+    short = mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa
+    return f"{short}e{exponent}"
+
+
+def format_value(si: Any, unit: str, digits: int = RESULT_DIGITS) -> tuple[str, str]:
+    """Write an SI number in a unit: the number and the unit as printed ("12.5", "µm"); raises UnitError."""
+    from truing.units import from_si, unit_text
+
+    if si is None:
+        return ABSENT, unit_text(unit)
+    return format_number(_plain(si) if _is_bare(unit, si) else from_si(_plain(si), unit), digits), unit_text(unit)
+
+
+def format_difference(si: float, unit: str, digits: int = RESULT_DIGITS) -> tuple[str, str]:
+    """Write an SI difference (a standard deviation, a width): levels of temperature differ by kelvins."""
+    from truing.units import unit_factor, unit_text
+
+    is_level = unit in {"degC", "degF", "°C", "°F"}
+    return format_number(si if is_level else si / unit_factor(unit), digits), unit_text("K" if is_level else unit)
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if hasattr(value, "item") else value
+
+
+def _is_bare(unit: str, value: Any) -> bool:
+    """Tell whether a whole number stays one: counts have no unit."""
+    return unit in {"", "1", "-"} and _is_whole_type(value)
+
+
+def pretty(text: str) -> str:
+    """Make a number's text fit for print: a true minus, powers of ten written out (1.2 × 10⁻⁵); other texts stay."""
+    found = _NUMBER.fullmatch(text)
+    if found is None:
+        return text
+    digits = ("−" if found["minus"] else "") + found["digits"]
+    if found["exponent"] is None:
+        return digits
+    exponent = ("-" if found["sign"] == "-" else "") + found["exponent"]
+    return f"{digits} × 10{exponent.translate(_RAISED)}"

@@ -1,0 +1,253 @@
+"""The numbered chapters of results: the model's sections, what the studies say, and what is in no section."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from truing.calculation import Calculation
+from truing.declare.blocks import Block, Drawing, Table, Words
+from truing.declare.fields import Axis, Found, ResultField
+from truing.declare.model import Section
+from truing.errors import PluginError
+from truing.numbers import format_value
+from truing.report.context import BlockView, Chapter, Entry, FigureView, TableView, Value
+from truing.report.equations import equation_of, value_text
+from truing.report.figures import draw
+from truing.setup import Setup
+
+RANK = {"short": 0, "normal": 1, "full": 2}
+LONGEST_TABLE = {"short": 20, "normal": 60, "full": 1000}
+AXIS_ROWS = {"short": 0, "normal": 12, "full": 25}
+
+
+@dataclass
+class Figures:
+    """Counts the figures of one sheet and keeps what could not be drawn."""
+
+    count: int = 0
+    failures: list[str] = field(default_factory=list)
+
+    def view(self, title: str, what: Callable[[], Any], caption: str) -> BlockView:
+        """Draw a figure; one that fails is said in its place and does not take the sheet away."""
+        self.count += 1
+        ident = f"figure-{self.count}"
+        try:
+            return FigureView(title, draw(what, title=title, ident=ident), caption, ident)
+        except PluginError as error:
+            self.failures.append(str(error))
+            return Words(f"The figure '{title}' could not be drawn.", kind="warning")
+
+
+@dataclass(frozen=True)
+class Writing:
+    """What the chapters are written from."""
+
+    calculation: Calculation
+    detail: str
+    figures: Figures
+
+    @property
+    def setup(self) -> Setup:
+        """The setup of the run."""
+        return self.calculation.setup
+
+
+def result_chapters(writing: Writing) -> Iterator[Chapter]:
+    """Write the model's sections at this level of detail, then the studies, then the rest."""
+    rank = RANK.get(writing.detail, 1)
+    named: set[str] = set()
+    for section in writing.setup.model.sheet:
+        named.update(section.names)
+        if RANK[section.level] <= rank:
+            yield _of_section(writing, section)
+    if rank == 0:
+        yield from _main_results(writing)
+        return
+    yield from _studies(writing)
+    rest = [name for name in writing.setup.model.result_fields if name not in named and name in writing.calculation.answers]
+    if rest:
+        entries, tables = _results(writing, rest)
+        yield Chapter("", "", "Further results", "results", entries=entries, blocks=tables)
+
+
+def _of_section(writing: Writing, section: Section) -> Chapter:
+    names = [name for name in section.names if name in writing.calculation.answers]
+    entries, tables = _results(writing, names)
+    record = writing.calculation.record
+    blocks: list[BlockView] = list(tables)
+    if section.figure is not None:
+        figure = section.figure
+        blocks.append(writing.figures.view(section.title, lambda: figure(record), section.caption))
+    if section.blocks is not None:
+        blocks += views(writing, section.blocks(record))
+    return Chapter("", "", section.title, "results", text=section.text, entries=entries, blocks=tuple(blocks))
+
+
+def _main_results(writing: Writing) -> Iterator[Chapter]:
+    """Write the values of the normal sections without their formulas."""
+    model = writing.setup.model
+    sections = [section for section in model.sheet if section.level == "normal"]
+    names = [name for section in sections for name in section.names] or (list(model.result_fields) if not model.sheet else [])
+    scalars = [name for name in dict.fromkeys(names) if _is_scalar(writing.calculation.answers.get(name))]
+    if scalars:
+        entries = tuple(_entry(writing, name, with_formula=False) for name in scalars)
+        yield Chapter("", "", "Main results", "results", entries=entries)
+
+
+def _studies(writing: Writing) -> Iterator[Chapter]:
+    for name, outcome in writing.calculation.outcomes.items():
+        found = views(writing, outcome.blocks())
+        if found:
+            yield Chapter("", "", name.replace("_", " ").capitalize(), "study", blocks=tuple(found))
+
+
+def _is_scalar(value: Any) -> bool:
+    return value is not None and getattr(value, "ndim", 0) == 0
+
+
+def _results(writing: Writing, names: Sequence[str]) -> tuple[tuple[Entry, ...], tuple[BlockView, ...]]:
+    """Write single results as entries, short axes as tables, long ones as entries with their range."""
+    answers, fields = writing.calculation.answers, writing.setup.model.result_fields
+    tables = list(_axis_tables(writing, names))
+    entries = []
+    for name in names:
+        item = fields[name]
+        if isinstance(item.spec, Axis) and item.spec.is_table:
+            continue
+        if isinstance(item.spec, Axis) or not _is_scalar(answers[name]):
+            entries.append(_range_entry(writing, item))
+        else:
+            entries.append(_entry(writing, name, with_formula=True))
+    return tuple(entries), tuple(tables)
+
+
+def _entry(writing: Writing, name: str, *, with_formula: bool) -> Entry:
+    item = writing.setup.model.result_fields[name]
+    answers = writing.calculation.answers
+    return Entry(
+        name=name,
+        symbol=item.symbol,
+        note=item.spec.note,
+        value=Value(*format_value(answers[name], writing.setup.print_unit(name))),
+        equation=equation_of(writing.setup, answers, item) if with_formula else None,
+        method=getattr(item.spec, "method", ""),
+        source=getattr(item.spec, "source", ""),
+    )
+
+
+def _range_entry(writing: Writing, item: ResultField) -> Entry:
+    """Say a result along an axis by its ends."""
+    import numpy as np
+
+    values = np.asarray(writing.calculation.answers[item.name], dtype=float)
+    finite = values[np.isfinite(values)]
+    unit = writing.setup.print_unit(item.name)
+    if finite.size:
+        (low, text), (high, _) = (format_value(float(end), unit) for end in (finite.min(), finite.max()))
+        extent = f"{low} … {high}"
+    else:
+        extent, text = "no finite value", ""
+    along = item.along if isinstance(item.spec, Found) else ""
+    words = f"{values.size} values" + (f" along {along}" if along and along != item.name else "")
+    return Entry(
+        name=item.name,
+        symbol=item.symbol,
+        note=item.spec.note,
+        value=Value(extent, text if finite.size else ""),
+        equation=equation_of(writing.setup, writing.calculation.answers, item),
+        method=getattr(item.spec, "method", ""),
+        source=getattr(item.spec, "source", ""),
+        extent=words,
+    )
+
+
+def _axis_tables(writing: Writing, names: Sequence[str]) -> Iterator[TableView]:
+    """Write what runs along an axis as a table where it is short enough or the sheet is a full one."""
+    import numpy as np
+
+    fields, answers = writing.setup.model.result_fields, writing.calculation.answers
+    by_axis: dict[str, list[str]] = {}
+    for name in names:
+        item = fields[name]
+        if not _is_scalar(answers[name]) and np.ndim(answers[name]) == 1 and isinstance(item.spec, Found):
+            by_axis.setdefault(item.along, []).append(name)
+    for axis, columns in by_axis.items():
+        place = fields.get(axis)
+        is_table = place is not None and isinstance(place.spec, Axis) and place.spec.is_table
+        if axis in answers:
+            columns = [axis, *columns]
+        length = len(answers[columns[-1]])
+        most = LONGEST_TABLE[writing.detail] if is_table else AXIS_ROWS[writing.detail]
+        if length <= most or writing.detail == "full" or is_table:
+            yield _columns_table(writing, f"Along {axis}" if axis else "Series", columns, most)
+
+
+def _columns_table(writing: Writing, title: str, names: Sequence[str], most: int) -> TableView:
+    """Write equally long results as columns, evenly thinned where there are too many rows."""
+    import numpy as np
+
+    answers, setup = writing.calculation.answers, writing.setup
+    length = len(answers[names[-1]])
+    places = np.unique(np.linspace(0, length - 1, min(length, most)).round().astype(int)) if length else []
+    cells = [[format_value(float(answers[name][place]), setup.print_unit(name))[0] for name in names] for place in places]
+    note = f"{len(places)} of {length} rows" if length > most else ""
+    titles = [setup.model.result_fields[name].spec.note or name for name in names]
+    units = [format_value(0.0, setup.print_unit(name))[1] for name in names]
+    rows = tuple(tuple(row) for row in cells)
+    return TableView(title, tuple(titles), tuple(units), rows, (True,) * len(names), note)
+
+
+def views(writing: Writing, blocks: Sequence[Block]) -> list[BlockView]:
+    """Turn the blocks of a study or a section into what is printed."""
+    return [_view(writing, block) for block in blocks]
+
+
+def _view(writing: Writing, block: Block) -> BlockView:
+    if isinstance(block, Words):
+        return block
+    if isinstance(block, Drawing):
+        return writing.figures.view(block.title, block.draw, block.caption)
+    return table_view(block, LONGEST_TABLE[writing.detail])
+
+
+def table_view(table: Table, most: int) -> TableView:
+    """Write the cells of a plugin's table; what is left out is said."""
+    from truing.units import unit_text
+
+    shown = table.rows[:most]
+    rows = tuple(tuple(value_text(cell) for cell in row) for row in shown)
+    numeric = tuple(
+        bool(shown) and all(_is_numeric(row[place]) for row in shown if place < len(row))
+        for place in range(len(table.columns))
+    )
+    left = len(table.rows) - len(shown)
+    note = " ".join(filter(None, [table.note, f"{left} further rows are not printed." if left else ""]))
+    units = tuple(_known_unit(unit_text, unit) for unit in table.units)
+    return TableView(table.title, tuple(table.columns), units, rows, numeric, note)
+
+
+def _is_numeric(cell: Any) -> bool:
+    return cell is None or (isinstance(cell, (int, float)) and not isinstance(cell, bool)) or hasattr(cell, "dtype")
+
+
+def _known_unit(write: Callable[[str], str], unit: str) -> str:
+    """Write a unit for print; a heading that is no unit stays as it is."""
+    from truing.errors import UnitError
+
+    try:
+        return write(unit) if unit else ""
+    except UnitError:
+        return unit
+
+
+def numbered(chapters: Sequence[Chapter], start: int) -> Mapping[str, Chapter]:
+    """Give chapters their numbers and identifiers, in order."""
+    from dataclasses import replace
+
+    found = {}
+    for place, chapter in enumerate(chapters, start):
+        ident = chapter.ident or f"chapter-{place}"
+        found[ident] = replace(chapter, number=str(place), ident=ident)
+    return found

@@ -1,0 +1,160 @@
+"""Rows of the sheet that say what was asked: inputs, tolerances, conditions, effects, checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from truing.calculation import Calculation
+from truing.declare.fields import Given, InputField
+from truing.declare.goals import Require
+from truing.declare.sources import Tolerance
+from truing.declare.spreads import ByChoice, Distribution, Spread
+from truing.numbers import ABSENT, RESULT_DIGITS, STATED_DIGITS, format_difference, format_number, format_value
+from truing.report.context import CheckRow, ConditionRow, EffectRow, InputRow, ToleranceRow, UnknownRow, Value
+from truing.setup import Setup
+from truing.studies.bench import Check
+
+PLACES = {"inputs": "on the inputs", "results": "on the results", "reading": "on the reading"}
+LONGEST_SERIES = 8
+
+
+def input_rows(setup: Setup) -> Iterator[InputRow]:
+    """Say every input with its value as it is printed."""
+    for name, value in setup.model.read_inputs(setup.inputs).items():
+        item = setup.model.input_fields[name]
+        fitted = setup.calibrated.get(name)
+        unit = setup.print_unit(name)
+        yield InputRow(
+            name=name,
+            symbol=item.symbol,
+            value=input_value(setup, item, value),
+            note=item.spec.note,
+            source=item.spec.source,
+            stated=name in setup.stated,
+            calibrated=None if fitted is None else Value(*format_value(fitted, unit, STATED_DIGITS)),
+        )
+
+
+def input_value(setup: Setup, item: InputField, value: Any) -> Value:
+    """Write one input: a number in its printed unit, a choice, a switch, a file."""
+    if item.kind == "file":
+        return Value(next((file for file in setup.files if file), "from a file"))
+    if isinstance(value, bool):
+        return Value("yes" if value else "no")
+    if isinstance(value, str) or (isinstance(item.spec, Given) and item.spec.unit is None):
+        return Value(str(value))
+    unit = setup.print_unit(item.name)
+    if item.kind == "series":
+        return series_value(value, unit)
+    if value != value:
+        return Value("not given")
+    return Value(*format_value(value, unit, STATED_DIGITS))
+
+
+def series_value(value: Any, unit: str) -> Value:
+    """Write a series: all of it if it is short, otherwise its ends and its length."""
+    texts = [format_value(float(number), unit) for number in value]
+    if not texts:
+        return Value(ABSENT)
+    if len(texts) <= LONGEST_SERIES:
+        return Value(", ".join(text for text, _ in texts), texts[0][1])
+    return Value(f"{texts[0][0]} … {texts[-1][0]} ({len(texts)} values)", texts[0][1])
+
+
+def tolerance_rows(setup: Setup) -> Iterator[ToleranceRow]:
+    """Say every tolerance that scatters, with the standard deviation of what it is on."""
+    for name, distributions in setup.distributions().items():
+        tolerance = setup.model.tolerances[name]
+        sds = {Value(*format_difference(item.sd, setup.print_unit(on), 4)): None for on, item in distributions.items()}
+        yield ToleranceRow(
+            name=name,
+            on=tuple((on, _symbol(setup, on)) for on in distributions),
+            spread=spread_text(setup, tolerance, setup.spreads.get(name, tolerance.spread)),
+            sds=tuple(sds),
+            shift=tuple(dict.fromkeys(_shifts(setup, distributions))),
+            why=tolerance.why,
+            source=tolerance.source,
+        )
+
+
+def _symbol(setup: Setup, name: str) -> str:
+    item = setup.model.input_fields.get(name)
+    return item.symbol if item is not None else ""
+
+
+def _shifts(setup: Setup, distributions: Mapping[str, Distribution]) -> Iterator[Value]:
+    """Say how far the mean lies from the nominal, where it does."""
+    for name, item in distributions.items():
+        nominal = float(setup.nominal(name))
+        if abs(item.mean - nominal) > 1e-12 * max(abs(nominal), item.sd):
+            number, unit = format_difference(item.mean - nominal, setup.print_unit(name), 4)
+            yield Value(number if number.startswith("-") else f"+{number}", unit)
+
+
+def spread_text(setup: Setup, tolerance: Tolerance, spread: Spread) -> str:
+    """Write a spread as the inputs file would; of one that a choice decides, the chosen one."""
+    if isinstance(spread, ByChoice):
+        return spread_text(setup, tolerance, spread.chosen(str(setup.nominal(spread.chooser))))
+    return spread.text
+
+
+def condition_rows(setup: Setup) -> Iterator[ConditionRow]:
+    """Say every condition with its reference."""
+    for name, value in setup.conditions.items():
+        condition = setup.model.conditions[name]
+        unit = setup.print_unit(name)
+        reference = Value(*format_value(condition.zero, unit, STATED_DIGITS))
+        yield ConditionRow(name, Value(*format_value(value, unit, STATED_DIGITS)), reference, condition.note)
+
+
+def effect_rows(setup: Setup) -> Iterator[EffectRow]:
+    """Say every effect that is on, with its unknowns."""
+    for item in setup.effects:
+        unknowns = []
+        for unknown in item.effect.unknowns:
+            sd = item.sds.get(unknown.name)
+            scatter = Value(*format_difference(sd, unknown.unit, 3)) if sd else None
+            value = Value(*format_value(item.values[unknown.name], unknown.unit, RESULT_DIGITS))
+            unknowns.append(UnknownRow(unknown.name, value, scatter, unknown.note))
+        effect = item.effect
+        why = effect.why or effect.looks_like
+        yield EffectRow(effect.name, PLACES[effect.place], tuple(unknowns), why, effect.source)
+
+
+def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
+    """Say every limit with what is left of it."""
+    from truing.units import unit_text
+
+    fields = calculation.setup.model.result_fields
+    for check in calculation.checks:
+        item = fields.get(check.name) or fields.get(check.name.partition(" ")[0])
+        unit = unit_text(check.unit)
+        number = format_number(check.margin, 3)
+        yield CheckRow(
+            name=check.name,
+            symbol=item.symbol if item is not None and item.name == check.name else "",
+            note=item.spec.note if item is not None else "",
+            relation=_relation(check, calculation.setup),
+            value=Value(format_number(check.value, RESULT_DIGITS), unit),
+            limit=Value(format_number(check.limit, STATED_DIGITS), unit),
+            margin=_margin(check, number),
+            passed=bool(check.passed),
+        )
+
+
+def _margin(check: Check, number: str) -> str:
+    """Write a margin as a share of the limit; where the limit is 0, as it is."""
+    if not check.limit or number == ABSENT:
+        return number
+    return f"{format_number(100 * check.margin, 3)} %"
+
+
+def _relation(check: Check, setup: Setup) -> str:
+    """Return which side is safe: the sign of the margin tells, and where it is 0 the requirement does."""
+    distance = check.limit - check.value
+    if distance * check.margin:
+        return "≤" if distance * check.margin > 0 else "≥"
+    requires = [item for item in setup.model.objectives if isinstance(item, Require)]
+    lower = any(check.name.startswith(item.result) and (item.kind == "at_least" or item.reliability) for item in requires)
+    return "≥" if lower else "≤"

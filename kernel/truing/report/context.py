@@ -1,0 +1,217 @@
+"""What stands on a sheet, said once and without markup; HTML and Markdown are both written from it.
+
+Texts in here are raw: they come from users and plugins, and only the renderers know how to make them harmless.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeAlias
+
+from truing.declare.blocks import Words
+from truing.declare.published import Finding
+from truing.published import ComparedRow
+
+if TYPE_CHECKING:
+    from truing.formulas import Formula
+
+__all__ = ["ComparedRow", "Provenance", "Sheet"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Provenance:
+    """Where the numbers come from: enough to get them again."""
+
+    kernel: str
+    plugin: str
+    plugin_version: str
+    python: str
+    packages: Mapping[str, str] = field(default_factory=dict)
+    input_hash: str = ""
+    seed: int = 1
+    date: str = ""
+    added: Sequence[tuple[str, str, str]] = ()
+    """What guests added: what, plugin, version."""
+    files: Mapping[str, str] = field(default_factory=dict)
+    """Data files that were read, with the hash of their content."""
+
+
+@dataclass(frozen=True)
+class Value:
+    """A number as printed, with the unit as printed."""
+
+    text: str
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class InputRow:
+    """One input: what it is, its value, and whether the inputs file states it."""
+
+    name: str
+    symbol: str
+    value: Value
+    note: str
+    source: str
+    stated: bool
+    calibrated: Value | None = None
+
+
+@dataclass(frozen=True)
+class ToleranceRow:
+    """A tolerance in force: what it is on, how it is written, and the standard deviation of each input."""
+
+    name: str
+    on: tuple[tuple[str, str], ...]
+    spread: str
+    sds: tuple[Value, ...]
+    shift: tuple[Value, ...]
+    why: str
+    source: str
+
+
+@dataclass(frozen=True)
+class ConditionRow:
+    """A condition: its value, the reference at which its effects vanish."""
+
+    name: str
+    value: Value
+    reference: Value
+    note: str
+
+
+@dataclass(frozen=True)
+class UnknownRow:
+    """One number of an effect that is on, with its standard deviation where it was diagnosed."""
+
+    name: str
+    value: Value
+    sd: Value | None
+    note: str
+
+
+@dataclass(frozen=True)
+class EffectRow:
+    """An effect that is on."""
+
+    name: str
+    place: str
+    unknowns: tuple[UnknownRow, ...]
+    why: str
+    source: str
+
+
+@dataclass(frozen=True)
+class CheckRow:
+    """A limit and how far it is kept."""
+
+    name: str
+    symbol: str
+    note: str
+    relation: str
+    value: Value
+    limit: Value
+    margin: str
+    passed: bool
+
+
+@dataclass(frozen=True)
+class Equation:
+    """A formula ready to be set: in symbols, in numbers (None where a name runs along an axis), and its result."""
+
+    formula: Formula
+    name: str
+    symbol: str
+    symbols: Mapping[str, str]
+    numbers: Mapping[str, tuple[str, str]] | None
+    results: tuple[Value, ...]
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One result: its value, or its range along an axis, with its formula or how it was found."""
+
+    name: str
+    symbol: str
+    note: str
+    value: Value | None
+    equation: Equation | None = None
+    method: str = ""
+    source: str = ""
+    extent: str = ""
+
+
+@dataclass(frozen=True)
+class TableView:
+    """A table of finished texts; ``numeric`` says which columns hold numbers."""
+
+    title: str
+    columns: tuple[str, ...]
+    units: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    numeric: tuple[bool, ...]
+    note: str = ""
+    marked: int | None = None
+    """The row that is set off from the others, if there is one."""
+
+
+@dataclass(frozen=True)
+class FigureView:
+    """A figure as SVG, with the words that stand for it where it cannot be seen."""
+
+    title: str
+    svg: str
+    caption: str
+    ident: str
+
+
+BlockView: TypeAlias = Words | TableView | FigureView
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """A part of the sheet with a number and a title."""
+
+    number: str
+    ident: str
+    title: str
+    kind: str
+    text: str = ""
+    entries: tuple[Entry, ...] = ()
+    blocks: tuple[BlockView, ...] = ()
+
+
+@dataclass(frozen=True)
+class Head:
+    """The title block."""
+
+    title: str
+    model: str
+    fields: tuple[tuple[str, str], ...]
+    signatures: tuple[tuple[str, str], ...]
+    footer: str
+    paper: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sheet:
+    """Everything on a sheet, in order."""
+
+    head: Head
+    detail: str
+    passed: bool
+    verdict: str
+    summary: str
+    chapters: tuple[Chapter, ...]
+    checks: tuple[CheckRow, ...]
+    inputs: tuple[InputRow, ...]
+    tolerances: tuple[ToleranceRow, ...]
+    conditions: tuple[ConditionRow, ...]
+    effects: tuple[EffectRow, ...]
+    compared: tuple[ComparedRow, ...]
+    compared_elsewhere: tuple[ComparedRow, ...]
+    findings: tuple[Finding, ...]
+    warnings: tuple[str, ...]
+    references: tuple[tuple[str, str], ...]
+    provenance: Provenance

@@ -1,0 +1,211 @@
+"""Formulas on the sheet: symbol = expression = numbers = result, broken into lines where one would be too wide."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from truing.declare.fields import Found, InputField, ResultField
+from truing.declare.scope import formula_scope
+from truing.formulas import Formula, parse, symbol_text
+from truing.formulas.layout import Layout, Level, Writer, number_leaf, symbol_leaf, symbolic
+from truing.formulas.tree import Binary, Call, Constant, Name, Node, Number, children, simplified
+from truing.numbers import ABSENT, RESULT_DIGITS, format_number, format_value
+from truing.report.context import Equation, Value
+from truing.setup import Setup
+
+LINE = 36.0
+"""How wide a line may be, in em, before it is broken: the column of formulas on A4."""
+
+LEVELS = {"degC", "degF", "°C", "°F"}
+INPUT_DIGITS = 7
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of a formula, finished markup, with its width in em as estimated."""
+
+    markup: str
+    width: float
+
+
+def equation_of(setup: Setup, answers: Mapping[str, Any], item: ResultField) -> Equation | None:
+    """Return the formula of a result with everything that is printed of it, or None where it has none."""
+    if not isinstance(item.spec, Found) or not item.spec.formula:
+        return None
+    formula = parse(item.spec.formula)
+    scope = formula_scope(setup.model, item)
+    inputs = setup.model.read_inputs(setup.inputs)
+    values = {name: {**inputs, **answers}.get(scope[name].name) for name in sorted(formula.names)}
+    fields = {name: scope[name] for name in values}
+    plain = all(_is_single(value) for value in values.values()) and _is_single(answers.get(item.name))
+    numbered = values if plain else {}
+    numbers = {name: _number(setup, fields[name], value, numeric=item.spec.numeric) for name, value in numbered.items()}
+    return Equation(
+        formula=formula,
+        name=item.name,
+        symbol=item.symbol,
+        symbols={name: field.symbol for name, field in fields.items() if field.symbol},
+        numbers=numbers if plain else None,
+        results=_results(setup, item, answers.get(item.name), numeric=item.spec.numeric) if plain else (),
+    )
+
+
+def _is_single(value: Any) -> bool:
+    return getattr(value, "ndim", 0) == 0
+
+
+def _number(setup: Setup, item: InputField | ResultField, value: Any, *, numeric: bool) -> tuple[str, str]:
+    """Return what stands for a name: in the printed unit, or bare in the declared unit of a numeric formula."""
+    if value is None or value != value:
+        return ABSENT, ""
+    digits = INPUT_DIGITS if isinstance(item, InputField) else RESULT_DIGITS
+    if numeric:
+        return format_value(value, item.unit, digits)[0], ""
+    unit = setup.print_unit(item.name)
+    return format_value(value, "K" if unit in LEVELS else unit, digits)
+
+
+def _results(setup: Setup, item: ResultField, value: Any, *, numeric: bool) -> tuple[Value, ...]:
+    """Return the result as the formula gives it and, where that is another unit, as it is printed."""
+    unit = setup.print_unit(item.name)
+    last = Value(*format_value(value, unit))
+    if numeric and unit != item.unit:
+        return Value(*format_value(value, item.unit)), last
+    return (last,)
+
+
+def lines(writer: Writer, equation: Equation, *, limit: float = LINE) -> list[Line]:
+    """Set an equation: on one line if it fits, otherwise a line each for expression, numbers and result."""
+    formula = equation.formula
+    name = Line(_left_hand(writer, equation), _width(Name(equation.name), {equation.name: equation.symbol}))
+    if formula.left is not None:
+        return _solved(writer, equation, name)
+    said = _broken(writer, formula, equation, None, limit - name.width)
+    steps = [_after(writer, "", said[0]), *said[1:]]
+    steps[0] = Line(writer.infix(name.markup, "==", said[0].markup), name.width + said[0].width + 1.2)
+    rest = [_after(writer, "==", Line(*_quantity(writer, value))) for value in equation.results]
+    if equation.numbers is not None and formula.names:
+        numbers = _broken(writer, formula, equation, equation.numbers, limit)
+        rest = [_after(writer, "==", numbers[0]), *numbers[1:], *rest]
+    return _packed([*steps, *rest], limit)
+
+
+def _left_hand(writer: Writer, equation: Equation) -> str:
+    return writer.symbol(equation.symbol) if equation.symbol else writer.word(equation.name)
+
+
+def _solved(writer: Writer, equation: Equation, name: Line) -> list[Line]:
+    """Set what is solved for: the equation that holds, then the solution."""
+    formula = equation.formula
+    width = _width(formula.right, equation.symbols) + 1.2
+    width += _width(formula.left, equation.symbols) if formula.left is not None else 0.0
+    found = [Line(symbolic(writer, formula, equation.symbols), width)]
+    if equation.results:
+        markup = name.markup
+        for value in equation.results:
+            markup = writer.infix(markup, "==", _quantity(writer, value)[0])
+        found.append(Line(markup, name.width + 8))
+    return found
+
+
+def _quantity(writer: Writer, value: Value) -> tuple[str, float]:
+    return writer.quantity(value.text, value.unit), 0.55 * len(value.text) + 0.6 * len(value.unit)
+
+
+def _after(writer: Writer, sign: str, line: Line) -> Line:
+    """Begin a line with a sign, as the continuation of the line above."""
+    return Line(writer.infix(EMPTY[type(writer).__name__], sign, line.markup), line.width + 1.2) if sign else line
+
+
+EMPTY = {"MathMLWriter": "<mrow></mrow>", "LatexWriter": "{}"}
+"""What stands before a sign at the beginning of a line, so that it is set as a sign between two sides."""
+
+
+def _packed(steps: list[Line], limit: float) -> list[Line]:
+    """Put as many steps on a line as fit: markup of a step that begins with a sign joins directly."""
+    found = [steps[0]]
+    for step in steps[1:]:
+        last = found[-1]
+        if last.width + step.width <= limit:
+            found[-1] = Line(last.markup + step.markup, last.width + step.width)
+        else:
+            found.append(step)
+    return found
+
+
+def _broken(
+    writer: Writer, formula: Formula, equation: Equation, numbers: Mapping[str, tuple[str, str]] | None, limit: float
+) -> list[Line]:
+    """Set one side, in one line or, if it is a sum too wide for that, in lines that begin with plus or minus."""
+    texts = equation.symbols if numbers is None else {name: " ".join(pair) for name, pair in numbers.items()}
+    layout = _layout(writer, equation, numbers)
+    width = _width(formula.right, texts)
+    (_, first), *others = _terms(formula.right)
+    if width <= limit or not others:
+        return [Line(layout.formula(replace(formula, left=None)), width)]
+    found = [Line(layout.at_least(simplified(first), Level.SUM).markup, _width(first, texts))]
+    for sign, node in others:
+        piece = layout.at_least(simplified(node), Level.SUM if sign == "+" else Level.PRODUCT, signed=False)
+        found.append(_after(writer, sign, Line(piece.markup, _width(node, texts))))
+    return _packed(found, limit)
+
+
+def _layout(writer: Writer, equation: Equation, numbers: Mapping[str, tuple[str, str]] | None) -> Layout:
+    if numbers is None:
+        return Layout(writer, symbol_leaf(writer, equation.symbols), equation.symbols)
+
+    def is_given(name: str) -> bool | None:
+        return numbers[name][0] != ABSENT if name in numbers else None
+
+    return Layout(writer, number_leaf(writer, numbers), dots=True, is_given=is_given)
+
+
+def _terms(node: Node) -> list[tuple[str, Node]]:
+    """Take a sum apart into signs and terms."""
+    if isinstance(node, Binary) and node.operator in {"+", "-"}:
+        return [*_terms(node.left), (node.operator, node.right)]
+    return [("", node)]
+
+
+def _width(node: Node, texts: Mapping[str, str]) -> float:
+    """Estimate the width of a node in em."""
+    match node:
+        case Number(text, _):
+            return 0.55 * len(text)
+        case Constant():
+            return 0.6
+        case Name(name):
+            return _name_width(texts.get(name) or name)
+        case Binary("/", above, below):
+            return max(_width(above, texts), _width(below, texts)) + 0.3
+        case Binary("**", base, exponent):
+            return _width(base, texts) + 0.7 * _width(exponent, texts)
+        case Binary(_, left, right):
+            return _width(left, texts) + _width(right, texts) + (0.6 if node.operator == "*" else 1.2)
+        case Call(("cases" | "either"), arguments):
+            values, conditions = arguments[::2], arguments[1::2]
+            widest = max(_width(value, texts) for value in values)
+            return widest + max((_width(one, texts) for one in conditions), default=4.0) + 3
+        case Call(function, arguments):
+            inner = sum(_width(argument, texts) for argument in arguments)
+            return inner + (1.0 if function == "sqrt" else 0.5 * len(function) + 0.8)
+    return sum(_width(child, texts) for child in children(node)) + 1.2
+
+
+def _name_width(text: str) -> float:
+    """Estimate a symbol or a number with its unit; a subscript is smaller."""
+    if " " in text or text[:1].isdigit() or text[:1] == "-":
+        return 0.58 * len(text) + 0.2
+    base, _, subscript = symbol_text(text).partition("_")
+    return 0.6 * len(base) + 0.42 * len(subscript)
+
+
+def value_text(value: Any, digits: int = RESULT_DIGITS) -> str:
+    """Write a cell of a plugin's table: a number, a text, yes or no, or nothing."""
+    if isinstance(value, bool) or type(value).__name__ == "bool":
+        return "yes" if value else "no"
+    if value is None or isinstance(value, (int, float)) or hasattr(value, "dtype"):
+        return format_number(value, digits)
+    return str(value)

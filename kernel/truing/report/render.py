@@ -1,0 +1,251 @@
+"""The sheet as HTML and as Markdown, both from the same content."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+
+from truing.formulas.symbols import printable
+from truing.formulas.write_latex import LatexWriter
+from truing.formulas.write_mathml import MathMLWriter
+from truing.numbers import pretty
+from truing.report import equations
+from truing.report.context import ComparedRow, Equation, FigureView, Provenance, Sheet, TableView, Value
+from truing.report.markdown import Raw, escaped
+from truing.report.sheet import make_sheet
+from truing.report.templates import template_folder
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+    from truing.calculation import Calculation
+    from truing.cases import CasesTable
+
+WIDE = 40.0
+"""A formula wider than this (in em) is set smaller on paper."""
+WIDER = 54.0
+LONG = 7
+"""A sheet with more chapters than this has a table of contents."""
+
+
+def sheet_html(
+    calculation: Calculation,
+    *,
+    provenance: Provenance,
+    verified: Sequence[ComparedRow] = (),
+    cases: CasesTable | None = None,
+) -> str:
+    """Write the calculation sheet as one HTML file: no script, nothing fetched, formulas in MathML, figures in SVG."""
+    return html_of(make_sheet(calculation, provenance=provenance, verified=verified, cases=cases))
+
+
+def sheet_markdown(
+    calculation: Calculation,
+    *,
+    provenance: Provenance,
+    verified: Sequence[ComparedRow] = (),
+    cases: CasesTable | None = None,
+) -> str:
+    """Write the calculation sheet as GitHub-flavoured Markdown: formulas in LaTeX, figures inside the file."""
+    return markdown_of(make_sheet(calculation, provenance=provenance, verified=verified, cases=cases))
+
+
+def html_of(sheet: Sheet) -> str:
+    """Write a sheet as HTML."""
+    style = (template_folder() / "sheet.css").read_text(encoding="utf-8")
+    page = _html().get_template("sheet.html.j2")
+    return page.render(sheet=sheet, style=_markup(style + page_style(sheet)), has_contents=_is_long(sheet)) + "\n"
+
+
+def markdown_of(sheet: Sheet) -> str:
+    """Write a sheet as Markdown."""
+    text = _markdown().get_template("sheet.md.j2").render(sheet=sheet)
+    blocks = [line.rstrip() for line in text.splitlines()]
+    kept = [line for place, line in enumerate(blocks) if line or (place and blocks[place - 1])]
+    return "\n".join(kept).strip() + "\n"
+
+
+def _is_long(sheet: Sheet) -> bool:
+    return sheet.detail != "short" and len(sheet.chapters) > LONG
+
+
+def page_style(sheet: Sheet) -> str:
+    """Write what only this sheet's pages say: the paper, and title and page number in the margin."""
+    return (
+        f"\n@page {{ size: {sheet.head.paper} portrait; "
+        f'@top-left {{ content: "{css_text(sheet.head.footer)}"; }} }}\n'
+    )
+
+
+def css_text(text: str) -> str:
+    """Write any text inside a CSS string: everything but letters and digits as a code point."""
+    short = printable(text)[:110]
+    return "".join(c if c.isascii() and c.isalnum() else f"\\{ord(c):x} " for c in short)
+
+
+def _markup(text: str) -> Any:
+    from markupsafe import Markup
+
+    return Markup(text)  # noqa: S704  # only for what this package wrote itself
+
+
+def _environment(**options: Any) -> Environment:
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    return Environment(
+        loader=FileSystemLoader(template_folder()),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=False,
+        **options,
+    )
+
+
+@lru_cache(maxsize=1)
+def _html() -> Environment:
+    made = _environment(autoescape=True, finalize=_printable)
+    made.filters.update(
+        number=lambda text: pretty(text),
+        symbol=_symbol_html,
+        formula=_equation_html,
+        svg=lambda figure: _markup(figure.svg),
+        value=_value_html,
+        ratio=_ratio,
+        digits=_paper_digits,
+        margin=_margin,
+        unit=_unit,
+    )
+    made.tests["narrow"] = _is_narrow
+    return made
+
+
+@lru_cache(maxsize=1)
+def _markdown() -> Environment:
+    made = _environment(autoescape=False, finalize=escaped)
+    made.filters.update(
+        number=lambda text: pretty(text),
+        symbol=_symbol_latex,
+        formula=_equation_latex,
+        image=_image,
+        value=_value_text,
+        table=_table_markdown,
+        ratio=_ratio,
+        digits=_paper_digits,
+        margin=_margin,
+        unit=_unit,
+        raw=Raw,
+    )
+    return made
+
+
+def _printable(value: Any) -> Any:
+    """Take control and direction characters out of every text that is no markup of ours."""
+    return printable_text(value) if type(value) is str else value
+
+
+def printable_text(text: str) -> str:
+    """Return a text on one line, without characters that hide or turn what is written."""
+    return text if text.isprintable() else printable(text)
+
+
+def _symbol_html(item: Any) -> Any:
+    if not item.symbol:
+        return _markup("")
+    return _markup(f"<math>{MathMLWriter().symbol(item.symbol)}</math>")
+
+
+def _symbol_latex(item: Any) -> Raw:
+    return Raw(f"${LatexWriter().symbol(item.symbol)}$" if item.symbol else "")
+
+
+def _value_text(value: Value) -> str:
+    text = pretty(value.text)
+    gap = "" if value.unit in {"°", "′", "″", "'"} else " "
+    return f"{text}{gap}{value.unit}" if value.unit else text
+
+
+def _value_html(value: Value) -> Any:
+    from markupsafe import escape
+
+    return _markup(str(escape(printable_text(_value_text(value)))).replace(" ", "&nbsp;") if len(value.text) < 24 else escape(_value_text(value)))
+
+
+def _ratio(row: ComparedRow) -> str:
+    return f"{row.ratio:.4f}" if row.ratio is not None else "–"
+
+
+def _paper_digits(row: ComparedRow) -> tuple[str, str]:
+    """Write the paper's number as it prints it and ours with as many digits, at least four."""
+    from truing.numbers import format_number
+
+    paper = format_number(row.published.value, 10)
+    digits = len(paper.partition("e")[0].replace(".", "").replace("-", "").lstrip("0"))
+    return pretty(paper), pretty(format_number(row.value, max(digits + 1, 4)))
+
+
+def _margin(text: str) -> str:
+    number, gap, percent = text.partition(" ")
+    return f"{pretty(number)}{gap and chr(0x202F)}{percent}"
+
+
+def _unit(unit: str) -> str:
+    from truing.units import unit_text
+
+    return unit_text(unit) if unit else ""
+
+
+def _is_narrow(table: TableView) -> bool:
+    return len(table.columns) <= 4
+
+
+def _size(width: float) -> str:
+    return " wider" if width > WIDER else " wide" if width > WIDE else ""
+
+
+def _equation_html(equation: Equation) -> Any:
+    """Set a formula as blocks of MathML, one a line."""
+    writer = MathMLWriter()
+    found = equations.lines(writer, equation)
+    alternative = f"{equation.name} = {equation.formula.text}".replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
+    blocks = []
+    for place, line in enumerate(found):
+        name = f"line{' next' if place else ''}{_size(line.width)}"
+        label = f' alttext="{alternative}"' if place == 0 else ""
+        blocks.append(f'<div class="{name}"><math display="block"{label}><mrow>{line.markup}</mrow></math></div>')
+    return _markup("".join(blocks))
+
+
+def _equation_latex(equation: Equation) -> Raw:
+    found = [line.markup for line in equations.lines(LatexWriter(), equation, limit=60.0)]
+    if len(found) == 1:
+        return Raw(f"$$\n{found[0]}\n$$")
+    body = " \\cr\n& ".join(found)
+    return Raw(f"$$\n\\begin{{aligned}}\n& {body}\n\\end{{aligned}}\n$$")
+
+
+def _image(figure: FigureView) -> Raw:
+    data = base64.b64encode(figure.svg.encode()).decode()
+    return Raw(f"![{escaped(figure.title)}](data:image/svg+xml;base64,{data})")
+
+
+def _table_markdown(table: TableView) -> Raw:
+    """Write a pipe table; units stand in the headings."""
+    titles = [
+        escaped(f"{title} [{unit}]" if unit else title)
+        for title, unit in zip(table.columns, [*table.units, *[""] * len(table.columns)], strict=False)
+    ]
+    rule = ["---:" if numeric else "---" for numeric in table.numeric]
+    rows = [[_cell(cell, place == table.marked) for cell in row] for place, row in enumerate(table.rows)]
+    return Raw("\n".join("| " + " | ".join(cells) + " |" for cells in (titles, rule, *rows)))
+
+
+def _cell(text: str, is_marked: bool) -> str:
+    inner = escaped(pretty(text))
+    return f"**{inner}**" if is_marked and inner else inner
+
+
+__all__: list[str] = ["html_of", "markdown_of", "sheet_html", "sheet_markdown"]

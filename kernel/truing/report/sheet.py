@@ -1,0 +1,216 @@
+"""Putting a sheet together: from a finished calculation to everything that is printed, in order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from truing.calculation import Calculation
+from truing.numbers import STATED_DIGITS, format_number, format_value
+from truing.published import ComparedRow, in_order
+from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
+from truing.report.content import check_rows, condition_rows, effect_rows, input_rows, tolerance_rows
+from truing.report.context import Chapter, CheckRow, Head, Provenance, Sheet, TableView
+
+if TYPE_CHECKING:
+    from truing.cases import CaseResult, CasesTable
+    from truing.setup import Setup
+
+HEAD_FIELDS = {
+    "project": "Project",
+    "drawing": "Drawing",
+    "revision": "Revision",
+    "company": "Company",
+    "customer": "Customer",
+    "date": "Date",
+}
+SIGNATURES = {"prepared": "Prepared", "checked": "Checked", "approved": "Approved"}
+NOT_SHOWN = {"title", "paper", "detail", "language", "seed"}
+
+
+def make_sheet(
+    calculation: Calculation,
+    *,
+    provenance: Provenance,
+    verified: Sequence[ComparedRow] = (),
+    cases: CasesTable | None = None,
+) -> Sheet:
+    """Say everything that stands on the sheet of a calculation, at the level of detail of its setup."""
+    setup = calculation.setup
+    detail = setup.detail if setup.detail in LONGEST_TABLE else "normal"
+    figures = Figures()
+    results = list(result_chapters(Writing(calculation, detail, figures)))
+    own, elsewhere = in_order(setup, verified)
+    sheet = Sheet(
+        head=head_of(setup, provenance),
+        detail=detail,
+        passed=calculation.passed and (cases is None or cases.passed),
+        verdict="",
+        summary=setup.model.summary,
+        chapters=(),
+        checks=tuple(check_rows(calculation)),
+        inputs=tuple(input_rows(setup)),
+        tolerances=tuple(tolerance_rows(setup)),
+        conditions=tuple(condition_rows(setup)),
+        effects=tuple(effect_rows(setup)),
+        compared=tuple(own),
+        compared_elsewhere=tuple(elsewhere),
+        findings=tuple(setup.model.findings),
+        warnings=tuple(_warnings(calculation, cases, figures)),
+        references=tuple(references(setup)),
+        provenance=provenance,
+    )
+    chapters = [*_front(sheet, calculation, cases), *results, *_back(sheet)]
+    return replace(sheet, verdict=verdict(sheet, cases), chapters=tuple(numbered(chapters, 1).values()))
+
+
+def head_of(setup: Setup, provenance: Provenance) -> Head:
+    """Fill the title block; what the inputs file leaves open has room to be written by hand."""
+    given = {name: str(text) for name, text in setup.head.items() if str(text).strip()}
+    fields = [(label, given.get(name, provenance.date if name == "date" else "")) for name, label in HEAD_FIELDS.items()]
+    shown = [(label, text) for label, text in fields if text or label in {"Project", "Drawing", "Revision", "Date"}]
+    signing = {key for name in SIGNATURES for key in (name, f"{name}_by")}
+    others = [
+        (name.replace("_", " ").capitalize(), text)
+        for name, text in given.items()
+        if name not in {*HEAD_FIELDS, *NOT_SHOWN, *signing}
+    ]
+    signatures = [(label, given.get(f"{name}_by", given.get(name, ""))) for name, label in SIGNATURES.items()]
+    title = given.get("title", setup.model.title)
+    parts = [title, given.get("project", ""), given.get("drawing", ""), given.get("revision", "")]
+    paper = given.get("paper", "A4").lower()
+    return Head(
+        title=title,
+        model=setup.model.title if title != setup.model.title else "",
+        fields=tuple([*shown, *others]),
+        signatures=tuple(signatures),
+        footer=" · ".join(part for part in parts if part),
+        paper="letter" if paper == "letter" else "A4",
+    )
+
+
+def verdict(sheet: Sheet, cases: CasesTable | None) -> str:
+    """Say in one sentence whether the limits are kept, and which are not."""
+    if cases is not None:
+        return _verdict_of_cases(sheet, cases)
+    if not sheet.checks:
+        return "This calculation states no limits: there is nothing to pass or fail."
+    broken = [check for check in sheet.checks if not check.passed]
+    count = len(sheet.checks)
+    if not broken:
+        return "The one check passes." if count == 1 else f"All {count} checks pass."
+    names = ", ".join(check.note or check.name for check in broken)
+    return f"{len(broken)} of {count} checks {'fails' if len(broken) == 1 else 'fail'}: {names}."
+
+
+def _verdict_of_cases(sheet: Sheet, cases: CasesTable) -> str:
+    broken = [case for case in cases.cases if case.reason is not None or not all(check.passed for check in case.checks)]
+    governing = case_name(cases.cases[cases.governing])
+    if broken:
+        return f"{len(broken)} of {len(cases.cases)} cases fail; the governing case is {governing}."
+    return f"All {len(cases.cases)} cases keep every limit; the governing case, {governing}, is shown in full."
+
+
+def case_name(case: CaseResult) -> str:
+    """Name a case: by its label, or by its row in the file."""
+    return case.name or f"row {case.row}"
+
+
+def _warnings(calculation: Calculation, cases: CasesTable | None, figures: Figures) -> Iterator[str]:
+    yield from calculation.warnings
+    shown = calculation.failed[:20] if cases is None else ()
+    for row, reason in shown:
+        yield f"row {row} failed: {reason}"
+    if len(calculation.failed) > len(shown) and cases is None:
+        yield f"{len(calculation.failed) - len(shown)} further rows failed"
+    yield from figures.failures
+
+
+def references(setup: Setup) -> Iterator[tuple[str, str]]:
+    """Name the literature of the model and every source that an entry of this sheet names, with what it is used for."""
+    for text in setup.model.cites:
+        yield text, ""
+    used: dict[str, list[str]] = {}
+    for name, item in (*setup.model.input_fields.items(), *setup.model.result_fields.items()):
+        _note(used, getattr(item.spec, "source", ""), name)
+    for source in setup.model.errors:
+        _note(used, source.source, source.name)
+    for text, names in used.items():
+        few = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
+        yield text, few
+
+
+def _note(used: dict[str, list[str]], source: str, name: str) -> None:
+    if source:
+        used.setdefault(source, []).append(name.replace("_", " "))
+
+
+def _front(sheet: Sheet, calculation: Calculation, cases: CasesTable | None) -> Iterator[Chapter]:
+    if sheet.checks:
+        yield Chapter("", "checks", "Checks", "checks")
+    if cases is not None:
+        table = cases_table(calculation, cases, LONGEST_TABLE[sheet.detail])
+        yield Chapter("", "cases", "Cases", "results", blocks=(table,))
+    if sheet.detail == "short":
+        return
+    yield Chapter("", "inputs", "Inputs", "inputs")
+    if sheet.tolerances:
+        yield Chapter("", "tolerances", "Tolerances in force", "tolerances")
+    if sheet.conditions or sheet.effects:
+        yield Chapter("", "effects", "Conditions and effects", "effects")
+
+
+def _back(sheet: Sheet) -> Iterator[Chapter]:
+    if sheet.detail != "short" and (sheet.compared or sheet.compared_elsewhere):
+        yield Chapter("", "published", "Paper against this calculation", "published")
+    if sheet.detail != "short" and sheet.findings:
+        yield Chapter("", "findings", "Findings", "findings")
+    if sheet.warnings:
+        yield Chapter("", "warnings", "Warnings", "warnings")
+    if sheet.detail != "short" and sheet.references:
+        yield Chapter("", "references", "References", "references")
+    yield Chapter("", "provenance", "Provenance", "provenance")
+
+
+def cases_table(calculation: Calculation, cases: CasesTable, most: int) -> TableView:
+    """Write all cases: what each changes, its checks, its smallest margin; the governing one is marked."""
+    setup = calculation.setup
+    checks = list(dict.fromkeys(check.name for case in cases.cases for check in case.checks))
+    titles = ["Case", *(name.replace("_", " ") for name in (*cases.varied, *checks)), "Smallest margin", "Verdict"]
+    units = ["", *(format_value(0.0, setup.unit_of(name))[1] for name in cases.varied)]
+    units += [_check_unit(cases, name) for name in checks] + ["%", ""]
+    places = list(range(min(len(cases.cases), most)))
+    if cases.governing not in places:
+        places = [*places[:-1], cases.governing]
+    rows = [_case_row(setup, cases.cases[place], cases.varied, checks) for place in places]
+    left = len(cases.cases) - len(places)
+    note = f"The governing case ({case_name(cases.cases[cases.governing])}) is the one calculated in full below."
+    note += f" {left} further cases are not printed." if left else ""
+    numeric = (False, *(True,) * (len(titles) - 2), False)
+    marked = places.index(cases.governing)
+    return TableView("All cases", tuple(titles), tuple(units), tuple(rows), numeric, note, marked)
+
+
+def _check_unit(cases: CasesTable, name: str) -> str:
+    from truing.units import unit_text
+
+    return next(unit_text(check.unit) for case in cases.cases for check in case.checks if check.name == name)
+
+
+def _case_row(setup: Setup, case: CaseResult, varied: Sequence[str], checks: Sequence[str]) -> tuple[str, ...]:
+    values = [_case_value(setup, case.values, name) for name in varied]
+    if case.reason is not None:
+        return (case_name(case), *values, *("–" for _ in checks), "–", f"cannot be calculated: {case.reason}")
+    found = {check.name: format_number(check.value, 5) for check in case.checks}
+    broken = [check.name.replace("_", " ") for check in case.checks if not check.passed]
+    verdict_text = f"FAILS: {', '.join(broken)}" if broken else "passes"
+    margin = format_number(100 * case.margin, 3) if case.checks else "–"
+    return (case_name(case), *values, *(found.get(name, "–") for name in checks), margin, verdict_text)
+
+
+def _case_value(setup: Setup, values: Mapping[str, Any], name: str) -> str:
+    value = values.get(name, setup.nominal(name))
+    if isinstance(value, (str, bool)):
+        return str(value)
+    return format_value(value, setup.unit_of(name), STATED_DIGITS)[0]
