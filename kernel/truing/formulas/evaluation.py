@@ -134,10 +134,18 @@ def _functions() -> dict[str, Callable[..., Any]]:
         "hypot": lambda *sides: _pairwise(np.hypot, sides),
         "min": lambda *given: _pairwise(np.minimum, given) if len(given) > 1 else _over_last_axis(np.min, given[0]),
         "max": lambda *given: _pairwise(np.maximum, given) if len(given) > 1 else _over_last_axis(np.max, given[0]),
+        "Phi": _normal_probability,
         "sum": lambda x: _over_last_axis(np.sum, x),
         "mean": lambda x: _over_last_axis(np.mean, x),
         "either": lambda first, second: np.where(np.isnan(first), second, first),
     }
+
+
+def _normal_probability(x: Any) -> Any:
+    """Return the chance that a standard normal value stays below x."""
+    from scipy.special import ndtr
+
+    return ndtr(x)
 
 
 def _pairwise(function: Callable[[Any, Any], Any], given: tuple[Any, ...]) -> Any:

@@ -112,7 +112,9 @@ class Piece:
 Leaf = Callable[[str], Piece]
 """Turns the name of a quantity into a piece: its symbol, or its number."""
 
-PRINTED: Final = {"log": "ln", "asin": "arcsin", "acos": "arccos", "atan": "arctan", "sign": "sgn", "sum": "∑"}
+PRINTED: Final = {
+    "log": "ln", "asin": "arcsin", "acos": "arccos", "atan": "arctan", "sign": "sgn", "sum": "∑", "Phi": "Φ",
+}  # fmt: skip
 """Functions printed under another name."""
 
 SQUARED_ON_NAME: Final = frozenset({"sin", "cos", "tan", "cot", "sinh", "cosh", "tanh"})
@@ -138,7 +140,7 @@ class Layout:
         right = self.piece(simplified(formula.right)).markup
         if formula.left is None:
             return right
-        return self.writer.infix(self.piece(simplified(formula.left)).markup, "==", right)
+        return self.writer.infix(self.at_least(simplified(formula.left), Level.SUM).markup, "==", right)
 
     def piece(self, node: Node, *, bare: bool = True) -> Piece:
         """Set one node; ``bare`` lets a function stand without parentheses (``sin x``)."""
@@ -217,9 +219,9 @@ class Layout:
         head = self.function(function)
         if len(arguments) == 1:
             return self.applied(head, arguments[0], may_be_bare=bare and function in MAY_BE_BARE)
-        inner = self.piece(arguments[0]).markup
+        inner = self.at_least(arguments[0], Level.SUM).markup
         for argument in arguments[1:]:
-            inner = self.writer.infix(inner, ",", self.piece(argument).markup)
+            inner = self.writer.infix(inner, ",", self.at_least(argument, Level.SUM).markup)
         return Piece(self.writer.applied(head, self.writer.parenthesised(inner), bare=False), Level.TIGHT)
 
     def function(self, name: str, exponent: str | None = None) -> str:
@@ -229,7 +231,7 @@ class Layout:
     def applied(self, head: str, argument: Node, *, may_be_bare: bool) -> Piece:
         """Set a function of one argument."""
         piece = self.piece(argument)
-        if may_be_bare and piece.level is Level.ATOM and piece.ends is not Edge.WORD and not encloses(argument):
+        if may_be_bare and piece.level is Level.ATOM and piece.ends is not Edge.WORD:
             return Piece(self.writer.applied(head, piece.markup, bare=True), Level.TIGHT)
         return Piece(self.writer.applied(head, self.writer.parenthesised(piece.markup), bare=False), Level.TIGHT)
 
@@ -243,7 +245,7 @@ class Layout:
     def logic(self, word: str, operands: tuple[Node, ...]) -> Piece:
         """Set conditions joined by and/or."""
         level = Level.AND if word == "and" else Level.OR
-        markups = [self.at_least(operand, Level(level + 1)).markup for operand in operands]
+        markups = [self.at_least(operand, level).markup for operand in operands]
         return Piece(reduce(lambda left, right: self.writer.infix(left, word, right), markups), level)
 
     def cases(self, arguments: tuple[Node, ...]) -> Piece:
@@ -286,13 +288,8 @@ def begins_with_function(node: Node) -> bool:
 
 
 def is_small_count(exponent: Node) -> bool:
-    """Tell whether an exponent may stand on a function's name: a positive whole number (-1 would be an inverse)."""
-    return isinstance(exponent, Number) and exponent.text.isdigit() and exponent.value > 0
-
-
-def encloses(node: Node) -> bool:
-    """Tell whether a node has marks of its own around it that would hide a missing parenthesis."""
-    return isinstance(node, Call)
+    """Tell whether an exponent may stand on a function's name: a whole number (-1 would be an inverse)."""
+    return isinstance(exponent, Number) and exponent.text.isdigit()
 
 
 def number_piece(text: str, markup: str, *, unit: str = "") -> Piece:

@@ -92,7 +92,7 @@ ANY_NUMBER: Final = 10**6
 ARGUMENTS: Final[dict[str, tuple[int, int]]] = {
     **dict.fromkeys(("sqrt", "cbrt", "exp", "log", "log10", "abs", "sign"), (1, 1)),
     **dict.fromkeys(("sin", "cos", "tan", "cot", "asin", "acos", "atan", "sinh", "cosh", "tanh", "inv"), (1, 1)),
-    **dict.fromkeys(("sum", "mean"), (1, 1)),
+    **dict.fromkeys(("sum", "mean", "Phi"), (1, 1)),
     **dict.fromkeys(("atan2", "either"), (2, 2)),
     "hypot": (2, ANY_NUMBER),
     **dict.fromkeys(("min", "max"), (1, ANY_NUMBER)),
@@ -198,5 +198,5 @@ def _simplified_product(operator: str, left: Node, right: Node) -> Node:
         case _, Negative(operand):
             return Negative(_simplified_product(operator, operand, right))
         case "/", Binary("/", above, below):
-            return Binary("/", above, Binary("*", below, right))
+            return Binary("/", above, _simplified_product("*", below, right))
     return Binary(operator, left, right)

@@ -183,8 +183,8 @@ class LatexWriter:
 
     def function(self, name: str, exponent: str | None = None) -> str:
         """Write the upright name of a function."""
-        if name == "∑":
-            return r"\sum"
+        if name in ("∑", "Φ"):
+            return r"\sum" if name == "∑" else r"\Phi"
         if name == "log10":
             return r"\log_{10}"
         head = FUNCTIONS.get(name, rf"\mathrm{{{name}}}")

@@ -143,7 +143,8 @@ class MathMLWriter:
             return '<mo largeop="true">∑</mo>'
         if name == "log10":
             return "<msub><mi>log</mi><mn>10</mn></msub>"
-        return f"<mi>{name}</mi>" if exponent is None else f"<msup><mi>{name}</mi>{exponent}</msup>"
+        upright = f"<mi>{name}</mi>" if len(name) > 1 else f'<mi mathvariant="normal">{name}</mi>'
+        return upright if exponent is None else f"<msup>{upright}{exponent}</msup>"
 
     def applied(self, function: str, argument: str, *, bare: bool) -> str:
         """Join a function and its argument."""
