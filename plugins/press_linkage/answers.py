@@ -1,0 +1,134 @@
+"""What each study gives back as results of the press linkage."""
+
+from math import nan, pi
+
+import numpy as np
+
+from press_linkage.closure import cycle_demands, smallest_sine
+from press_linkage.increments import ARM, PASSIVE, POLAR_ANGLES, salience, side_sensitivities, source
+from press_linkage.influence import Influence
+from press_linkage.kinematics import Geometry, Half, crank_at, solve, top_crank_angle
+from press_linkage.mechanism import geometry_of, position_of
+from press_linkage.quantities import Chances, Cycle, Press, Synthesis
+from truing import Allotted, Odds, Sensitivities, Swept, feasible
+
+KEY_TILT = (
+    "slider_joint_angle", "ground_pivot_angle", "lower_knee_length", "upper_knee_length", "knee_drive_length",
+)  # fmt: skip
+KEY_POSITION = (*KEY_TILT, "slider_half_width")
+LINKS = (
+    "lower_knee_length", "upper_knee_length", "knee_drive_length", "rod_length", "crank_radius", "platform_arm",
+)  # fmt: skip
+ALONG = ("slider_half_width", "crank_pivot_radius", "platform_half_width", "ground_pivot_radius")
+VARIANCES = ("variance_links", "variance_joints_along", "variance_joints_across", "variance_other")
+SWING = "; if the crank only swings, leave the sweep out of the studies"
+
+
+def sources_of(kinds: tuple[str, ...]) -> list[str]:
+    """The inputs that carry errors of these kinds: one per side, the platform arm once."""
+    both = [source(kind, side) for kind in kinds if kind != "platform_arm" for side in (1, 2)]
+    return [*both, ARM] if "platform_arm" in kinds else both
+
+
+def cycle(swept: Swept) -> Cycle:
+    """Dead centres, stroke, and how close the press comes to a singular position; the crank must turn fully."""
+    press: Press = swept.inputs
+    geometry = geometry_of(press)
+    for demand in cycle_demands(geometry):
+        feasible(demand.holds, demand.sentence + SWING)
+    top = top_crank_angle(geometry)
+    bdc, tdc = position_of(press, 0.0).slider_position, position_of(press, top).slider_position
+    turn = smallest_sine(position_of(press, np.linspace(-pi, pi, 721)))
+    cosine, sine = crank_at(geometry, 0.0)
+    return Cycle(
+        bdc_direction=float(np.arctan2(sine, cosine)),
+        bdc_platform_height=float(solve(geometry, 0.0).platform_height),
+        tdc_crank_angle=float(top),
+        bdc_position=float(bdc),
+        tdc_position=float(tdc),
+        stroke=float(bdc - tdc),
+        smallest_sine=float(np.min(turn)),
+    )
+
+
+def influence(found: Sensitivities) -> Influence:
+    """The nominal chain with the influence of each error, and what the sources in force do together."""
+    press: Press = found.inputs
+    geometry = geometry_of(press)
+    nominal = solve(geometry, press.crank_angle)
+    by_kind = side_sensitivities(nominal.side_1)
+    shift = position_of(press).slider_position - nominal.slider_position
+    return Influence(
+        **_chain(geometry, nominal.side_1, float(press.crank_angle)),
+        platform_height=float(nominal.platform_height),
+        nominal_position=float(nominal.slider_position),
+        slider_shift=float(shift),
+        **{f"influence_{kind}": float(value) for kind, value in by_kind.items()},
+        salience_position_key=_key_salience(found, "slider_position", KEY_POSITION, None),
+        salience_tilt_key=_key_salience(found, "slider_tilt", KEY_TILT, PASSIVE),
+        **_variances(found),
+        position_sd=found.sd.get("slider_position", nan),
+        tilt_sd=found.sd.get("slider_tilt", nan),
+    )
+
+
+def _chain(geometry: Geometry, half: Half, crank_angle: float) -> dict[str, float]:
+    """The directions of one side and the place of its knee."""
+    cosine, sine = crank_at(geometry, 0.0)
+    shorter = geometry.knee_drive_length**2 - geometry.upper_knee_length**2
+    found = {
+        "crank_direction": np.arctan2(sine, cosine) + crank_angle,
+        "rod_direction": half.rod.angle,
+        "ground_distance": np.sqrt(half.knee_span),
+        "knee_along": 0.5 + shorter / (2 * half.knee_span),
+        "knee_across": np.sqrt(half.knee_fold),
+        "knee_y": half.knee.y,
+        "knee_z": half.knee.z,
+        "drive_direction": half.drive.angle,
+        "upper_direction": half.upper.angle,
+        "lower_direction": half.lower.angle,
+    }
+    return {name: float(value) for name, value in found.items()}
+
+
+def _key_salience(found: Sensitivities, result: str, key: tuple[str, ...], among: tuple[str, ...] | None) -> float:
+    """The share of the key errors in the sum of all sensitivities (of some kinds, where *among* names them)."""
+    by_source = found.derivatives.get(result, {})
+    named = {name: by_source[name] for name in (sources_of(among) if among else by_source) if name in by_source}
+    if not set(sources_of(key)) <= set(named):
+        return nan
+    shares = salience(named)
+    return float(sum(shares[name] for name in sources_of(key)))
+
+
+def _variances(found: Sensitivities) -> dict[str, float]:
+    """The variance of the slider position by the kind of part it comes from, m^2."""
+    shares = found.share.get("slider_position")
+    if shares is None:
+        return dict.fromkeys(VARIANCES, nan)
+    whole = found.sd["slider_position"] ** 2
+    parts = [sources_of(kinds) for kinds in (LINKS, ALONG, POLAR_ANGLES)]
+    other = [name for name in shares if not any(name in part for part in parts)]
+    return {
+        name: whole * sum(shares.get(source, 0.0) for source in part)
+        for name, part in zip(VARIANCES, [*parts, other], strict=True)
+    }
+
+
+def chances(odds: Odds) -> Chances:
+    """Both reliabilities to first order."""
+    return Chances(
+        position_reliability=odds.analytic.get("slider_position", nan),
+        tilt_reliability=odds.analytic.get("slider_tilt", nan),
+    )
+
+
+def synthesis(allotted: Allotted) -> Synthesis:
+    """Where tightening grade by grade ends, and the coefficients that set its order."""
+    coefficients = {f"coefficient_{link}": float(allotted.coefficients.get(link, nan)) for link in LINKS}
+    return Synthesis(
+        adjustments=allotted.adjustments,
+        position_reliability_final=allotted.final.get("slider_position", nan),
+        tilt_reliability_final=allotted.final.get("slider_tilt", nan),
+        **coefficients,
+    )

@@ -1,0 +1,180 @@
+"""What the press linkage is told and what it answers: every quantity with unit, symbol, bounds and source."""
+
+from typing import Literal
+
+from truing import Float, found, given, inputs, part, results
+
+GIVEN = "section 2.2 of the paper"
+MISPRINT = (
+    "chosen so that the paper's printed results follow; the printed 0.117 rad does not describe the mechanism that the "
+    "paper computed"
+)
+ORDER = "mean of (largest influence / its influence) and (tolerance of that link / its tolerance), Table 4"
+LARGEST = 30.0  # m: no press is larger, so a length above it was meant in another unit
+FARTHEST = 10.0  # mm and mrad: beyond it a part is not off its size, it is another part
+
+
+def size(value: float, symbol: str, note: str, source: str = GIVEN) -> float:
+    """Declare a nominal length of the mechanism."""
+    declared: float = given(value, "m", symbol=symbol, note=note, source=source, above=0, below=LARGEST)
+    return declared
+
+
+def off(unit: Literal["mm", "mrad"], symbol: str, note: str) -> float:
+    """Declare a deviation of one side."""
+    note = f"deviation: {note}"
+    declared: float = given(0.0, unit, symbol=f"delta {symbol}", note=note, at_least=-FARTHEST, at_most=FARTHEST)
+    return declared
+
+
+@inputs
+class Side:
+    """How far one side is off: lengths grow; joint angles are polar angles of the frame on both sides."""
+
+    crank_radius_deviation: Float = off("mm", "a", "crank, A to B")
+    rod_length_deviation: Float = off("mm", "k_R", "connecting rod, B to E")
+    knee_drive_length_deviation: Float = off("mm", "l_g", "knee drive, B5 to G")
+    upper_knee_length_deviation: Float = off("mm", "l_m", "upper knee link, M to G")
+    lower_knee_length_deviation: Float = off("mm", "l_h", "lower knee link, G to H")
+    slider_half_width_deviation: Float = off("mm", "l", "joint H along the slider")
+    slider_joint_angle_deviation: Float = off("mrad", "beta_2", "joint H across, as an angle seen from O2")
+    crank_pivot_radius_deviation: Float = off("mm", "r_A", "crank pivot A away from O")
+    crank_pivot_angle_deviation: Float = off("mrad", "alpha_1", "crank pivot A across, as an angle seen from O")
+    platform_half_width_deviation: Float = off("mm", "e", "rod joint E along the platform")
+    platform_joint_angle_deviation: Float = off("mrad", "beta_1", "rod joint E across, as an angle seen from O1")
+    ground_pivot_radius_deviation: Float = off("mm", "r_M", "ground joint M away from O")
+    ground_pivot_angle_deviation: Float = off("mrad", "alpha_2", "ground joint M across, as an angle seen from O")
+    crank_angle_deviation: Float = off("mrad", "theta_1", "crank ahead of its commanded angle")
+
+
+@inputs
+class Press:
+    """The nominal mechanism, its deviations, and what is asked of the slider."""
+
+    crank_radius: Float = size(0.36, "a", "crank, A to B")
+    rod_length: Float = size(1.304, "k_R", "connecting rod, B to E")
+    platform_arm: Float = size(0.6, "k", "arm of the moving platform, O1 down to B5")
+    knee_drive_length: Float = size(0.868, "l_g", "knee drive, B5 to G")
+    upper_knee_length: Float = size(1.7, "l_m", "upper knee link, M to G")
+    lower_knee_length: Float = size(1.6, "l_h", "lower knee link, G to H")
+    slider_half_width: Float = size(1.6, "l", "half the distance between the slider joints, O2 to H")
+    crank_pivot_radius: Float = size(1.2, "r_A", "crank pivot, O to A")
+    platform_half_width: Float = size(0.3, "e", "rod joint on the platform, O1 to E")
+    ground_pivot_radius: Float = size(1.393, "r_M", "ground joint of the knee, O to M")
+    ground_pivot_angle: Float = given(
+        0.367, "rad", symbol="alpha_2", note="direction of M, from horizontal downward", source=MISPRINT,
+        above=-1.57, below=1.57,
+    )  # fmt: skip
+    crank_angle: Float = given(
+        0.0, "deg", symbol="phi", note="crank from the bottom dead centre, growing with theta_11",
+        source="the paper works at the bottom dead centre", at_least=-360, at_most=360,
+    )  # fmt: skip
+    position_limit: Float = given(
+        0.02, "mm", symbol="L_S", note="permitted error of the slider position", source="section 3 of the paper",
+        above=0,
+    )  # fmt: skip
+    tilt_limit: Float = given(
+        None, "deg", symbol="L_theta", note="permitted tilt of the slider; without it the reading decides",
+        source="the paper prints 0.0013 rad and computes with 0.0013 degree", above=0,
+    )  # fmt: skip
+    position_goal: Float = given(
+        0.88, "", symbol="G_S", note="probability that the position error stays within its limit",
+        source="section 3 of the paper", above=0, below=1,
+    )  # fmt: skip
+    tilt_goal: Float = given(
+        0.95, "", symbol="G_theta", note="probability that the tilt stays within its limit",
+        source="section 3 of the paper", above=0, below=1,
+    )  # fmt: skip
+    reading: Literal["complete", "printed"] = given(
+        "complete",
+        note="complete: every installation error in force; printed: what the paper's printed reliabilities contain",
+    )
+    platform_arm_deviation: Float = off("mm", "k", "arm of the moving platform, common to both sides")
+    side_1: Side = part(Side, index="1", suffix="1")
+    side_2: Side = part(Side, index="2", suffix="2")
+
+
+@results
+class Slider:
+    """Where the slider is, exactly, with every deviation present."""
+
+    face_height_1: Float = found(
+        "mm", symbol="z_F1", note="slider face over joint H1", method="exact position, loops I to III"
+    )
+    face_height_2: Float = found(
+        "mm", symbol="z_F2", note="slider face over joint H2", method="exact position, loops IV to VI"
+    )
+    slider_position: Float = found(
+        "mm", symbol="z_2", note="slider height, downward from O", formula="(face_height_1 + face_height_2) / 2",
+        source="Eq. (7), reconstructed",
+    )  # fmt: skip
+    slider_tilt: Float = found(
+        "urad", symbol="theta", note="slider tilt, positive with side 1 lower",
+        formula="(face_height_1 - face_height_2) / (2 * slider_half_width)", source="Eq. (8), reconstructed",
+    )  # fmt: skip
+    permitted_tilt: Float = found(
+        "deg", symbol="L_theta", note="permitted tilt in force",
+        method="tilt_limit where it is given; otherwise 0.0013 degree (complete) or 0.001324 degree (printed)",
+    )  # fmt: skip
+
+
+@results
+class Cycle:
+    """What one turn of the crank shows."""
+
+    bdc_direction: Float = found(
+        "deg", symbol="theta_11,B", note="crank and rod stretched in line",
+        formula="acos((platform_half_width - crank_pivot_radius) / (crank_radius + rod_length))",
+    )  # fmt: skip
+    bdc_platform_height: Float = found(
+        "mm", symbol="z_1,B", note="platform at the bottom dead centre",
+        formula="sqrt((crank_radius + rod_length)**2 - (crank_pivot_radius - platform_half_width)**2)",
+    )  # fmt: skip
+    tdc_crank_angle: Float = found(
+        "deg", symbol="phi_T", note="crank angle of the top dead centre, crank and rod folded",
+        formula="-acos((crank_pivot_radius - platform_half_width) / (rod_length - crank_radius)) - bdc_direction",
+    )  # fmt: skip
+    bdc_position: Float = found(
+        "mm", symbol="z_2,B", note="slider at the bottom dead centre", method="exact position at crank angle 0"
+    )
+    tdc_position: Float = found(
+        "mm", symbol="z_2,T", note="slider at the top dead centre", method="exact position at the angle above"
+    )
+    stroke: Float = found("mm", symbol="H", note="stroke of the slider", formula="bdc_position - tdc_position")
+    smallest_sine: Float = found(
+        "", symbol="s_min", note="closest approach to a singular position over the turn (0 is singular)",
+        method="least of the sines of theta_21, theta_18 and theta_19 - theta_17, both sides",
+    )  # fmt: skip
+
+
+@results
+class Chances:
+    """Both reliabilities with the tolerances as they are, first order as in the paper."""
+
+    position_reliability: Float = found(
+        "", symbol="R_S", note="chance that the position error stays within its limit",
+        formula="2 * Phi(position_limit / position_sd) - 1",
+    )  # fmt: skip
+    tilt_reliability: Float = found(
+        "", symbol="R_theta", note="chance that the tilt stays within its limit",
+        formula="2 * Phi(permitted_tilt / tilt_sd) - 1",
+    )  # fmt: skip
+
+
+@results
+class Synthesis:
+    """What tightening grade by grade reaches."""
+
+    adjustments: Float = found("", symbol="n", note="adjustments made, each one grade of one link", method="the rule")
+    position_reliability_final: Float = found(
+        "", symbol="R_S'", note="position reliability with the tightened links", method="first order, as above"
+    )
+    tilt_reliability_final: Float = found(
+        "", symbol="R_theta'", note="tilt reliability with the tightened links", method="first order, as above"
+    )
+    coefficient_lower_knee_length: Float = found("", symbol="r_lh", note="lower knee link", method=ORDER)
+    coefficient_upper_knee_length: Float = found("", symbol="r_lm", note="upper knee link", method=ORDER)
+    coefficient_knee_drive_length: Float = found("", symbol="r_lg", note="knee drive", method=ORDER)
+    coefficient_rod_length: Float = found("", symbol="r_kR", note="connecting rod", method=ORDER)
+    coefficient_crank_radius: Float = found("", symbol="r_a", note="crank", method=ORDER)
+    coefficient_platform_arm: Float = found("", symbol="r_k", note="platform arm", method=ORDER)
