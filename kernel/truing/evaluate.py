@@ -281,6 +281,15 @@ def _inputs(setup: Setup, columns: Mapping[str, Any]) -> Any:
     return with_values(setup.inputs, changed)
 
 
+def acting_inputs(setup: Setup) -> Any:
+    """Return the inputs as the effects that are on leave them: what the calculation itself is called with."""
+    inputs = setup.inputs
+    for item in setup.effects:
+        if item.effect.place == "inputs":
+            inputs = item.effect.function(inputs, **_keywords(item, setup, {}))
+    return inputs
+
+
 def _keywords(item: SwitchedOn, setup: Setup, columns: Mapping[str, Any]) -> dict[str, Any]:
     import numpy as np
 
