@@ -1,0 +1,90 @@
+"""A setup as plain data, for a worker process that loads the plugin by its name; models are never pickled."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import lru_cache
+from typing import Any
+
+from truing.declare.fields import Part, spec_of
+from truing.declare.model import Model
+from truing.errors import PluginError
+from truing.kernel import Kernel, Origin, kernel_for
+from truing.setup import Setup, SwitchedOn
+
+
+@dataclass(frozen=True)
+class Packed:
+    """What a worker needs to make the setup again: which plugin, which model, and everything else as bytes."""
+
+    ref: str
+    plugin: str
+    model: str
+    content: bytes
+
+
+def pack(setup: Setup) -> Packed:
+    """Turn a setup into plain data; spreads are packed only where they differ from the declared ones."""
+    declared = {name: tolerance.spread for name, tolerance in setup.model.tolerances.items()}
+    content = {
+        "inputs": setup.model.read_inputs(setup.inputs),
+        "spreads": {name: spread for name, spread in setup.spreads.items() if spread != declared.get(name)},
+        "conditions": dict(setup.conditions),
+        "effects": [_plain_effect(item) for item in setup.effects],
+        "calibrated": dict(setup.calibrated),
+        "seed": setup.seed,
+    }
+    return Packed(setup.origin.ref, setup.origin.name, setup.model.name, pickle.dumps(content, protocol=5))
+
+
+def unpack(packed: Packed) -> Setup:
+    """Make the setup again from the plugin that ``ref`` names. Raises PluginError where it offers no such model."""
+    model, origin = _model(packed.ref, packed.plugin, packed.model)
+    content = pickle.loads(packed.content)  # after the plugin was loaded: its classes can be found now
+    spreads = {name: tolerance.spread for name, tolerance in model.tolerances.items()}
+    values = {model.input_fields[name].path: value for name, value in content["inputs"].items()}
+    return Setup(
+        model=model,
+        origin=origin,
+        inputs=made(model.input_type, values),
+        spreads={**spreads, **content["spreads"]},
+        conditions=content["conditions"],
+        effects=tuple(
+            SwitchedOn(model.effects[name], values, sds, covariance)
+            for name, values, sds, covariance in content["effects"]
+        ),
+        calibrated=content["calibrated"],
+        seed=content["seed"],
+    )
+
+
+def made(cls: type[Any], values: Mapping[tuple[str, ...], Any]) -> Any:
+    """Make nested inputs from the values of all their fields, given by path."""
+    own = {path[0]: value for path, value in values.items() if len(path) == 1}
+    for item in fields(cls):
+        spec = spec_of(item)
+        if isinstance(spec, Part):
+            inner = {path[1:]: value for path, value in values.items() if path[0] == item.name}
+            own[item.name] = made(spec.of, inner)
+    return cls(**own)
+
+
+def _plain_effect(item: SwitchedOn) -> tuple[str, dict[str, float], dict[str, float], tuple[tuple[float, ...], ...]]:
+    return item.effect.name, dict(item.values), dict(item.sds), item.covariance
+
+
+@lru_cache(maxsize=8)
+def _kernel(ref: str) -> Kernel:
+    return kernel_for(ref)
+
+
+def _model(ref: str, plugin: str, name: str) -> tuple[Model[Any, Any], Origin]:
+    for offer in _kernel(ref).offers.values():
+        if offer.model.name == name and offer.origin.name == plugin:
+            return offer.model, offer.origin
+    broken = [str(item) for item in _kernel(ref).broken if item.plugin == plugin]
+    raise PluginError(
+        f"a worker process found no model '{name}' in {ref}: {broken[0] if broken else 'not offered there'}"
+    )

@@ -1,0 +1,86 @@
+"""Figures of studies, made when the sheet is written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from truing.studies.sweep import Swept
+
+BLUE, ORANGE, GREY = "#1f5a8a", "#c8641e", "#8a8f98"
+WIDTH = 6.4
+
+
+def curves(swept: Swept, names: Sequence[str]) -> Callable[[], Figure]:
+    """Draw results along the swept input, one below the other."""
+
+    def draw() -> Figure:
+        from matplotlib.figure import Figure
+
+        from truing.units import from_si, unit_text
+
+        figure = Figure(figsize=(WIDTH, 0.6 + 1.6 * len(names)), layout="constrained")
+        panels = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
+        x_unit = swept.units[swept.over]
+        for panel, name in zip(panels, names, strict=True):
+            unit = swept.units[name]
+            panel.plot(from_si(swept.axis, x_unit), from_si(swept.results[name], unit), color=BLUE)
+            panel.set_ylabel(labelled(name, unit_text(unit)))
+            panel.grid(alpha=0.3)
+        panels[-1].set_xlabel(labelled(swept.over, unit_text(x_unit)))
+        return figure
+
+    return draw
+
+
+def labelled(name: str, unit: str) -> str:
+    """Return the label of an axis."""
+    return f"{name.replace('_', ' ')}, {unit}" if unit else name.replace("_", " ")
+
+
+def bars(title: str, values: Mapping[str, float], label: str, *, most: int = 16) -> Callable[[], Figure]:
+    """Draw ranked bars, the longest on top."""
+
+    def draw() -> Figure:
+        from matplotlib.figure import Figure
+
+        ranked = sorted(values.items(), key=lambda item: -abs(item[1]))[:most][::-1]
+        figure = Figure(figsize=(WIDTH, 0.9 + 0.26 * len(ranked)), layout="constrained")
+        panel = figure.subplots()
+        names = [name.replace("_", " ") for name, _ in ranked]
+        colours = [BLUE if value >= 0 else ORANGE for _, value in ranked]
+        panel.barh(names, [value for _, value in ranked], color=colours)
+        panel.axvline(0.0, color=GREY, linewidth=0.8)
+        panel.set_xlabel(label)
+        panel.set_title(title, fontsize="medium")
+        panel.grid(axis="x", alpha=0.3)
+        return figure
+
+    return draw
+
+
+def lines(
+    x: Sequence[float], series: Mapping[str, Sequence[float]], labels: tuple[str, str], goals: Mapping[str, float]
+) -> Callable[[], Figure]:
+    """Draw probabilities against steps or an input, with their goals as dashed lines."""
+
+    def draw() -> Figure:
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(WIDTH, 3.2), layout="constrained")
+        panel: Any = figure.subplots()
+        for place, (name, values) in enumerate(series.items()):
+            colour = (BLUE, ORANGE, "#3f7f4f", "#7a4f9a")[place % 4]
+            panel.plot(x, values, color=colour, marker="o", markersize=3.5, label=name.replace("_", " "))
+            if name in goals:
+                panel.axhline(goals[name], color=colour, linestyle="--", linewidth=0.9)
+        panel.set_xlabel(labels[0])
+        panel.set_ylabel(labels[1])
+        panel.legend(frameon=False)
+        panel.grid(alpha=0.3)
+        return figure
+
+    return draw

@@ -1,0 +1,177 @@
+"""Tolerance grades as design variables: what each grade of each part does to the scatter, and what it costs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from truing.declare.goals import Price
+from truing.declare.sources import Tolerance
+from truing.declare.spreads import Grade
+from truing.errors import TruingError, UsageError
+from truing.fits import GRADES
+from truing.setup import Setup
+from truing.studies.chances import Straight
+from truing.studies.demands import Demand, normal_chance
+from truing.studies.scatter import scatter_of, spread_in_force
+
+RECIPROCAL = "1/mm"
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One grade of one part: its full width (m), its cost, and its first-order variance by demand (SI)."""
+
+    grade: str
+    width: float
+    cost: float
+    variances: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Part:
+    """A tolerance that is a grade: the grade it starts at, and every grade it may take, finest first."""
+
+    name: str
+    start: str
+    choices: Mapping[str, Choice]
+
+    @property
+    def first(self) -> Choice:
+        """The grade it starts at."""
+        return self.choices[self.start]
+
+
+@dataclass(frozen=True)
+class Shop:
+    """All parts whose grade may be chosen, the scatter that stays as it is, and the goals to reach."""
+
+    parts: Mapping[str, Part]
+    demands: tuple[Demand, ...]
+    means: Mapping[str, float]
+    fixed: Mapping[str, float]
+    unit: str
+    priced: bool
+
+    def variance(self, name: str, grades: Mapping[str, str]) -> float:
+        """Return the first-order variance of a demand's response with these grades."""
+        return self.fixed[name] + sum(part.choices[grades[key]].variances[name] for key, part in self.parts.items())
+
+    def chances(self, grades: Mapping[str, str]) -> dict[str, float]:
+        """Return the first-order probability of every demand with these grades."""
+        return {
+            demand.name: normal_chance(
+                self.means[demand.name], self.variance(demand.name, grades) ** 0.5, demand.low, demand.high
+            )
+            for demand in self.demands
+        }
+
+    def cost(self, grades: Mapping[str, str]) -> float:
+        """Return the sum of what these grades cost."""
+        return sum(part.choices[grades[key]].cost for key, part in self.parts.items())
+
+    def reached(self, grades: Mapping[str, str]) -> bool:
+        """Say whether every goal is met to first order."""
+        chances = self.chances(grades)
+        return all(chances[demand.name] >= demand.goal for demand in self.demands if demand.goal is not None)
+
+    @property
+    def start(self) -> dict[str, str]:
+        """The grades before anything is adjusted."""
+        return {name: part.start for name, part in self.parts.items()}
+
+
+def open_shop(
+    setup: Setup, wanted: Sequence[Demand], straight: Mapping[str, Straight], finest: str, *, loosen: bool
+) -> Shop:
+    """Collect parts, grades and costs. Raises UsageError where no tolerance in force is a grade."""
+    graded = [item for item in setup.model.tolerances.values() if isinstance(spread_in_force(setup, item.name), Grade)]
+    if not graded:
+        raise UsageError(
+            f'{setup.model.name} has no tolerance that is a grade, such as grade("IT7"): nothing to allocate'
+        )
+    price_unit = _price_unit(graded)
+    parts = {
+        tolerance.name: _part(setup, tolerance, straight, (finest, loosen), price_unit is not None)
+        for tolerance in graded
+    }
+    whole = {demand.name: float(straight[demand.name].variance) for demand in wanted}
+    fixed = {
+        name: max(0.0, variance - sum(part.first.variances[name] for part in parts.values()))
+        for name, variance in whole.items()
+    }
+    means = {demand.name: float(straight[demand.name].mean) for demand in wanted}
+    return Shop(parts, tuple(wanted), means, fixed, price_unit or RECIPROCAL, price_unit is not None)
+
+
+def _part(
+    setup: Setup, tolerance: Tolerance, straight: Mapping[str, Straight], allowed: tuple[str, bool], priced: bool
+) -> Part:
+    spread = spread_in_force(setup, tolerance.name)
+    assert isinstance(spread, Grade)  # open_shop has chosen these
+    start = GRADES.index(spread.grade)
+    finest, loosen = GRADES.index(allowed[0]), allowed[1]
+    last = len(GRADES) if loosen else start + 1
+    choices: dict[str, Choice] = {}
+    for grade in GRADES[min(finest, start) : last]:
+        choice = _choice(setup, tolerance, replace(spread, grade=grade), straight, priced=priced)
+        if choice is not None:
+            choices[grade] = choice
+    return Part(tolerance.name, spread.grade, choices)
+
+
+def _choice(
+    setup: Setup, tolerance: Tolerance, spread: Grade, straight: Mapping[str, Straight], *, priced: bool
+) -> Choice | None:
+    """Return what one grade does, or None where ISO 286 has no such grade for the size."""
+    try:
+        width = spread.width(setup.target(tolerance.on[0]))
+        sds = {column: spread.resolve(setup.target(column)).sd for column in tolerance.on}
+    except TruingError:
+        if spread == spread_in_force(setup, tolerance.name):
+            raise
+        return None
+    variances = {
+        name: sum((float(line.slopes[column]) * sd) ** 2 for column, sd in sds.items())
+        for name, line in straight.items()
+    }
+    return Choice(spread.grade, width, cost_of(tolerance.price if priced else None, width), variances)
+
+
+def cost_of(price: Price | None, width: float) -> float:
+    """Return the cost of a full width (m): by its price, else by the reciprocal law, 1/width in 1/mm.
+
+    Source of the law: K. W. Chase, A. R. Parkinson, survey of cost-tolerance models, Res. Eng. Des. 3 (1991) 23.
+    """
+    if price is None:
+        return 1e-3 / width
+    from truing.formulas import evaluate, parse
+    from truing.units import from_si
+
+    return float(evaluate(parse(price.formula), {"width": float(from_si(width, price.width))}))
+
+
+def _price_unit(graded: Sequence[Tolerance]) -> str | None:
+    """Return the currency when every part has a price in it; None: the reciprocal law."""
+    units = {tolerance.price.unit for tolerance in graded if tolerance.price is not None}
+    if not units or any(tolerance.price is None for tolerance in graded):
+        return None
+    if len(units) > 1:
+        raise UsageError(f"prices in {' and '.join(sorted(units))} cannot be added; give all of them in one currency")
+    return units.pop()
+
+
+def with_grades(setup: Setup, grades: Mapping[str, str]) -> Setup:
+    """Return the setup with these tolerances at these grades."""
+    changed: dict[str, Any] = {}
+    for name, grade in grades.items():
+        spread = spread_in_force(setup, name)
+        assert isinstance(spread, Grade)  # a part of the shop
+        changed[name] = replace(spread, grade=grade)
+    return replace(setup, spreads={**setup.spreads, **changed})
+
+
+def fixed_scatter(setup: Setup) -> bool:
+    """Say whether anything scatters besides the grades."""
+    return any(not isinstance(spread_in_force(setup, cause.name), Grade) for cause in scatter_of(setup).causes)

@@ -1,0 +1,101 @@
+"""What the options of a study say: ranges such as "-180..180 deg", and the units in which studies print."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from truing.declare.near_miss import near_miss
+from truing.errors import UnitError, UsageError
+from truing.setup import Setup
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+def read_range(text: str, unit: str, points: int) -> NDArray[np.float64]:
+    """Read "low..high unit" (evenly spaced, ``points`` of them) or "a, b, c unit" and return SI values.
+
+    Raises UsageError with one sentence for anything else.
+    """
+    import numpy as np
+
+    is_range = ".." in text
+    words = [word.strip() for word in (text.split("..") if is_range else text.split(","))]
+    if not text.strip() or (is_range and len(words) != 2) or not all(words):
+        raise UsageError(f'\'{text}\' is no range; write "-180..180 deg" or "0, 10, 20 deg"')
+    values = _with_common_unit(words, unit, text)
+    return np.linspace(values[0], values[1], points) if is_range else np.array(values)
+
+
+def _with_common_unit(words: list[str], unit: str, text: str) -> list[float]:
+    from truing.units import read_quantity, split_quantity
+
+    try:
+        common = split_quantity(words[-1]).unit
+        quantities = [split_quantity(word) for word in words]
+        return [read_quantity(f"{item.value!r} {item.unit or common}".strip(), unit) for item in quantities]
+    except UnitError as error:
+        raise UsageError(f"the range '{text}': {error}") from error
+
+
+def scattering_name(setup: Setup, name: str, study: str) -> str:
+    """Return the name of an input or condition that a study varies; raises UsageError where it cannot vary."""
+    item = setup.model.input_fields.get(name)
+    if item is None and name not in setup.conditions:
+        known = [*setup.model.input_fields, *setup.conditions]
+        raise UsageError(f"study '{study}': '{name}' is no input of {setup.model.name}.{near_miss(name, known)}")
+    if item is not None and not (item.varies or item.kind == "integer"):
+        raise UsageError(f"study '{study}': '{name}' cannot be swept; only a number can")
+    return name
+
+
+def result_names(setup: Setup, names: tuple[str, ...], study: str) -> tuple[str, ...]:
+    """Return these results of the function; raises UsageError for a name it does not have."""
+    known = setup.model.own_result_fields
+    for name in names:
+        if name not in known:
+            raise UsageError(f"study '{study}': {setup.model.name} has no result '{name}'.{near_miss(name, known)}")
+    return names
+
+
+def scalar_results(setup: Setup) -> tuple[str, ...]:
+    """Return the results of the function that are one number each."""
+    return tuple(name for name, item in setup.model.own_result_fields.items() if not item.along)
+
+
+def step_unit(unit: str) -> str:
+    """Return the unit in which differences are printed: kelvin for a temperature level."""
+    return "K" if unit in {"degC", "degF", "°C", "°F", "℃", "℉"} else unit
+
+
+def per(unit: str, source: str) -> str:
+    """Return the unit of a derivative: "mm/deg"."""
+    above, below = step_unit(unit), step_unit(source)
+    if below in {"", "1", "-"}:
+        return above
+    if any(sign in below for sign in "*/·- "):
+        below = f"({below})"
+    if any(sign in above for sign in "/-"):
+        above = f"({above})"
+    return f"{above or '1'}/{below}"
+
+
+def printed(value: Any, unit: str) -> Any:
+    """Bring a value from SI to a unit; a number or a list, None where it is not finite, for results.json."""
+    import numpy as np
+
+    from truing.studies.demands import as_number
+    from truing.units import from_si
+
+    return as_number(from_si(np.asarray(value, dtype=float), unit))
+
+
+def printed_step(value: Any, unit: str) -> Any:
+    """Bring a difference or standard deviation from SI to a unit, for results.json."""
+    import numpy as np
+
+    from truing.studies.demands import as_number
+    from truing.units import unit_factor
+
+    return as_number(np.asarray(value, dtype=float) / unit_factor(step_unit(unit)))

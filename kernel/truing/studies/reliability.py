@@ -1,0 +1,305 @@
+"""How often is a limit missed? First order, Monte Carlo on the exact model, and FORM beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+from truing.declare.blocks import Block
+from truing.declare.fields import with_values
+from truing.errors import InfeasibleError, UsageError
+from truing.evaluate import evaluate
+from truing.setup import Setup
+from truing.studies.bench import Bench, Check
+from truing.studies.chances import chance, straightened
+from truing.studies.checks import chance_check
+from truing.studies.demands import Z95, Demand, demands, nominal_inputs, wilson, worst
+from truing.studies.form import Form, form
+from truing.studies.reading import read_range, scattering_name
+from truing.studies.sampling import Budget, Machines, Moments, Tally, sample
+from truing.studies.scatter import scatter_of
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+METHODS = ("first_order", "monte_carlo", "form")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reliability:
+    """Ask with what probability each Require is met by machines of this design.
+
+    For every Require with a reliability, or for all of them where none has one. Monte Carlo draws all tolerances in
+    force, conditions with a tolerance, and the unknowns of effects as uncertain as they were diagnosed; the exact model
+    answers. ``over`` names an input or condition and ``at`` its range ("0..6000 h"): then there is a curve too.
+    """
+
+    draws: int = 100_000
+    method: tuple[str, ...] = METHODS
+    batch: int = 2**14
+    over: str = ""
+    at: str = ""
+    points: int = 21
+    name: str = "reliability"
+    gives: Callable[[Odds], Any] | None = None
+
+    def __post_init__(self) -> None:
+        _check_options(self)
+
+    def run(self, bench: Bench) -> Odds:
+        """Answer at the stated inputs, then along ``over`` where asked. Raises UsageError where nothing is required."""
+        odds = self._answer(bench, bench.setup, bench.answers, 0)
+        curve = self._curve(bench) if self.over else None
+        return replace(odds, curve=curve)
+
+    def _answer(self, bench: Bench, setup: Setup, answers: Mapping[str, Any], stage: int) -> Odds:
+        wanted = demands(setup, answers)
+        if not wanted:
+            raise UsageError(
+                f"study '{self.name}': {setup.model.name} requires nothing; add Require(result, ...) to it"
+            )
+        machines = Machines(setup, scatter_of(setup))
+        nominal = nominal_inputs(setup, wanted)
+        straight, found = straightened(machines, wanted, nominal)
+        analytic = {demand.name: chance(demand, straight[demand.name]) for demand in wanted}
+        tally = self._sampled(bench, machines, wanted, (answers, stage))
+        return Odds(
+            name=self.name,
+            demands=tuple(wanted),
+            units={demand.result: setup.print_unit(demand.result) for demand in wanted},
+            analytic=analytic,
+            first_sd={demand.name: straight[demand.name].sd for demand in wanted},
+            form=self._form(machines, wanted, nominal),
+            tally=tally,
+            remarks=(*found.warnings, *_still(machines)),
+        )
+
+    def _sampled(
+        self, bench: Bench, machines: Machines, wanted: Sequence[Demand], at: tuple[Mapping[str, Any], int]
+    ) -> Tally | None:
+        if "monte_carlo" not in self.method:
+            return None
+        answers, stage = at
+        stages = 1 + (self.points if self.over else 0)
+
+        def done(draws: int, total: int) -> None:
+            bench.progress(self.name, stage * total + draws, stages * total)
+
+        return sample(machines, wanted, answers, Budget(self.draws, self.batch, bench.executor, done))
+
+    def _form(self, machines: Machines, wanted: Sequence[Demand], nominal: Mapping[str, float]) -> dict[str, Form]:
+        if "form" not in self.method:
+            return {}
+        return {demand.name: form(machines, demand, nominal) for demand in wanted}
+
+    def _curve(self, bench: Bench) -> Curve:
+        """Answer at every point of the range, with the same random numbers."""
+        over = scattering_name(bench.setup, self.over, self.name)
+        axis = read_range(self.at, bench.setup.unit_of(over), self.points)
+        quick = replace(self, method=tuple(method for method in self.method if method != "form"), points=len(axis))
+        answers = [quick._at(bench, over, float(value), stage + 1) for stage, value in enumerate(axis)]
+        return Curve.of(over, bench.setup.print_unit(over), axis, answers)
+
+    def _at(self, bench: Bench, over: str, value: float, stage: int) -> Odds | str:
+        """Answer at one point, or say why there is no answer."""
+        setup = bench.setup
+        item = setup.model.input_fields.get(over)
+        if item is None:
+            setup = replace(setup, conditions={**setup.conditions, over: value})
+        else:
+            number: float | int = int(value) if item.kind == "integer" else value
+            setup = replace(setup, inputs=with_values(setup.inputs, {item.path: number}))
+        try:
+            answers = setup.model.read_results(evaluate(setup))
+        except InfeasibleError as error:
+            return str(error)
+        return self._answer(bench, setup, answers, stage)
+
+
+def _check_options(study: Reliability) -> None:
+    """Refuse options that make no sense, with one sentence."""
+    unknown = [method for method in study.method if method not in METHODS]
+    if unknown or not study.method:
+        raise UsageError(f"method takes {', '.join(METHODS)}; not {', '.join(unknown) or 'nothing'}")
+    if "form" in study.method and "monte_carlo" not in study.method:
+        raise UsageError("form is printed only beside a sampling; add monte_carlo to method")
+    if study.draws < 1 or study.batch < 1:
+        raise UsageError("draws and batch are at least 1")
+    if bool(study.over) != bool(study.at):
+        raise UsageError(f'study \'{study.name}\': over and at go together: over = "working_time", at = "0..6000 h"')
+    if study.over and not 2 <= study.points <= 1000:
+        raise UsageError(f"points = {study.points}, but a curve has 2 to 1000 points")
+
+
+def _still(machines: Machines) -> tuple[str, ...]:
+    if machines.scatter.causes:
+        return ()
+    return ("nothing scatters: every tolerance is off, so each probability is 0 or 1",)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Curve:
+    """Probabilities along an input: ``axis`` (n,) in SI, the others (n, ...) by check; NaN where there is no answer."""
+
+    over: str
+    unit: str
+    axis: NDArray[np.float64]
+    probability: Mapping[str, NDArray[np.float64]]
+    at_least: Mapping[str, NDArray[np.float64]]
+    analytic: Mapping[str, NDArray[np.float64]]
+    failed: tuple[tuple[int, str], ...] = ()
+
+    @classmethod
+    def of(cls, over: str, unit: str, axis: NDArray[np.float64], answers: Sequence[Odds | str]) -> Curve:
+        """Put the answers at all points together."""
+        import numpy as np
+
+        good = [odds for odds in answers if not isinstance(odds, str)]
+        names = list(good[0].probability) if good else []
+
+        def along(read: Callable[[Odds], Mapping[str, Any]]) -> dict[str, NDArray[np.float64]]:
+            gap = {name: np.full(np.shape(read(good[0])[name]), np.nan) for name in names}
+            return {
+                name: np.array([gap[name] if isinstance(odds, str) else read(odds)[name] for odds in answers])
+                for name in names
+            }
+
+        return cls(
+            over=over,
+            unit=unit,
+            axis=axis,
+            probability=along(lambda odds: odds.probability),
+            at_least=along(lambda odds: odds.at_least),
+            analytic=along(lambda odds: odds.analytic),
+            failed=tuple((row, odds) for row, odds in enumerate(answers) if isinstance(odds, str)),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Odds:
+    """Probabilities by check: a number each, or an array where the result runs along an axis.
+
+    ``probability`` is that of the Monte Carlo (first order where none was drawn); ``at_least`` the lower end of its
+    95 % interval; ``analytic`` first order; ``form`` the tangent planes; ``mean`` and ``sd`` of each result in SI.
+    """
+
+    name: str = "reliability"
+    demands: tuple[Demand, ...]
+    units: Mapping[str, str]
+    analytic: Mapping[str, Any]
+    first_sd: Mapping[str, Any]
+    form: Mapping[str, Form] = field(default_factory=dict)
+    tally: Tally | None = None
+    curve: Curve | None = None
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def draws(self) -> int:
+        """How many machines were drawn."""
+        return self.tally.draws if self.tally else 0
+
+    @property
+    def failed(self) -> int:
+        """How many of them had no answer; they count as missed."""
+        return self.tally.failed if self.tally else 0
+
+    @property
+    def probability(self) -> dict[str, Any]:
+        """The share of machines that meets each limit, or first order where none was drawn."""
+        tally = self.tally
+        if tally is None:
+            return dict(self.analytic)
+        shares = {demand.name: tally.hits[demand.name] / tally.draws for demand in self.demands}
+        return {name: share if getattr(share, "ndim", 0) else float(share) for name, share in shares.items()}
+
+    @property
+    def interval(self) -> dict[str, tuple[Any, Any]]:
+        """Wilson's 95 % interval of each probability; of no width where none was drawn."""
+        tally = self.tally
+        if tally is None:
+            return {name: (value, value) for name, value in self.analytic.items()}
+        return {demand.name: wilson(tally.hits[demand.name], tally.draws) for demand in self.demands}
+
+    @property
+    def at_least(self) -> dict[str, Any]:
+        """The lower end of each interval."""
+        return {name: low for name, (low, _) in self.interval.items()}
+
+    @property
+    def standard_error(self) -> dict[str, Any]:
+        """The standard error of each sampled probability."""
+        draws = max(self.draws, 1)
+        return {
+            name: (value * (1 - value) / draws) ** 0.5 * bool(self.draws) for name, value in self.probability.items()
+        }
+
+    @property
+    def moments(self) -> Mapping[str, Moments]:
+        """Count, mean, spread and extremes of each result over the machines that have an answer, SI."""
+        return self.tally.moments if self.tally else {}
+
+    @property
+    def mean(self) -> dict[str, Any]:
+        """The mean of each result, SI."""
+        return {name: moments.mean for name, moments in self.moments.items()}
+
+    @property
+    def sd(self) -> dict[str, Any]:
+        """The standard deviation of each result, SI."""
+        return {name: moments.sd for name, moments in self.moments.items()}
+
+    @property
+    def sampled(self) -> bool:
+        """Whether machines were drawn."""
+        return self.tally is not None
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the probabilities by check, and the curve under its input's name."""
+        from truing.studies.odds_printed import odds_json
+
+        return odds_json(self)
+
+    def blocks(self) -> Sequence[Block]:
+        """Return a table of probabilities, one of means and spreads, and the curve."""
+        from truing.studies.odds_printed import odds_blocks
+
+        return odds_blocks(self)
+
+    def checks(self) -> Sequence[Check]:
+        """Compare each probability with its goal; along an axis the worst one."""
+        chances = self.probability
+        return [
+            chance_check(demand.name, worst(chances[demand.name]), demand.goal)
+            for demand in self.demands
+            if demand.goal is not None
+        ]
+
+    def warnings(self) -> Sequence[str]:
+        """Say what failed, and where the sampling is too small to decide."""
+        words = list(self.remarks)
+        if self.tally and self.failed:
+            reason = next(iter(self.tally.reasons), "no reason was given")
+            words.append(f"{self.failed} of {self.draws} machines have no answer and count as missed ({reason})")
+        chances, errors = self.probability, self.standard_error
+        for demand in self.demands:
+            if demand.goal is None or not self.sampled:
+                continue
+            apart, noise = abs(worst(chances[demand.name]) - demand.goal), Z95 * float(max_of(errors[demand.name]))
+            if apart < noise:
+                words.append(
+                    f"whether '{demand.name}' reaches {demand.goal:g} lies within the sampling error of {noise:.2g}; "
+                    "ask for more draws"
+                )
+        if self.curve and self.curve.failed:
+            reason = self.curve.failed[0][1]
+            words.append(f"{len(self.curve.failed)} points along '{self.curve.over}' have no answer ({reason})")
+        return [f"study '{self.name}': {text}" for text in words]
+
+
+def max_of(value: Any) -> float:
+    """Return the largest of a curve, or the number itself."""
+    import numpy as np
+
+    return float(np.max(value))

@@ -1,0 +1,271 @@
+"""Which sources of error matter? Derivatives, shares of the variance, and Sobol indices of the exact model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from truing.declare.blocks import Block, Drawing, Table
+from truing.declare.goals import Vary
+from truing.declare.near_miss import near_miss
+from truing.errors import UsageError
+from truing.evaluate import acting_inputs, effect_column
+from truing.setup import Setup
+from truing.studies.bench import Bench, Check
+from truing.studies.differences import exact_slopes, nominal_of, slopes
+from truing.studies.reading import per, printed_step, result_names, scalar_results, step_unit
+from truing.studies.sampling import Machines
+from truing.studies.scatter import Scatter, scatter_of
+
+AGREES_TO = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sensitivity:
+    """Differentiate results by every source of error, and say whose share of the variance is largest.
+
+    ``of`` names results; empty: those named in a Require, Minimise or Maximise, else all that are one number.
+    ``at_inputs`` names the sources; empty: every input that a tolerance is on, also where its spread is off, and the
+    unknowns of effects that are on. ``sobol`` is the number of base samples for Sobol indices, a power of two; 0: none.
+    """
+
+    of: str | tuple[str, ...] = ()
+    at_inputs: tuple[str, ...] = ()
+    sobol: int = 0
+    name: str = "sensitivity"
+    gives: Callable[[Sensitivities], Any] | None = None
+
+    def __post_init__(self) -> None:
+        if self.sobol < 0 or self.sobol & (self.sobol - 1):
+            near = 1 << max(self.sobol, 1).bit_length()
+            raise UsageError(f"sobol = {self.sobol} is no power of two; write 0 or {near}")
+
+    def run(self, bench: Bench) -> Sensitivities:
+        """Differentiate in one batch of the model; then Sobol's samples where asked."""
+        setup = bench.setup
+        results = self._results(setup)
+        scatter = scatter_of(setup)
+        sources = _sources(setup, self.at_inputs, self.name)
+        found = slopes(setup, results, tuple(dict.fromkeys([*sources, *scatter.columns])), scatter)
+        numeric = {result: dict(found.of[result]) for result in results}
+        exact = exact_slopes(setup)
+        best = {result: {**numeric[result], **_plain(exact.get(result, {}), numeric[result])} for result in results}
+        share, sd = _shares(best, scatter)
+        first, total, remarks = self._indices(bench, scatter, results)
+        return Sensitivities(
+            name=self.name,
+            derivatives={result: {source: best[result][source] for source in sources} for result in results},
+            share={result: {source: share[result].get(source, 0.0) for source in sources} for result in results},
+            sd=sd,
+            sobol_first=first,
+            sobol_total=total,
+            agreement=_agreement(numeric, exact),
+            units={name: setup.print_unit(name) for name in results} | {name: _unit(setup, name) for name in sources},
+            remarks=(*found.warnings, *remarks),
+            inputs=acting_inputs(setup),
+        )
+
+    def _results(self, setup: Setup) -> tuple[str, ...]:
+        named = (self.of,) if isinstance(self.of, str) else tuple(self.of)
+        scalar = scalar_results(setup)
+        if named:
+            result_names(setup, named, self.name)
+            for name in named:
+                if name not in scalar:
+                    raise UsageError(
+                        f"study '{self.name}': '{name}' runs along an axis; name a result that is one number"
+                    )
+            return named
+        goals = [item.result for item in setup.model.objectives if not isinstance(item, Vary)]
+        return tuple(dict.fromkeys(name for name in goals if name in scalar)) or scalar
+
+    def _indices(self, bench: Bench, scatter: Scatter, results: Sequence[str]) -> tuple[_Indices, _Indices, list[str]]:
+        if not self.sobol or not scatter.causes:
+            return {}, {}, []
+        from truing.studies.indices import sobol_indices
+
+        bench.progress(self.name, 0, 1)
+        answer = sobol_indices(Machines(bench.setup, scatter), results, self.sobol)
+        bench.progress(self.name, 1, 1)
+        return answer
+
+
+_Indices = dict[str, dict[str, float]]
+
+
+def _sources(setup: Setup, named: tuple[str, ...], study: str) -> tuple[str, ...]:
+    """Return what is varied: the names asked for, or whatever may be in error, or every number there is."""
+    fields = setup.model.input_fields
+    unknowns = [
+        effect_column(item.effect.name, unknown.name)
+        for item in setup.effects
+        if item.effect.place != "reading"
+        for unknown in item.effect.unknowns
+    ]
+    numbers = [name for name, item in fields.items() if item.kind == "float"]
+    known = [*numbers, *setup.conditions, *unknowns]
+    for name in named:
+        if name not in known:
+            raise UsageError(f"study '{study}': '{name}' is no input that can vary.{near_miss(name, known)}")
+    scattered = [name for tolerance in setup.model.tolerances.values() for name in tolerance.on]
+    chosen = named or tuple(dict.fromkeys([*scattered, *unknowns])) or tuple(numbers)
+    return tuple(name for name in chosen if (value := nominal_of(setup, name)) == value)
+
+
+def _unit(setup: Setup, source: str) -> str:
+    for item in setup.effects:
+        for unknown in item.effect.unknowns:
+            if source == effect_column(item.effect.name, unknown.name):
+                return unknown.unit
+    return setup.print_unit(source)
+
+
+def _plain(exact: Mapping[str, Any], numeric: Mapping[str, Any]) -> dict[str, float]:
+    return {source: float(value) for source, value in exact.items() if source in numeric}
+
+
+def _shares(of: Mapping[str, Mapping[str, float]], scatter: Scatter) -> tuple[_Indices, dict[str, float]]:
+    """Return the share of each source in the first-order variance, and the standard deviation, by result."""
+    share: _Indices = {}
+    sd: dict[str, float] = {}
+    for result, by_source in of.items():
+        variances = {source: float(value) for source, value in scatter.variances(by_source).items()}
+        whole = sum(variances.values())
+        share[result] = {source: value / whole for source, value in variances.items()} if whole > 0 else {}
+        sd[result] = max(whole, 0.0) ** 0.5
+    return share, sd
+
+
+def _agreement(numeric: Mapping[str, Mapping[str, float]], exact: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
+    """Return by result the largest difference of stated and numeric derivatives, over the largest derivative."""
+    found: dict[str, float] = {}
+    for result, by_source in numeric.items():
+        stated = _plain(exact.get(result, {}), by_source)
+        if stated:
+            largest = max(abs(value) for value in [*stated.values(), *by_source.values()])
+            apart = max(abs(value - by_source[source]) for source, value in stated.items())
+            found[result] = apart / largest if largest else 0.0
+    return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sensitivities:
+    """Derivatives in SI, shares of the first-order variance (0 where a spread is off), and Sobol indices where asked.
+
+    ``derivatives[result][source]``, ``share[result][source]``, ``sd[result]``, ``sobol_first[result][source]``,
+    ``sobol_total[result][source]``. ``agreement[result]``, where the model states derivatives: the largest difference
+    from the numeric ones, over the largest derivative of that result. ``inputs``: those of the run, as effects leave them.
+    """
+
+    name: str = "sensitivity"
+    derivatives: Mapping[str, Mapping[str, float]]
+    share: Mapping[str, Mapping[str, float]]
+    sd: Mapping[str, float]
+    sobol_first: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    sobol_total: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    agreement: Mapping[str, float] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
+    inputs: Any = None
+
+    def as_json(self) -> dict[str, Any]:
+        """Return derivative, unit and share by result and source; what has no derivative is left out."""
+        return {
+            result: {source: entry for source in by_source if (entry := self._entry(result, source)) is not None}
+            for result, by_source in self.derivatives.items()
+        }
+
+    def _entry(self, result: str, source: str) -> dict[str, Any] | None:
+        from truing.units import unit_factor
+
+        unit, source_unit = self.units.get(result, ""), self.units.get(source, "")
+        derivative = printed_step(self.derivatives[result][source], unit)
+        if derivative is None:
+            return None
+        derivative *= unit_factor(step_unit(source_unit))
+        entry = {"derivative": derivative, "unit": per(unit, source_unit), "share": self.share[result][source]}
+        if source in self.sobol_first.get(result, {}):
+            entry["sobol_first"] = self.sobol_first[result][source]
+            entry["sobol_total"] = self.sobol_total[result][source]
+        return entry
+
+    def blocks(self) -> Sequence[Block]:
+        """Return, for every result, the sources ranked and a bar for each."""
+        from truing.studies.drawings import bars
+
+        blocks: list[Block] = []
+        for result in self.derivatives:
+            ranked = self._ranked(result)
+            if not ranked:
+                continue
+            blocks.append(self._table(result, ranked))
+            sizes, label = self._sizes(result, ranked)
+            if any(sizes.values()):
+                blocks.append(Drawing(f"What moves {result}", bars(result.replace("_", " "), sizes, label)))
+        return blocks
+
+    def _ranked(self, result: str) -> list[str]:
+        """Name the sources, the largest share of the variance first, then the largest derivative."""
+        derivative, share = self.derivatives[result], self.share[result]
+        finite = [source for source in derivative if derivative[source] == derivative[source]]
+        return sorted(finite, key=lambda source: (-share[source], -abs(derivative[source])))
+
+    def _sizes(self, result: str, ranked: Sequence[str]) -> tuple[dict[str, float], str]:
+        """Return the length of each bar: what one standard deviation does, or where nothing scatters the derivative."""
+        from truing.units import unit_factor, unit_text
+
+        unit = step_unit(self.units.get(result, ""))
+        if self.sd[result] > 0:
+            whole = self.sd[result] / unit_factor(unit)
+            signed = {name: (1.0 if self.derivatives[result][name] >= 0 else -1.0) for name in ranked}
+            sizes = {name: signed[name] * whole * max(self.share[result][name], 0.0) ** 0.5 for name in ranked}
+            return sizes, f"change by one standard deviation, {unit_text(unit)}".rstrip(", ")
+        entries = {name: self._entry(result, name) for name in ranked}
+        return {name: entry["derivative"] for name, entry in entries.items() if entry}, "derivative, in printed units"
+
+    def _table(self, result: str, ranked: Sequence[str]) -> Table:
+        from truing.units import unit_text
+
+        with_indices = result in self.sobol_first
+        rows: list[list[Any]] = []
+        for source in ranked:
+            entry = self._entry(result, source)
+            if entry is None:
+                continue
+            row = [source, entry["derivative"], unit_text(entry["unit"]), 100 * entry["share"]]
+            if with_indices:
+                row += [entry.get("sobol_first"), entry.get("sobol_total")]
+            rows.append(row)
+        columns = ["source", "derivative", "unit", "share of variance"]
+        extra = ["Sobol index, alone", "Sobol index, total"] if with_indices else []
+        note = self._note(result)
+        return Table(f"Sensitivity of {result}", columns + extra, rows, ("", "", "", "%", *("" for _ in extra)), note)
+
+    def _note(self, result: str) -> str:
+        from truing.units import unit_factor, unit_text
+
+        unit = step_unit(self.units.get(result, ""))
+        words = []
+        if self.sd[result] > 0:
+            size = f"{self.sd[result] / unit_factor(unit):.4g} {unit_text(unit)}".strip()
+            words.append(f"First-order standard deviation of all sources together: {size}.")
+        if result in self.agreement:
+            words.append(
+                f"Stated and numeric derivatives differ by at most {self.agreement[result]:.1e} of the largest."
+            )
+        return " ".join(words)
+
+    def checks(self) -> Sequence[Check]:
+        """Return nothing: a sensitivity decides no limit."""
+        return ()
+
+    def warnings(self) -> Sequence[str]:
+        """Say where stated and numeric derivatives disagree, and where there is no derivative."""
+        disagree = [
+            f"the stated derivatives of '{result}' differ from the numeric ones by {apart:.1e} of the largest; "
+            "one of them is wrong"
+            for result, apart in self.agreement.items()
+            if not apart <= AGREES_TO
+        ]
+        return [f"study '{self.name}': {text}" for text in (*disagree, *self.remarks)]

@@ -1,0 +1,160 @@
+"""How do the results run along one input? All points in one batch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from truing.declare.blocks import Block, Drawing, Table, Words
+from truing.errors import UsageError
+from truing.evaluate import acting_inputs, evaluate_rows
+from truing.setup import Setup
+from truing.studies.bench import Bench, Check
+from truing.studies.reading import printed, read_range, scattering_name
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+LARGEST = 1_000_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sweep:
+    """Evaluate every result along one input or condition.
+
+    ``at`` is "low..high unit", divided into ``points`` values, or a list "a, b, c unit".
+    """
+
+    over: str
+    at: str
+    points: int = 181
+    name: str = "sweep"
+    gives: Callable[[Swept], Any] | None = None
+
+    def __post_init__(self) -> None:
+        if not 2 <= self.points <= LARGEST:
+            raise UsageError(f"points = {self.points}, but a sweep has 2 to {LARGEST} points")
+
+    def run(self, bench: Bench) -> Swept:
+        """Evaluate all points in one batch; an infeasible one keeps its reason. Raises UsageError for a bad range."""
+        setup = bench.setup
+        over = scattering_name(setup, self.over, self.name)
+        axis = _points(setup, over, self.at, self.points)
+        bench.progress(self.name, 0, len(axis))
+        rows = evaluate_rows(setup, {over: _values(setup, over, axis)}, len(axis))
+        bench.progress(self.name, len(axis), len(axis))
+        fields = setup.model.own_result_fields
+        return Swept(
+            name=self.name,
+            over=over,
+            axis=axis,
+            results=rows.results,
+            failed=tuple(rows.reasons.items()),
+            units={name: setup.print_unit(name) for name in (over, *rows.results)},
+            symbols={name: fields[name].symbol or name for name in rows.results},
+            shown=self.gives is None,
+            inputs=acting_inputs(setup),
+        )
+
+
+def _points(setup: Setup, over: str, at: str, points: int) -> NDArray[np.float64]:
+    """Return the points in SI; of an input that takes whole numbers, all between the ends or those listed."""
+    import numpy as np
+
+    axis = read_range(at, setup.unit_of(over), points)
+    item = setup.model.input_fields.get(over)
+    if item is None or item.kind not in {"integer", "whole"}:
+        return axis
+    if ".." in at:
+        axis = np.arange(np.ceil(axis[0]), np.floor(axis[-1]) + 1)
+    if not len(axis) or (axis != np.round(axis)).any():
+        raise UsageError(f"'{at}': '{over}' takes whole numbers")
+    return axis
+
+
+def _values(setup: Setup, over: str, axis: NDArray[np.float64]) -> Any:
+    item = setup.model.input_fields.get(over)
+    return [int(value) for value in axis] if item is not None and item.kind == "integer" else axis
+
+
+@dataclass(frozen=True, kw_only=True)
+class Swept:
+    """The results along the swept input: ``axis`` (n,) and ``results[name]`` (n,) or (n, k) in SI, NaN where failed.
+
+    ``inputs`` are those of the run, as effects leave them.
+    """
+
+    name: str
+    over: str
+    axis: NDArray[np.float64]
+    results: Mapping[str, NDArray[np.float64]]
+    failed: tuple[tuple[int, str], ...]
+    units: Mapping[str, str]
+    symbols: Mapping[str, str]
+    shown: bool = True
+    inputs: Any = None
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the axis and every result in printed units; null where a point failed."""
+        return {
+            "over": self.over,
+            "unit": self.units[self.over],
+            "axis": printed(self.axis, self.units[self.over]),
+            "results": {
+                name: {"unit": self.units[name], "values": printed(values, self.units[name])}
+                for name, values in self.results.items()
+            },
+            "failed": [{"row": row, "reason": reason} for row, reason in self.failed],
+        }
+
+    def blocks(self) -> Sequence[Block]:
+        """Return smallest and largest value of every result and where they are; curves where no section draws them."""
+        blocks: list[Block] = []
+        table = self._extremes()
+        if table.rows:
+            blocks.append(table)
+        if self.shown and self._plain():
+            from truing.studies.drawings import curves
+
+            blocks.append(Drawing(f"Along {self.over}", curves(self, self._plain()[:4])))
+        if self.failed:
+            row, reason = self.failed[0]
+            count = f"{len(self.failed)} of {len(self.axis)} points have no answer"
+            blocks.append(Words(f"{count}; the first is number {row + 1}: {reason}.", "warning"))
+        return blocks
+
+    def checks(self) -> Sequence[Check]:
+        """Return nothing: a sweep decides no limit."""
+        return ()
+
+    def warnings(self) -> Sequence[str]:
+        """Name the points that failed."""
+        if not self.failed:
+            return ()
+        return (
+            f"study '{self.name}': {len(self.failed)} of {len(self.axis)} points along '{self.over}' have no answer",
+        )
+
+    def _plain(self) -> list[str]:
+        """Name the results that are one number per point and finite somewhere."""
+        import numpy as np
+
+        return [name for name, values in self.results.items() if values.ndim == 1 and np.isfinite(values).any()]
+
+    def _extremes(self) -> Table:
+        import numpy as np
+
+        from truing.units import from_si
+
+        unit = self.units[self.over]
+        rows: list[list[Any]] = []
+        for name in self._plain():
+            values = self.results[name]
+            row: list[Any] = [name, self.units[name]]
+            for place in (int(np.nanargmin(values)), int(np.nanargmax(values))):
+                row += [float(from_si(values[place], self.units[name])), float(from_si(self.axis[place], unit))]
+            rows.append(row)
+        columns = ("result", "unit", "smallest", "at", "largest", "at")
+        return Table(f"Along {self.over}: extremes", columns, rows, ("", "", "", unit, "", unit))
