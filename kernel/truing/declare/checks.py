@@ -44,7 +44,7 @@ def _of_names(model: Model[Any, Any]) -> Iterator[str]:
             yield f"'{name}' is an input and a result; one of them needs another name"
     if TOTAL_PRICE in {*model.input_fields, *model.result_fields}:
         yield f"the name '{TOTAL_PRICE}' is kept for the sum of the prices"
-    for name in _twice(source.name for source in model.errors):
+    for name in _twice(getattr(source, "name", repr(source)) for source in model.errors):
         yield f"two error sources are called '{name}'"
     for name in _twice(study.name for study in model.studies):
         yield f"two studies are called '{name}'"

@@ -1,0 +1,680 @@
+"""Declarations: what they say, what they refuse, and with which sentence."""
+
+import math
+from dataclasses import FrozenInstanceError, replace
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+
+from truing import (
+    Condition,
+    Effect,
+    Float,
+    Maximise,
+    Minimise,
+    Model,
+    Price,
+    Require,
+    Section,
+    Tolerance,
+    Unknown,
+    Vary,
+    axis,
+    by_choice,
+    drawn,
+    found,
+    given,
+    grade,
+    inputs,
+    loaded,
+    lognormal,
+    normal,
+    off,
+    part,
+    plus_minus,
+    results,
+    rows,
+    uniform,
+    zone,
+)
+from truing.declare.fields import input_fields, result_fields
+from truing.declare.spreads import Target, read_spread
+from truing.errors import DeclarationError, UnitError, UsageError
+from truing.setup import default_setup
+
+
+@inputs
+class Bar:
+    """A bar in tension, with one input of every kind."""
+
+    force: Float = given("3 kN", "N", symbol="F", note="tension", above=0)
+    width: Float = given(20, "mm", symbol="b", above=0, at_most=500)
+    height: Float = given(10.0, "mm", symbol="h")
+    factor: Float = given(None, "", symbol="k", note="left open unless measured")
+    holes: Float = given(2, "", symbol="n", whole=True)
+    bays: int = given(4)
+    welded: bool = given(False)
+    reading: Literal["gross", "net"] = given("gross")
+    grain: tuple[float, ...] = given((1.0, 2.5), "mm")
+    label: str = given("A")
+    warm: Float = given(20, "degC")
+
+
+@results
+class Stress:
+    """What the bar bears."""
+
+    stress: Float = found("MPa", symbol="s", formula="force / (width * height)")
+
+
+def stretch(bar: Bar) -> Stress:
+    """Mean stress over the gross section."""
+    return Stress(stress=bar.force / (bar.width * bar.height))
+
+
+def bar_model(**changes: Any) -> Model[Bar, Stress]:
+    return Model(name="bar", title="A bar", function=stretch, **changes)
+
+
+@inputs
+class Gear:
+    """One gear."""
+
+    teeth: Float = given(30, "", symbol="z")
+    bore: Float = given(12.0, "mm", symbol="d_b")
+
+
+@inputs
+class Stage:
+    """Two gears."""
+
+    ratio: Float = given(1.0, "")
+    sun: Gear = part(Gear, index="1", teeth=20)
+    ring: Gear = part(Gear, index="2", suffix="", bore="30 mm")
+
+
+@results
+class Side:
+    """What is asked of each gear."""
+
+    pitch: Float = found("mm", symbol="d", formula="2 * bore")
+
+
+@results
+class Sides:
+    """Both gears."""
+
+    sun: Side = part(Side, index="1")
+    ring: Side = part(Side, index="2", suffix="")
+
+
+def mesh(stage: Stage) -> Sides:
+    """A formula that names the own part first."""
+    return Sides(sun=Side(pitch=2 * stage.sun.bore), ring=Side(pitch=2 * stage.ring.bore))
+
+
+# Fields
+
+
+def test_defaults_become_si() -> None:
+    bar = Bar()
+    assert (bar.force, bar.width, bar.height) == (3000.0, 0.02, 0.01)
+    assert math.isnan(float(bar.factor))
+    assert bar.warm == pytest.approx(293.15)
+    assert (bar.holes, bar.bays, bar.welded, bar.reading, bar.label) == (2, 4, False, "gross", "A")
+    assert bar.grain == (0.001, 0.0025)
+
+
+def test_inputs_are_frozen_and_by_keyword() -> None:
+    with pytest.raises(FrozenInstanceError):
+        Bar().force = 1.0  # type: ignore[misc]
+    with pytest.raises(TypeError):
+        Bar(1.0)  # type: ignore[misc]
+
+
+KINDS = [
+    ("force", "float", True),
+    ("holes", "whole", True),
+    ("bays", "integer", False),
+    ("welded", "switch", False),
+    ("reading", "choice", False),
+    ("grain", "series", False),
+    ("label", "text", False),
+]
+
+
+@pytest.mark.parametrize(("name", "kind", "varies"), KINDS)
+def test_annotation_says_what_varies(name: str, kind: str, varies: bool) -> None:
+    item = input_fields(Bar)[name]
+    assert (item.kind, item.varies) == (kind, varies)
+
+
+def test_optional_and_choices_are_known() -> None:
+    fields = input_fields(Bar)
+    assert [name for name, item in fields.items() if item.is_optional] == ["factor"]
+    assert fields["reading"].choices == ("gross", "net")
+
+
+def test_parts_are_nested_in_python_and_flat_in_files() -> None:
+    fields = input_fields(Stage)
+    assert list(fields) == ["ratio", "teeth_sun", "bore_sun", "teeth", "bore"]
+    assert [item.symbol for item in fields.values()] == ["", "z_1", "d_b1", "z_2", "d_b2"]
+    stage = Stage()
+    assert (stage.sun.teeth, stage.sun.bore) == (20, 0.012)
+    assert (stage.ring.teeth, stage.ring.bore) == (30, pytest.approx(0.03))
+    assert list(result_fields(Sides)) == ["pitch_sun", "pitch"]
+
+
+def test_model_makes_and_reads_nested_inputs() -> None:
+    model = Model(name="mesh", title="", function=mesh)
+    stage = model.inputs(bore_sun="15 mm", teeth=44.0)
+    assert (stage.sun.bore, stage.ring.bore, stage.ring.teeth) == (0.015, 0.03, 44.0)
+    assert model.read_inputs(stage)["bore_sun"] == 0.015
+    assert model.read_results(mesh(stage)) == {"pitch_sun": 0.03, "pitch": 0.06}
+
+
+def read_surface(path: str, *, spacing: str = "1 um") -> tuple[float, ...]:
+    """Read nothing."""
+    return (1.0, 2.0)
+
+
+@inputs
+class Rough:
+    """A body with a measured surface."""
+
+    surface: tuple[float, ...] = loaded(read_surface)
+    scale: Float = given(1.0, "")
+
+
+@results
+class Height:
+    """Its highest peak."""
+
+    peak: Float = found("um")
+
+
+def highest(body: Rough) -> Height:
+    """Return the highest peak."""
+    return Height(peak=body.scale * max(body.surface))
+
+
+def test_a_data_file_without_default_is_asked_for() -> None:
+    model = Model(name="rough", title="", function=highest)
+    assert model.input_fields["surface"].kind == "file"
+    assert model.inputs(surface=(1.0, 5.0)).surface == (1.0, 5.0)
+    with pytest.raises(UsageError, match="'surface' is read from a data file and has no default"):
+        model.inputs()
+
+
+@inputs
+class Beat:
+    """A record: the load at some moments."""
+
+    load: Float = given([1.0, 2.0], "kN", along="time")
+    stiffness: Float = given(2.0, "kN/mm")
+
+
+@results
+class Response:
+    """Its answer along the record."""
+
+    time: Float = axis("h")
+    travel: Float = found("mm", along="time")
+
+
+def respond(beat: Beat) -> Response:
+    """Return the travel at each moment."""
+    return Response(time=np.arange(2.0), travel=beat.load / beat.stiffness)
+
+
+def test_series_become_arrays_in_si() -> None:
+    model = Model(name="beat", title="", function=respond)
+    assert model.inputs().load.tolist() == [1000.0, 2000.0]
+    assert model.inputs(load=("3 kN", "4 kN")).load.tolist() == [3000.0, 4000.0]
+    assert model.inputs(load=[3.0, 4.0]).load.tolist() == [3.0, 4.0]
+    assert model.own_result_fields["travel"].along == "time"
+
+
+def test_texts_carry_units_and_numbers_are_si() -> None:
+    bar = bar_model().inputs(force="5 kN", width=0.03, reading="net", welded=True)
+    assert (bar.force, bar.width, bar.reading, bar.welded) == (5000.0, 0.03, "net", True)
+
+
+def test_near_miss_of_an_input() -> None:
+    with pytest.raises(UsageError, match=r"bar has no input 'heigth'\. Did you mean 'height'\?"):
+        bar_model().inputs(heigth="3 mm")
+    with pytest.raises(UsageError, match="'reading' of bar is one of gross, net, not 'nett'"):
+        bar_model().inputs(reading="nett")
+
+
+# Classes that are refused
+
+
+def test_a_flat_name_twice_is_refused() -> None:
+    @inputs
+    class Twice:
+        teeth_sun: Float = given(3.0, "")
+        sun: Gear = part(Gear)
+
+    with pytest.raises(DeclarationError, match="the flat name 'teeth_sun' occurs twice"):
+        input_fields(Twice)
+
+
+def test_a_field_without_declaration_is_refused() -> None:
+    with pytest.raises(DeclarationError, match=r"Plain: field 'load' is not declared: write given"):
+
+        @inputs
+        class Plain:
+            load: Float = 3.0
+
+
+def test_a_field_without_annotation_is_refused() -> None:
+    with pytest.raises(DeclarationError, match="'load' is a field but has no type annotation"):
+
+        @inputs
+        class Bare:
+            load = given(3.0, "N")
+
+
+def test_inputs_and_results_do_not_mix() -> None:
+    with pytest.raises(DeclarationError, match="'load' is declared with the wrong word; results come from found"):
+
+        @results
+        class Mixed:
+            load: Float = given(3.0, "N")
+
+    with pytest.raises(DeclarationError, match="the part 'gear' of Gear mixes inputs and results"):
+
+        @results
+        class MixedPart:
+            gear: Gear = part(Gear)
+
+
+def test_a_part_replaces_only_what_exists() -> None:
+    with pytest.raises(DeclarationError, match=r"part\(Gear\): it has no input 'tooth'\. Did you mean 'teeth'\?"):
+        part(Gear, tooth=3)
+    with pytest.raises(DeclarationError, match="'surface' is no plain input"):
+        part(Rough, surface=(1.0,))
+    with pytest.raises(DeclarationError, match="declared neither by @inputs nor by @results"):
+        part(dict)
+
+
+def one_field(annotation: Any, *arguments: Any) -> type[Any]:
+    made = type("One", (), {"__annotations__": {"it": annotation}, "it": given(*arguments)})
+    return inputs(made)
+
+
+WRONG_FIELDS = [
+    (Float, (3.0,), "input 'it' has no unit"),
+    (int, (3, "mm"), "has the unit 'mm', but its annotation allows none"),
+    (Literal["a", "b"], ("c",), "is by default none of a, b"),
+    (dict[str, float], ({},), "write Float, int, bool, str"),
+    ("Nowhere", (3.0, ""), "annotations must name what the module itself imports"),
+]
+
+
+@pytest.mark.parametrize(("annotation", "arguments", "sentence"), WRONG_FIELDS)
+def test_wrong_fields_are_refused(annotation: Any, arguments: tuple[Any, ...], sentence: str) -> None:
+    with pytest.raises(DeclarationError, match=sentence):
+        input_fields(one_field(annotation, *arguments))
+
+
+# Spreads: each resolved to the standard deviation that its words mean
+
+
+def target(nominal: float = 0.1, unit: str = "mm", **others: Any) -> Target:
+    return Target("it", nominal, unit, others.__getitem__)
+
+
+SPREADS = [
+    (normal(sd="3 %"), 0.003, 0.1),
+    (normal(sd="0.02 mm"), 2e-5, 0.1),
+    (normal(band="0.12 mm"), 2e-5, 0.1),
+    (plus_minus("0.06 mm"), 2e-5, 0.1),
+    (plus_minus("6 %"), 0.002, 0.1),
+    (uniform("0.06 mm"), 6e-5 / math.sqrt(3), 0.1),
+    (lognormal(sd="6 %"), 0.006, 0.1),
+    (grade("IT7"), 35e-6 / 6, 0.1),  # ISO 286-1, Table 1: IT7 over 80 up to 120 mm is 35 um
+    (zone("0 um", "6 um", grows="up"), 1e-6, 0.1 + 3e-6),
+    (zone("-2 um", "10 um"), 2e-6, 0.1 + 4e-6),
+]
+
+
+@pytest.mark.parametrize(("spread", "sd", "mean"), SPREADS, ids=lambda value: getattr(value, "text", None))
+def test_spreads_mean_what_they_say(spread: Any, sd: float, mean: float) -> None:
+    distribution = spread.resolve(target())
+    assert distribution.sd == pytest.approx(sd, rel=1e-12)
+    assert distribution.mean == pytest.approx(mean, rel=1e-12)
+    values = distribution.draw(np.random.default_rng(0), 200_000)
+    assert values.mean() == pytest.approx(mean, abs=5 * sd / math.sqrt(200_000))
+    assert values.std() == pytest.approx(sd, rel=0.01)
+    standard = np.random.default_rng(1).standard_normal(200_000)
+    mapped = distribution.from_standard(standard)
+    assert mapped.std() == pytest.approx(sd, rel=0.01)
+    assert np.all(np.diff(mapped[np.argsort(standard)]) >= 0)
+
+
+def test_width_is_what_a_drawing_states() -> None:
+    assert plus_minus("0.05 mm").resolve(target()).width == pytest.approx(1e-4)
+    assert uniform("0.05 mm").resolve(target()).width == pytest.approx(1e-4)
+    assert normal(band="0.125 mm").resolve(target()).width == pytest.approx(125e-6)
+
+
+def test_percent_of_an_input_in_percent_is_the_same_percent() -> None:
+    assert normal(sd="2 %").resolve(target(0.5, "%")).sd == pytest.approx(0.02)
+
+
+def test_an_angle_from_a_length_across_a_radius() -> None:
+    spread = plus_minus("0.3 mm", at_radius="radius")
+    assert spread.resolve(target(1.0, "deg", radius=0.5)).sd == pytest.approx(1e-4 / 0.5)
+
+
+def test_grade_of_another_size() -> None:
+    spread = grade("IT6", size="bore")
+    assert spread.resolve(target(0.0, "mm", bore=0.02)).width == pytest.approx(13e-6)  # over 18 up to 30 mm
+
+
+def test_levels_of_temperature_scatter_by_kelvins() -> None:
+    assert normal(sd="2 K").resolve(target(293.15, "degC")).sd == pytest.approx(2.0)
+
+
+def test_by_choice_follows_the_choosing_input() -> None:
+    spread = by_choice("reading", gross=plus_minus("0.3 mm"), net=plus_minus("0.6 mm"))
+    assert spread.resolve(target(reading="net")).sd == pytest.approx(2e-4)
+    assert off().resolve(target()) is None
+
+
+def together(rng: np.random.Generator, count: int) -> dict[str, Any]:
+    """Two inputs that scatter against each other."""
+    common = rng.normal(0, 1e-3, count)
+    return {"width": common, "height": -common}
+
+
+def test_drawn_stands_in_by_its_moments() -> None:
+    distribution = drawn(together).resolve(Target("height", 0.01, "mm", {}.__getitem__))
+    assert distribution.sd == pytest.approx(1e-3, rel=0.05)
+    with pytest.raises(DeclarationError, match="together draws width, height, but not 'it'"):
+        drawn(together).resolve(target())
+
+
+REFUSED_SPREADS = [
+    (plus_minus("5 %"), target(0.0), "its nominal is 0"),
+    (lognormal(sd="0.1 mm"), target(-0.1), "needs a nominal above zero"),
+    (plus_minus("-0.1 mm"), target(), "is negative"),
+    (normal(sd="-3 %"), target(), "is negative"),
+    (zone("5 um", "1 um"), target(), "must lie above its start"),
+    (plus_minus("3 N"), target(), "expected a length"),
+    (grade("IT7"), target(0.1, "deg"), "is a grade for lengths"),
+    (grade("IT77"), target(), "not a tolerance grade"),
+]
+
+
+@pytest.mark.parametrize(("spread", "where", "sentence"), REFUSED_SPREADS)
+def test_spreads_that_mean_nothing_are_refused(spread: Any, where: Target, sentence: str) -> None:
+    with pytest.raises(UnitError, match=sentence):
+        spread.resolve(where)
+
+
+FILE_SPREADS = [
+    ("±0.05 mm", plus_minus("0.05 mm")),
+    ("+/- 0.05 mm", plus_minus("0.05 mm")),
+    ("sd 3 %", normal(sd="3 %")),
+    ("band 0.125 mm", normal(band="0.125 mm")),
+    ("it6", grade("IT6")),
+    ("IT 6", grade("IT6")),
+    ("uniform ±0.1 mm", uniform("0.1 mm")),
+    ("lognormal sd 6 %", lognormal(sd="6 %")),
+    ("off", off()),
+    ("zone 0 um .. 6 um", zone("0 um", "6 um")),
+    ({"zone": ["0 um", "6 um"]}, zone("0 um", "6 um")),
+]
+
+
+@pytest.mark.parametrize(("text", "spread"), FILE_SPREADS)
+def test_spreads_as_files_write_them(text: Any, spread: Any) -> None:
+    assert read_spread(text, normal(sd="1 %")) == spread
+    assert read_spread(spread.text, normal(sd="1 %")) == spread
+
+
+def test_what_a_file_does_not_repeat_stays_as_declared() -> None:
+    assert read_spread("±0.1 mm", plus_minus("1 mm", at_radius="r")) == plus_minus("0.1 mm", at_radius="r")
+    assert read_spread("IT5", by_choice("reading", a=grade("IT7", size="bore"))) == grade("IT5", size="bore")
+    assert read_spread({"zone": ["0 um", "9 um"]}, zone("0 um", "1 um", grows="up")) == zone("0 um", "9 um", grows="up")
+
+
+@pytest.mark.parametrize("text", ["0.05 mm", "sd", "IT99", "zone 3 um", {"zone": ["1 um"]}, {"band": "1 mm"}, "± x mm"])
+def test_spreads_that_a_file_writes_wrongly(text: Any) -> None:
+    with pytest.raises(UnitError):
+        read_spread(text, normal(sd="1 %"))
+
+
+def test_normal_takes_one_of_two() -> None:
+    with pytest.raises(DeclarationError, match="takes either sd="):
+        normal(sd="1 %", band="1 mm")
+    with pytest.raises(DeclarationError, match="takes either sd="):
+        normal()
+
+
+def test_setup_resolves_every_tolerance_once_per_input() -> None:
+    model = bar_model(
+        errors=[
+            Tolerance("size", plus_minus("0.3 mm"), on=["width", "height"]),
+            Tolerance("force", off()),
+            Tolerance("factor", normal(sd="3 %")),
+        ]
+    )
+    found_spreads = default_setup(model).distributions()
+    assert {name: set(each) for name, each in found_spreads.items()} == {"size": {"width", "height"}}
+    assert default_setup(model, factor=2.0).distributions()["factor"]["factor"].sd == pytest.approx(0.06)
+
+
+# Effects and unknowns
+
+
+def wider(bar: Bar, *, extra: Float) -> Bar:
+    return replace(bar, width=bar.width + extra)
+
+
+def heated(bar: Bar, base: Stress, *, slope: Float, room: Float) -> Stress:
+    return replace(base, stress=base.stress + slope * (room - 293.15))
+
+
+def any_keyword(bar: Bar, **values: Float) -> Bar:
+    return bar
+
+
+def tuned(bar: Bar, *, extra: Float, power: float = 2.0) -> Bar:
+    return bar
+
+
+EXTRA = Unknown("extra", 0, 1, "mm")
+ROOM = Condition("room", "degC", reference=20)
+
+
+def test_place_and_function_of_an_effect() -> None:
+    effect = Effect("wider", on_inputs=wider, unknowns=[EXTRA])
+    assert (effect.place, effect.function) == ("inputs", wider)
+    reading = Effect("heated", on_reading=heated, needs=[ROOM], unknowns=[Unknown("slope", -1, 1, "MPa/K")])
+    assert (reading.place, reading.needs[0].zero) == ("reading", pytest.approx(293.15))
+    assert Effect("any", on_inputs=any_keyword, unknowns=[EXTRA]).name == "any"
+    assert Effect("tuned", on_inputs=tuned, unknowns=[EXTRA]).name == "tuned"
+
+
+def test_bounds_tell_amplitude_from_shape() -> None:
+    assert Unknown("a", 0, 5).is_amplitude
+    assert Unknown("a", -1, 1).is_amplitude
+    assert not Unknown("a", 1, 10).is_amplitude
+    for low, high in [(1, 1), (2, 1), (math.nan, 1), (0, math.inf)]:
+        with pytest.raises(DeclarationError, match="two finite numbers, lower first"):
+            Unknown("a", low, high)
+
+
+WRONG_EFFECTS: list[tuple[dict[str, Any], str]] = [
+    ({"unknowns": [EXTRA]}, "acts at one place"),
+    ({"on_inputs": wider, "on_results": heated, "unknowns": [EXTRA]}, "acts at one place"),
+    ({"on_inputs": wider, "unknowns": []}, "has 0 unknowns"),
+    ({"on_inputs": wider, "unknowns": [EXTRA] * 4}, "has 4 unknowns"),
+    ({"on_inputs": wider, "unknowns": [Unknown("extra", 1, 2)]}, "has no amplitude"),
+    ({"on_inputs": wider, "unknowns": [EXTRA, EXTRA]}, "names an unknown or condition twice"),
+    ({"on_inputs": wider, "unknowns": [Unknown("etxra", 0, 1)]}, "wider takes the keywords extra, but its unknowns"),
+    ({"on_inputs": wider, "unknowns": [EXTRA], "needs": [ROOM]}, "takes the keywords extra"),
+    ({"on_reading": heated, "unknowns": [Unknown("slope", 0, 1)]}, "takes the keywords slope, room"),
+    ({"on_reading": wider, "unknowns": [EXTRA]}, "takes the keywords none"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "sentence"), WRONG_EFFECTS)
+def test_effects_that_do_not_fit_their_function(arguments: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(DeclarationError, match=sentence):
+        Effect("it", **arguments)
+
+
+# Goals
+
+
+def test_vary_takes_bounds_or_a_formula() -> None:
+    for arguments in ({}, {"low": "1 mm"}, {"low": "1 mm", "high": "2 mm", "by": "b"}, {"low": "1 mm", "by": "b"}):
+        with pytest.raises(DeclarationError, match="takes either low and high or by="):
+            Vary("width", **arguments)
+
+
+def test_require_takes_one_limit() -> None:
+    for arguments in ({}, {"at_most": "1 MPa", "at_least": "0 MPa"}):
+        with pytest.raises(DeclarationError, match="takes one of at_most, at_least and within"):
+            Require("stress", **arguments)
+    with pytest.raises(DeclarationError, match="must lie between 0 and 1"):
+        Require("stress", at_most="1 MPa", reliability=99.0)
+    limit = Require("stress", within="1 MPa", reliability="factor")
+    assert (limit.kind, limit.limit, limit.reliability) == ("within", "1 MPa", "factor")
+
+
+def test_goals_may_name_inputs_and_results() -> None:
+    model = bar_model(objectives=[Minimise("stress"), Maximise("force"), Minimise("tolerance_price")])
+    assert len(model.objectives) == 3
+
+
+# The model as a whole
+
+
+def elsewhere(stage: Stage, *, extra: Float) -> Stage:
+    return stage
+
+
+WRONG_MODELS: list[tuple[dict[str, Any], str]] = [
+    ({"errors": [Tolerance("widht", off())]}, "is on 'widht', which is no input. Did you mean 'width'?"),
+    ({"errors": [Tolerance("reading", off())]}, "is on 'reading', which cannot scatter"),
+    ({"errors": [Tolerance("force", off()), Tolerance("force", off())]}, "two error sources are called 'force'"),
+    ({"errors": [Tolerance("width", grade("IT7", size="brdth"))]}, "names 'brdth', which is no input"),
+    ({"errors": [Tolerance("width", plus_minus("1 mm", at_radius="r"))]}, "names 'r', which is no input"),
+    ({"errors": [Tolerance("width", by_choice("redaing", a=off()))]}, "Did you mean 'reading'?"),
+    ({"errors": [Tolerance("width", by_choice("force", a=off()))]}, "'force', which offers no choices"),
+    ({"errors": [Tolerance("width", by_choice("reading", net=off()))]}, "'reading' offers gross, net"),
+    ({"errors": [Tolerance("width", "3 %")]}, "has the spread '3 %'; write normal"),
+    ({"errors": [Tolerance("width", off(), price=Price("3 / breadth", "mm", "EUR"))]}, "it is a formula in width"),
+    ({"errors": [Tolerance("width", off(), price=Price("3 / (", "mm", "EUR"))]}, "the price of tolerance 'width'"),
+    ({"errors": ["width"]}, "'width' is neither a Tolerance nor an Effect"),
+    ({"errors": [Effect("e", on_inputs=elsewhere, unknowns=[EXTRA])]}, "acts on Stage, but the model has Bar"),
+    ({"objectives": [Vary("widht", "1 mm", "2 mm")]}, "Vary names 'widht', which is no input. Did you mean 'width'?"),
+    ({"objectives": [Vary("reading", "1 mm", "2 mm")]}, "which is no number that may vary"),
+    ({"objectives": [Vary("width", by="2 * hight")]}, "follows hight, which is no input. Did you mean 'height'?"),
+    ({"objectives": [Minimise("strss")]}, "Minimise names 'strss', which is neither input nor result. Did you mean"),
+    ({"objectives": [Require("force", at_most="1 N")]}, "Require names 'force', which is no result"),
+    ({"objectives": [Require("stress", at_most="fource")]}, "neither a quantity nor an input or result. Did you mean"),
+    ({"objectives": [Require("stress", at_most="1 MPa", reliability="goal")]}, "takes its reliability from 'goal'"),
+    ({"objectives": ["stress"]}, "'stress' is no objective"),
+    ({"sheet": [Section("Strength", "strss")]}, "section 'Strength' names 'strss', which is no result. Did you mean"),
+    ({"name": "my bar"}, "may hold letters, digits and underscores only"),
+    ({"name": "a.b"}, "may hold letters, digits and underscores only"),
+]
+
+
+@pytest.mark.parametrize(("changes", "sentence"), WRONG_MODELS)
+def test_models_that_name_what_does_not_exist(changes: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(DeclarationError) as caught:
+        Model(**{"name": "bar", "title": "", "function": stretch, **changes})
+    assert sentence in str(caught.value)
+
+
+def test_all_faults_of_a_model_at_once() -> None:
+    with pytest.raises(DeclarationError) as caught:
+        bar_model(errors=[Tolerance("widht", off())], sheet=[Section("Strength", "strss")])
+    assert "'widht'" in str(caught.value)
+    assert "'strss'" in str(caught.value)
+
+
+def test_a_condition_declared_in_two_ways() -> None:
+    other = replace(ROOM, reference=25)
+    first, second = (
+        Effect(name, on_reading=heated, needs=[need], unknowns=[Unknown("slope", -1, 1)])
+        for name, need in (("one", ROOM), ("two", other))
+    )
+    with pytest.raises(DeclarationError, match="the condition 'room' is declared in two ways"):
+        bar_model(errors=[first, second])
+
+
+def hotter(bar: Bar, base: Stress, *, slope: Float, warm: Float) -> Stress:
+    return base
+
+
+def test_a_condition_with_the_name_of_an_input() -> None:
+    effect = Effect("it", on_results=hotter, needs=[Condition("warm", "degC")], unknowns=[Unknown("slope", -1, 1)])
+    with pytest.raises(DeclarationError, match="the condition 'warm' has the name of an input"):
+        bar_model(errors=[effect])
+
+
+def model_with_result(**found_arguments: Any) -> Model[Any, Any]:
+    made = type("Made", (), {"__annotations__": {"it": Float}, "it": found("MPa", **found_arguments)})
+    answer = results(made)
+
+    def function(bar: Bar) -> Any:
+        return answer(it=bar.force)
+
+    function.__annotations__ = {"bar": Bar, "return": answer}
+    return Model(name="made", title="", function=function)
+
+
+WRONG_FORMULAS = [
+    ("force / widht", "formula of 'it' names widht, which is neither input nor result. Did you mean 'width'?"),
+    ("it + force", "names itself; write an equation with =="),
+    ("force /", "formula of 'it'"),
+    ("__import__('os')", "formula of 'it'"),
+]
+
+
+@pytest.mark.parametrize(("formula", "sentence"), WRONG_FORMULAS)
+def test_formulas_that_cannot_be_right(formula: str, sentence: str) -> None:
+    with pytest.raises(DeclarationError) as caught:
+        model_with_result(formula=formula)
+    assert sentence in str(caught.value)
+
+
+def test_formulas_and_axes_that_can_be_right() -> None:
+    assert model_with_result(formula="it * width == force").name == "made"
+    with pytest.raises(DeclarationError, match="runs along 'time', which is no axis"):
+        model_with_result(along="time")
+
+
+def no_annotation(bar, factor=2):  # type: ignore[no-untyped-def]
+    return bar
+
+
+def two_arguments(bar: Bar, other: Bar) -> Stress:
+    return stretch(bar)
+
+
+@pytest.mark.parametrize("function", [no_annotation, two_arguments])
+def test_the_function_takes_one_class_and_returns_one(function: Any) -> None:
+    with pytest.raises(DeclarationError, match="takes one annotated class of inputs and returns one of results"):
+        Model(name="bar", title="", function=function)
+
+
+def test_a_table_is_an_axis_too() -> None:
+    @results
+    class Groups:
+        group: Float = rows("one row per group")
+        size: Float = found("mm", along="group")
+
+    fields = result_fields(Groups)
+    assert fields["group"].spec.is_table  # type: ignore[union-attr]
+    assert fields["size"].along == "group"

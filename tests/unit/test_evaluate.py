@@ -1,0 +1,437 @@
+"""Running a model: alone, in batches, split, with effects at their three places, and when something goes wrong."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+
+from truing import (
+    Condition,
+    Effect,
+    Float,
+    Model,
+    Unknown,
+    axis,
+    column,
+    either,
+    feasible,
+    found,
+    given,
+    inputs,
+    results,
+    rows,
+)
+from truing.errors import InfeasibleError, PluginError, UsageError
+from truing.evaluate import evaluate, evaluate_rows
+from truing.setup import Setup, SwitchedOn, default_setup
+
+CALLS: list[int] = []
+
+
+@inputs
+class Lever:
+    """A lever in balance."""
+
+    force: Float = given(10.0, "N")
+    arm: Float = given(2.0, "m")
+    other_arm: Float = given(1.0, "m")
+    measured: Float = given(None, "N")
+    bearings: int = given(1)
+    kind: Literal["plain", "double"] = given("plain")
+    extra: Float = given(0.0, "N")
+
+
+@results
+class Balance:
+    """What holds it."""
+
+    hold: Float = found("N")
+    torque: Float = found("N*m", formula="force * arm")
+
+
+def balance(lever: Lever) -> Balance:
+    """Hold the lever; a double one needs half the force."""
+    CALLS.append(np.size(lever.force))
+    feasible(lever.arm > 0, "the arm has no length")
+    feasible(lever.force < 1000, "the lever breaks")
+    share = 0.5 if lever.kind == "double" else 1.0
+    torque = (lever.force + lever.extra) * lever.arm
+    return Balance(hold=either(lever.measured, share * torque / lever.other_arm / lever.bearings), torque=torque)
+
+
+def setup_with(effects: list[SwitchedOn] | None = None, errors: list[Any] | None = None, **values: Any) -> Setup:
+    model = Model(name="lever", title="", function=balance, errors=errors or [])
+    return replace(default_setup(model, **values), effects=tuple(effects or ()))
+
+
+# One calculation
+
+
+def test_a_single_calculation_answers_in_numbers() -> None:
+    answer = evaluate(setup_with())
+    assert (answer.hold, answer.torque) == (20.0, 20.0)
+    assert type(answer.hold) is float
+
+
+def test_what_is_given_replaces_what_is_computed() -> None:
+    assert evaluate(setup_with(measured="7 N")).hold == 7.0
+
+
+@pytest.mark.parametrize("arm", [0.0, float("nan")])
+def test_what_does_not_hold_ends_a_single_calculation(arm: float) -> None:
+    with pytest.raises(InfeasibleError, match="the arm has no length"):
+        evaluate(setup_with(arm=arm))
+
+
+def test_a_result_without_value_ends_a_single_calculation() -> None:
+    with pytest.raises(InfeasibleError, match="the result 'hold' of lever is not finite"):
+        evaluate(setup_with(other_arm=0.0))
+
+
+# Batches
+
+
+def test_a_batch_equals_the_loop() -> None:
+    rng = np.random.default_rng(3)
+    columns = {"force": rng.uniform(1, 5, 7), "arm": rng.uniform(1, 2, 7), "other_arm": rng.uniform(1, 2, 7)}
+    batch = evaluate_rows(setup_with(), columns, 7)
+    for row in range(7):
+        alone = evaluate(setup_with(**{name: float(values[row]) for name, values in columns.items()}))
+        assert batch.results["hold"][row] == alone.hold
+        assert batch.results["torque"][row] == alone.torque
+    assert (len(batch), batch.failed.any(), batch.reasons) == (7, False, {})
+
+
+def test_a_batch_is_one_call() -> None:
+    CALLS.clear()
+    evaluate_rows(setup_with(), {"force": np.ones(50)}, 50)
+    assert CALLS == [50]
+
+
+def test_failed_rows_keep_their_first_reason() -> None:
+    arms = np.array([1.0, 0.0, np.nan, 1.0, -1.0])
+    forces = np.array([1.0, 1.0, 1.0, 2000.0, 2000.0])
+    batch = evaluate_rows(setup_with(), {"arm": arms, "force": forces}, 5)
+    assert batch.failed.tolist() == [False, True, True, True, True]
+    assert batch.reasons == {
+        1: "the arm has no length",
+        2: "the arm has no length",
+        3: "the lever breaks",
+        4: "the arm has no length",
+    }
+    assert np.isnan(batch.results["hold"]).tolist() == batch.failed.tolist()
+    assert batch.results["torque"][0] == 1.0
+
+
+def test_a_row_that_is_not_finite_fails_with_the_name_of_the_result() -> None:
+    batch = evaluate_rows(setup_with(), {"other_arm": np.array([1.0, 0.0])}, 2)
+    assert batch.reasons == {1: "the result 'hold' is not finite"}
+    assert np.isnan(batch.results["torque"][1])
+
+
+def test_rows_that_do_not_differ_are_computed_once() -> None:
+    CALLS.clear()
+    batch = evaluate_rows(setup_with(), {"force": 3.0}, 4)
+    assert batch.results["torque"].tolist() == [6.0] * 4
+    assert len(CALLS) == 1
+    failed = evaluate_rows(setup_with(arm=0.0), {}, 3)
+    assert failed.reasons == dict.fromkeys(range(3), "the arm has no length")
+
+
+def test_a_batch_without_rows_is_empty() -> None:
+    batch = evaluate_rows(setup_with(), {"force": np.zeros(0)}, 0)
+    assert {name: values.shape for name, values in batch.results.items()} == {"hold": (0,), "torque": (0,)}
+
+
+def test_only_what_is_wanted_comes_back() -> None:
+    assert list(evaluate_rows(setup_with(), {"force": np.ones(2)}, 2, wanted={"torque"}).results) == ["torque"]
+
+
+@pytest.mark.parametrize(
+    ("columns", "sentence"),
+    [
+        (
+            {"forse": np.ones(3)},
+            "the column 'forse' is no input, condition or effect that is on. Did you mean 'force'?",
+        ),
+        ({"force": np.ones(4)}, r"the column 'force' has the shape \(4,\); expected one value or \(3,\)"),
+        ({"kind": ["plain"] * 2}, "the column 'kind' has 2 values for 3 rows"),
+        ({"effects.warm.slope": np.ones(3)}, "the column 'effects.warm.slope' is no input"),
+    ],
+)
+def test_columns_that_nobody_knows(columns: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(UsageError, match=sentence):
+        evaluate_rows(setup_with(), columns, 3)
+
+
+def test_a_batch_is_split_by_what_has_one_value_per_call() -> None:
+    CALLS.clear()
+    columns = {
+        "force": np.array([1.0, 2.0, 3.0, 4.0, 5.0]),
+        "kind": ["plain", "double", "plain", "double", "plain"],
+        "bearings": np.array([1, 1, 2, 1, 1]),
+    }
+    batch = evaluate_rows(setup_with(), columns, 5)
+    assert batch.results["hold"].tolist() == [2.0, 2.0, 3.0, 4.0, 10.0]
+    assert sorted(CALLS) == [1, 2, 2]
+
+
+def test_a_split_batch_keeps_the_rows_of_its_reasons() -> None:
+    columns = {"arm": np.array([1.0, 0.0, 1.0, 0.0]), "kind": np.array(["plain", "double", "plain", "plain"])}
+    batch = evaluate_rows(setup_with(), columns, 4)
+    assert batch.reasons == {1: "the arm has no length", 3: "the arm has no length"}
+    assert batch.results["hold"][[0, 2]].tolist() == [10.0, 10.0]
+
+
+# Axes and tables
+
+
+@inputs
+class Shaft:
+    """A shaft with a load that travels."""
+
+    load: Float = given(1.0, "N")
+    steps: int = given(3)
+
+
+@results
+class Travel:
+    """Its deflection along the travel."""
+
+    place: Float = axis("m")
+    bow: Float = found("m", along="place")
+    level: Float = found("m", along="place")
+    most: Float = found("m")
+
+
+def travel(shaft: Shaft) -> Travel:
+    """Bow in proportion to the load."""
+    place = np.linspace(0.0, 1.0, shaft.steps)
+    bow = column(shaft.load) * place
+    feasible(bow < 100, "it bows too far")
+    return Travel(place=place, bow=bow, level=column(shaft.load) * 1.0, most=np.max(bow, axis=-1))
+
+
+TRAVEL = default_setup(Model(name="shaft", title="", function=travel))
+
+
+@pytest.mark.parametrize("count", [1, 3, 5])
+def test_along_an_axis_a_batch_is_a_matrix(count: int) -> None:
+    loads = np.arange(1.0, count + 1)
+    batch = evaluate_rows(TRAVEL, {"load": loads}, count)
+    assert batch.results["bow"].tolist() == [[0.0, load / 2, load] for load in loads]
+    assert batch.results["place"].tolist() == [[0.0, 0.5, 1.0]] * count
+    assert batch.results["level"].tolist() == [[load] * 3 for load in loads]
+    assert batch.results["most"].tolist() == loads.tolist()
+
+
+def test_a_condition_along_an_axis_fails_the_row() -> None:
+    batch = evaluate_rows(TRAVEL, {"load": np.array([1.0, 200.0, 2.0, 300.0])}, 4)
+    assert batch.failed.tolist() == [False, True, False, True]
+    with pytest.raises(InfeasibleError, match="it bows too far"):
+        evaluate(default_setup(TRAVEL.model, load=200.0))
+    alike = evaluate_rows(default_setup(TRAVEL.model, load=200.0), {}, 2)
+    assert alike.failed.all()
+
+
+def test_axes_of_different_length_are_filled_up() -> None:
+    batch = evaluate_rows(TRAVEL, {"load": np.array([1.0, 2.0]), "steps": [2, 3]}, 2)
+    np.testing.assert_array_equal(batch.results["bow"], [[0.0, 1.0, np.nan], [0.0, 1.0, 2.0]])
+    assert not batch.failed.any()
+
+
+@inputs
+class Pile:
+    """Groups of parts."""
+
+    size: Float = given(2.0, "")
+
+
+@results
+class Groups:
+    """As many groups as it takes."""
+
+    group: Float = rows("one per group")
+    content: Float = found("", along="group")
+    count: Float = found("")
+
+
+def grouped(pile: Pile) -> Groups:
+    """Call with one row at a time: the length is known only afterwards."""
+    CALLS.append(np.ndim(pile.size))
+    count = int(pile.size)
+    feasible(count > 0, "nothing to group")
+    return Groups(group=np.arange(count), content=np.full(count, pile.size), count=count)
+
+
+def test_tables_are_made_row_by_row() -> None:
+    CALLS.clear()
+    setup = default_setup(Model(name="pile", title="", function=grouped))
+    batch = evaluate_rows(setup, {"size": np.array([2.0, 0.0, 3.0])}, 3)
+    assert CALLS == [0, 0, 0]
+    np.testing.assert_array_equal(batch.results["count"], [2.0, np.nan, 3.0])
+    np.testing.assert_array_equal(batch.results["group"], [[0, 1, np.nan], [np.nan] * 3, [0, 1, 2]])
+    assert batch.reasons == {1: "nothing to group"}
+
+
+# Effects
+
+
+def pushed(lever: Lever, *, push: Float) -> Lever:
+    return replace(lever, extra=lever.extra + push)
+
+
+def doubled(lever: Lever, *, gain: Float) -> Lever:
+    return replace(lever, extra=lever.extra * (1 + gain))
+
+
+def rubbing(lever: Lever, base: Balance, *, rub: Float) -> Balance:
+    return replace(base, hold=base.hold + rub * lever.bearings)
+
+
+def misread(lever: Lever, base: Balance, *, gain: Float, room: Float) -> Balance:
+    return replace(base, hold=base.hold * (1 + gain * (room - 293.15)))
+
+
+ROOM = Condition("room", "degC", reference=20)
+PUSHED = Effect("pushed", on_inputs=pushed, unknowns=[Unknown("push", 0, 5, "N")])
+DOUBLED = Effect("doubled", on_inputs=doubled, unknowns=[Unknown("gain", 0, 5)])
+RUBBING = Effect("rubbing", on_results=rubbing, unknowns=[Unknown("rub", 0, 5, "N")])
+MISREAD = Effect("misread", on_reading=misread, needs=[ROOM], unknowns=[Unknown("gain", -1, 1, "1/K")])
+ERRORS = [MISREAD, PUSHED, RUBBING, DOUBLED]
+ON = [
+    SwitchedOn(DOUBLED, {"gain": 1.0}),
+    SwitchedOn(RUBBING, {"rub": 3.0}),
+    SwitchedOn(MISREAD, {"gain": 0.1}),
+    SwitchedOn(PUSHED, {"push": 2.0}),
+]
+
+
+def test_effects_act_in_order_at_their_places() -> None:
+    setup = setup_with(ON, ERRORS)
+    assert [item.effect.name for item in setup.effects] == ["misread", "pushed", "rubbing", "doubled"]
+    answer = evaluate(setup)
+    assert (answer.torque, answer.hold) == (28.0, 31.0)  # (10 + 2*2) * 2, then + 3
+
+
+def test_readings_act_only_when_they_are_read() -> None:
+    setup = replace(setup_with(ON, ERRORS), conditions={"room": 303.15})
+    assert evaluate(setup).hold == 31.0
+    assert evaluate(setup, reading=True).hold == pytest.approx(62.0)
+    assert evaluate(setup, reading=True).torque == 28.0
+    at_reference = setup_with(ON, ERRORS)
+    assert evaluate(at_reference, reading=True).hold == pytest.approx(31.0)
+
+
+def test_unknowns_and_conditions_are_columns() -> None:
+    setup = setup_with(ON, ERRORS)
+    columns = {
+        "room": np.array([293.15, 303.15]),
+        "effects.rubbing.rub": np.array([3.0, 0.0]),
+        "force": np.array([10, 0]),
+    }
+    batch = evaluate_rows(setup, columns, 2, reading=True)
+    np.testing.assert_allclose(batch.results["hold"], [31.0, 16.0])
+    np.testing.assert_allclose(evaluate_rows(setup, columns, 2).results["hold"], [31.0, 8.0])
+
+
+def test_an_effect_is_known_to_the_model_and_on_once() -> None:
+    with pytest.raises(UsageError, match="the effect 'pushed' is switched on twice"):
+        setup_with([SwitchedOn(PUSHED, {"push": 1.0})] * 2, ERRORS)
+    with pytest.raises(UsageError, match="lever has no effect 'pushed'"):
+        setup_with([SwitchedOn(PUSHED, {"push": 1.0})])
+
+
+# What a plugin can do wrong
+
+
+def dividing(lever: Lever) -> Balance:
+    """Fail in the plugin's own line."""
+    raise ZeroDivisionError("no arm")
+
+
+def inside_numpy(lever: Lever) -> Balance:
+    """Fail inside a library: the plugin's line is named, not the library's."""
+    return Balance(hold=float(np.linalg.inv(np.zeros((2, 2)))[0, 0]), torque=0.0)
+
+
+def forgetting(lever: Lever) -> Balance:
+    """Return nothing."""
+
+
+def wrong_shape(lever: Lever) -> Balance:
+    """Return three values whatever was asked."""
+    return Balance(hold=np.arange(3.0), torque=0.0)
+
+
+def a_text(lever: Lever) -> Balance:
+    """Return words."""
+    return Balance(hold="plenty", torque=0.0)  # type: ignore[arg-type]
+
+
+WRONG_FUNCTIONS = [
+    (dividing, r"test_evaluate\.py:\d+: lever failed: ZeroDivisionError: no arm"),
+    (inside_numpy, r"test_evaluate\.py:\d+: lever failed: LinAlgError: Singular matrix"),
+    (forgetting, "lever returned None, which is no Balance"),
+    (wrong_shape, r"lever: the result 'hold' has the shape \(3,\) in a call of"),
+    (a_text, "lever: the result 'hold' is 'plenty' in a call of"),
+]
+
+
+@pytest.mark.parametrize(("function", "sentence"), WRONG_FUNCTIONS)
+def test_a_failing_plugin_is_named_with_its_place(function: Any, sentence: str) -> None:
+    setup = default_setup(Model(name="lever", title="", function=function))
+    with pytest.raises(PluginError, match=sentence):
+        evaluate(setup)
+    with pytest.raises(PluginError, match=sentence):
+        evaluate_rows(setup, {"force": np.ones(2)}, 2)
+
+
+def test_the_line_named_is_the_line_that_failed() -> None:
+    setup = default_setup(Model(name="lever", title="", function=dividing))
+    with pytest.raises(PluginError) as caught:
+        evaluate(setup)
+    line = int(str(caught.value).split(".py:")[1].split(":")[0])
+    assert "ZeroDivisionError" in Path(__file__).read_text(encoding="utf-8").splitlines()[line - 1]
+
+
+def dividing_numbers(lever: Lever) -> Balance:
+    """Divide by a number that may be zero: infinite alone as it is in a batch."""
+    return Balance(hold=1 / lever.extra, torque=lever.force ** (lever.arm * -400))
+
+
+def test_alone_and_in_a_batch_numbers_behave_alike() -> None:
+    setup = default_setup(Model(name="lever", title="", function=dividing_numbers))
+    with pytest.raises(InfeasibleError, match="'hold' of lever is not finite"):
+        evaluate(setup)
+    assert evaluate_rows(setup, {"extra": np.array([0.0, 1.0])}, 2).reasons == {0: "the result 'hold' is not finite"}
+
+
+# What importing costs
+
+
+def loaded_modules(statement: str, folder: Path | None = None) -> set[str]:
+    code = f"import sys; {statement}; print(' '.join(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=folder)
+    return set(done.stdout.split())
+
+
+def test_importing_truing_costs_nothing() -> None:
+    assert not {"numpy", "pint", "scipy", "pydantic", "matplotlib", "pluggy"} & loaded_modules("import truing")
+
+
+HEAVY = {"pint", "scipy", "pydantic", "matplotlib", "sklearn", "pymoo", "jinja2"}
+
+
+def test_importing_a_plugin_costs_numpy_at_most() -> None:
+    data = Path(__file__).parents[1] / "data"
+    assert not HEAVY & loaded_modules("import pin_wear", data)
+
+
+@pytest.mark.parametrize("plugin", ["press_linkage"])
+def test_importing_our_plugins_costs_numpy_at_most(plugin: str) -> None:
+    assert not HEAVY & loaded_modules(f"import {plugin}")
