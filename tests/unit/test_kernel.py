@@ -1,0 +1,432 @@
+"""The kernel: who offers what, who adds what, and who is left out with name, version, file, line and reason."""
+
+import sys
+import textwrap
+from collections.abc import Callable
+from importlib import metadata
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from truing import Kernel
+from truing.errors import PluginError, UnknownPluginError
+from truing.kernel import Broken, Origin, entry_points, kernel_for
+
+GOOD = """
+from truing import Float, Model, Tolerance, found, given, hookimpl, inputs, off, results
+
+@inputs
+class Pin:
+    load: Float = given(2.0, "N")
+    area: Float = given(1.0, "m^2")
+
+@results
+class Wear:
+    pressure: Float = found("Pa", formula="load / area")
+
+def wear(pin: Pin) -> Wear:
+    return Wear(pressure=pin.load / pin.area)
+
+MODEL = Model(name="{name}", title="A pin", function=wear)
+
+@hookimpl
+def truing_models():
+    return [MODEL]
+"""
+
+GUEST_HEAD = """
+from dataclasses import replace
+from truing import (Condition, Effect, Float, Maximise, Minimise, Require, Section, Tolerance, Unknown, hookimpl,
+                    normal, off)
+"""
+
+Write = Callable[..., ModuleType]
+
+
+@pytest.fixture
+def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
+    """Write a module and import it."""
+    monkeypatch.syspath_prepend(str(tmp_path))
+
+    def make(name: str, text: str) -> ModuleType:
+        file = tmp_path / f"{name}.py"
+        file.write_text(textwrap.dedent(text), encoding="utf-8")
+        monkeypatch.delitem(sys.modules, name, raising=False)
+        return __import__(name)
+
+    return make
+
+
+def guest(hook: str, answer: str, head: str = "") -> str:
+    argument = "" if hook == "truing_models" else "model"
+    return f"{GUEST_HEAD}{head}\n@hookimpl\ndef {hook}({argument}):\n    return {answer}\n"
+
+
+def installed_from(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, **texts: str | None) -> list[metadata.EntryPoint]:
+    """Put plugins on the path as installed distributions: module texts by name; None leaves the module out."""
+    monkeypatch.syspath_prepend(str(tmp_path))
+    for name, text in texts.items():
+        monkeypatch.delitem(sys.modules, name, raising=False)
+        folder = tmp_path / f"{name}-3.1.dist-info"
+        folder.mkdir()
+        (folder / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}-dist\nVersion: 3.1\n", encoding="utf-8")
+        (folder / "entry_points.txt").write_text(f"[truing.plugins]\n{name} = {name}\n", encoding="utf-8")
+        if text is not None:
+            (tmp_path / f"{name}.py").write_text(textwrap.dedent(text), encoding="utf-8")
+    monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
+    return [entry for entry in entry_points() if entry.name in texts]
+
+
+# What is offered
+
+
+def test_a_kernel_of_modules_knows_just_these(write: Write) -> None:
+    kernel = Kernel([write("pin_one", GOOD.format(name="pin_one"))])
+    assert list(kernel.offers) == ["pin_one"]
+    assert kernel.broken == []
+    offer = kernel.offer("pin_one")
+    assert (offer.model.title, offer.origin.name, offer.added) == ("A pin", "pin_one", ())
+    assert offer.origin.file.endswith("pin_one.py")
+
+
+def test_models_are_named_by_plugin_and_model(write: Write) -> None:
+    kernel = Kernel([write("pins", GOOD.format(name="pin_wear") + "\nOTHER = 1\n")])
+    assert list(kernel.offers) == ["pins.pin_wear"]
+    for name in ("pins.pin_wear", "pins", "pin_wear"):
+        assert kernel.offer(name).name == "pins.pin_wear"
+
+
+def test_the_main_model_answers_to_its_full_name_too(write: Write) -> None:
+    assert Kernel([write("pin_one", GOOD.format(name="pin_one"))]).offer("pin_one.pin_one").name == "pin_one"
+
+
+TWO = GOOD.replace("return [MODEL]", "return [MODEL, Model(name='{other}', title='', function=wear)]")
+
+
+def test_a_plugin_with_several_models_asks_which(write: Write) -> None:
+    kernel = Kernel([write("pins", TWO.format(name="first", other="second"))])
+    assert list(kernel.offers) == ["pins.first", "pins.second"]
+    with pytest.raises(UnknownPluginError, match=r"offers pins\.first and pins\.second; write one of these"):
+        kernel.offer("pins")
+
+
+def test_an_unknown_name_gets_a_near_miss(write: Write) -> None:
+    kernel = Kernel([write("pin_one", GOOD.format(name="pin_one"))])
+    with pytest.raises(
+        UnknownPluginError, match=r"no plugin offers 'pin_on'\. Did you mean 'pin_one'\? Installed: pin"
+    ):
+        kernel.offer("pin_on")
+    with pytest.raises(UnknownPluginError, match="Installed: none"):
+        Kernel().offer("pin_one")
+
+
+# A name used twice
+
+
+def test_a_model_name_used_twice_is_refused_naming_both(write: Write) -> None:
+    kernel = Kernel([write(name, GOOD.format(name="pin_wear")) for name in ("left", "right")])
+    assert list(kernel.offers) == ["left.pin_wear", "right.pin_wear"]
+    with pytest.raises(UnknownPluginError, match=r"'pin_wear' is used twice, by left\.pin_wear and right\.pin_wear"):
+        kernel.offer("pin_wear")
+    assert [kernel.offer(name).origin.name for name in ("left", "right.pin_wear")] == ["left", "right"]
+    assert [broken.plugin for broken in kernel.broken] == ["left", "right"]
+    for broken in kernel.broken:
+        assert "left" in broken.reason
+        assert "right" in broken.reason
+
+
+def test_a_name_taken_from_the_plugin_called_like_it_is_refused_too(write: Write) -> None:
+    kernel = Kernel([write("pin_wear", GOOD.format(name="pin_wear")), write("other", GOOD.format(name="pin_wear"))])
+    with pytest.raises(UnknownPluginError, match="is used twice"):
+        kernel.offer("pin_wear")
+    assert kernel.offer("other.pin_wear").origin.name == "other"
+    assert kernel.offer("pin_wear.pin_wear").origin.name == "pin_wear"
+
+
+def test_two_models_of_one_name_in_one_plugin(write: Write) -> None:
+    kernel = Kernel([write("pins", TWO.format(name="same", other="same"))])
+    assert list(kernel.offers) == ["pins.same"]
+    assert "offers two models called 'same'" in kernel.broken[0].reason
+
+
+def test_a_plugin_name_used_twice_is_refused(write: Write) -> None:
+    module = write("pin_one", GOOD.format(name="pin_one"))
+    kernel = Kernel([module, module])
+    assert list(kernel.offers) == ["pin_one"]
+    assert "the plugin name 'pin_one' is taken by" in kernel.broken[0].reason
+
+
+# Broken plugins: named with version, file, line and exception, while every other works
+
+BROKEN = {
+    "import error": (
+        "import math\nimport does_not_exist\n",
+        2,
+        "ModuleNotFoundError: No module named 'does_not_exist'",
+    ),
+    "syntax error": ("x = 1\n\ndef f(:\n    pass\n", 3, "SyntaxError: "),
+    "raises": ("x = 1\nraise RuntimeError('no licence')\n", 2, "RuntimeError: no licence"),
+    "leaves": ("import sys\n\n\nsys.exit(3)\n", 4, "SystemExit: 3"),
+    "missing": (None, None, "ModuleNotFoundError: No module named 'guest_m'"),
+    "bad declaration": (GOOD.format(name="my pin"), 16, "DeclarationError: model 'my pin': the name 'my pin' may hold"),
+    "hook raises": (
+        GOOD.format(name="guest_m").replace("return [MODEL]", "return [MODEL][1]"),
+        20,
+        "IndexError: list index out of range",
+    ),
+    "hook returns nothing": (
+        GOOD.format(name="guest_m").replace("return [MODEL]", "pass"),
+        18,
+        "DeclarationError: truing_models returned None; it returns a list",
+    ),
+    "hook returns no model": (
+        GOOD.format(name="guest_m").replace("return [MODEL]", "return [Pin]"),
+        18,
+        "which is no Model",
+    ),
+    "wrong signature": (guest("truing_objectives", "[]").replace("(model)", "(model, file)"), 6, "asks for 'file'"),
+    "misspelt hook": (
+        guest("truing_models", "[]").replace("truing_models", "truing_model"),
+        6,
+        "'truing_model' is no hook",
+    ),
+    "unmarked hook": (GOOD.format(name="guest_m").replace("@hookimpl\n", ""), 18, "truing_models() is not marked"),
+    "offers nothing": ("x = 1\n", None, "it offers nothing"),
+}
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_a_broken_plugin_is_named_and_disturbs_nobody(
+    case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text, line, reason = BROKEN[case]
+    installed_from(tmp_path, monkeypatch, guest_m=text, pin_one=GOOD.format(name="pin_one"))
+    kernel = Kernel.installed()
+    assert kernel.offer("pin_one").model.title == "A pin"
+    broken = next(item for item in kernel.broken if item.plugin == "guest_m")
+    assert (broken.version, broken.line) == ("3.1", line)
+    assert reason in broken.reason
+    if text is not None:
+        assert broken.file == str(tmp_path / "guest_m.py")
+        place = f"{broken.file}:{line}" if line else broken.file
+        assert str(broken) == f"{place}: plugin 'guest_m' 3.1: {broken.reason}"
+    with pytest.raises(PluginError, match=r"plugin 'guest_m' 3\.1: "):
+        kernel.offer("guest_m")
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_strict_raises_at_the_first_broken_plugin(case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    installed_from(tmp_path, monkeypatch, guest_m=BROKEN[case][0])
+    with pytest.raises(PluginError, match=r"plugin 'guest_m' 3\.1: ") as caught:
+        Kernel.installed(strict=True).offers  # noqa: B018
+    assert caught.value.__cause__ is not None
+
+
+def test_a_fault_in_a_module_of_the_guest_is_named_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    installed_from(tmp_path, monkeypatch, guest_m=None)
+    package = tmp_path / "guest_m"
+    package.mkdir()
+    (package / "__init__.py").write_text("from guest_m import physics\n", encoding="utf-8")
+    (package / "physics.py").write_text("import numpy as np\n\nnp.zeros(-1)\n", encoding="utf-8")
+    broken = next(item for item in Kernel.installed().broken if item.plugin == "guest_m")
+    assert (broken.file, broken.line) == (str(package / "physics.py"), 3)
+    assert "ValueError: negative dimensions" in broken.reason
+
+
+def test_names_come_from_metadata_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = installed_from(tmp_path, monkeypatch, guest_m="raise RuntimeError", pin_one=GOOD.format(name="pin_one"))
+    assert [entry.name for entry in found] == ["guest_m", "pin_one"]
+    assert "guest_m" not in sys.modules
+    kernel = Kernel.installed()
+    origin = kernel.offer("pin_one").origin
+    assert (origin.version, origin.distribution, origin.ref) == ("3.1", "pin_one-dist", "entry:pin_one")
+
+
+# Guests that add to somebody else's model
+
+ADDITIONS: list[tuple[str, str, str]] = [
+    ("truing_error_sources", "[Tolerance('load', normal(sd='3 %'))]", "load"),
+    (
+        "truing_error_sources",
+        "[Effect('wider', on_inputs=wider, unknowns=[Unknown('extra', 0, 1, 'm^2')])]",
+        "wider",
+    ),
+    ("truing_objectives", "[Minimise('pressure')]", "pressure"),
+    ("truing_reports", "[Section('Pressure', 'pressure')]", "Pressure"),
+]
+WIDER = "\ndef wider(pin, *, extra):\n    return replace(pin, area=pin.area + extra)\n"
+
+
+@pytest.mark.parametrize(("hook", "answer", "what"), ADDITIONS)
+def test_a_guest_adds_to_somebody_elses_model(write: Write, hook: str, answer: str, what: str) -> None:
+    kernel = Kernel([write("zebra", guest(hook, answer, WIDER)), write("pin_one", GOOD.format(name="pin_one"))])
+    offer = kernel.offer("pin_one")
+    assert kernel.broken == []
+    assert [(item.what, item.plugin) for item in offer.added] == [(what, "zebra")]
+    assert len([*offer.model.errors, *offer.model.objectives, *offer.model.sheet]) == 1
+
+
+def test_what_a_plugin_adds_to_its_own_model_is_its_own(write: Write) -> None:
+    text = (
+        GOOD.format(name="pin_one")
+        + "\n@hookimpl\ndef truing_error_sources(model):\n    return [Tolerance('load', off())]\n"
+    )
+    offer = Kernel([write("pin_one", text)]).offer("pin_one")
+    assert list(offer.model.tolerances) == ["load"]
+    assert offer.added == ()
+
+
+BAD_ADDITIONS: list[tuple[str, str, str]] = [
+    ("truing_error_sources", "[Tolerance('laod', off())]", "'laod', which is no input. Did you mean 'load'?"),
+    ("truing_error_sources", "[Tolerance('area', off())]", "two error sources are called 'area'"),
+    ("truing_error_sources", "[Tolerance('x', 'sd 3 %', on=['load'])]", "has the spread 'sd 3 %'"),
+    ("truing_error_sources", "['load']", "is neither a Tolerance nor an Effect"),
+    ("truing_error_sources", "[None]", "is neither a Tolerance nor an Effect"),
+    (
+        "truing_error_sources",
+        "[Effect('e', on_inputs=lambda p, *, a, load: p, unknowns=[Unknown('a', 0, 1)], "
+        "needs=[Condition('load', 'N')])]",
+        "the condition 'load' has the name of an input",
+    ),
+    ("truing_objectives", "[Minimise('presure')]", "'presure', which is neither input nor result. Did you mean"),
+    ("truing_objectives", "['pressure']", "is no objective"),
+    ("truing_reports", "[Section('Wear', 'depth')]", "section 'Wear' names 'depth', which is no result"),
+    ("truing_reports", "[3]", "3 is no Section"),
+]
+
+
+@pytest.mark.parametrize(("hook", "answer", "reason"), BAD_ADDITIONS)
+def test_what_does_not_fit_is_left_out_by_name(write: Write, hook: str, answer: str, reason: str) -> None:
+    first = guest("truing_error_sources", "[Tolerance('area', off())]")
+    third = guest("truing_reports", "[Section('Pressure', 'pressure')]")
+    modules = [write("a_guest", first), write("bad", guest(hook, answer)), write("c_guest", third)]
+    kernel = Kernel([*modules, write("pin_one", GOOD.format(name="pin_one"))])
+    offer = kernel.offer("pin_one")
+    assert [item.plugin for item in offer.added] == ["a_guest", "c_guest"]
+    (broken,) = kernel.broken
+    assert (broken.plugin, broken.line) == ("bad", 6)
+    assert broken.file.endswith("bad.py")
+    assert reason in broken.reason
+    assert "is left out of 'pin_one'" in broken.reason
+
+
+def test_a_guest_that_adds_to_everybody_hits_only_whom_it_fits(write: Write) -> None:
+    other = GOOD.format(name="pin_two").replace("load", "force")
+    kernel = Kernel(
+        [
+            write("pin_one", GOOD.format(name="pin_one")),
+            write("pin_two", other),
+            write("zebra", guest("truing_error_sources", "[Tolerance('load', off())]")),
+        ]
+    )
+    assert list(kernel.offer("pin_one").model.tolerances) == ["load"]
+    assert list(kernel.offer("pin_two").model.tolerances) == []
+    assert "is left out of 'pin_two'" in kernel.broken[0].reason
+
+
+def test_a_guest_whose_hook_raises_is_left_out(write: Write) -> None:
+    text = guest("truing_reports", "[1 / 0]")
+    kernel = Kernel([write("pin_one", GOOD.format(name="pin_one")), write("zebra", text)])
+    assert kernel.offer("pin_one").added == ()
+    assert [(item.plugin, item.line, item.reason) for item in kernel.broken] == [
+        ("zebra", 8, "ZeroDivisionError: division by zero")
+    ]
+
+
+def test_guests_come_in_the_order_of_their_names(write: Write) -> None:
+    def adding(name: str) -> str:
+        return guest("truing_error_sources", f"[Tolerance('{name}', off(), on=['load'])]")
+
+    names = ["delta", "alpha", "charlie", "bravo"]
+    kernel = Kernel([*(write(name, adding(name)) for name in names), write("pin_one", GOOD.format(name="pin_one"))])
+    offer = kernel.offer("pin_one")
+    assert list(offer.model.tolerances) == sorted(names)
+    assert [item.plugin for item in offer.added] == sorted(names)
+
+
+def test_asking_twice_changes_nothing(write: Write) -> None:
+    kernel = Kernel([write("pin_one", GOOD.format(name="pin_one")), write("zebra", guest("truing_reports", "[3]"))])
+    assert (len(kernel.broken), len(kernel.broken)) == (1, 1)
+    kernel.add(Origin("late", "1", "", "late.py", "module:late"), lambda: write("late", GOOD.format(name="late")))
+    assert [item.plugin for item in kernel.broken] == ["zebra", "zebra"]  # once for each model
+    assert kernel.offers is kernel.offers
+
+
+# A single file
+
+
+def test_a_single_file_is_a_plugin(tmp_path: Path) -> None:
+    folder = tmp_path / "über uns, mit Leerzeichen"
+    folder.mkdir()
+    (folder / "helper_of_mine.py").write_text("AREA = 3.0\n", encoding="utf-8")
+    file = folder / "my_calculation.py"
+    file.write_text(GOOD.format(name="pin").replace("1.0", "AREA") + "", encoding="utf-8")
+    file.write_text("from helper_of_mine import AREA\n" + file.read_text(encoding="utf-8"), encoding="utf-8")
+    kernel = Kernel()
+    origin = kernel.add_file(file)
+    offer = kernel.offer("my_calculation")
+    assert (origin.name, offer.model.name, offer.model.inputs().area) == ("my_calculation", "pin", 3.0)
+    again = kernel_for(origin.ref)
+    assert again.offer("my_calculation").model.name == "pin"
+
+
+def test_a_file_named_like_a_module_hides_nobody(tmp_path: Path) -> None:
+    import json
+
+    file = tmp_path / "json.py"
+    file.write_text(GOOD.format(name="pin"), encoding="utf-8")
+    kernel = Kernel()
+    kernel.add_file(file)
+    assert kernel.offer("json").model.name == "pin"
+    assert sys.modules["json"] is json
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "reason"),
+    [
+        ("absent.py", None, "no such file"),
+        ("sheet.xlsx", b"PK\x03\x04", "not a Python file"),
+        ("binary.py", b"\x00\x01\xff", "SyntaxError"),
+        ("empty.py", b"", "it offers nothing"),
+    ],
+)
+def test_files_that_are_no_plugin(tmp_path: Path, name: str, content: bytes | None, reason: str) -> None:
+    file = tmp_path / name
+    if content is not None:
+        file.write_bytes(content)
+    kernel = Kernel()
+    kernel.add_file(file)
+    assert reason in kernel.broken[0].reason
+    assert file.stem not in sys.modules or content == b""
+    with pytest.raises(PluginError, match=name):
+        kernel.offer(file.stem)
+
+
+def test_modules_are_found_again_alone(write: Write) -> None:
+    modules = [write("zebra", guest("truing_reports", "[Section('P', 'pressure')]"))]
+    kernel = Kernel([*modules, write("pin_one", GOOD.format(name="pin_one"))])
+    again = kernel_for(kernel.offer("pin_one").origin.ref)
+    assert set(again.offers) == {"pin_one"}
+    assert again.offer("pin_one").added == kernel.offer("pin_one").added
+
+
+def test_broken_prints_without_a_line() -> None:
+    assert str(Broken("p", "1.0", "p.py", None, "why")) == "p.py: plugin 'p' 1.0: why"
+
+
+def hooks_page() -> list[Any]:
+    from truing import hookspecs
+
+    return [value for name, value in vars(hookspecs).items() if name.startswith("truing_")]
+
+
+def test_the_page_of_hooks_says_when_and_what() -> None:
+    assert [hook.__name__ for hook in hooks_page()] == [
+        "truing_models",
+        "truing_error_sources",
+        "truing_objectives",
+        "truing_reports",
+    ]
+    assert all(hook.__doc__ and hook.__annotations__["return"] for hook in hooks_page())
