@@ -1,0 +1,167 @@
+"""The commented inputs file that ``calc init`` writes: the plugin's own, or one made from the declaration."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator
+from typing import Any
+
+from truing.declare.fields import InputField
+from truing.declare.model import Model, Study
+from truing.declare.sources import Effect, Tolerance, Unknown
+from truing.errors import PluginError
+from truing.inputs_file.defaults import default_of, spread_text, toml_key, toml_value
+from truing.inputs_file.values import PURE, plain
+from truing.kernel import Offer
+
+WIDTH = 100
+HEAD = {"project": "", "drawing": "", "revision": "", "prepared_by": "", "checked_by": "", "approved_by": ""}
+
+
+def example_text(offer: Offer) -> str:
+    """Return a commented inputs file that runs as it is: the one the plugin ships, else its defaults.
+
+    In the latter every input stands with its default, and everything else as a comment to be uncommented. A data file
+    that has no default must still be named. Raises PluginError where the shipped example cannot be read.
+    """
+    if offer.model.example is not None:
+        try:
+            return offer.model.example.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise PluginError(
+                f"{offer.model.example}: the example of '{offer.name}' cannot be read: {error}"
+            ) from error
+    return "\n".join(_lines(offer)) + "\n"
+
+
+def _lines(offer: Offer) -> Iterator[str]:
+    model = offer.model
+    yield from _comment(f"{model.title}. Inputs of `calc run {offer.name}`.")
+    yield from _comment('Every value carries its unit: "120 N", "0.12 kN". A line that begins with # is not read.')
+    yield f"plugin = {toml_value(offer.name)}"
+    yield from ("", "[sheet]")
+    yield from (f"{name} = {toml_value(value)}" for name, value in HEAD.items())
+    yield '# detail = "normal"'
+    yield from _comment('"short", "normal" or "full"', "#   ")
+    yield from ("", "[inputs]")
+    for item in model.input_fields.values():
+        yield from _input(item)
+    yield from _tolerances(model)
+    yield from _conditions(model)
+    yield from _effects(model)
+    yield from _studies(model)
+    yield from _units(model)
+
+
+def _comment(text: str, mark: str = "# ") -> list[str]:
+    """Wrap words into comment lines."""
+    return [f"{mark}{line}" for line in textwrap.wrap(text, WIDTH - len(mark))]
+
+
+def _input(item: InputField) -> Iterator[str]:
+    from truing.inputs_file.schema_words import described
+
+    words = described(item)
+    if item.choices:
+        words = "; ".join(part for part in (words, " or ".join(toml_value(choice) for choice in item.choices)) if part)
+    yield from _comment(words)
+    yield _assignment(item)
+
+
+def _assignment(item: InputField) -> str:
+    default = default_of(item)
+    if default is not None:
+        return f"{item.name} = {toml_value(default)}"
+    if item.kind == "file":
+        from dataclasses import MISSING
+
+        is_open = item.spec.default is not MISSING
+        return f'{"# " if is_open else ""}{item.name} = {{ file = "{item.name}.txt" }}'
+    like = "..." if item.kind in {"choice", "text"} else f"1 {item.unit}".strip()
+    return f"# {item.name} = {toml_value(like)}"
+
+
+def _heading(title: str, words: str) -> list[str]:
+    return ["", *_comment(words), f"# [{title}]"]
+
+
+def _tolerances(model: Model[Any, Any]) -> Iterator[str]:
+    if not model.tolerances:
+        return
+    words = 'How inputs scatter: "±0.05 mm", "sd 3 %", "band 0.125 mm", "IT6", "off". As declared:'
+    yield from _heading("tolerances", words)
+    defaults = {name: default_of(item) for name, item in model.input_fields.items()}
+    for tolerance in model.tolerances.values():
+        yield from _comment(_why(tolerance), "#   ")
+        stated = spread_text(tolerance.spread, defaults)
+        if stated:
+            yield f"# {toml_key(tolerance.name)} = {toml_value(stated)}"
+        else:
+            yield f"#   {tolerance.name} is {tolerance.spread.text}"
+
+
+def _why(tolerance: Tolerance) -> str:
+    on = "" if tolerance.on == (tolerance.name,) else f"on {', '.join(tolerance.on)}"
+    return "; ".join(part for part in (on, tolerance.why, tolerance.source) if part)
+
+
+def _conditions(model: Model[Any, Any]) -> Iterator[str]:
+    if not model.conditions:
+        return
+    yield from _heading("conditions", "What is measured but no input of the model; effects vanish at these values.")
+    for condition in model.conditions.values():
+        yield from _comment(condition.note, "#   ")
+        yield f"# {condition.name} = {toml_value(f'{plain(condition.reference)} {condition.unit}'.strip())}"
+
+
+def _effects(model: Model[Any, Any]) -> Iterator[str]:
+    for effect in model.effects.values():
+        words = effect.why or effect.looks_like
+        yield from _heading(f"effects.{toml_key(effect.name)}", f"An effect to switch on: {words or effect.name}.")
+        for unknown in effect.unknowns:
+            bounds = f"from {plain(unknown.low)} to {plain(unknown.high)} {unknown.unit}".strip()
+            yield from _comment("; ".join(part for part in (unknown.note, bounds) if part), "#   ")
+            yield f"# {unknown.name} = {toml_value(_middle(unknown, effect))}"
+
+
+def _middle(unknown: Unknown, effect: Effect[Any, Any]) -> str:
+    """Return nothing for an amplitude, the middle (on a logarithmic scale where positive) for a shape."""
+    value = 0.0
+    if not unknown.is_amplitude:
+        positive = unknown.low > 0
+        value = (unknown.low * unknown.high) ** 0.5 if positive else (unknown.low + unknown.high) / 2
+    short = plain(float(f"{value:.3g}"))
+    return short if unknown.unit in PURE else f"{short} {unknown.unit}"
+
+
+def _studies(model: Model[Any, Any]) -> Iterator[str]:
+    if not model.studies:
+        return
+    yield from _heading("studies", "Which studies run, in this order, and where their random numbers begin.")
+    yield f"# run = {toml_value([study.name for study in model.studies])}"
+    yield "# seed = 1"
+    for study in model.studies:
+        options = [f"# {name} = {toml_value(value)}" for name, value in _options(study).items()]
+        if options:
+            yield from ("", f"# [studies.{toml_key(study.name)}]", *options)
+
+
+def _options(study: Study) -> dict[str, Any]:
+    """Return the options of a study that a file can state as they are."""
+    from truing.inputs_file.study_options import options_of
+
+    values = {name: getattr(study, name) for name in options_of(study)}
+    return {name: value for name, value in values.items() if _is_plain(value)}
+
+
+def _is_plain(value: Any) -> bool:
+    if isinstance(value, (list, tuple)):
+        return all(_is_plain(one) for one in value)
+    return isinstance(value, (bool, int, float, str))
+
+
+def _units(model: Model[Any, Any]) -> Iterator[str]:
+    printed = {name: item.unit for name, item in model.result_fields.items() if item.unit not in PURE}
+    if printed:
+        yield from _heading("units", "The unit in which a result is printed.")
+        yield from (f"# {name} = {toml_value(unit)}" for name, unit in printed.items())

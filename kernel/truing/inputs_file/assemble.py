@@ -1,0 +1,179 @@
+"""From checked values to a Setup: what depends on several entries is checked here, against the nominals."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from truing.declare.fields import InputField
+from truing.declare.model import Model, Study
+from truing.declare.sources import Tolerance
+from truing.declare.spreads import Off, Spread, Target
+from truing.errors import Fault, TruingError
+from truing.inputs_file.checks import renamed
+from truing.inputs_file.document import Document
+from truing.inputs_file.values import Reading
+from truing.kernel import Offer
+from truing.setup import Setup, SwitchedOn
+
+Values = Mapping[tuple[str, ...], Any]
+
+
+def nominals_of(model: Model[Any, Any], values: Values) -> dict[str, Any]:
+    """Return every input and condition in SI: as stated, else as declared; files that are missing are left out."""
+    found: dict[str, Any] = {name: condition.zero for name, condition in model.conditions.items()}
+    for name, item in model.input_fields.items():
+        if hasattr(item.spec, "initial"):
+            found[name] = item.spec.initial()
+    for (section, name, *_), value in ((path, value) for path, value in values.items() if len(path) == 2):
+        if section in {"inputs", "conditions"}:
+            found[name] = value
+    return found
+
+
+def take_old_names(offer: Offer, reading: Reading) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Move values under old names to the new ones; a name that is given both ways is a fault."""
+    for old, new in renamed(offer.model).items():
+        if ("old names", old) not in reading.values:
+            continue
+        value = reading.values.pop(("old names", old))
+        if ("inputs", new) in reading.values:
+            yield ("inputs", old), f"'{old}' is the old name of '{new}', which is given too; leave '{old}' out"
+        reading.values.setdefault(("inputs", new), value)
+        until = f"{offer.origin.name} {_next_major(offer.origin.version)}"
+        reading.values["warnings", old] = f"'{old}' is now called '{new}'; the old name goes with {until}"
+
+
+def _next_major(version: str) -> str:
+    major = version.split(".")[0]
+    return f"{int(major) + 1}.0" if major.isdigit() else "in its next major release"
+
+
+def spread_faults(model: Model[Any, Any], document: Document, values: Values) -> Iterator[Fault]:
+    """Resolve every tolerance against the nominals, so that a wrong unit or grade is known by its line."""
+    nominals = nominals_of(model, values)
+    for tolerance in model.tolerances.values():
+        stated = ("tolerances", tolerance.name) in values
+        spread = spreads_of(model, values)[tolerance.name]
+        for name in tolerance.on:
+            try:
+                sentence = _unresolved(tolerance, spread, name, model, nominals, stated=stated)
+            except (TruingError, ValueError, KeyError) as error:
+                sentence = str(error)
+            if sentence:
+                place = ("tolerances", tolerance.name) if stated else ("inputs", name)
+                own = "" if sentence.startswith("'" + name) else f"{tolerance.name}: "
+                yield document.fault(place, own + sentence if stated else f"tolerance '{tolerance.name}': {sentence}")
+                break
+
+
+def _unresolved(
+    tolerance: Tolerance,
+    spread: Spread,
+    name: str,
+    model: Model[Any, Any],
+    nominals: Mapping[str, Any],
+    *,
+    stated: bool,
+) -> str:
+    """Return why a spread does not resolve for one of its inputs, or nothing."""
+    if name not in nominals:
+        return ""
+    nominal = float(nominals[name])
+    if math.isnan(nominal):
+        return f"'{name}' is not given, so it has no tolerance; state it or write \"off\"" if stated else ""
+    item = model.input_fields.get(name)
+    unit = item.unit if item is not None else model.conditions[name].unit
+    resolved = spread.resolve(Target(name, nominal, unit, nominals.__getitem__))
+    if resolved is not None and not (math.isfinite(resolved.mean) and math.isfinite(resolved.sd)):
+        return f"the tolerance of '{name}' is not finite"
+    return ""
+
+
+def spreads_of(model: Model[Any, Any], values: Values) -> dict[str, Spread]:
+    """Return the tolerances in force; one on inputs that are not given is off."""
+    nominals = nominals_of(model, values)
+    found: dict[str, Spread] = {}
+    for tolerance in model.tolerances.values():
+        stated = values.get(("tolerances", tolerance.name))
+        absent = all(_is_nan(nominals.get(name)) for name in tolerance.on)
+        found[tolerance.name] = Off() if absent and stated is None else stated or tolerance.spread
+    return found
+
+
+def _is_nan(value: Any) -> bool:
+    return isinstance(value, float) and math.isnan(value)
+
+
+def effects_of(model: Model[Any, Any], values: Values) -> tuple[SwitchedOn, ...]:
+    """Return the effects that are on, in the order of their declaration."""
+    on = []
+    for name, effect in model.effects.items():
+        stated = {unknown.name: values.get(("effects", name, unknown.name)) for unknown in effect.unknowns}
+        if any(value is None for value in stated.values()):
+            continue
+        covariance = values.get(("effects", name, "covariance"), ())
+        sds = {
+            unknown: values[("effects", name, unknown, "sd")]
+            for unknown in stated
+            if ("effects", name, unknown, "sd") in values
+        }
+        if covariance:
+            sds = {unknown: math.sqrt(covariance[place][place]) for place, unknown in enumerate(stated)} | sds
+        on.append(SwitchedOn(effect, {key: float(value) for key, value in stated.items()}, sds, covariance))  # type: ignore[arg-type]
+    return tuple(on)
+
+
+def studies_of(model: Model[Any, Any], values: Values, faults: list[tuple[tuple[str, ...], str]]) -> tuple[Study, ...]:
+    """Return the studies that run, in order, with the options the file sets."""
+    studies: dict[str, Study] = {}
+    for study in model.studies:
+        options = {path[2]: value for path, value in values.items() if path[:2] == ("studies", study.name)}
+        try:
+            studies[study.name] = dataclasses.replace(study, **options) if options else study  # type: ignore[type-var]
+        except (TruingError, ValueError, TypeError) as error:
+            place = ("studies", study.name, next(iter(options)))
+            faults.append((place, f"study '{study.name}': {error}"))
+    chosen = values.get(("studies", "run"))
+    return tuple(studies.values()) if chosen is None else tuple(studies[name] for name in chosen if name in studies)
+
+
+def make_setup(offer: Offer, reading: Reading, studies: tuple[Study, ...], file: str) -> Setup:
+    """Put the checked values together."""
+    from truing.declare.fields import make
+
+    model, values = offer.model, reading.values
+    fields: Mapping[str, InputField] = model.input_fields
+    stated = {path: value for path, value in values.items() if len(path) == 2}
+    inputs = {fields[name].path: value for (section, name), value in stated.items() if section == "inputs"}
+    nominals = nominals_of(model, values)
+
+    def of(section: str) -> dict[str, Any]:
+        return {path[1]: value for path, value in stated.items() if path[0] == section}
+
+    head = {key: value for key, value in of("sheet").items() if value}
+    names = [path[1] if path[0] != "tolerances" else ".".join(path) for path in stated if path[0] in _STATED]
+    return Setup(
+        model=model,
+        origin=offer.origin,
+        inputs=make(model.input_type, inputs),
+        stated=frozenset(names),
+        spreads=spreads_of(model, values),
+        conditions={name: float(nominals[name]) for name in model.conditions},
+        effects=effects_of(model, values),
+        calibrated=of("calibrated"),
+        studies=studies,
+        units=of("units"),
+        detail=head.pop("detail", "normal"),
+        head=head,
+        seed=values.get(("studies", "seed"), 1),
+        added=offer.added,
+        file=file,
+        files=dict(reading.files),
+        warnings=tuple(of("warnings").values()),
+    )
+
+
+_STATED = {"inputs", "conditions", "tolerances"}

@@ -1,0 +1,286 @@
+"""TOML text to data, with the line of every name; a broken line does not hide the faults of the others.
+
+``tomllib`` has the last word on what is valid. Only when it refuses a text is every statement read on its own, so that
+all broken lines are named at once and the rest is still checked.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from truing.errors import Fault
+from truing.units.grammar import shown
+
+Path = tuple[str, ...]
+
+_PART = r"""(?:[A-Za-z0-9_-]++|"(?:\\.|[^"\\\n])*+"|'[^'\n]*+')"""
+_KEY = rf"{_PART}(?:[ \t]*+\.[ \t]*+{_PART})*+"
+_ASSIGNMENT = re.compile(rf"\s*({_KEY})[ \t]*=(.*)", re.DOTALL)
+_HEADER = re.compile(rf"\s*(\[\[?)[ \t]*({_KEY})[ \t]*(\]\]?)[ \t]*(?:#.*)?\s*")
+_TOKEN = re.compile(r'"""|\'\'\'|"(?:\\.|[^"\\\n])*+"|\'[^\'\n]*+\'|#[^\n]*|[\[\]{}\n]')
+_LONG_KEY = re.compile(rf"(?<![\w.-])(?:{_PART}[ \t]*+\.[ \t]*+){{40}}")
+_NEXT_BEGINS = re.compile(r"[ \t]*(?:[A-Za-z_][\w.-]*[ \t]*=[^=]|\[+[A-Za-z_][\w.]*\]+[ \t]*(?:#.*)?$)", re.MULTILINE)
+_PLACE = re.compile(r" \(at (?:line \d+, column \d+|end of document)\)$")
+
+
+@dataclass
+class Document:
+    """What a text says: nested data, the file and line of every name, and what was wrong with its spelling."""
+
+    file: str
+    data: dict[str, Any] = field(default_factory=dict)
+    places: dict[Path, tuple[str, int | None]] = field(default_factory=dict)
+    faults: list[Fault] = field(default_factory=list)
+
+    def fault(self, path: Path, message: str) -> Fault:
+        """Return a fault at the place of a name, or of the nearest section around it."""
+        for length in range(len(path), 0, -1):
+            if path[:length] in self.places:
+                file, line = self.places[path[:length]]
+                return Fault(message, file, line)
+        return Fault(message, self.file)
+
+
+@dataclass(frozen=True)
+class Statement:
+    """One statement of a TOML text: a heading or ``name = value``, and the line it begins in."""
+
+    line: int
+    text: str
+
+
+def read_document(text: str, file: str) -> Document:
+    """Read a TOML text; what cannot be read stands in ``faults`` and the rest in ``data``."""
+    document = Document(file)
+    text = text.replace("\r\n", "\n")
+    long_key = _LONG_KEY.search(text)
+    if long_key:
+        line = text.count("\n", 0, long_key.start()) + 1
+        document.faults.append(Fault("holds a name with more than 40 dots", file, line))
+        return document
+    found = list(statements(text))
+    try:
+        document.data = tomllib.loads(text)
+    except RecursionError:
+        document.faults.append(Fault("is nested too deeply", file))
+    except ValueError as error:
+        _Repair(document).run(found)
+        if not document.faults:
+            document.faults.append(Fault(_sentence(error), file, _line(error)))
+        return document
+    _note_places(document, found)
+    return document
+
+
+def statements(text: str) -> Iterator[Statement]:
+    """Split a text into statements; one that never closes ends with its line."""
+    position, line, may_continue = 0, 1, True
+    while position < len(text):
+        end = text.find("\n", position)
+        end = len(text) if end < 0 else end
+        first = text[position:end].strip()
+        if first and not first.startswith("#"):
+            if may_continue and any(mark in first for mark in ("[", "{", '"""', "'''")):
+                closed = _end_of_statement(text, position)
+                may_continue = closed is not None
+                end = end if closed is None else closed
+            yield Statement(line, text[position:end])
+        line += text.count("\n", position, end) + 1
+        position = end + 1
+
+
+def _end_of_statement(text: str, position: int) -> int | None:
+    """Return where the statement ends, or None when it never closes."""
+    start, depth = position, 0
+    while True:
+        token = _TOKEN.search(text, position)
+        if token is None:
+            return len(text) if depth <= 0 else None
+        position = token.end()
+        mark = token[0]
+        if mark in ('"""', "'''"):
+            position = _after_long_text(text, position, mark)
+            if position < 0:
+                return None
+        elif mark in "[{":
+            depth += 1
+        elif mark in "]}":
+            depth -= 1
+        elif mark == "\n" and (depth <= 0 or _NEXT_BEGINS.match(text, position)):
+            return token.start() if token.start() >= start else start
+
+
+def _after_long_text(text: str, position: int, mark: str) -> int:
+    while True:
+        end = text.find(mark, position)
+        if end < 0:
+            return -1
+        backslashes = end - len(text[position:end].rstrip("\\")) - position
+        if mark == '"""' and backslashes % 2:
+            position = end + 1
+            continue
+        end += 3
+        while text.startswith(mark[0], end):
+            end += 1
+        return end
+
+
+def _parts(key: str) -> Path:
+    """Return the names of a dotted key."""
+    if re.fullmatch(r"[A-Za-z0-9_-]+", key):
+        return (key,)
+    path: list[str] = []
+    inner: Any = tomllib.loads(f"{key} = 0")
+    while isinstance(inner, dict):
+        name, inner = next(iter(inner.items()))
+        path.append(name)
+    return tuple(path)
+
+
+def _note_places(document: Document, found: list[Statement]) -> None:
+    section: Path = ()
+    for statement in found:
+        header = _HEADER.fullmatch(statement.text)
+        assignment = None if header else _ASSIGNMENT.match(statement.text)
+        if header:
+            section = path = _parts(header[2])
+        elif assignment:
+            path = (*section, *_parts(assignment[1]))
+        else:
+            continue
+        _note(document, path, statement.line)
+
+
+def _note(document: Document, path: Path, line: int) -> None:
+    for length in range(1, len(path) + 1):
+        document.places.setdefault(path[:length], (document.file, line))
+
+
+class _Repair:
+    """Reads a broken text statement by statement, naming every broken one and keeping what was meant."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.section: Path | None = ()
+        self.headings: dict[Path, int] = {}
+
+    def run(self, found: list[Statement]) -> None:
+        """Read all statements."""
+        for statement in found:
+            try:
+                self.read(statement)
+            except RecursionError:
+                self.say(statement, "is nested too deeply")
+            except ValueError as error:
+                self.say(statement, _sentence(error))
+
+    def say(self, statement: Statement, sentence: str) -> None:
+        """Note a fault of this statement."""
+        self.document.faults.append(Fault(sentence, self.document.file, statement.line))
+
+    def read(self, statement: Statement) -> None:
+        """Read one statement into the data."""
+        if statement.text.lstrip().startswith("["):
+            self.heading(statement)
+            return
+        assignment = _ASSIGNMENT.match(statement.text)
+        if assignment is None:
+            self.say(statement, f'{shown(statement.text)} is no line of TOML; write name = "value"')
+            return
+        path = _parts(assignment[1])
+        if self.section is None:
+            return
+        _note(self.document, (*self.section, *path), statement.line)
+        try:
+            value: Any = tomllib.loads(statement.text)
+            for part in path:
+                value = value[part]
+        except ValueError as error:
+            meant = _meant(assignment[1], assignment[2])
+            self.say(statement, meant[0] if meant else _sentence(error))
+            if meant is None or meant[1] is None:
+                self.keep((*self.section, *path), None, statement)
+                return
+            value = meant[1]
+        self.keep((*self.section, *path), value, statement)
+
+    def heading(self, statement: Statement) -> None:
+        """Begin a section."""
+        header = _HEADER.fullmatch(statement.text)
+        if header is None or header[1] != header[3].replace("]", "["):
+            self.section = None
+            self.say(statement, f"{shown(statement.text)} is no heading of a section; write it like [inputs]")
+            return
+        self.section = path = _parts(header[2])
+        if path in self.headings:
+            first = self.headings[path]
+            self.say(statement, f"the section [{'.'.join(path)}] occurs twice (first in line {first}); write it once")
+        self.headings.setdefault(path, statement.line)
+        _note(self.document, path, statement.line)
+        inner = self.inner(path)
+        if inner is None:
+            self.say(statement, f"the section [{'.'.join(path)}] has the name of a value given before")
+            self.section = None
+
+    def inner(self, path: Path) -> dict[str, Any] | None:
+        """Return the table at a path, made where it is missing, or None where a value stands."""
+        inner: Any = self.document.data
+        for name in path:
+            inner = inner.setdefault(name, {})
+            if not isinstance(inner, dict):
+                return None
+        return inner  # type: ignore[no-any-return]  # a dict at every level
+
+    def keep(self, path: Path, value: Any, statement: Statement) -> None:
+        """Put a value in its place; a name that is taken is a fault."""
+        table = self.inner(path[:-1])
+        if table is None or path[-1] in table:
+            first = self.document.places[path][1]
+            where = f" (first in line {first})" if first != statement.line else ""
+            self.say(statement, f"{shown(path[-1])} is given twice{where}; write it once")
+            return
+        table[path[-1]] = UNREADABLE if value is None else value
+
+
+class _Unreadable:
+    """Stands for a value that was named as a fault already."""
+
+    def __repr__(self) -> str:
+        return "unreadable"
+
+
+UNREADABLE = _Unreadable()
+
+
+def _meant(key: str, rest: str) -> tuple[str, str | None] | None:
+    """Return what to say of ``key = rest`` and the text that was meant, where it is a text without its quotes."""
+    value = rest.strip()
+    if not value or value.startswith("#"):
+        return f'{key} has no value; write {key} = "value"', None
+    if value[0] in "\"'" and "\n" not in value and value.count(value[0]) == 1:
+        value = value[1:].split("#")[0].strip()
+        return f'the closing quotation mark is missing; write {key} = "{value}"', value
+    value = value.split("#")[0].strip()
+    if value[:1] in "\"'[{" or any(mark in value for mark in '"=\n\\'):
+        return None
+    return f'{key} = {_short(value)} needs quotation marks; write {key} = "{_short(value)}"', value
+
+
+def _short(text: str) -> str:
+    return shown(text)[1:-1]
+
+
+def _sentence(error: ValueError) -> str:
+    message = _PLACE.sub("", str(error))
+    if "integer string conversion" in message:
+        message = "a number has too many digits"
+    return f"this is no TOML: {message[:1].lower()}{message[1:]}"
+
+
+def _line(error: ValueError) -> int | None:
+    found = re.search(r"\(at line (\d+),", str(error))
+    return int(found[1]) if found else None

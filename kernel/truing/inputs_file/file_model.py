@@ -1,0 +1,187 @@
+"""The pydantic model of an inputs file, made from the declaration of a calculation when a file is read.
+
+Every check reads one value to SI and puts it into the ``Reading`` that travels as pydantic's context, so that values
+that are right are known even where others are wrong. The JSON Schema for editors comes from the same model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from truing.declare.fields import InputField
+from truing.declare.model import Model
+from truing.declare.sources import Effect
+from truing.declare.specs import Given, Loaded
+from truing.inputs_file import checks
+from truing.inputs_file.schema_words import (
+    condition_schema,
+    effect_schema,
+    input_schema,
+    study_schema,
+    tolerance_schema,
+    unit_schema,
+    unknown_schema,
+)
+from truing.inputs_file.values import Reading
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
+
+Check = Callable[[Any, Reading], Any]
+HEAD = (
+    "project", "drawing", "revision", "prepared_by", "checked_by", "approved_by", "date", "company", "logo",
+)  # fmt: skip
+DETAILS = ("short", "normal", "full")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One name of a section: its check, its JSON Schema, and whether it must be there."""
+
+    check: Check
+    schema: Mapping[str, Any]
+    required: bool = False
+
+
+@lru_cache(maxsize=16)
+def file_model(model: Model[Any, Any]) -> type[BaseModel]:
+    """Make the pydantic model of this calculation's inputs files."""
+    from pydantic import Field, create_model
+
+    sections: dict[str, tuple[Any, str]] = {
+        "sheet": (_section("Sheet", _sheet()), "What the head of the sheet says, and how much the sheet shows."),
+        "inputs": (
+            _section("Inputs", _inputs(model)),
+            "The inputs of the calculation; what is left out is as declared.",
+        ),
+        "tolerances": (_section("Tolerances", _tolerances(model)), "How inputs scatter about their nominals."),
+        "conditions": (_section("Conditions", _conditions(model)), "What is measured but no input of the model."),
+        "effects": (_effects(model), "Effects that are on, by name, each with all its unknowns."),
+        "calibrated": (_section("Calibrated", _calibrated(model)), "Inputs as fitted to one machine."),
+        "studies": (_section("Studies", _studies(model)), "Which studies run, in which order, and their options."),
+        "units": (_section("Units", _units(model)), "The unit in which a result or input is printed."),
+    }
+    fields: dict[str, Any] = {
+        f"part_{place}": (section, Field(default_factory=dict, alias=name, title=name, description=words))
+        for place, (name, (section, words)) in enumerate(sections.items())
+    }
+    plugin = {"type": "string", "description": "The calculation this file is for."}
+    fields["part_plugin"] = _field("plugin", Entry(checks.stored("plugin", checks.text), plugin))
+    return create_model("InputsFile", __config__=_config(), __doc__=f"Inputs of {model.name}: {model.title}", **fields)
+
+
+def _config() -> Any:
+    from pydantic import ConfigDict
+
+    return ConfigDict(extra="forbid", arbitrary_types_allowed=True)
+
+
+def _field(name: str, entry: Entry) -> tuple[Any, Any]:
+    from typing import Annotated
+
+    from pydantic import Field, PlainValidator, ValidationInfo, WithJsonSchema
+
+    def check(value: Any, info: ValidationInfo[Any]) -> Any:
+        return entry.check(value, info.context)
+
+    kind = Annotated[Any, PlainValidator(check), WithJsonSchema(dict(entry.schema))]
+    if entry.required:
+        return kind, Field(alias=name, title=name)
+    return kind, Field(default_factory=lambda: None, alias=name, title=name)
+
+
+def _section(title: str, entries: Mapping[str, Entry]) -> type[BaseModel]:
+    """Make the model of one section; fields have neutral names inside, so that no input can clash with pydantic's."""
+    from pydantic import create_model
+
+    fields: dict[str, Any] = {f"entry_{place}": _field(name, one) for place, (name, one) in enumerate(entries.items())}
+    return create_model(title, __config__=_config(), **fields)
+
+
+def _sheet() -> dict[str, Entry]:
+    entries = {
+        name: Entry(checks.stored(("sheet", name), checks.head_text), {"type": ["string", "number"]}) for name in HEAD
+    }
+    schema = {"enum": list(DETAILS), "default": "normal", "description": "How much the sheet shows."}
+    check = checks.one_of("detail", DETAILS)
+    return {**entries, "detail": Entry(checks.stored(("sheet", "detail"), check), schema)}
+
+
+def _is_required(item: InputField) -> bool:
+    return isinstance(item.spec, Loaded) and item.spec.default is MISSING
+
+
+def _inputs(model: Model[Any, Any]) -> dict[str, Entry]:
+    entries = {
+        name: Entry(checks.of_input(item, "inputs"), input_schema(item), _is_required(item))
+        for name, item in model.input_fields.items()
+    }
+    for old, new in checks.renamed(model).items():
+        if old not in entries and new in model.input_fields:
+            schema = {**input_schema(model.input_fields[new]), "deprecated": True, "description": f"Now called {new}."}
+            entries[old] = Entry(checks.of_old_name(old, model.input_fields[new]), schema)
+    return entries
+
+
+def _calibrated(model: Model[Any, Any]) -> dict[str, Entry]:
+    varying = {name: item for name, item in model.input_fields.items() if item.varies}
+    return {name: Entry(checks.of_input(item, "calibrated"), input_schema(item)) for name, item in varying.items()}
+
+
+def _tolerances(model: Model[Any, Any]) -> dict[str, Entry]:
+    return {
+        name: Entry(checks.of_tolerance(tolerance), tolerance_schema(tolerance))
+        for name, tolerance in model.tolerances.items()
+    }
+
+
+def _conditions(model: Model[Any, Any]) -> dict[str, Entry]:
+    return {name: Entry(checks.of_condition(item), condition_schema(item)) for name, item in model.conditions.items()}
+
+
+def _effects(model: Model[Any, Any]) -> type[BaseModel]:
+    from pydantic import Field, create_model
+
+    fields: dict[str, Any] = {}
+    for place, (name, effect) in enumerate(model.effects.items()):
+        words = effect_schema(effect)["description"]
+        section = _section(f"Effect {name}", _effect(effect))
+        fields[f"effect_{place}"] = (section, Field(default_factory=dict, alias=name, title=name, description=words))
+    return create_model("Effects", __config__=_config(), **fields)
+
+
+def _effect(effect: Effect[Any, Any]) -> dict[str, Entry]:
+    entries = {
+        unknown.name: Entry(checks.of_unknown(effect, unknown), unknown_schema(unknown), required=True)
+        for unknown in effect.unknowns
+    }
+    size = len(effect.unknowns)
+    row = {"type": "array", "items": {"type": "number"}, "minItems": size, "maxItems": size}
+    words = "Covariance of the unknowns in their declared units, in the order they are declared."
+    schema = {"type": "array", "items": row, "minItems": size, "maxItems": size, "description": words}
+    entries.setdefault("covariance", Entry(checks.of_covariance(effect), schema))
+    return entries
+
+
+def _studies(model: Model[Any, Any]) -> dict[str, Entry]:
+    names = [study.name for study in model.studies]
+    run = {"type": "array", "items": {"enum": names} if names else {}, "uniqueItems": True}
+    seed = {"type": "integer", "minimum": 0, "default": 1, "description": "Where the random numbers begin."}
+    entries = {
+        "run": Entry(checks.of_run(names), {**run, "description": "The studies that run, in this order."}),
+        "seed": Entry(checks.stored(("studies", "seed"), checks.seed), seed),
+    }
+    for study in model.studies:
+        entries[study.name] = Entry(checks.of_study(study), study_schema(study))
+    return entries
+
+
+def _units(model: Model[Any, Any]) -> dict[str, Entry]:
+    declared = {name: item.unit for name, item in model.result_fields.items()}
+    for name, item in model.input_fields.items():
+        if isinstance(item.spec, Given) and item.spec.unit is not None:
+            declared[name] = item.unit
+    return {name: Entry(checks.of_unit(name, unit), unit_schema(unit)) for name, unit in declared.items()}

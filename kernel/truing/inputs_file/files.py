@@ -1,0 +1,75 @@
+"""What is refused before a file is read: the wrong kind of file, the wrong size, no text at all."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from truing.errors import Fault, InputError
+
+LARGEST_INPUTS = 2_000_000
+_SPREADSHEETS = {".xlsx", ".xls", ".xlsm", ".xlsb", ".ods", ".numbers"}
+_ZIP, _OLE = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
+_UTF16 = (b"\xff\xfe", b"\xfe\xff")
+
+
+def refuse_file(path: Path, *, largest: int, instead: str, is_table: bool) -> None:
+    """Raise InputError with one sentence unless ``path`` is a text file of acceptable size.
+
+    Only the first bytes are read. ``instead`` says what to do where the file is empty.
+    """
+    sentence = _refusal(path, largest, instead, is_table)
+    if sentence:
+        raise InputError([Fault(sentence, str(path))])
+
+
+def _refusal(path: Path, largest: int, instead: str, is_table: bool) -> str:
+    try:
+        if path.is_dir():
+            return "is a folder; name a file"
+        if not path.exists():
+            return "no such file" + _nearby(path)
+        size = path.stat().st_size
+        if size > largest:
+            return f"is too large: {size / 1e6:.1f} MB, at most {largest / 1e6:g} MB are read"
+        with path.open("rb") as stream:
+            start = stream.read(65536)
+    except (OSError, ValueError) as error:
+        return f"cannot be read: {getattr(error, 'strerror', None) or error}"
+    return _refusal_of_bytes(path, start, instead, is_table)
+
+
+def _refusal_of_bytes(path: Path, start: bytes, instead: str, is_table: bool) -> str:
+    if path.suffix.lower() in _SPREADSHEETS or start.startswith((_ZIP, _OLE)):
+        return f"is a spreadsheet; {'save it' if is_table else 'inputs are a TOML text file; save tables'} as CSV UTF-8"
+    if not start.strip():
+        return f"is empty; {instead}"
+    if start.startswith(_UTF16):
+        return "is text in UTF-16; save it as UTF-8"
+    if b"\0" in start:
+        return f"is a binary file; {'a table is CSV text in UTF-8' if is_table else 'inputs are a TOML text in UTF-8'}"
+    return ""
+
+
+def _nearby(path: Path) -> str:
+    from truing.declare.near_miss import near_miss
+
+    try:
+        names = [item.name for _, item in zip(range(1000), path.parent.iterdir(), strict=False)]
+    except OSError:
+        return ""
+    meant = near_miss(path.name, names)
+    return "." + meant if meant else ""
+
+
+def read_text(path: Path, *, instead: str) -> str:
+    """Read a whole inputs file as text; raises InputError with one sentence for what is no such file."""
+    refuse_file(path, largest=LARGEST_INPUTS, instead=instead, is_table=False)
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError([Fault(f"cannot be read: {error.strerror}", str(path))]) from error
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise InputError([Fault("is not UTF-8 text; save it as UTF-8", str(path), line)]) from None

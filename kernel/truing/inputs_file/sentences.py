@@ -1,0 +1,159 @@
+"""What pydantic found wrong, in the engineer's words and with the line it stands in."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import Any
+
+from truing.declare.model import Model
+from truing.declare.near_miss import near_miss
+from truing.errors import Fault
+from truing.inputs_file.document import Document
+from truing.inputs_file.overrides import SECTIONS
+from truing.units.grammar import shown
+
+MOST_FAULTS = 200
+_MOST_NEAR_MISSES = 50
+
+
+def faults_of(
+    error: Any, document: Document, model: Model[Any, Any], unreadable: Collection[tuple[str, ...]]
+) -> list[Fault]:
+    """Turn a pydantic ValidationError into faults with places; what was named as unreadable is not missing too."""
+    words = _Words(document, model)
+    faults = []
+    for item in error.errors(include_url=False, include_input=False):
+        path = tuple(str(part) for part in item["loc"])
+        if item["type"] != "missing" or path not in unreadable:
+            faults.append(document.fault(path, words.sentence(path, item)))
+    return faults
+
+
+class _Words:
+    """Says one fault; near misses are looked for only for the first fifty unknown names."""
+
+    def __init__(self, document: Document, model: Model[Any, Any]) -> None:
+        self.document = document
+        self.model = model
+        self.near_misses = 0
+
+    def sentence(self, path: tuple[str, ...], item: Mapping[str, Any]) -> str:
+        """Return the sentence for one of pydantic's errors."""
+        kind = item["type"]
+        if kind == "extra_forbidden":
+            return self.unknown(path)
+        if kind == "missing":
+            return self.missing(path)
+        if kind in {"model_type", "model_attributes_type", "dict_type"}:
+            heading = f"[{'.'.join(path)}]"
+            return f"{shown(path[-1])} is a section; write {heading} and its entries below it"
+        stated = item.get("ctx", {}).get("error")
+        return str(stated) if stated is not None else str(item["msg"])
+
+    def unknown(self, path: tuple[str, ...]) -> str:
+        """Say that a name is unknown, and what was probably meant."""
+        name = path[-1]
+        self.near_misses += 1
+        if len(path) == 1:
+            return self.unknown_section(name)
+        if path[0] == "effects" and len(path) == 3:
+            effect = self.model.effects[path[1]]
+            unknowns = {unknown.name: unknown for unknown in effect.unknowns}
+            known = ", ".join(unknowns)
+            return (
+                f"effect '{effect.name}' has no unknown {shown(name)}.{self.near(name, unknowns)} (unknowns: {known})"
+            )
+        what, known_names = self.known(path[0])
+        elsewhere = self.elsewhere(name, path[0])
+        if elsewhere:
+            return f"{shown(name)} is {elsewhere}"
+        meant = self.near(name, known_names)
+        hint = "" if meant else self.listed(known_names)
+        owner = "the sheet" if path[0] == "sheet" else self.model.name
+        return f"{owner} has no {what} {shown(name)}.{meant}{hint}"
+
+    def unknown_section(self, name: str) -> str:
+        elsewhere = self.elsewhere(name, "")
+        if elsewhere:
+            return f"{shown(name)} is {elsewhere}"
+        meant = self.near(name, ["plugin", *SECTIONS])
+        return f"{shown(name)} is no section of an inputs file.{meant} (sections: {', '.join(SECTIONS)})"
+
+    def known(self, section: str) -> tuple[str, Sequence[str]]:
+        """Return what the entries of a section are called and which there are."""
+        model = self.model
+        studies = ["run", "seed", *(study.name for study in model.studies)]
+        from truing.inputs_file.file_model import HEAD
+
+        return {
+            "inputs": ("input", list(model.input_fields)),
+            "tolerances": ("tolerance", list(model.tolerances)),
+            "conditions": ("condition", list(model.conditions)),
+            "effects": ("effect", list(model.effects)),
+            "calibrated": ("input to calibrate called", [n for n, item in model.input_fields.items() if item.varies]),
+            "studies": ("study", studies),
+            "units": ("result or input", [*model.result_fields, *model.input_fields]),
+            "sheet": ("entry", [*HEAD, "detail"]),
+        }[section]
+
+    def elsewhere(self, name: str, section: str) -> str:
+        """Say where a name belongs that stands in the wrong section."""
+        words = {"inputs": "an input", "conditions": "a condition", "effects": "an effect"}
+        for other, what in words.items():
+            if (
+                other != section
+                and name in self.known(other)[1]
+                and section not in {"tolerances", "units", "calibrated"}
+            ):
+                heading = f"[effects.{name}]" if other == "effects" else f"[{other}]"
+                return f"{what}; write it under {heading}"
+        if section == "tolerances" and name in self.model.input_fields:
+            names = ", ".join(self.model.tolerances) or "none"
+            return f"an input without a declared tolerance (tolerances: {names})"
+        return ""
+
+    def near(self, name: str, known: Any) -> str:
+        """Return the nearest name with its symbol, note and unit, or nothing."""
+        if self.near_misses > _MOST_NEAR_MISSES or len(name) > 80:
+            return ""
+        meant = near_miss(name, list(known))
+        if not meant:
+            return ""
+        close = meant.split("'")[1]
+        item: Any = self.model.input_fields.get(close) or self.model.result_fields.get(close)
+        details = [item.symbol, item.spec.note, item.unit] if item is not None else []
+        inside = ", ".join(detail for detail in details if detail)
+        return f" Did you mean '{close}' ({inside})?" if inside else meant
+
+    def listed(self, names: Sequence[str]) -> str:
+        if len(names) > 12:
+            return f" `calc describe {self.model.name}` lists them."
+        return f" (there are: {', '.join(names)})" if names else " (there is none)"
+
+    def missing(self, path: tuple[str, ...]) -> str:
+        """Say that something is missing, and how it is written."""
+        name = path[-1]
+        if path[0] == "effects":
+            unknown = next(one for one in self.model.effects[path[1]].unknowns if one.name == name)
+            bounds = f"from {unknown.low:g} to {unknown.high:g} {unknown.unit}".strip()
+            return f"effect '{path[1]}' is on, so its unknown '{name}' must be given ({bounds})"
+        item = self.model.input_fields[name]
+        note = f" ({item.spec.note})" if item.spec.note else ""
+        return (
+            f"{self.model.name} needs the input '{name}'{note}; write {name} = {{ file = \"data.txt\" }} under [inputs]"
+        )
+
+
+def in_order(faults: Sequence[Fault], file: str) -> list[Fault]:
+    """Sort faults by line, those of the command line last; beyond 200 they are counted."""
+    ordered = sorted(faults, key=lambda fault: (fault.file != file, fault.line or 0))
+    unique = list(dict.fromkeys(ordered))
+    if len(unique) <= MOST_FAULTS:
+        return unique
+    return [*unique[:MOST_FAULTS], Fault(f"and {len(unique) - MOST_FAULTS} faults more", file)]
+
+
+def each(faults: Sequence[tuple[tuple[str, ...], str]], document: Document) -> Iterator[Fault]:
+    """Give faults that are known by the path of their name."""
+    for path, sentence in faults:
+        yield document.fault(path, sentence)

@@ -1,0 +1,270 @@
+"""One value of an inputs file to SI: quantities, switches, choices, series, data files; and the bounds they keep."""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from truing.declare.fields import InputField
+from truing.declare.specs import Given, Loaded
+from truing.errors import TruingError, UnitError
+from truing.units.grammar import shown
+
+PURE = {"", "1", "-"}
+
+
+class SentenceError(ValueError):
+    """A whole sentence about a value, its name included."""
+
+
+@dataclass
+class Reading:
+    """What was read so far: values in SI by section and name, hashes of data files, and where these are looked for."""
+
+    folder: Path
+    values: dict[tuple[str, ...], Any] = field(default_factory=dict)
+    files: dict[str, str] = field(default_factory=dict)
+    faults: list[tuple[tuple[str, ...], str]] = field(default_factory=list)
+
+
+def read_input(item: InputField, raw: Any, reading: Reading) -> Any:
+    """Return an input as the function sees it. Raises ValueError with one sentence."""
+    if item.kind in {"float", "whole"}:
+        value = read_number(item.name, raw, item.unit)
+        keep_bounds(item, value)
+        return value
+    readers: dict[str, Callable[[InputField, Any], Any]] = {
+        "switch": _switch, "integer": _integer, "choice": _choice, "text": _text, "series": _series,
+    }  # fmt: skip
+    if item.kind == "file":
+        return _loaded(item, raw, reading)
+    return readers[item.kind](item, raw)
+
+
+def read_number(name: str, raw: Any, unit: str) -> float:
+    """Return a quantity in SI; a bare number is one only where no unit is needed."""
+    if isinstance(raw, str):
+        from truing.units import read_quantity
+
+        try:
+            return read_quantity(raw, unit)
+        except UnitError as error:
+            raise SentenceError(f"{name}: {error}") from None
+    if isinstance(raw, bool) or not isinstance(raw, (int, float)):
+        raise SentenceError(
+            f"{name} = {_written(raw)} is no {'number' if unit in PURE else 'quantity'}; write {_like(name, unit)}"
+        )
+    if not math.isfinite(raw):
+        raise SentenceError(f"{name} is {raw}, which is not a finite number")
+    if unit not in PURE:
+        from truing.units import human_dimension
+
+        like = _like(name, unit, raw)
+        raise SentenceError(f"{name} = {_written(raw)} has no unit; it is {human_dimension(unit)}: write {like}")
+    try:
+        return float(raw)
+    except OverflowError:
+        raise SentenceError(f"{name} is too large for a number") from None
+
+
+def _like(name: str, unit: str, value: float = 1.0) -> str:
+    return f"{name} = {plain(value)}" if unit in PURE else f'{name} = "{plain(value)} {unit}"'
+
+
+def _written(raw: Any) -> str:
+    """Return a TOML value as the file shows it, shortened."""
+    if isinstance(raw, bool):
+        return str(raw).lower()
+    if isinstance(raw, int):
+        return str(raw) if abs(raw) < 10**30 else "a number of many digits"
+    if isinstance(raw, (str, float)):
+        return shown(raw) if isinstance(raw, str) else repr(raw)
+    if isinstance(raw, (list, dict)):
+        return "a list" if isinstance(raw, list) else "a table"
+    return shown(str(raw))
+
+
+def plain(value: float) -> str:
+    """Write a number so that reading it again gives the same: 28, 0.36, 3e-08."""
+    if isinstance(value, int):
+        return str(value)
+    value = float(value)
+    return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+
+
+def keep_bounds(item: InputField, value: float) -> None:
+    """Raise with a sentence where a value in SI breaks a declared bound; NaN (not given) breaks none."""
+    sentence = broken_bound(item, value)
+    if sentence:
+        raise SentenceError(sentence)
+
+
+def broken_bound(item: InputField, value: float) -> str:
+    """Return what to say of a value in SI that breaks a declared bound, or nothing."""
+    spec = item.spec
+    if not isinstance(spec, Given) or value != value:
+        return ""
+    from truing.units import from_si, to_si
+
+    unit = item.unit
+    for words, bound, sign in (
+        ("above", spec.above, 1),
+        ("below", spec.below, -1),
+        ("at least", spec.at_least, 1),
+        ("at most", spec.at_most, -1),
+    ):
+        if bound is not None and _breaks(value, to_si(bound, unit), sign, strict=words in {"above", "below"}):
+            here = _quantity(from_si(value, unit), unit)
+            return f"{item.name} is {here}; it must be {words} {_quantity(bound, unit)}"
+    number = from_si(value, unit)
+    if spec.whole and abs(number - round(number)) > 1e-9 * max(1.0, abs(number)):
+        return f"{item.name} is {_quantity(number, unit)}; it must be a whole number"
+    return ""
+
+
+def _breaks(value: float, limit: float, sign: int, *, strict: bool) -> bool:
+    """Whether a value lies on the wrong side of a limit; the limit itself may be missed by rounding only."""
+    if strict:
+        return sign * (value - limit) <= 0
+    return sign * (value - limit) < 0 and not math.isclose(value, limit, rel_tol=1e-12)
+
+
+def _quantity(value: float, unit: str) -> str:
+    short = f"{value:.12g}"
+    return short if unit in PURE else f"{short} {unit}"
+
+
+def bounds_in_words(item: InputField) -> str:
+    """Return the bounds of an input as a phrase, such as "above 0 m, at most 2 m"; nothing where there are none."""
+    spec = item.spec
+    if not isinstance(spec, Given):
+        return ""
+    named = (("above", spec.above), ("below", spec.below), ("at least", spec.at_least), ("at most", spec.at_most))
+    words = [f"{word} {_quantity(bound, item.unit)}" for word, bound in named if bound is not None]
+    return ", ".join([*words, "whole"] if spec.whole else words)
+
+
+def _switch(item: InputField, raw: Any) -> bool:
+    if not isinstance(raw, bool):
+        raise SentenceError(
+            f"{item.name} = {_written(raw)} is no switch; write {item.name} = true or {item.name} = false"
+        )
+    return raw
+
+
+def _integer(item: InputField, raw: Any) -> int:
+    whole = int(raw) if isinstance(raw, float) and raw.is_integer() else raw
+    if isinstance(whole, bool) or not isinstance(whole, int):
+        raise SentenceError(f"{item.name} = {_written(raw)} is no whole number; write {item.name} = 3")
+    if abs(whole) > 2**53:
+        raise SentenceError(f"{item.name} is too large for a whole number")
+    keep_bounds(item, whole)
+    return whole
+
+
+def _choice(item: InputField, raw: Any) -> Any:
+    text = _written(raw) if isinstance(raw, (bool, int)) else raw
+    if not isinstance(text, str) or text not in item.choices:
+        from truing.declare.near_miss import near_miss
+
+        offered = " or ".join(f"'{choice}'" for choice in item.choices)
+        meant = near_miss(text[:80], item.choices) if isinstance(text, str) else ""
+        raise SentenceError(f"{item.name} = {_written(raw)} is not offered; choose {offered}.{meant}")
+    default = getattr(item.spec, "default", None)
+    return int(text) if isinstance(default, int) and not isinstance(default, bool) else text
+
+
+def _text(item: InputField, raw: Any) -> str:
+    if not isinstance(raw, str):
+        raise SentenceError(f'{item.name} = {_written(raw)} is no text; write {item.name} = "..."')
+    return raw
+
+
+def _series(item: InputField, raw: Any) -> Any:
+    """Read a list of quantities, or {values = [1, 2], unit = "um"}; an array along an axis, else a tuple."""
+    unit = item.unit if item.spec.unit is not None else None
+    given = raw
+    if isinstance(raw, dict) and set(raw) == {"values", "unit"} and isinstance(raw["values"], list):
+        given = [f"{plain(v)} {raw['unit']}" if _is_number(v) else v for v in raw["values"]]
+    if not isinstance(given, list) or not given:
+        raise SentenceError(
+            f'{item.name} is a series; write {item.name} = ["1 {unit}", ...]' if unit else _list_like(item)
+        )
+    if unit is None:
+        return _plain_series(item, given)
+    values = [read_number(f"{item.name}[{place}]", one, unit) for place, one in enumerate(given, start=1)]
+    for value in values:
+        keep_bounds(item, value)
+    if not item.spec.along:
+        return tuple(values)
+    import numpy as np
+
+    return np.array(values, dtype=float)
+
+
+def _list_like(item: InputField) -> str:
+    return f"{item.name} is a series; write {item.name} = [...]"
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _plain_series(item: InputField, given: list[Any]) -> tuple[Any, ...]:
+    """Read a list without units: every item of the kind that the default's items have."""
+    default = getattr(item.spec, "default", None)
+    kind = type(default[0]) if isinstance(default, (tuple, list)) and default else type(given[0])
+    if kind is float and all(_is_number(value) for value in given):
+        return tuple(read_number(f"{item.name}[{place}]", value, "") for place, value in enumerate(given, start=1))
+    for place, value in enumerate(given, start=1):
+        if type(value) is not kind:
+            word = {int: "whole number", float: "number", str: "text", bool: "switch"}.get(kind, "value of its kind")
+            raise SentenceError(f"{item.name}[{place}] = {_written(value)} is no {word}")
+    return tuple(given)
+
+
+def _loaded(item: InputField, raw: Any, reading: Reading) -> Any:
+    """Read a data file once, through the reader the input declares; remember its hash."""
+    spec = item.spec
+    assert isinstance(spec, Loaded)
+    table: Mapping[str, Any] = {"file": raw} if isinstance(raw, str) else raw
+    if not isinstance(table, dict) or not isinstance(table.get("file"), str) or not table["file"]:
+        raise SentenceError(f'{item.name} is read from a data file; write {item.name} = {{ file = "data.txt" }}')
+    options = {key: value for key, value in table.items() if key != "file"}
+    _check_options(item, spec.reader, options)
+    path = reading.folder / table["file"]
+    try:
+        if not path.is_file():
+            raise SentenceError(f"{item.name}: there is no file {shown(table['file'])} beside the inputs file ({path})")
+        with path.open("rb") as stream:
+            reading.files[item.name] = hashlib.file_digest(stream, "sha256").hexdigest()
+        return spec.reader(path, **options)
+    except SentenceError:
+        raise
+    except Exception as error:  # whatever a reader says of a file is the user's to mend
+        kind = "" if isinstance(error, (TruingError, ValueError, OSError)) else f"{type(error).__name__}: "
+        words = getattr(error, "strerror", None) or str(error) or type(error).__name__
+        raise SentenceError(f"{item.name}: {shown(table['file'])} cannot be read: {kind}{words}") from error
+
+
+def _check_options(item: InputField, reader: Callable[..., Any], options: Mapping[str, Any]) -> None:
+    parameters = list(inspect.signature(reader).parameters.values())[1:]
+    named = [p for p in parameters if p.kind not in {p.VAR_KEYWORD, p.VAR_POSITIONAL}]
+    known = ", ".join(parameter.name for parameter in named) or "none"
+    strange = [name for name in options if name not in {parameter.name for parameter in named}]
+    if strange and not any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters):
+        from truing.declare.near_miss import near_miss
+
+        meant = near_miss(strange[0][:80], [parameter.name for parameter in named])
+        raise SentenceError(
+            f"{item.name}: the reader takes no {shown(strange[0])}; beside file it takes: {known}.{meant}"
+        )
+    missing = [p.name for p in named if p.default is p.empty and p.name not in options]
+    if missing:
+        like = f'{item.name} = {{ file = "...", {missing[0]} = ... }}'
+        raise SentenceError(f"{item.name}: the reader needs {', '.join(missing)} too; write {like}")

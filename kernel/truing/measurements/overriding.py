@@ -1,0 +1,190 @@
+"""Tables whose columns override inputs and conditions: cases of a run, and the rows of a virtual measurement."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from truing.declare.fields import InputField
+from truing.declare.near_miss import near_miss
+from truing.inputs_file.values import Reading, broken_bound, read_input
+from truing.kernel import Offer
+from truing.measurements.cells import PURE, header_fault, read_cell
+from truing.measurements.csv_text import CsvFile, Header, opened
+from truing.setup import Setup
+from truing.units.grammar import shown
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+NAMES = ("case", "name")
+REMARKS = ("note", "remark", "comment")
+
+
+@dataclass(frozen=True)
+class Case:
+    """One case: its row (the first is 1), the line it stands in, its name, and what it changes, in SI."""
+
+    row: int
+    line: int
+    name: str
+    values: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class RowsFile:
+    """Rows to calculate: ``columns`` that override inputs and conditions, in SI, and everything as it was written.
+
+    Inputs that may vary and conditions are arrays (n,), every other input a list of n values. Where a cell is empty
+    the value of the inputs file stands. ``series`` holds columns of inputs that run along an axis. ``cells`` are all
+    columns verbatim, by the header as written.
+    """
+
+    file: str
+    columns: Mapping[str, NDArray[np.float64] | list[Any]]
+    series: Mapping[str, NDArray[np.float64]]
+    cells: Mapping[str, tuple[str, ...]]
+    lines: tuple[int, ...]
+
+    @property
+    def headers(self) -> tuple[str, ...]:
+        """The header cells as written, in order."""
+        return tuple(self.cells)
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+
+@dataclass
+class _Texts:
+    """A whole table as text, column by column."""
+
+    table: CsvFile
+    cells: list[list[str]]
+    lines: list[int] = field(default_factory=list)
+
+
+def _read_texts(table: CsvFile) -> _Texts:
+    texts = _Texts(table, [[] for _ in table.headers])
+    for chunk in table.chunks():
+        texts.lines.extend(chunk.lines)
+        for kept, more in zip(texts.cells, chunk.cells, strict=False):
+            kept.extend(more)
+    return texts
+
+
+def read_cases(path: Path, offer: Offer, setup: Setup) -> list[Case]:
+    """Read cases: every row overrides inputs and conditions; an empty cell keeps what the inputs file says.
+
+    A column ``case`` or ``name`` names the cases; ``note`` may hold remarks. Raises InputError with every fault.
+    """
+    with opened(path) as table:
+        texts = _read_texts(table)
+    values: list[dict[str, Any]] = [{} for _ in texts.lines]
+    names = [""] * len(texts.lines)
+    for header, cells in zip(table.headers, texts.cells, strict=True):
+        if header.name in NAMES and header.name not in setup.model.input_fields:
+            names = [cell.strip() or name for cell, name in zip(cells, names, strict=True)]
+        elif _is_known(header.name, setup):
+            for row, value in enumerate(_values(header, cells, texts, setup)):
+                if value is not None:
+                    values[row][header.name] = value
+        elif header.name not in REMARKS:
+            table.faults.add(_unknown(header, setup, offer), table.header_line)
+    table.faults.raise_any()
+    return [
+        Case(row, line, name or f"{row}", found)
+        for row, (line, name, found) in enumerate(zip(texts.lines, names, values, strict=True), start=1)
+    ]
+
+
+def read_rows(path: Path, offer: Offer, setup: Setup) -> RowsFile:
+    """Read the rows of a virtual measurement; columns that are no input and no condition are kept as written.
+
+    Raises InputError with every fault.
+    """
+    import numpy as np
+
+    with opened(path) as table:
+        texts = _read_texts(table)
+    columns: dict[str, Any] = {}
+    series: dict[str, Any] = {}
+    for header, cells in zip(table.headers, texts.cells, strict=True):
+        if not _is_known(header.name, setup):
+            continue
+        item = setup.model.input_fields.get(header.name)
+        found = _values(header, cells, texts, setup)
+        if item is not None and item.kind == "series":
+            series[header.name] = np.array([math.nan if value is None else value for value in found], dtype=float)
+            continue
+        otherwise = setup.calibrated.get(header.name, setup.nominal(header.name))
+        filled = [otherwise if value is None else value for value in found]
+        columns[header.name] = filled if item is not None and not item.varies else np.array(filled, dtype=float)
+    table.faults.raise_any()
+    written = {header.text: tuple(cells) for header, cells in zip(table.headers, texts.cells, strict=True)}
+    return RowsFile(str(path), columns, series, written, tuple(texts.lines))
+
+
+def _is_known(name: str, setup: Setup) -> bool:
+    return name in setup.model.input_fields or name in setup.model.conditions
+
+
+def _unknown(header: Header, setup: Setup, offer: Offer) -> str:
+    known = [*setup.model.input_fields, *setup.model.conditions]
+    meant = near_miss(header.name[:80], known)
+    if header.name in setup.model.result_fields:
+        meant = " It is a result; cases change inputs."
+    return f"{offer.model.name} has no input {shown(header.name)}.{meant}"
+
+
+def _values(header: Header, cells: list[str], texts: _Texts, setup: Setup) -> list[Any]:
+    """Return the values of one column in SI, None where a cell is empty or a fault."""
+    item = setup.model.input_fields.get(header.name)
+    faults, table = texts.table.faults, texts.table
+    if item is not None and (item.kind == "file" or (item.kind == "series" and not item.spec.along)):
+        faults.add(f"{header.name} cannot change from row to row; state it in the inputs file", table.header_line)
+        return [None] * len(cells)
+    is_word = item is not None and item.kind in {"switch", "integer", "choice", "text"}
+    fault = _word_header_fault(header) if is_word else header_fault(header, setup.unit_of(header.name))
+    if fault:
+        faults.add(fault, table.header_line)
+        return [None] * len(cells)
+    found: list[Any] = []
+    for cell, line in zip(cells, texts.lines, strict=True):
+        try:
+            found.append(_value(cell, header, item, texts) if cell.strip() else None)
+        except ValueError as error:
+            found.append(None)
+            sentence = str(error)
+            faults.add(sentence if sentence.startswith(header.name) else f"{header.name}: {sentence}", line)
+    return found
+
+
+def _word_header_fault(header: Header) -> str:
+    if header.unit in {None, "", "-", "1"}:
+        return ""
+    return f"column '{header.name}' has the unit [{header.unit}], but it is no quantity; write '{header.name}'"
+
+
+def _value(cell: str, header: Header, item: InputField | None, texts: _Texts) -> Any:
+    """Return one cell in SI, its bounds checked. Raises ValueError with one sentence."""
+    text = cell.strip()
+    if item is not None and item.kind in {"choice", "text"}:
+        return read_input(item, text, Reading(Path()))
+    if item is not None and item.kind == "switch":
+        word = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}.get(text.lower(), text)
+        return read_input(item, word, Reading(Path()))
+    from truing.units import to_si
+
+    number = read_cell(text, decimal_comma=texts.table.decimal_comma)
+    if item is not None and item.kind == "integer":
+        return read_input(item, number, Reading(Path()))
+    value = number if header.unit is None or header.unit in PURE else to_si(number, header.unit)
+    sentence = broken_bound(item, value) if item is not None else ""
+    if sentence:
+        raise ValueError(sentence)
+    return value

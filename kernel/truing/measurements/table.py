@@ -1,0 +1,141 @@
+"""Measured data: every column in SI, or as words where it holds words."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from truing.errors import UnitError
+from truing.measurements.cells import PURE, difference_unit, header_fault, read_cell, read_cells
+from truing.measurements.csv_text import Chunk, CsvFile, Header, opened
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+SIGMA = "sigma_"
+RUN = "run"
+
+
+@dataclass(frozen=True)
+class DataTable:
+    """A table of measured data: numbers in SI, shape (n,), NaN where a cell is empty; text columns are labels.
+
+    ``units`` holds what the header says ("" for pure numbers), ``lines`` the line of the file each row begins in.
+    """
+
+    file: str
+    columns: Mapping[str, NDArray[np.float64] | tuple[str, ...]]
+    units: Mapping[str, str]
+    lines: tuple[int, ...]
+    labels: frozenset[str]
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+
+def read_table(path: Path, units_of: Mapping[str, str], *, inputs: Collection[str] = ()) -> DataTable:
+    """Read a table of measurements.
+
+    ``units_of`` holds the declared units of the names that are known: their columns must have a unit of the same
+    dimension and come in SI, and so does ``sigma_NAME``, a standard deviation of NAME. Other columns are kept, in SI
+    where their unit is known; the column ``run`` and columns that hold words are labels. An empty cell is missing, and
+    so is "NaN", except in columns named by ``inputs``. Raises InputError with every fault and its line.
+    """
+    with opened(path) as table:
+        columns = [_column(header, units_of, inputs, table) for header in table.headers]
+        lines: list[int] = []
+        for chunk in table.chunks():
+            lines.extend(chunk.lines)
+            for column in columns:
+                column.take(chunk, table)
+    table.faults.raise_any()
+    made = {column.header.name: column.made() for column in columns}
+    return DataTable(
+        file=str(path),
+        columns=made,
+        units={column.header.name: column.header.unit or "" for column in columns},
+        lines=tuple(lines),
+        labels=frozenset(name for name, values in made.items() if isinstance(values, tuple)),
+    )
+
+
+def _column(header: Header, units_of: Mapping[str, str], inputs: Collection[str], table: CsvFile) -> _Known | _Other:
+    of = header.name.removeprefix(SIGMA)
+    is_sigma = header.name not in units_of and header.name.startswith(SIGMA) and of in units_of
+    if header.name not in units_of and not is_sigma:
+        return _Other(header, table.decimal_comma)
+    declared = units_of[of if is_sigma else header.name]
+    fault = header_fault(header, declared, is_difference=is_sigma)
+    if fault:
+        table.faults.add(fault, table.header_line)
+    return _Known(header, is_sigma, strict=header.name in inputs, is_usable=not fault)
+
+
+@dataclass
+class _Known:
+    """A column of numbers whose name is known: cells become numbers as they come."""
+
+    header: Header
+    is_sigma: bool
+    strict: bool
+    is_usable: bool
+    parts: list[NDArray[np.float64]] = field(default_factory=list)
+
+    def take(self, chunk: Chunk, table: CsvFile) -> None:
+        """Take the next rows."""
+        cells = chunk.cells[self.header.place]
+        comma = table.decimal_comma
+        values = read_cells(cells, chunk.lines, self.header, table.faults, decimal_comma=comma, strict=self.strict)
+        if self.is_sigma and (values < 0).any():
+            worst = int((values < 0).argmax())
+            table.faults.add(f"{self.header.name}: a standard deviation is 0 or more", chunk.lines[worst])
+        self.parts.append(values)
+
+    def made(self) -> NDArray[np.float64]:
+        """Return the column in SI."""
+        import numpy as np
+
+        unit = self.header.unit or ""
+        return in_si(np.concatenate(self.parts), difference_unit(unit) if self.is_sigma else unit)
+
+
+@dataclass
+class _Other:
+    """A column nobody declared: numbers if every cell is one, else labels."""
+
+    header: Header
+    decimal_comma: bool
+    cells: list[str] = field(default_factory=list)
+
+    def take(self, chunk: Chunk, table: CsvFile) -> None:
+        """Take the next rows."""
+        self.cells.extend(chunk.cells[self.header.place])
+
+    def made(self) -> NDArray[np.float64] | tuple[str, ...]:
+        """Return numbers, in SI where the unit is known, or words."""
+        import numpy as np
+
+        if self.header.name == RUN or not any(cell.strip() for cell in self.cells):
+            return tuple(cell.strip() for cell in self.cells)
+        try:
+            values = np.array([
+                read_cell(cell, decimal_comma=self.decimal_comma, may_be_missing_word=True) for cell in self.cells
+            ])  # fmt: skip
+        except ValueError:
+            return tuple(cell.strip() for cell in self.cells)
+        try:
+            return in_si(values, self.header.unit or "")
+        except UnitError:
+            return values
+
+
+def in_si(values: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
+    """Bring numbers from the unit of a header to SI."""
+    if unit in PURE:
+        return values
+    from truing.units import to_si
+
+    return to_si(values, unit)
