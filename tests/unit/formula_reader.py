@@ -15,7 +15,10 @@ from typing import Any
 
 FUNCTIONS = {
     **{name: name for name in ("sin", "cos", "tan", "cot", "sinh", "cosh", "tanh", "inv", "exp", "min", "max", "mean")},
-    **{"ln": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "atan2": "atan2", "sgn": "sign", "∑": "sum"},
+    **dict(zip(("ln", "arcsin", "arccos", "arctan"), ("log", "asin", "acos", "atan"), strict=True)),
+    "atan2": "atan2",
+    "sgn": "sign",
+    "∑": "sum",
 }
 WORDS = {"if", "otherwise", "if given", "and", "or"}
 COMPARISONS = {"=": "==", "≠": "!=", "<": "<", "≤": "<=", ">": ">", "≥": ">="}
@@ -271,11 +274,16 @@ class Parser:
         """Read one factor with its exponent or its unit."""
         if self.at("function"):
             return self.function()
+        if self.at("op", "{"):
+            self.take()
         kind = self.tokens[0][0] if self.tokens else "nothing"
+        key = str(self.tokens[0][1]) if self.tokens else ""
         result = self.primary()
+        if kind == "cases" and self.tokens and not self.at("close"):
+            raise MisprintError("something goes on behind a brace that has no end")
         if self.at("sup"):
-            if kind in ("block", "cases"):
-                raise MisprintError("an exponent on a fraction or a root without parentheses")
+            if kind in ("block", "cases") or (kind == "name" and (set(key) & set(" ′Δ"))):
+                raise MisprintError("an exponent on a fraction, a root or several words without parentheses")
             result = f"({result} ** {self.reader.python(self.take())})"
         if self.at("sup"):
             raise MisprintError("two exponents in a row")
@@ -304,7 +312,7 @@ class Parser:
             return self.bracketed("(")[0]
         if self.at("open", "|"):
             return f"abs({self.bracketed('|')[0]})"
-        if self.at("cases") or self.at("op", "{"):
+        if self.at("cases"):
             return self.cases()
         raise MisprintError(f"cannot stand here: {self.tokens[:3]}")
 
@@ -327,7 +335,7 @@ class Parser:
         if self.at("op", "gap"):
             self.take()
         bare = not self.at("open", "(")
-        if bare and not (self.at("name") or self.at("number")):
+        if bare and not (self.at("name") or self.at("number") or self.at("open", "|")):
             raise MisprintError("a function without parentheses takes one symbol or number")
         arguments = [self.primary()] if bare else self.bracketed("(")
         if self.at("sup"):
@@ -336,8 +344,6 @@ class Parser:
         return (f"({result} ** {exponent})" if exponent else result), bare
 
     def cases(self) -> str:
-        if self.at("op", "{"):
-            self.take()
         arguments = []
         rows = self.take()
         for value, condition in rows:
@@ -376,7 +382,7 @@ class Parser:
     def logic_in_parentheses(self) -> str:
         """Read ``(a < b or c < d)`` if that is what the parentheses hold."""
         depth = 0
-        for place, (kind, value) in enumerate(self.tokens):
+        for kind, value in self.tokens:
             depth += {"open": 1, "close": -1}.get(kind, 0)
             if depth == 1 and (kind == "word" or (kind == "op" and value in COMPARISONS)):
                 self.take()

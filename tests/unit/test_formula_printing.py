@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from formula_reader import MisprintError, Reader
+from formula_reader import Reader
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
@@ -182,7 +182,7 @@ def traps(*seconds: Any) -> Callable[[Callable[..., None]], Callable[..., None]]
 
 @traps()
 @given(expressions())
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=200, deadline=None)
 def test_symbols_read_back_exactly(text: str) -> None:
     reader = Reader(SEEN)
     formula = parse(text)
@@ -195,9 +195,9 @@ UNITS = frozenset({"N·m", "mm", "°", "GPa", "%"})
 SHOWN = ["360", "2.5", "-12.5", "1.2e-05", "-3.4E+7", "0.001", "-0"]
 
 
-@traps([("-12.5", "mm")] * 10, [("1.2e-05", "")] * 10, [("360", "")] * 10, [("-3.4E+7", "°")] * 10)
+@traps([("-12.5", "mm")] * 10, [("-2.5", "")] * 10, [("1.2e-05", "")] * 10, [("360", "")] * 10, [("-3.4E+7", "°")] * 10)
 @given(expressions(), st.lists(st.tuples(st.sampled_from(SHOWN), st.sampled_from(["", *UNITS])), min_size=len(NAMES)))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=200, deadline=None)
 def test_numbers_read_back_exactly(text: str, shown: list[tuple[str, str]]) -> None:
     numbers = dict(zip(NAMES, shown, strict=False))
     formula = parse(text)

@@ -89,17 +89,24 @@ def _power(base: Dimension, exponent: Fraction) -> Dimension:
     return _sorted({unit: old * exponent for unit, old in base})
 
 
+_SHORT = {"meter": "m", "kilogram": "kg", "second": "s", "ampere": "A", "kelvin": "K", "mole": "mol", "candela": "cd"}
+
+
 def _spoken(dimension: Dimension | None) -> str:
-    """Say a dimension in base units: "kilogram * meter / second ** 2", or "a pure number"."""
+    """Say a dimension in the engineer's words: "a force", "a pure number"."""
+    from truing.units import human_dimension
+
     if not dimension:
         return "a pure number"
-    above = [_spoken_unit(unit, exponent) for unit, exponent in dimension if exponent > 0]
-    below = [_spoken_unit(unit, -exponent) for unit, exponent in dimension if exponent < 0]
-    return " / ".join([" * ".join(above) or "1", *below])
+    unit = "*".join(f"{_SHORT.get(unit, unit)}^{_written(exponent)}" for unit, exponent in dimension)
+    try:
+        return human_dimension(unit)
+    except UnitError:
+        return unit
 
 
-def _spoken_unit(unit: str, exponent: Fraction) -> str:
-    return unit if exponent == 1 else f"{unit}**{exponent}" if exponent.denominator == 1 else f"{unit}**({exponent})"
+def _written(exponent: Fraction) -> str:
+    return str(exponent) if exponent.denominator == 1 else f"({exponent})"
 
 
 class _Proof:

@@ -120,7 +120,7 @@ def _piece(piece: Piece) -> str:
 
 
 def _grouped(pieces: Sequence[Piece]) -> str:
-    return " ".join(_piece(piece) for piece in pieces).replace(" ,", ",")
+    return " ".join(_piece(piece) for piece in pieces).replace(" , ", ",")
 
 
 class LatexWriter:

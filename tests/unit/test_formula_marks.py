@@ -1,0 +1,196 @@
+"""How symbols, numbers, units and whole formulas look in print, and that no text does harm there."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from truing.formulas import (
+    block_mathml,
+    latex,
+    mathml,
+    number_latex,
+    number_mathml,
+    parse,
+    substituted_latex,
+    substituted_mathml,
+    symbol_latex,
+    symbol_mathml,
+    symbol_text,
+)
+
+SYMBOLS = [
+    ("F", "<mi>F</mi>", "F", "F"),
+    ("h_0", "<msub><mi>h</mi><mn>0</mn></msub>", "h_{0}", "h_0"),
+    ("k_R", "<msub><mi>k</mi><mi>R</mi></msub>", "k_{R}", "k_R"),
+    ("theta_11", "<msub><mi>θ</mi><mn>11</mn></msub>", r"\theta_{11}", "θ_11"),
+    ("xi_lh", "<msub><mi>ξ</mi><mi>lh</mi></msub>", r"\xi_{\mathrm{lh}}", "ξ_lh"),
+    ("Phi_alpha", "<msub><mi>Φ</mi><mi>α</mi></msub>", r"\Phi_{\alpha}", "Φ_α"),
+    ("θ", "<mi>θ</mi>", r"\theta", "θ"),
+    ("Delta z", '<mrow><mi mathvariant="normal">Δ</mi><mi>z</mi></mrow>', r"\Delta z", "Δz"),
+    ("z_2'", "<msubsup><mi>z</mi><mn>2</mn><mo>′</mo></msubsup>", r"z_{2}^{\prime}", "z_2′"),
+    ("z'", "<msup><mi>z</mi><mo>′</mo></msup>", r"z^{\prime}", "z′"),
+    ("Re", "<mi>Re</mi>", r"\mathrm{Re}", "Re"),
+]
+
+
+@pytest.mark.parametrize(("symbol", "in_mathml", "in_latex", "plain"), SYMBOLS)
+def test_symbols(symbol: str, in_mathml: str, in_latex: str, plain: str) -> None:
+    assert symbol_mathml(symbol) == in_mathml
+    assert symbol_latex(symbol) == in_latex
+    assert symbol_text(symbol) == plain
+
+
+def test_a_subscript_of_several_parts() -> None:
+    assert symbol_latex("F_N,max") == r"F_{N,\mathrm{max}}"
+    assert "<mi>N</mi>" in symbol_mathml("F_N,max")
+    assert symbol_text("F_N,max") == "F_N,max"
+
+
+NUMBERS = [
+    ("360", "<mn>360</mn>", "360"),
+    ("-2.5", '<mrow><mo form="prefix">−</mo><mn>2.5</mn></mrow>', "-2.5"),
+    ("3e+08", "<mrow><mn>3</mn><mo>×</mo><msup><mn>10</mn><mn>8</mn></msup></mrow>", r"3 \times 10^{8}"),
+    ("1.2e-05", None, r"1.2 \times 10^{-5}"),
+    ("12 345", "<mn>12 345</mn>", r"12\thinspace 345"),
+    ("–", "<mtext>–</mtext>", r"\mathrm{\text{–}}"),
+]
+
+
+@pytest.mark.parametrize(("text", "in_mathml", "in_latex"), NUMBERS)
+def test_numbers(text: str, in_mathml: str | None, in_latex: str) -> None:
+    assert in_mathml is None or number_mathml(text) == in_mathml
+    assert number_latex(text) == in_latex
+
+
+SYMBOL_OF = {name: name for name in ["a", "b", "c", "x"]}
+FEWEST = [
+    ("a * b / c", r"\frac{a \thinspace b}{c}"),
+    ("a / (b * c)", r"\frac{a}{b \thinspace c}"),
+    ("a + (b + c)", "a + b + c"),
+    ("a - (b - c)", r"a - \left( b - c \right)"),
+    ("a - b * c", r"a - b \thinspace c"),
+    ("(a * b) + c", r"a \thinspace b + c"),
+    ("2**-x", "2^{-x}"),
+    ("(a + b)**2", r"\left( a + b \right)^{2}"),
+    ("sin(x)**2", r"\sin^{2} x"),
+    ("2 * 3 * a", r"2 \cdot 3 \thinspace a"),
+    ("a * 2", r"a \cdot 2"),
+    ("-a / b", r"-\frac{a}{b}"),
+    ("max(a, b)", r"\mathrm{max} \left( a,\thinspace b \right)"),
+    ("friction * a", r"\mathrm{friction} \cdot a"),
+    ("contact_area", r"\mathrm{contact\ area}"),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), FEWEST)
+def test_parentheses_only_where_needed(text: str, expected: str) -> None:
+    assert latex(parse(text), SYMBOL_OF) == expected
+
+
+def test_numbers_take_the_place_of_symbols() -> None:
+    formula = parse("a * b**2 / c")
+    numbers = {"a": ("1.2e-05", "N·m"), "b": ("-3", ""), "c": ("20", "°")}
+    printed = substituted_latex(formula, numbers)
+    assert printed == (
+        r"\frac{1.2 \times 10^{-5}\thinspace \mathrm{N{\cdot}m} \cdot \left( -3 \right)^{2}}{20\mathrm{{^{\circ}}}}"
+    )
+    text = "".join(ElementTree.fromstring(f"<r>{substituted_mathml(formula, numbers)}</r>").itertext())
+    assert text == "1.2×10−5N·m⋅(−3)220°"
+
+
+def test_units_that_carry_a_power() -> None:
+    formula = parse("a")
+    assert substituted_latex(formula, {"a": ("12", "10⁻⁶/K")}) == r"12 \times \mathrm{10^{-6}/K}"
+    assert substituted_latex(formula, {"a": ("12", "mm^0.5")}) == r"12\thinspace \mathrm{mm^{0.5}}"
+    assert "<mo>×</mo>" in substituted_mathml(formula, {"a": ("12", "10⁻⁶/K")})
+
+
+def test_either_prints_the_one_that_counts() -> None:
+    formula = parse("either(a, b) * 2")
+    assert substituted_latex(formula, {"a": ("–", ""), "b": ("1.2", "")}) == r"1.2 \cdot 2"
+    assert substituted_latex(formula, {"a": ("1.7", ""), "b": ("1.2", "")}) == r"1.7 \cdot 2"
+    assert r"\mathrm{if\ given}" in latex(formula, SYMBOL_OF)
+
+
+def test_an_equation_shows_both_sides() -> None:
+    assert latex(parse("tan(x) == a / b"), SYMBOL_OF) == r"\tan x = \frac{a}{b}"
+
+
+def test_a_block_joins_its_parts_by_equals_signs() -> None:
+    block = block_mathml(symbol_mathml("F"), mathml(parse("a + b"), SYMBOL_OF), number_mathml("3"))
+    root = ElementTree.fromstring(block)
+    assert root.tag == "math"
+    assert root.get("display") == "block"
+    assert "".join(root.itertext()) == "F=a+b=3"
+
+
+CORE = {"math", "mrow", "mi", "mn", "mo", "mfrac", "msqrt", "mroot", "msup", "msub", "msubsup", "mtext", "mspace"}
+CORE |= {"mtable", "mtr", "mtd"}
+ATTRIBUTES = {"form", "stretchy", "width", "mathvariant", "separator", "largeop", "displaystyle", "style", "display"}
+RICH = parse("cases(-a**2 / sqrt(b), sin(x) > 1 and b < 2, either(cbrt(abs(c)), sum(a) * log10(x)))")
+HOSTILE = st.text(st.sampled_from("<>&\"'$#%_{}^\\|~`*[]()!/ax1,. \n\t\x00\x1b\u202e²°µ·′"), max_size=12) | st.text(
+    max_size=8
+)
+NASTY = [
+    "<script>alert(1)</script>",
+    "&lt;b&gt;",
+    "$x$",
+    "a|b",
+    "\\input{x}",
+    "{{7*7}}",
+    "}{",
+    "`x`",
+    "[a](b)",
+    "</math>",
+]
+
+
+def printed_with(text: str) -> tuple[list[str], list[str]]:
+    names = dict.fromkeys(RICH.names, text)
+    numbers = dict.fromkeys(RICH.names, (text, text))
+    in_mathml = [symbol_mathml(text), number_mathml(text), mathml(RICH, names), substituted_mathml(RICH, numbers)]
+    in_latex = [symbol_latex(text), number_latex(text), latex(RICH, names), substituted_latex(RICH, numbers)]
+    return in_mathml, in_latex
+
+
+def check_hostile(text: str) -> None:
+    in_mathml, in_latex = printed_with(text)
+    for markup in in_mathml:
+        for element in ElementTree.fromstring(f"<mrow>{markup}</mrow>").iter():
+            assert element.tag in CORE
+            assert set(element.attrib) <= ATTRIBUTES
+        assert not re.search(r"&(?!(?:lt|gt|amp|quot|#x27);)", markup)
+    for words in in_latex:
+        bare = re.sub(r"\\[$#%&_]", "", words.replace(" & ", " "))
+        assert not re.search(r"[$#%&|<>`~*\n\x00\x1b\u202e\[]", bare.replace(r"\sqrt[3]", ""))
+        assert set(re.findall(r"\\(?![A-Za-z ])", bare)) == set()
+        depth = 0
+        for brace in re.findall(r"[{}]", bare):
+            depth += 1 if brace == "{" else -1
+            assert depth >= 0
+        assert depth == 0
+        assert not re.search(r"\^\{[^{}]*\}\s*\^", bare)
+        assert not set(re.findall(r"\\([A-Za-z]+)", bare)) & {"input", "href", "def", "write", "include"}
+    assert symbol_text(text).isprintable()
+
+
+@pytest.mark.parametrize("text", NASTY)
+def test_nasty_texts_are_inert(text: str) -> None:
+    check_hostile(text)
+
+
+@given(HOSTILE)
+@settings(max_examples=300, deadline=None)
+def test_any_text_is_inert(text: str) -> None:
+    check_hostile(text)
+
+
+def test_markup_of_a_symbol_shows_its_characters() -> None:
+    assert "".join(ElementTree.fromstring(symbol_mathml("<b>")).itertext()) == "<b>"
+    assert symbol_latex("50%") == r"\mathrm{50\%}"
+    assert symbol_latex("a|b") == r"\mathrm{a\vert{}b}"
