@@ -4,9 +4,10 @@ from pathlib import Path
 
 from press_linkage.answers import chances, cycle, influence, synthesis
 from press_linkage.effects import EFFECTS
+from press_linkage.findings import FINDINGS
 from press_linkage.increments import source
 from press_linkage.mechanism import exact_derivatives, press_linkage
-from press_linkage.published import FINDINGS, PUBLISHED
+from press_linkage.published import PUBLISHED
 from press_linkage.quantities import Press, Slider
 from press_linkage.sections import SECTIONS
 from truing import (
@@ -25,8 +26,8 @@ from truing import (
 )
 
 LITERATURE = [
-    "The paper: 騫華楠, 陶璟, 于隨然, error analysis and accuracy synthesis of a parallel-driven multi-link servo press, "
-    "School of Mechanical Engineering, Shanghai Jiao Tong University.",
+    "The paper: 騫華楠, 陶璟, 于隨然, error analysis and accuracy synthesis of a parallel-driven multi-link servo "
+    "press, School of Mechanical Engineering, Shanghai Jiao Tong University.",
     "K. W. Chase, S. P. Magleby, J. Gao, Tolerance analysis of 2-D and 3-D mechanical assemblies with small kinematic "
     "adjustments, ADCATS Report 97-5, Brigham Young University, 1997.",
     "K. W. Chase, A. R. Parkinson, A survey of research in the application of tolerance analysis to the design of "
