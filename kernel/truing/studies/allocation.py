@@ -9,6 +9,7 @@ from typing import Any, Literal
 from truing.declare.blocks import Block
 from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
+from truing.evaluate import acting_inputs
 from truing.fits import GRADES
 from truing.setup import Setup
 from truing.studies.bench import Bench, Check
@@ -72,6 +73,7 @@ class Allocation:
             coefficients=order,
             sampled=self._verified(bench, wanted, {"start": shop.start, "rule": rule.grades, "least": least.grades}),
             remarks=found.warnings,
+            inputs=acting_inputs(setup),
         )
 
     def _slopes(self, machines: Machines, wanted: Sequence[Demand], shop: Shop) -> dict[str, float]:
@@ -125,6 +127,7 @@ class Allotted:
 
     ``start`` and ``final`` are first-order probabilities by check; ``tolerances`` the grades that the rule ends with;
     ``monte_carlo["start" | "rule" | "least"][check]`` the probabilities on the exact model.
+    ``inputs`` are those of the run, as effects leave them.
     """
 
     name: str = "allocation"
@@ -136,6 +139,7 @@ class Allotted:
     coefficients: Mapping[str, float]
     sampled: Mapping[str, Tally] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+    inputs: Any = None
 
     @property
     def reached(self) -> bool:

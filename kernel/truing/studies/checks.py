@@ -13,12 +13,15 @@ from truing.studies.bench import Check
 
 @dataclass(frozen=True)
 class Limit:
-    """A requirement in SI: ``low <= result <= high``, and the probability it asks for (None: it must simply hold)."""
+    """A requirement in SI: ``low <= result <= high``, and the probability it asks for (None: it must simply hold).
+
+    The limits are numbers, or arrays along the axis of the result.
+    """
 
     name: str
     result: str
-    low: float
-    high: float
+    low: Any
+    high: Any
     goal: float | None
     require: Require
 
@@ -51,12 +54,12 @@ def _limit(require: Require, others: list[Require], setup: Setup, answers: dict[
     return Limit(check_name(require, others), require.result, low, high, goal, require)
 
 
-def limit_amount(require: Require, setup: Setup, answers: dict[str, Any]) -> float:
+def limit_amount(require: Require, setup: Setup, answers: dict[str, Any]) -> Any:
     """Return the stated limit in SI: an input, a result or a quantity in the unit of the result."""
     if require.limit in setup.model.input_fields:
         return float(setup.nominal(require.limit))
     if require.limit in answers:
-        return float(answers[require.limit])
+        return answers[require.limit]
     return float(in_si(require.limit, setup.model.result_fields[require.result].unit))
 
 
@@ -77,11 +80,11 @@ def _plain(limit: Limit, setup: Setup, answers: dict[str, Any]) -> Check:
     from truing.units import from_si
 
     unit = setup.print_unit(limit.result)
-    values = np.atleast_1d(np.asarray(answers[limit.result], dtype=float))
     at_least = limit.require.kind == "at_least"
-    worst = float(values.min() if at_least else values.max())
     stated = limit.low if at_least else limit.high
-    value, bound = float(from_si(worst, unit)), float(from_si(stated, unit))
+    values, bounds = np.broadcast_arrays(*np.atleast_1d(np.asarray(answers[limit.result], dtype=float), stated))
+    worst = int(np.argmin(values - bounds) if at_least else np.argmax(values - bounds))
+    value, bound = float(from_si(values[worst], unit)), float(from_si(bounds[worst], unit))
     margin = margin_of(value, bound, at_least=at_least)
     return Check(limit.name, value, bound, unit, margin, margin >= 0)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from truing.declare.blocks import Block
 from truing.declare.fields import with_values
 from truing.errors import InfeasibleError, UsageError
-from truing.evaluate import evaluate
+from truing.evaluate import acting_inputs, evaluate
 from truing.setup import Setup
 from truing.studies.bench import Bench, Check
 from truing.studies.chances import chance, straightened
@@ -74,6 +74,7 @@ class Reliability:
             form=self._form(machines, wanted, nominal),
             tally=tally,
             remarks=(*found.warnings, *_still(machines)),
+            inputs=acting_inputs(setup),
         )
 
     def _sampled(
@@ -182,7 +183,8 @@ class Odds:
     """Probabilities by check: a number each, or an array where the result runs along an axis.
 
     ``probability`` is that of the Monte Carlo (first order where none was drawn); ``at_least`` the lower end of its
-    95 % interval; ``analytic`` first order; ``form`` the tangent planes; ``mean`` and ``sd`` of each result in SI.
+    95 % interval; ``analytic`` first order; ``form`` the tangent planes; ``mean`` and ``sd`` of each result in SI;
+    ``inputs`` those of the run, as effects leave them.
     """
 
     name: str = "reliability"
@@ -194,6 +196,7 @@ class Odds:
     tally: Tally | None = None
     curve: Curve | None = None
     remarks: tuple[str, ...] = ()
+    inputs: Any = None
 
     @property
     def draws(self) -> int:

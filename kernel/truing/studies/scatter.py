@@ -139,11 +139,14 @@ def _gather(columns: dict[str, NDArray[np.float64]], drawn: Iterator[tuple[str, 
 
 
 def generator(seed: int, batch: int, name: str) -> np.random.Generator:
-    """Make the random generator of one batch and one cause; 0 is a seed like any other."""
+    """Make the random generator of one batch and one cause; 0 is a seed like any other.
+
+    SFC64 is the fastest of numpy's generators and passes the same batteries of tests as its default.
+    """
     import numpy as np
 
     sequence = np.random.SeedSequence(seed, spawn_key=(batch, *_words(name)))
-    return np.random.Generator(np.random.PCG64(sequence))
+    return np.random.Generator(np.random.SFC64(sequence))
 
 
 @lru_cache(maxsize=1024)

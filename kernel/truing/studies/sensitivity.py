@@ -155,7 +155,8 @@ class Sensitivities:
 
     ``derivatives[result][source]``, ``share[result][source]``, ``sd[result]``, ``sobol_first[result][source]``,
     ``sobol_total[result][source]``. ``agreement[result]``, where the model states derivatives: the largest difference
-    from the numeric ones, over the largest derivative of that result. ``inputs``: those of the run, as effects leave them.
+    from the numeric ones, over the largest derivative of that result. ``inputs`` are those of the run, as
+    effects leave them. Sources that scatter together may have a negative share.
     """
 
     name: str = "sensitivity"
