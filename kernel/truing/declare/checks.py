@@ -213,7 +213,7 @@ def _of_formulas(model: Model[Any, Any]) -> Iterator[str]:
     from truing.declare.scope import formula_scope
     from truing.formulas import parse
 
-    for item in model.own_result_fields.values():
+    for item in model.result_fields.values():
         text = getattr(item.spec, "formula", "")
         if not text:
             continue

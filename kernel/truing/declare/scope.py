@@ -11,8 +11,14 @@ if TYPE_CHECKING:
 
 
 def formula_scope(model: Model[Any, Any], item: ResultField) -> Mapping[str, InputField | ResultField]:
-    """Return what each name means in the formula of ``item``: own part first, then the flat names."""
-    known: dict[str, InputField | ResultField] = {**model.input_fields, **model.own_result_fields}
+    """Return what each name means in the formula of ``item``: own part first, then the flat names.
+
+    The function's results know each other; what a study gives knows the results of all studies besides.
+    """
+    own_result = item.name in model.own_result_fields
+    known: dict[str, InputField | ResultField] = {
+        **model.input_fields, **(model.own_result_fields if own_result else model.result_fields),
+    }  # fmt: skip
     if not item.scope:
         return known
     ending = "_" + item.scope
