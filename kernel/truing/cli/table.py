@@ -30,7 +30,7 @@ def table(
     read = read_rows(rows, offer, setup)
     shown = shown_by_gauge(setup, read.columns, len(read))
     headers = [*read.headers, *(f"{name} [{shown.units[name] or '1'}]" for name in shown.values)]
-    write_table(output or sys.stdout, headers, [*read.cells, *shown.values.values()])
+    write_table(output or sys.stdout, headers, [*read.cells.values(), *shown.values.values()])
     for row, reason in shown.reasons.items():
         say(f"{rows}:{read.lines[row]}: {reason}")
     return 0

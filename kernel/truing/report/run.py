@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,15 +14,13 @@ from truing.calculation import Calculation, calculate
 from truing.cases import CasesTable, run_cases
 from truing.executors import open_executor
 from truing.kernel import Offer
-from truing.published import ComparedRow, compare_published
-from truing.report.context import Provenance
-from truing.report.pdf import HOW_TO_PRINT, find_browser, print_pdf
+from truing.published import compare_published
+from truing.report.pdf import HOW_TO_PRINT, find_browser, pdf_bytes
 from truing.report.render import sheet_html, sheet_markdown
-from truing.run_folder import check_folder, input_hash, results_document, write_run
+from truing.run_documents import provenance_of
+from truing.run_folder import demand_place, write_run
 from truing.setup import Setup
 from truing.studies.bench import Progress
-
-PACKAGES = ("numpy", "scipy", "pint", "pydantic", "matplotlib", "jinja2")
 
 
 @dataclass(frozen=True)
@@ -52,23 +50,32 @@ class Done:
 
 def perform(setup: Setup, offer: Offer, order: RunOrder, progress: Progress) -> Done:
     """Run and write the folder; it is complete or absent, whatever happens."""
-    check_folder(order.folder)
+    demand_place(order.folder)
     started = time.time()
-    address = "serial" if order.workers == 1 else f"processes:{order.workers}"
-    with open_executor(address) as executor:
+    with open_executor("serial" if order.workers == 1 else f"processes:{order.workers}") as executor:
         calculation, cases = _calculate(setup, offer, order, executor=executor, progress=progress)
-    verified = compare_published(offer, progress=progress) if offer.model.published else []
-    provenance = provenance_of(calculation, started)
-    document = results_document(calculation, provenance, cases=cases)
-    info = run_info(started, workers=order.workers, provenance=provenance)
-    browser = find_browser() if order.pdf else None
-    with write_run(order.folder, calculation, provenance=provenance, run_info=info, cases=cases) as folder:
-        _write_sheets(folder, calculation, provenance, verified, cases)
-        if browser is not None:
-            print_pdf(folder / "sheet.html", folder / "sheet.pdf", browser)
+    verified = compare_published(offer, progress=progress)
+    provenance = provenance_of(calculation.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
+    html = sheet_html(calculation, provenance=provenance, verified=verified, cases=cases)
+    sheets: dict[str, str | bytes] = {
+        "sheet.html": html,
+        "sheet.md": sheet_markdown(calculation, provenance=provenance, verified=verified, cases=cases),
+    }
     note = ""
     if order.pdf:
-        note = f"printed: {order.folder / 'sheet.pdf'}" if browser else HOW_TO_PRINT
+        browser = find_browser()
+        note = f"printed: {order.folder / 'sheet.pdf'}" if browser else f"no browser was found; {HOW_TO_PRINT}"
+        if browser is not None:
+            sheets["sheet.pdf"] = pdf_bytes(html, browser)
+    document = write_run(
+        order.folder,
+        calculation,
+        offer,
+        provenance=provenance,
+        run_info=_run_info(started, order),
+        sheets=sheets,
+        cases=cases,
+    )
     return Done(calculation, document, cases, note)
 
 
@@ -82,39 +89,8 @@ def _calculate(
     return run_cases(setup, read_cases(order.cases, offer, setup), executor=executor, progress=progress)
 
 
-def _write_sheets(
-    folder: Path,
-    calculation: Calculation,
-    provenance: Provenance,
-    verified: Sequence[ComparedRow],
-    cases: CasesTable | None,
-) -> None:
-    for name, write in (("sheet.html", sheet_html), ("sheet.md", sheet_markdown)):
-        text = write(calculation, provenance=provenance, verified=verified, cases=cases)
-        (folder / name).write_text(text, encoding="utf-8", newline="\n")
-
-
-def provenance_of(calculation: Calculation, started: float) -> Provenance:
-    """Return where the numbers of this calculation come from."""
-    from importlib import metadata
-
-    setup = calculation.setup
-    return Provenance(
-        kernel=metadata.version("truing"),
-        plugin=setup.origin.name,
-        plugin_version=setup.origin.version,
-        python=platform.python_version(),
-        packages={name: metadata.version(name) for name in PACKAGES},
-        input_hash=input_hash(setup),
-        seed=setup.seed,
-        date=time.strftime("%Y-%m-%d", time.localtime(started)),
-        added=[(item.what, item.plugin, item.version) for item in setup.added],
-        files=dict(setup.files),
-    )
-
-
-def run_info(started: float, *, workers: int, provenance: Provenance) -> dict[str, Any]:
-    """Return what run.json says: everything that may differ between two equal runs."""
+def _run_info(started: float, order: RunOrder) -> dict[str, Any]:
+    """Return what may differ between two equal runs: date, duration, machine, user, workers."""
     import getpass
 
     try:
@@ -122,15 +98,10 @@ def run_info(started: float, *, workers: int, provenance: Provenance) -> dict[st
     except (OSError, KeyError, ImportError):
         user = ""
     return {
-        "schema": "truing.run/1",
         "date": time.strftime("%Y-%m-%dT%H:%M:%S%z", time.localtime(started)),
         "duration_s": round(time.time() - started, 3),
         "machine": platform.node(),
         "system": platform.platform(),
         "user": user,
-        "python": provenance.python,
-        "kernel": provenance.kernel,
-        "packages": dict(provenance.packages),
-        "workers": {"count": workers, "lost": 0},
-        "warnings": [],
+        "workers": {"count": order.workers, "lost": 0},
     }
