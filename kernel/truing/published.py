@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.published import Published
 from truing.errors import DeclarationError
+from truing.kernel import Offer
 from truing.studies.bench import Progress, silent
 
 if TYPE_CHECKING:
     from truing.calculation import Calculation
-    from truing.declare.model import Model
-    from truing.kernel import Offer
     from truing.setup import Setup
-
-TOLERANCES = "tolerances."
 
 
 @dataclass(frozen=True)
@@ -49,13 +46,21 @@ def compare(
     return rows
 
 
-def compare_published(offer: Offer, *, progress: Progress = silent) -> list[ComparedRow]:
-    """Compare the printed numbers of a model with its own, starting from its defaults."""
+def compare_published(
+    offer: Offer, *, progress: Progress = silent, known: Calculation | None = None
+) -> list[ComparedRow]:
+    """Compare the printed numbers of a model with its own, starting from its defaults.
+
+    ``known`` is a calculation that was made already; it serves for the settings that it has.
+    """
     from truing.calculation import calculate
+    from truing.inputs_file import setup_from_settings
 
     def calculation_for(settings: Mapping[str, str]) -> Calculation:
-        setup = setup_with(offer.model, settings)
-        return calculate(replace(setup, origin=offer.origin, added=offer.added), progress=progress)
+        wanted = setup_from_settings(offer, settings)
+        if known is not None and known.setup.studies == wanted.studies and same_run(known.setup, wanted):
+            return known
+        return calculate(wanted, progress=progress)
 
     return compare(calculation_for, offer.model.published)
 
@@ -77,35 +82,17 @@ def compare_one(item: Published, calculation: Calculation) -> ComparedRow:
     return ComparedRow(item, value, ratio, matches, matches == (item.verdict == "matches"))
 
 
-def setup_with(model: Model[Any, Any], settings: Mapping[str, str]) -> Setup:
-    """Return the model at its defaults with the settings of a printed number: inputs and ``tolerances.NAME``."""
-    from truing.declare.spreads import read_spread
-    from truing.setup import default_setup
-
-    values = {name: text for name, text in settings.items() if not name.startswith(TOLERANCES)}
-    setup = default_setup(model, **{name: _plain(model, name, text) for name, text in values.items()})
-    spreads = dict(setup.spreads)
-    for name, text in settings.items():
-        if name.startswith(TOLERANCES):
-            own = name.removeprefix(TOLERANCES)
-            if own not in spreads:
-                raise DeclarationError(f"published settings name the tolerance '{own}', which {model.name} does not have")
-            spreads[own] = read_spread(text, spreads[own])
-    return replace(setup, spreads=spreads)
-
-
-def _plain(model: Model[Any, Any], name: str, text: str) -> Any:
-    """Read what is no quantity: a switch or a whole number. Quantities keep their text, with its unit."""
-    kind = model.input_fields[name].kind if name in model.input_fields else ""
-    if kind == "switch":
-        return str(text).lower() in {"true", "yes", "on", "1"}
-    return int(text) if kind == "integer" else text
-
-
 def holds_for(setup: Setup, item: Published) -> bool:
     """Tell whether a run has just the settings that a printed number holds for, so that ours is its own result."""
-    wanted = setup_with(setup.model, item.settings)
-    if setup.effects or setup.conditions != wanted.conditions:
+    from truing.inputs_file import setup_from_settings
+
+    wanted = setup_from_settings(Offer(setup.model.name, setup.model, setup.origin, setup.added), item.settings)
+    return same_run(setup, wanted)
+
+
+def same_run(setup: Setup, wanted: Setup) -> bool:
+    """Tell whether two setups describe the same machines: inputs, scatter, conditions; no effect that is on."""
+    if setup.effects or wanted.effects or setup.conditions != wanted.conditions or setup.seed != wanted.seed:
         return False
     ours, theirs = setup.model.read_inputs(setup.inputs), setup.model.read_inputs(wanted.inputs)
     return all(_same(ours[name], theirs[name]) for name in theirs) and _same_scatter(setup, wanted)

@@ -32,9 +32,9 @@ class Figures:
     def view(self, title: str, what: Callable[[], Any], caption: str) -> BlockView:
         """Draw a figure; one that fails is said in its place and does not take the sheet away."""
         self.count += 1
-        ident = f"figure-{self.count}"
+        ident = f"f{self.count}"
         try:
-            return FigureView(title, draw(what, title=title, ident=ident), caption, ident)
+            return FigureView(title, draw(what, title=title, ident=ident), caption or title, self.count)
         except PluginError as error:
             self.failures.append(str(error))
             return Words(f"The figure '{title}' could not be drawn.", kind="warning")
@@ -66,7 +66,9 @@ def result_chapters(writing: Writing) -> Iterator[Chapter]:
         yield from _main_results(writing)
         return
     yield from _studies(writing)
-    rest = [name for name in writing.setup.model.result_fields if name not in named and name in writing.calculation.answers]
+    rest = [
+        name for name in writing.setup.model.result_fields if name not in named and name in writing.calculation.answers
+    ]
     if rest:
         entries, tables = _results(writing, rest)
         yield Chapter("", "", "Further results", "results", entries=entries, blocks=tables)
@@ -89,7 +91,9 @@ def _main_results(writing: Writing) -> Iterator[Chapter]:
     """Write the values of the normal sections without their formulas."""
     model = writing.setup.model
     sections = [section for section in model.sheet if section.level == "normal"]
-    names = [name for section in sections for name in section.names] or (list(model.result_fields) if not model.sheet else [])
+    names = [name for section in sections for name in section.names] or (
+        list(model.result_fields) if not model.sheet else []
+    )
     scalars = [name for name in dict.fromkeys(names) if _is_scalar(writing.calculation.answers.get(name))]
     if scalars:
         entries = tuple(_entry(writing, name, with_formula=False) for name in scalars)
@@ -190,13 +194,13 @@ def _columns_table(writing: Writing, title: str, names: Sequence[str], most: int
 
     answers, setup = writing.calculation.answers, writing.setup
     length = len(answers[names[-1]])
-    places = np.unique(np.linspace(0, length - 1, min(length, most)).round().astype(int)) if length else []
-    cells = [[format_value(float(answers[name][place]), setup.print_unit(name))[0] for name in names] for place in places]
+    places = sorted({round(one) for one in np.linspace(0, length - 1, min(length, most))}) if length else []
+    units = {name: setup.print_unit(name) for name in names}
+    rows = tuple(tuple(format_value(float(answers[n][place]), units[n])[0] for n in names) for place in places)
     note = f"{len(places)} of {length} rows" if length > most else ""
     titles = [setup.model.result_fields[name].spec.note or name for name in names]
-    units = [format_value(0.0, setup.print_unit(name))[1] for name in names]
-    rows = tuple(tuple(row) for row in cells)
-    return TableView(title, tuple(titles), tuple(units), rows, (True,) * len(names), note)
+    headings = tuple(format_value(0.0, unit)[1] for unit in units.values())
+    return TableView(title, tuple(titles), headings, rows, (True,) * len(names), note)
 
 
 def views(writing: Writing, blocks: Sequence[Block]) -> list[BlockView]:
@@ -208,7 +212,8 @@ def _view(writing: Writing, block: Block) -> BlockView:
     if isinstance(block, Words):
         return block
     if isinstance(block, Drawing):
-        return writing.figures.view(block.title, block.draw, block.caption)
+        caption = f"{block.title}. {block.caption}" if block.caption else block.title
+        return writing.figures.view(block.title, block.draw, caption)
     return table_view(block, LONGEST_TABLE[writing.detail])
 
 

@@ -156,5 +156,7 @@ def _relation(check: Check, setup: Setup) -> str:
     if distance * check.margin:
         return "≤" if distance * check.margin > 0 else "≥"
     requires = [item for item in setup.model.objectives if isinstance(item, Require)]
-    lower = any(check.name.startswith(item.result) and (item.kind == "at_least" or item.reliability) for item in requires)
+    lower = any(
+        check.name.startswith(item.result) and (item.kind == "at_least" or item.reliability) for item in requires
+    )
     return "≥" if lower else "≤"

@@ -163,7 +163,7 @@ class FigureView:
     title: str
     svg: str
     caption: str
-    ident: str
+    number: int
 
 
 BlockView: TypeAlias = Words | TableView | FigureView
@@ -191,7 +191,8 @@ class Head:
     fields: tuple[tuple[str, str], ...]
     signatures: tuple[tuple[str, str], ...]
     footer: str
-    paper: str
+    logo: str = ""
+    """A picture as a data address, or nothing."""
 
 
 @dataclass(frozen=True, kw_only=True)

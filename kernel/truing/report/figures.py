@@ -62,8 +62,9 @@ def draw(what: Callable[[], Any], *, title: str, ident: str) -> str:
     """
     import matplotlib as mpl
 
-    standard = {key: value for key, value in mpl.rcParamsDefault.items() if not key.startswith("backend")}
-    with mpl.rc_context({**standard, **STYLE}):
+    look: Any = {key: value for key, value in mpl.rcParamsDefault.items() if not key.startswith("backend")}
+    look.update(STYLE)
+    with mpl.rc_context(look):
         try:
             figure = what()
             stream = StringIO()

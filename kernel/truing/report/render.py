@@ -5,8 +5,8 @@ from __future__ import annotations
 import base64
 from collections.abc import Sequence
 from functools import lru_cache
+from html import escape
 from typing import TYPE_CHECKING, Any
-
 
 from truing.formulas.symbols import printable
 from truing.formulas.write_latex import LatexWriter
@@ -73,11 +73,9 @@ def _is_long(sheet: Sheet) -> bool:
 
 
 def page_style(sheet: Sheet) -> str:
-    """Write what only this sheet's pages say: the paper, and title and page number in the margin."""
-    return (
-        f"\n@page {{ size: {sheet.head.paper} portrait; "
-        f'@top-left {{ content: "{css_text(sheet.head.footer)}"; }} }}\n'
-    )
+    """Write what only this sheet's pages say: its title in the margin, from the second page on."""
+    title = f'@page {{ @top-left {{ content: "{css_text(sheet.head.footer)}"; }} }}'
+    return f"\n{title}\n@page :first {{ @top-left {{ content: none; }} }}\n"
 
 
 def css_text(text: str) -> str:
@@ -89,7 +87,7 @@ def css_text(text: str) -> str:
 def _markup(text: str) -> Any:
     from markupsafe import Markup
 
-    return Markup(text)  # noqa: S704  # only for what this package wrote itself
+    return Markup(text)  # only for what this package wrote itself
 
 
 def _environment(**options: Any) -> Environment:
@@ -168,10 +166,10 @@ def _value_text(value: Value) -> str:
     return f"{text}{gap}{value.unit}" if value.unit else text
 
 
-def _value_html(value: Value) -> Any:
-    from markupsafe import escape
-
-    return _markup(str(escape(printable_text(_value_text(value)))).replace(" ", "&nbsp;") if len(value.text) < 24 else escape(_value_text(value)))
+def _value_html(value: Value) -> str:
+    """Keep number and unit together, unless the text is a long one."""
+    text = printable_text(_value_text(value))
+    return text.replace(" ", "\u00a0") if len(text) < 30 else text
 
 
 def _ratio(row: ComparedRow) -> str:
@@ -210,7 +208,7 @@ def _equation_html(equation: Equation) -> Any:
     """Set a formula as blocks of MathML, one a line."""
     writer = MathMLWriter()
     found = equations.lines(writer, equation)
-    alternative = f"{equation.name} = {equation.formula.text}".replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
+    alternative = escape(f"{equation.name} = {equation.formula.text}")
     blocks = []
     for place, line in enumerate(found):
         name = f"line{' next' if place else ''}{_size(line.width)}"
@@ -234,12 +232,14 @@ def _image(figure: FigureView) -> Raw:
 
 def _table_markdown(table: TableView) -> Raw:
     """Write a pipe table; units stand in the headings."""
-    titles = [
+    titles: list[str] = [
         escaped(f"{title} [{unit}]" if unit else title)
         for title, unit in zip(table.columns, [*table.units, *[""] * len(table.columns)], strict=False)
     ]
-    rule = ["---:" if numeric else "---" for numeric in table.numeric]
-    rows = [[_cell(cell, place == table.marked) for cell in row] for place, row in enumerate(table.rows)]
+    rule: list[str] = ["---:" if numeric else "---" for numeric in table.numeric]
+    rows: list[list[str]] = [
+        [_cell(cell, place == table.marked) for cell in row] for place, row in enumerate(table.rows)
+    ]
     return Raw("\n".join("| " + " | ".join(cells) + " |" for cells in (titles, rule, *rows)))
 
 

@@ -12,11 +12,13 @@ from typing import Any
 
 from truing.calculation import Calculation, calculate
 from truing.cases import CasesTable, run_cases
+from truing.errors import OutputError
 from truing.executors import open_executor
 from truing.kernel import Offer
 from truing.published import compare_published
-from truing.report.pdf import HOW_TO_PRINT, find_browser, pdf_bytes
-from truing.report.render import sheet_html, sheet_markdown
+from truing.report.pdf import pdf_bytes
+from truing.report.render import html_of, markdown_of
+from truing.report.sheet import make_sheet
 from truing.run_documents import provenance_of
 from truing.run_folder import demand_place, write_run
 from truing.setup import Setup
@@ -54,19 +56,11 @@ def perform(setup: Setup, offer: Offer, order: RunOrder, progress: Progress) -> 
     started = time.time()
     with open_executor("serial" if order.workers == 1 else f"processes:{order.workers}") as executor:
         calculation, cases = _calculate(setup, offer, order, executor=executor, progress=progress)
-    verified = compare_published(offer, progress=progress)
+    verified = compare_published(offer, progress=progress, known=calculation)
     provenance = provenance_of(calculation.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
-    html = sheet_html(calculation, provenance=provenance, verified=verified, cases=cases)
-    sheets: dict[str, str | bytes] = {
-        "sheet.html": html,
-        "sheet.md": sheet_markdown(calculation, provenance=provenance, verified=verified, cases=cases),
-    }
-    note = ""
-    if order.pdf:
-        browser = find_browser()
-        note = f"printed: {order.folder / 'sheet.pdf'}" if browser else f"no browser was found; {HOW_TO_PRINT}"
-        if browser is not None:
-            sheets["sheet.pdf"] = pdf_bytes(html, browser)
+    sheet = make_sheet(calculation, provenance=provenance, verified=verified, cases=cases)
+    sheets: dict[str, str | bytes] = {"sheet.html": html_of(sheet), "sheet.md": markdown_of(sheet)}
+    note = _print(sheets, order) if order.pdf else ""
     document = write_run(
         order.folder,
         calculation,
@@ -77,6 +71,15 @@ def perform(setup: Setup, offer: Offer, order: RunOrder, progress: Progress) -> 
         cases=cases,
     )
     return Done(calculation, document, cases, note)
+
+
+def _print(sheets: dict[str, str | bytes], order: RunOrder) -> str:
+    """Add the PDF where a browser can print it, and say what became of it: a run is not lost for want of a browser."""
+    try:
+        sheets["sheet.pdf"] = pdf_bytes(str(sheets["sheet.html"]))
+    except OutputError as error:
+        return f"no PDF: {error}"
+    return f"printed: {order.folder / 'sheet.pdf'}"
 
 
 def _calculate(

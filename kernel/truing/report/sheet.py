@@ -11,7 +11,7 @@ from truing.numbers import STATED_DIGITS, format_number, format_value
 from truing.published import ComparedRow, in_order
 from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
 from truing.report.content import check_rows, condition_rows, effect_rows, input_rows, tolerance_rows
-from truing.report.context import Chapter, CheckRow, Head, Provenance, Sheet, TableView
+from truing.report.context import Chapter, Head, Provenance, Sheet, TableView
 
 if TYPE_CHECKING:
     from truing.cases import CaseResult, CasesTable
@@ -26,7 +26,7 @@ HEAD_FIELDS = {
     "date": "Date",
 }
 SIGNATURES = {"prepared": "Prepared", "checked": "Checked", "approved": "Approved"}
-NOT_SHOWN = {"title", "paper", "detail", "language", "seed"}
+NOT_SHOWN = {"title", "logo"}
 
 
 def make_sheet(
@@ -68,7 +68,9 @@ def make_sheet(
 def head_of(setup: Setup, provenance: Provenance) -> Head:
     """Fill the title block; what the inputs file leaves open has room to be written by hand."""
     given = {name: str(text) for name, text in setup.head.items() if str(text).strip()}
-    fields = [(label, given.get(name, provenance.date if name == "date" else "")) for name, label in HEAD_FIELDS.items()]
+    fields = [
+        (label, given.get(name, provenance.date if name == "date" else "")) for name, label in HEAD_FIELDS.items()
+    ]
     shown = [(label, text) for label, text in fields if text or label in {"Project", "Drawing", "Revision", "Date"}]
     signing = {key for name in SIGNATURES for key in (name, f"{name}_by")}
     others = [
@@ -79,14 +81,12 @@ def head_of(setup: Setup, provenance: Provenance) -> Head:
     signatures = [(label, given.get(f"{name}_by", given.get(name, ""))) for name, label in SIGNATURES.items()]
     title = given.get("title", setup.model.title)
     parts = [title, given.get("project", ""), given.get("drawing", ""), given.get("revision", "")]
-    paper = given.get("paper", "A4").lower()
     return Head(
         title=title,
         model=setup.model.title if title != setup.model.title else "",
-        fields=tuple([*shown, *others]),
+        fields=(*shown, *others),
         signatures=tuple(signatures),
         footer=" · ".join(part for part in parts if part),
-        paper="letter" if paper == "letter" else "A4",
     )
 
 
@@ -132,8 +132,10 @@ def references(setup: Setup) -> Iterator[tuple[str, str]]:
     for text in setup.model.cites:
         yield text, ""
     used: dict[str, list[str]] = {}
-    for name, item in (*setup.model.input_fields.items(), *setup.model.result_fields.items()):
-        _note(used, getattr(item.spec, "source", ""), name)
+    specs: list[tuple[str, Any]] = [(name, item.spec) for name, item in setup.model.input_fields.items()]
+    specs += [(name, item.spec) for name, item in setup.model.result_fields.items()]
+    for name, spec in specs:
+        _note(used, getattr(spec, "source", ""), name)
     for source in setup.model.errors:
         _note(used, source.source, source.name)
     for text, names in used.items():

@@ -1,0 +1,194 @@
+"""The complete inputs file of a run: what was read, with every default filled in, so that it can be run again."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from truing.declare.spreads import ByChoice, Drawn
+from truing.setup import Setup, SwitchedOn
+
+if TYPE_CHECKING:
+    from truing.declare.fields import InputField
+    from truing.declare.model import Study
+
+LEVELS = {"degC", "degF", "°C", "°F"}
+PURE = {"", "1", "-"}
+
+
+def input_hash(setup: Setup) -> str:
+    """Return the SHA-256 of everything in the inputs that decides the results; names on the sheet do not."""
+    said = {name: content for name, content in _sections(setup, None) if name != "sheet"}
+    text = json.dumps([setup.model.name, said, dict(setup.files)], sort_keys=True, ensure_ascii=True)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def complete_inputs(setup: Setup, folder: Path | None = None) -> str:
+    """Write an inputs file that gives this run again: what was read, with every default filled in.
+
+    Data files are named relative to ``folder``, where the text will stand. A tolerance that follows a choice is left to
+    follow it, as a comment; so is an input that is not given.
+    """
+    from truing.inputs_file.defaults import toml_key, toml_value
+
+    lines = [f"plugin = {toml_value(setup.model.name)}"]
+    remarks = dict(_remarks(setup))
+    for name, content in _sections(setup, folder):
+        if content:
+            lines += ["", f"[{'.'.join(toml_key(part) for part in name.split('.', 1))}]"]
+        for key, value in content.items():
+            remark = remarks.get((name, key), "")
+            lines.append(f"{toml_key(key)} = {toml_value(value)}{'  # ' + remark if remark else ''}")
+        lines += [f"# {text}" for text in _left_open(setup, name)]
+    return "\n".join(lines) + "\n"
+
+
+def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield every section of the inputs file with its entries as plain TOML values."""
+    detail = {"detail": setup.detail} if setup.detail != "normal" else {}
+    yield "sheet", {**{name: str(text) for name, text in setup.head.items()}, **detail}
+    inputs = setup.model.read_inputs(setup.inputs)
+    fields = setup.model.input_fields
+    stated = {name: _input(setup, fields[name], value, folder) for name, value in inputs.items()}
+    yield "inputs", {name: value for name, value in stated.items() if value is not None}
+    yield "tolerances", {name: text for name in setup.spreads if (text := _spread(setup, name))}
+    yield "conditions", {name: exact(value, setup.unit_of(name)) for name, value in setup.conditions.items()}
+    yield "calibrated", {name: exact(value, setup.unit_of(name)) for name, value in setup.calibrated.items()}
+    for item in setup.effects:
+        yield f"effects.{item.effect.name}", _effect(item)
+    yield "studies", {"run": [study.name for study in setup.studies], "seed": setup.seed}
+    declared = {study.name: study for study in setup.model.studies}
+    for study in setup.studies:
+        yield f"studies.{study.name}", _options(study, declared.get(study.name))
+    yield "units", dict(setup.units)
+
+
+def exact(value: Any, unit: str) -> Any:
+    """Write an SI number in its declared unit so that reading it gives the same number again."""
+    from truing.units import from_si, read_quantity, to_si
+
+    if unit in PURE:
+        return _plain(value)
+    number = float(from_si(float(value), unit))
+    for digits in (12, 15, 17):
+        text = f"{number:.{digits}g}"
+        if to_si(float(text), unit) == value:
+            return f"{text} {unit}"
+    for step in range(1, 9):
+        for towards in (-math.inf, math.inf):
+            near = number
+            for _ in range(step):
+                near = math.nextafter(near, towards)
+            if read_quantity(f"{near!r} {unit}", unit) == value:
+                return f"{near!r} {unit}"
+    return f"{number!r} {unit}"
+
+
+def _plain(value: Any) -> Any:
+    """Return a plain Python value; whole floats are written as such."""
+    plain = value.item() if hasattr(value, "item") else value
+    return int(plain) if isinstance(plain, float) and plain.is_integer() and abs(plain) < 1e15 else plain
+
+
+def _input(setup: Setup, item: InputField, value: Any, folder: Path | None) -> Any:
+    """Return one input as TOML has it, or None where it is not given."""
+    if item.kind == "file":
+        return _file(setup, item.name, folder)
+    if item.kind in {"switch", "text", "integer"}:
+        return value
+    if item.kind == "choice":
+        return str(value)
+    if item.kind == "series":
+        if getattr(item.spec, "unit", None) is None:
+            return [_plain(one) for one in value]
+        return [exact(float(one), item.unit) for one in value]
+    return None if value != value else exact(value, item.unit)
+
+
+def _file(setup: Setup, name: str, folder: Path | None) -> Any:
+    """Return what the inputs file says of a data file, with its path as seen from ``folder``; without one, its hash."""
+    if folder is None:
+        return setup.files.get(name, "")
+    import tomllib
+
+    try:
+        data = tomllib.loads(Path(setup.file).read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError):
+        return None
+    table = data.get("inputs", {}).get(name)
+    table = {"file": table} if isinstance(table, str) else table
+    if not isinstance(table, dict) or "file" not in table:
+        return None
+    path = Path(setup.file).parent / str(table["file"])
+    try:
+        relative = os.path.relpath(path, folder)
+    except ValueError:  # another drive
+        relative = str(path.resolve())
+    return {**table, "file": relative.replace("\\", "/")}
+
+
+def _spread(setup: Setup, name: str) -> str:
+    """Return a tolerance as a file writes it; nothing for one that follows a choice or is drawn by a function."""
+    spread = setup.spreads[name]
+    if isinstance(spread, (ByChoice, Drawn)) or name not in setup.model.tolerances:
+        return ""
+    return spread.text
+
+
+def _effect(item: SwitchedOn) -> dict[str, Any]:
+    from truing.units import unit_factor
+
+    said: dict[str, Any] = {}
+    for unknown in item.effect.unknowns:
+        value = exact(item.values[unknown.name], unknown.unit)
+        sd = item.sds.get(unknown.name)
+        scale = "K" if unknown.unit in LEVELS else unknown.unit
+        said[unknown.name] = value if sd is None else {"value": value, "sd": exact(sd, scale)}
+    if item.covariance:
+        factors = [unit_factor(unknown.unit) for unknown in item.effect.unknowns]
+        said["covariance"] = [
+            [one / factors[i] / factors[j] for j, one in enumerate(row)] for i, row in enumerate(item.covariance)
+        ]
+    return said
+
+
+def _options(study: Study, declared: Study | None) -> dict[str, Any]:
+    """Return the options of a study that are not as its plugin declares them."""
+    from truing.inputs_file.study_options import options_of
+
+    said = {}
+    for name in options_of(study):
+        value = getattr(study, name)
+        if declared is None or value != getattr(declared, name):
+            said[name] = list(value) if isinstance(value, tuple) else value
+    return {name: value for name, value in said.items() if isinstance(value, (bool, int, float, str, list, dict))}
+
+
+def _remarks(setup: Setup) -> Iterator[tuple[tuple[str, str], str]]:
+    from truing.formulas.symbols import printable
+
+    for name, item in setup.model.input_fields.items():
+        words = [printable(item.spec.note), "" if name in setup.stated else "default"]
+        yield ("inputs", name), ", ".join(word for word in words if word)
+    for name, tolerance in setup.model.tolerances.items():
+        yield ("tolerances", name), printable(tolerance.why)
+
+
+def _left_open(setup: Setup, section: str) -> Iterator[str]:
+    """Say what stands in no entry, and why."""
+    if section == "inputs":
+        for name, value in setup.model.read_inputs(setup.inputs).items():
+            if isinstance(value, float) and value != value:
+                yield f"{name} is not given"
+    if section == "tolerances":
+        for name, spread in setup.spreads.items():
+            if isinstance(spread, ByChoice):
+                chosen = spread.chosen(str(setup.nominal(spread.chooser))).text
+                yield f"{name} follows {spread.chooser}: {chosen}"
+            elif isinstance(spread, Drawn):
+                yield f"{name} is {spread.text}"

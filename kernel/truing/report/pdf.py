@@ -1,0 +1,109 @@
+"""PDF: the sheet as a browser prints it. Nothing else sets the formulas right."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from truing.errors import OutputError
+
+NAMES = (
+    "chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "microsoft-edge",
+    "microsoft-edge-stable", "msedge",
+)  # fmt: skip
+WINDOWS = (
+    r"Google\Chrome\Application\chrome.exe",
+    r"Microsoft\Edge\Application\msedge.exe",
+    r"Chromium\Application\chrome.exe",
+)
+MAC = (
+    "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
+    "/Applications/Chromium.app/Contents/MacOS/Chromium",
+    "/Applications/Microsoft Edge.app/Contents/MacOS/Microsoft Edge",
+)
+QUIET = (
+    "--headless",
+    "--disable-gpu",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-extensions",
+    "--no-first-run",
+    "--no-default-browser-check",
+)
+HOW_TO_PRINT = "open sheet.html in any browser and print it to PDF (Ctrl+P), with background graphics on"
+PATIENCE = 120.0
+
+
+def find_browser() -> Path | None:
+    """Return a Chromium, Chrome or Edge on this machine, or None; CHROME_PATH names one."""
+    named = os.environ.get("CHROME_PATH", "")
+    for name in [named] if named else NAMES:
+        found = shutil.which(name)
+        if found:
+            return Path(found)
+    usual = () if named else _usual_places()
+    return next((place for place in usual if place.is_file()), None)
+
+
+def _usual_places() -> Iterator[Path]:
+    if sys.platform == "win32":
+        for variable in ("PROGRAMFILES", "PROGRAMFILES(X86)", "LOCALAPPDATA"):
+            root = os.environ.get(variable)
+            yield from (Path(root, name) for name in WINDOWS if root)
+    elif sys.platform == "darwin":
+        yield from (Path(name) for name in MAC)
+        yield from (Path.home() / name.lstrip("/") for name in MAC)
+
+
+def sandbox_arguments() -> list[str]:
+    """Return what a browser needs to start as root, where its sandbox cannot work; nothing for anybody else."""
+    is_root = hasattr(os, "geteuid") and os.geteuid() == 0
+    return ["--no-sandbox"] if is_root else []
+
+
+def print_pdf(html: Path, pdf: Path, browser: Path | None = None, *, paper: str = "A4") -> None:
+    """Print a sheet to PDF on "A4" or "letter" paper.
+
+    Raises OutputError with one sentence: no browser (and how to print without), or what went wrong.
+    """
+    browser = browser or find_browser()
+    if browser is None:
+        raise OutputError(f"no Chromium, Chrome or Edge was found for the PDF (CHROME_PATH names one); {HOW_TO_PRINT}")
+    with tempfile.TemporaryDirectory(prefix="truing-print-", ignore_cleanup_errors=True) as place:
+        page = Path(place, "sheet.html")
+        text = html.read_text(encoding="utf-8")
+        page.write_text(text.replace("</style>", f"@page {{ size: {paper} }}\n</style>", 1), encoding="utf-8")
+        made = Path(place, "sheet.pdf")
+        _run(browser, [f"--user-data-dir={Path(place, 'profile')}", f"--print-to-pdf={made}", page.as_uri()], made)
+        shutil.copyfile(made, pdf)
+
+
+def pdf_bytes(html: str, browser: Path | None = None, *, paper: str = "A4") -> bytes:
+    """Print the text of a sheet and return the PDF; raises OutputError as ``print_pdf`` does."""
+    with tempfile.TemporaryDirectory(prefix="truing-print-", ignore_cleanup_errors=True) as place:
+        page, made = Path(place, "sheet.html"), Path(place, "sheet.pdf")
+        page.write_text(html, encoding="utf-8")
+        print_pdf(page, made, browser, paper=paper)
+        return made.read_bytes()
+
+
+def _run(browser: Path, arguments: list[str], made: Path) -> None:
+    """Run the browser once, unseen, with an empty profile and no word to the network."""
+    command = [str(browser), *QUIET, *sandbox_arguments(), "--no-pdf-header-footer", *arguments]
+    try:
+        done = subprocess.run(command, capture_output=True, timeout=PATIENCE, check=False)
+    except subprocess.TimeoutExpired:
+        raise OutputError(f"{browser.name} did not print within {PATIENCE:.0f} s; {HOW_TO_PRINT}") from None
+    except OSError as error:
+        raise OutputError(f"{browser} cannot be started: {error.strerror or error}; {HOW_TO_PRINT}") from None
+    if done.returncode or not made.is_file() or not made.read_bytes().startswith(b"%PDF"):
+        last = done.stderr.decode("utf-8", "replace").strip().splitlines()[-1:]
+        raise OutputError(
+            f"{browser.name} printed no PDF ({' '.join(last) or f'exit {done.returncode}'}); {HOW_TO_PRINT}"
+        )

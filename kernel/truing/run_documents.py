@@ -1,0 +1,215 @@
+"""results.json: what a run found, as data. It names no date and no machine, so that equal runs are equal files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from truing.calculation import Calculation
+from truing.declare.spreads import ByChoice
+from truing.inputs_written import LEVELS, PURE, input_hash
+from truing.report.context import Provenance
+from truing.setup import Setup, SwitchedOn
+
+if TYPE_CHECKING:
+    from truing.cases import CasesTable
+    from truing.declare.fields import InputField
+    from truing.studies.bench import Check
+
+SCHEMA = "truing.results/1"
+LARGE = 1000
+"""Results with more numbers than this stand in arrays.npz instead of results.json."""
+
+PACKAGES = ("numpy", "scipy", "pint", "pluggy", "pydantic", "matplotlib", "jinja2")
+
+
+def provenance_of(setup: Setup, *, date: str = "") -> Provenance:
+    """Say where the numbers of a run come from: versions, hash of the inputs, seed, guests, data files."""
+    import platform
+
+    return Provenance(
+        kernel=_version("truing"),
+        plugin=setup.origin.name,
+        plugin_version=setup.origin.version,
+        python=platform.python_version(),
+        packages={name: version for name in PACKAGES if (version := _version(name))},
+        input_hash=input_hash(setup),
+        seed=setup.seed,
+        date=date,
+        added=tuple((item.what, item.plugin, item.version) for item in setup.added),
+        files=dict(setup.files),
+    )
+
+
+def _version(name: str) -> str:
+    from importlib import metadata
+
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return ""
+
+
+def results_document(
+    calculation: Calculation, provenance: Provenance, *, cases: CasesTable | None = None
+) -> dict[str, Any]:
+    """Return results.json as data: the same inputs, seed and versions give the same document, byte by byte.
+
+    Numbers are in the unit each is printed in; one that is not finite is null. Large results name their array in
+    arrays.npz instead. With ``cases`` the document is that of the governing one and lists them all.
+    """
+    setup = calculation.setup
+    model = setup.model
+    inputs = model.read_inputs(setup.inputs)
+    return {
+        "schema": SCHEMA,
+        "plugin": {"name": provenance.plugin, "version": provenance.plugin_version, "model": model.name},
+        "kernel": provenance.kernel,
+        "input_hash": provenance.input_hash,
+        "seed": provenance.seed,
+        "inputs": {name: _input_value(setup, model.input_fields[name], value) for name, value in inputs.items()},
+        "tolerances": _tolerances(setup),
+        "conditions": {name: _value(value, setup.print_unit(name)) for name, value in setup.conditions.items()},
+        "effects": {item.effect.name: _effect_values(item) for item in setup.effects},
+        "results": {name: _result(calculation, name) for name in model.result_fields if name in calculation.answers},
+        "checks": [_check(check) for check in calculation.checks],
+        "studies": {name: clean(outcome.as_json()) for name, outcome in calculation.outcomes.items()},
+        "failed": [{"row": int(row), "reason": reason} for row, reason in calculation.failed],
+        "added": [{"what": what, "plugin": plugin, "version": version} for what, plugin, version in provenance.added],
+        "warnings": list(calculation.warnings),
+        **({} if cases is None else {"cases": _cases(calculation, cases)}),
+    }
+
+
+def _check(check: Check) -> dict[str, Any]:
+    return {
+        "name": check.name,
+        "value": _number(check.value),
+        "limit": _number(check.limit),
+        "unit": check.unit,
+        "margin": _number(check.margin),
+        "passed": bool(check.passed),
+    }
+
+
+def _cases(calculation: Calculation, cases: CasesTable) -> list[dict[str, Any]]:
+    """Return every case in the order of the file; one is governing."""
+    setup = calculation.setup
+    listed = []
+    for place, case in enumerate(cases.cases):
+        single = {name: value for name, value in case.answers.items() if not getattr(value, "ndim", 0)}
+        listed.append(
+            {
+                "row": case.row,
+                "name": case.name,
+                "governing": place == cases.governing,
+                "values": {name: _case_value(setup, name, value) for name, value in case.values.items()},
+                "results": {name: _value(value, setup.print_unit(name)) for name, value in single.items()},
+                "checks": [_check(check) for check in case.checks],
+                "failed": case.reason,
+            }
+        )
+    return listed
+
+
+def _case_value(setup: Setup, name: str, value: Any) -> dict[str, Any]:
+    if isinstance(value, (str, bool)):
+        return {"value": value, "unit": ""}
+    return _value(value, setup.print_unit(name))
+
+
+def large_arrays(calculation: Calculation) -> dict[str, Any]:
+    """Return the results that are too large for results.json, in the unit each is printed in."""
+    import numpy as np
+
+    from truing.units import from_si
+
+    found = {}
+    for name, value in calculation.answers.items():
+        if np.size(value) > LARGE:
+            found[name] = from_si(np.asarray(value, dtype=float), calculation.setup.print_unit(name))
+    return found
+
+
+def clean(value: Any) -> Any:
+    """Turn what a study gives into plain JSON: arrays to lists, numbers that are not finite to null."""
+    if isinstance(value, Mapping):
+        return {str(key): clean(one) for key, one in value.items()}
+    if hasattr(value, "tolist"):
+        return clean(value.tolist())
+    if isinstance(value, (list, tuple, set, frozenset)):
+        return [clean(one) for one in (sorted(value) if isinstance(value, (set, frozenset)) else value)]
+    if isinstance(value, float):
+        return _number(value)
+    return value if value is None or isinstance(value, (bool, int, str)) else str(value)
+
+
+def _number(value: Any) -> float | int | None:
+    plain = value.item() if hasattr(value, "item") else value
+    if plain is None or isinstance(plain, int):
+        return plain
+    number = float(plain)
+    return number if math.isfinite(number) else None
+
+
+def _value(value: Any, unit: str) -> dict[str, Any]:
+    from truing.units import from_si
+
+    if isinstance(value, int) and unit in PURE:
+        return {"value": value, "unit": unit}
+    return {"value": clean(from_si(value, unit)), "unit": unit}
+
+
+def _input_value(setup: Setup, item: InputField, value: Any) -> dict[str, Any]:
+    if item.kind == "file":
+        return {"value": setup.files.get(item.name), "unit": ""}
+    if item.kind in {"switch", "text", "choice", "integer"} or getattr(item.spec, "unit", None) is None:
+        return {"value": clean(value), "unit": item.unit}
+    if item.kind == "series":
+        import numpy as np
+
+        return _value(np.asarray(value, dtype=float), setup.print_unit(item.name))
+    return _value(value, setup.print_unit(item.name))
+
+
+def _tolerances(setup: Setup) -> dict[str, Any]:
+    from truing.units import from_si, unit_factor
+
+    said: dict[str, Any] = {}
+    scattering = setup.distributions()
+    for name in setup.model.tolerances:
+        on = {}
+        for target, item in scattering.get(name, {}).items():
+            unit = setup.print_unit(target)
+            sd = item.sd if unit in LEVELS else item.sd / unit_factor(unit)
+            on[target] = {"mean": _number(from_si(item.mean, unit)), "sd": _number(sd), "unit": unit}
+        said[name] = {"spread": _spread_words(setup, name) if on else "off", "on": on}
+    return said
+
+
+def _spread_words(setup: Setup, name: str) -> str:
+    spread = setup.spreads.get(name, setup.model.tolerances[name].spread)
+    return spread.chosen(str(setup.nominal(spread.chooser))).text if isinstance(spread, ByChoice) else spread.text
+
+
+def _effect_values(item: SwitchedOn) -> dict[str, Any]:
+    from truing.units import unit_factor
+
+    said = {}
+    for unknown in item.effect.unknowns:
+        value = _value(item.values[unknown.name], unknown.unit)
+        sd = item.sds.get(unknown.name)
+        if sd is not None:
+            value["sd"] = _number(sd if unknown.unit in LEVELS else sd / unit_factor(unknown.unit))
+        said[unknown.name] = value
+    return said
+
+
+def _result(calculation: Calculation, name: str) -> dict[str, Any]:
+    import numpy as np
+
+    value, unit = calculation.answers[name], calculation.setup.print_unit(name)
+    if np.size(value) > LARGE:
+        return {"value": None, "unit": unit, "array": name, "shape": list(np.shape(value))}
+    return _value(value, unit)

@@ -1,0 +1,197 @@
+"""Run folders: everything a run leaves behind, complete or absent, never half-written."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import tempfile
+import zipfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from truing.errors import OutputError, UnknownPluginError
+from truing.inputs_written import complete_inputs, input_hash
+from truing.run_documents import SCHEMA, large_arrays, results_document
+
+if TYPE_CHECKING:
+    from truing.calculation import Calculation
+    from truing.cases import CasesTable
+    from truing.kernel import Offer
+    from truing.report.context import Provenance
+
+__all__ = [
+    "complete_inputs", "demand_place", "input_hash", "is_run", "json_text", "load_run", "results_document",
+    "write_folder", "write_run",
+]  # fmt: skip
+RUN_SCHEMA = "truing.run/1"
+
+
+def json_text(document: Any) -> str:
+    """Write a document as JSON: one space of indentation, no NaN, a newline at the end."""
+    return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def write_run(
+    folder: Path,
+    calculation: Calculation,
+    offer: Offer,
+    *,
+    provenance: Provenance,
+    run_info: Mapping[str, Any],
+    sheets: Mapping[str, str | bytes],
+    cases: CasesTable | None = None,
+    arrays: Mapping[str, Any] | None = None,
+) -> dict[str, Any]:
+    """Write a run folder and return results.json as data.
+
+    ``sheets`` holds files by name ("sheet.html", "sheet.md", "sheet.pdf"), ``run_info`` what run.json says of this one
+    run (date, duration, machine, workers), ``arrays`` further arrays for arrays.npz. A folder that is there already is
+    replaced whole if it is a run of ours. Raises OutputError where it is not, or where nothing can be written.
+    """
+    document = results_document(calculation, provenance, cases=cases)
+    versions = {"truing": provenance.kernel, "python": provenance.python, **provenance.packages}
+    plugin = {"name": offer.origin.name, "version": offer.origin.version, "distribution": offer.origin.distribution}
+    run = {"schema": RUN_SCHEMA, **run_info, "plugin": plugin, "versions": versions}
+    files: dict[str, str | bytes] = {
+        "inputs.toml": complete_inputs(calculation.setup, folder),
+        "results.json": json_text(document),
+        "run.json": json_text(run),
+        **sheets,
+    }
+    large = {**large_arrays(calculation), **(arrays or {})}
+    if large:
+        files["arrays.npz"] = npz_bytes(large)
+    write_folder(folder, files)
+    return document
+
+
+def npz_bytes(arrays: Mapping[str, Any]) -> bytes:
+    """Pack arrays as numpy's .npz, the same bytes whenever and wherever it is done."""
+    import numpy as np
+
+    stream = BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in sorted(arrays):
+            content = BytesIO()
+            np.lib.format.write_array(content, np.ascontiguousarray(arrays[name]), version=(1, 0), allow_pickle=False)
+            entry = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.create_system = 3
+            entry.external_attr = 0o644 << 16
+            archive.writestr(entry, content.getvalue())
+    return stream.getvalue()
+
+
+def is_run(folder: Path) -> bool:
+    """Tell whether a folder is a run of ours: results.json of our schema, and run.json."""
+    try:
+        document = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return isinstance(document, dict) and document.get("schema") == SCHEMA and (folder / "run.json").is_file()
+
+
+def demand_place(folder: Path) -> None:
+    """Raise OutputError, with one sentence, unless a run can be put at ``folder``; nothing is written.
+
+    To be asked before a long calculation begins.
+    """
+    try:
+        _demand_place(folder)
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot be used for the run: {error.strerror or error}") from None
+
+
+def _demand_place(folder: Path) -> None:
+    if folder.is_dir():
+        if not is_run(folder):
+            kind = "an existing folder but no run of ours" if any(folder.iterdir()) else "an existing empty folder"
+            raise OutputError(f"{folder}: is {kind}, so it is left alone; name another folder or remove this one")
+    elif folder.exists() or folder.is_symlink():
+        raise OutputError(f"{folder}: is a file; a run is a folder, name another place")
+    for parent in folder.absolute().parents:
+        if parent.is_dir():
+            if not os.access(parent, os.W_OK):
+                raise OutputError(f"{folder}: the folder {parent} may not be written to; name another place")
+            return
+        if parent.exists():
+            raise OutputError(f"{folder}: {parent} is a file, so there can be no folder below it; name another place")
+
+
+def write_folder(folder: Path, files: Mapping[str, str | bytes]) -> None:
+    """Write files into a folder that appears complete or not at all; an earlier run there is replaced whole."""
+    demand_place(folder)
+    target = folder.resolve() if folder.is_symlink() else folder.absolute()
+    try:
+        with _made_parents(target.parent), _beside(target) as part:
+            for name, content in files.items():
+                (part / name).write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
+            _put_in_place(part, target)
+    except OSError as error:
+        raise OutputError(f"{folder}: the run cannot be written: {error.strerror or error}") from error
+
+
+@contextmanager
+def _made_parents(parent: Path) -> Iterator[None]:
+    """Make the folders above; those that were made go again if the run does not get there."""
+    missing = [place for place in (parent, *parent.parents) if not place.exists()]
+    try:
+        parent.mkdir(parents=True, exist_ok=True)
+        yield
+    except BaseException:
+        for place in missing:
+            with suppress(OSError):
+                place.rmdir()
+        raise
+
+
+@contextmanager
+def _beside(target: Path) -> Iterator[Path]:
+    """Give a temporary folder beside the target, which is gone afterwards whatever happens."""
+    part = Path(tempfile.mkdtemp(prefix=f".{target.name[:40]}.", suffix=".part", dir=target.parent))
+    try:
+        part.chmod(0o777 & ~_umask())
+        yield part
+    finally:
+        if part.exists():
+            shutil.rmtree(part, ignore_errors=True)
+
+
+def _umask() -> int:
+    mask = os.umask(0o022)
+    os.umask(mask)
+    return mask
+
+
+def _put_in_place(part: Path, target: Path) -> None:
+    """Move an earlier run aside, the new one in, and only then delete the earlier one."""
+    if not target.exists():
+        part.rename(target)
+        return
+    aside = part.with_name(part.name.removesuffix(".part") + ".old")
+    try:
+        target.rename(aside)
+        part.rename(target)
+    except BaseException:
+        if aside.exists() and not target.exists():
+            aside.rename(target)
+        raise
+    shutil.rmtree(aside, ignore_errors=True)
+
+
+def load_run(folder: Path) -> dict[str, Any]:
+    """Return results.json of a run folder; raises UnknownPluginError where there is no such run."""
+    path = folder if folder.name == "results.json" else folder / "results.json"
+    if not path.is_file():
+        raise UnknownPluginError(f"{folder}: no run folder, it holds no results.json")
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise UnknownPluginError(f"{path}: cannot be read: {error}") from None
+    if not isinstance(document, dict) or document.get("schema") != SCHEMA:
+        raise UnknownPluginError(f"{path}: is no {SCHEMA} document; name a folder that calc run has written")
+    return document
