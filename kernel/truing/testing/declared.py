@@ -1,0 +1,196 @@
+"""Checks of what is said beside the function: units, limits, goals, printed numbers, the sheet, the example."""
+
+from __future__ import annotations
+
+import json
+import math
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from truing.declare.fields import InputField, ResultField
+from truing.declare.goals import Require, Vary
+from truing.declare.specs import Given
+from truing.errors import InputError, TruingError
+from truing.testing.subject import Subject, fail
+
+SAME = 1e-12
+
+
+def units_are_known(subject: Subject) -> None:
+    """Every unit that is declared is one that Truing knows."""
+    from truing.units import check_unit
+
+    for owner, unit in _units(subject):
+        with _stating(subject, f"{owner} in '{unit}'"):
+            check_unit(unit)
+
+
+def _units(subject: Subject) -> Iterator[tuple[str, str]]:
+    model = subject.model
+    known: dict[str, InputField | ResultField] = {**model.input_fields, **model.result_fields}
+    for name, field in known.items():
+        yield f"'{name}'", field.unit
+    for condition in model.conditions.values():
+        yield f"condition '{condition.name}'", condition.unit
+    for effect in model.effects.values():
+        for unknown in effect.unknowns:
+            yield f"unknown '{unknown.name}' of effect '{effect.name}'", unknown.unit
+    for tolerance in model.tolerances.values():
+        if tolerance.price is not None:
+            yield f"the width of tolerance '{tolerance.name}'", tolerance.price.width
+            yield f"the price of tolerance '{tolerance.name}'", tolerance.price.unit
+
+
+def defaults_keep_their_bounds(subject: Subject) -> None:
+    """No default lies outside the bounds that are declared beside it."""
+    from truing.inputs_file.values import broken_bound
+
+    for name, item in subject.scattering.items():
+        if isinstance(item.spec, Given):
+            broken = broken_bound(item, float(subject.setup.nominal(name)))
+            if broken:
+                fail(f"{subject.model.name}: the default breaks its own bound: {broken}")
+
+
+def goals_can_be_read(subject: Subject) -> None:
+    """Bounds of variables and limits of requirements are quantities of the right dimension, in the right order."""
+    from truing.units import read_quantity
+
+    model = subject.model
+    known: dict[str, InputField | ResultField] = {**model.input_fields, **model.result_fields}
+    for objective in model.objectives:
+        if isinstance(objective, Vary) and not objective.by:
+            unit = known[objective.input].unit
+            with _stating(subject, f"Vary('{objective.input}')"):
+                low, high = (read_quantity(text, unit) for text in (objective.low, objective.high))
+            if not low < high:
+                fail(f"{model.name}: Vary('{objective.input}') runs from {objective.low} to {objective.high}: nowhere")
+        elif isinstance(objective, Require) and objective.result in known:
+            _check_limit(subject, objective, known)
+
+
+def _check_limit(subject: Subject, require: Require, known: dict[str, InputField | ResultField]) -> None:
+    from truing.units import read_quantity, same_dimension
+
+    unit, limit = known[require.result].unit, require.limit
+    if limit not in known:
+        with _stating(subject, f"Require('{require.result}')"):
+            read_quantity(limit, unit)
+    elif not same_dimension(known[limit].unit, unit):
+        fail(
+            f"{subject.model.name}: Require('{require.result}') compares {unit or 'a pure number'} with '{limit}' "
+            f"in {known[limit].unit or 'pure numbers'}"
+        )
+
+
+def printed_numbers_are_of_results(subject: Subject) -> None:
+    """Every printed number names a result of the model, in a unit of its kind, and settings that can be read."""
+    from truing.inputs_file import setup_from_settings
+    from truing.units import same_dimension
+
+    for item in subject.model.published:
+        field = subject.model.result_fields.get(item.result)
+        if field is None:
+            fail(f"{subject.model.name}: the printed number '{item.name}' names '{item.result}', which is no result")
+        if not same_dimension(item.unit, field.unit):
+            fail(
+                f"{subject.model.name}: '{item.name}' is printed in '{item.unit}', '{item.result}' is in '{field.unit}'"
+            )
+        if item.verdict == "differs" and not item.why:
+            fail(f"{subject.model.name}: the printed number '{item.name}' differs; say why")
+        with _stating(subject, f"settings of '{item.name}'"):
+            setup_from_settings(subject.offer, item.settings)
+
+
+def sheet_is_in_order(subject: Subject) -> None:
+    """No two sections share a title, no result stands on the sheet twice."""
+    titles = [section.title for section in subject.model.sheet]
+    names = [name for section in subject.model.sheet for name in section.names]
+    for what, found in (("section", titles), ("result", names)):
+        for one in found:
+            if found.count(one) > 1:
+                fail(f"{subject.model.name}: the {what} '{one}' stands on the sheet {found.count(one)} times")
+
+
+def example_can_be_read(subject: Subject) -> None:
+    """The inputs file that ``calc init`` writes is read without a fault and can be calculated."""
+    from truing.evaluate import evaluate
+    from truing.example_file import example_text
+    from truing.inputs_file import setup_from_text
+
+    example = subject.model.example
+    with tempfile.TemporaryDirectory() as empty:
+        folder = example.parent if example is not None else Path(empty)
+        with _stating(subject, "the example of `calc init`"):
+            text = example_text(subject.offer)
+            evaluate(setup_from_text(text, subject.offer, file="example.toml", folder=folder))
+
+
+def inputs_survive_a_file(subject: Subject) -> None:
+    """Inputs written as JSON and as an inputs file are read back the same."""
+    for point in ({}, *subject.points(1)):
+        setup = subject.at(point)
+        stated = {name: value for name, value in _stated(subject, setup) if value is not None}
+        text = "[inputs]\n" + "".join(f"{name} = {_toml(value)}\n" for name, value in _through_json(stated).items())
+        from truing.inputs_file import setup_from_text
+
+        try:
+            back = setup_from_text(text, subject.offer, file="inputs.toml", folder=_folder(subject))
+        except InputError as error:
+            fail(f"{subject.model.name}: inputs do not survive a file: {error}")
+        before, after = (subject.model.read_inputs(one.inputs) for one in (setup, back))
+        for name in stated:
+            if not _same(before[name], after[name]):
+                fail(f"{subject.model.name}: '{name}' is {before[name]!r} before and {after[name]!r} after a file (SI)")
+
+
+def _stated(subject: Subject, setup: Any) -> Iterator[tuple[str, Any]]:
+    from truing.units import from_si
+
+    for name, value in subject.model.read_inputs(setup.inputs).items():
+        item = subject.model.input_fields[name]
+        if item.kind == "file":
+            continue
+        if item.kind in {"switch", "choice", "text", "integer"}:
+            yield name, value
+        elif item.kind == "series":
+            yield name, [f"{float(from_si(float(one), item.unit))!r} {item.unit}".strip() for one in value]
+        else:
+            number = float(from_si(float(value), item.unit))
+            yield name, None if math.isnan(number) else f"{number!r} {item.unit}".strip()
+
+
+def _through_json(stated: dict[str, Any]) -> dict[str, Any]:
+    back: dict[str, Any] = json.loads(json.dumps(stated, allow_nan=False))
+    return back
+
+
+def _toml(value: Any) -> str:
+    from truing.inputs_file.defaults import toml_value
+
+    return toml_value(value)
+
+
+def _folder(subject: Subject) -> Path:
+    return subject.model.example.parent if subject.model.example is not None else Path()
+
+
+def _same(one: Any, other: Any) -> bool:
+    import numpy as np
+
+    if isinstance(one, (str, bool)):
+        return bool(one == other)
+    before, after = np.asarray(one, dtype=float), np.asarray(other, dtype=float)
+    return before.shape == after.shape and bool(np.all(np.abs(before - after) <= SAME * np.abs(before)))
+
+
+@contextmanager
+def _stating(subject: Subject, what: str) -> Iterator[None]:
+    """Turn what Truing says against a declaration into the failure of a check."""
+    try:
+        yield
+    except TruingError as error:
+        fail(f"{subject.model.name}: {what}: {error}")

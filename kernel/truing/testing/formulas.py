@@ -1,0 +1,96 @@
+"""Checks of what is printed: the formulas prove their units and give what the function gives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from truing.declare.fields import InputField, ResultField
+from truing.declare.scope import formula_scope
+from truing.errors import DeclarationError, UnitError
+from truing.evaluate import evaluate
+from truing.formulas import Formula, evaluate_quantities, parse
+from truing.formulas.evaluation import value_of
+from truing.testing.subject import Subject, fail
+
+AGREES = 1e-9
+Scope = Mapping[str, InputField | ResultField]
+
+
+def formulas_of(subject: Subject) -> Iterator[tuple[ResultField, Formula, bool, Scope]]:
+    """Yield each result that prints a formula, the formula, whether it is numeric, and what its names mean."""
+    for item in subject.model.own_result_fields.values():
+        text = getattr(item.spec, "formula", "")
+        if text:
+            yield item, parse(text), bool(getattr(item.spec, "numeric", False)), formula_scope(subject.model, item)
+
+
+def formulas_have_the_unit(subject: Subject) -> None:
+    """Every formula gives the dimension of its result, by calculation with units."""
+    from truing.units import pint_quantity
+
+    values = _values(subject, {})
+    for item, formula, numeric, scope in formulas_of(subject):
+        if numeric:
+            continue
+        try:
+            quantities = {name: pint_quantity(values[scope[name].name], scope[name].unit) for name in formula.names}
+            found = evaluate_quantities(formula, quantities)
+        except (UnitError, DeclarationError) as error:
+            fail(f"{subject.model.name}: formula of '{item.name}': {error}")
+        declared = pint_quantity(1.0, item.unit)
+        if formula.left is None and found.dimensionality != declared.dimensionality:
+            fail(
+                f"{subject.model.name}: the formula of '{item.name}' gives {found.dimensionality}, "
+                f"but the result is declared in '{item.unit}' ({declared.dimensionality})"
+            )
+
+
+def formulas_equal_the_function(subject: Subject) -> None:
+    """Every printed formula gives what the function gives, to 1e-9, at the defaults and two points beside them."""
+    for point in ({}, *subject.points(2)):
+        values = _values(subject, point)
+        for item, formula, numeric, scope in formulas_of(subject):
+            _compare(subject, item, formula, _in_formula(formula, values, numeric, scope), values[item.name], numeric)
+
+
+def _values(subject: Subject, point: Mapping[str, float]) -> dict[str, Any]:
+    """Return every input and result at a point by flat name, SI."""
+    setup = subject.at(point)
+    results = subject.model.read_results(evaluate(setup))
+    return {**subject.model.read_inputs(setup.inputs), **results}
+
+
+def _in_formula(formula: Formula, values: Mapping[str, Any], numeric: bool, scope: Scope) -> dict[str, Any]:
+    import numpy as np
+
+    from truing.units import from_si
+
+    given = {}
+    for name in formula.names:
+        value = np.asarray(values[scope[name].name], dtype=float)
+        given[name] = from_si(value, scope[name].unit) if numeric else value
+    return given
+
+
+def _compare(
+    subject: Subject, item: ResultField, formula: Formula, given: dict[str, Any], result: Any, numeric: bool
+) -> None:
+    import numpy as np
+
+    from truing.units import from_si
+
+    with np.errstate(all="ignore"):
+        right = np.asarray(value_of(formula.right, given), dtype=float)
+        expected = np.asarray(result if formula.left is None else value_of(formula.left, given), dtype=float)
+    if formula.left is None and numeric:
+        expected = np.asarray(from_si(expected, item.unit))
+    scale = np.maximum(np.abs(right), np.abs(expected))
+    if not np.all(np.abs(right - expected) <= AGREES * scale):
+        number, where = ("its right side", "its left side") if formula.left is not None else ("it", "the function")
+        place = np.unravel_index(np.argmax(np.abs(right - expected)), np.broadcast_shapes(right.shape, expected.shape))
+        one, other = (float(np.broadcast_to(side, scale.shape)[place]) for side in (right, expected))
+        fail(
+            f"{subject.model.name}: the formula of '{item.name}' ({formula.text}) is not what is calculated: "
+            f"{number} gives {one:.12g}, {where} gives {other:.12g}"
+        )

@@ -1,0 +1,230 @@
+"""Checks of the function: batches, inputs left alone, finite answers, seeds, processes, derivatives, bounds."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+from truing.declare.specs import Given
+from truing.errors import InfeasibleError, TruingError
+from truing.evaluate import Rows, evaluate, evaluate_rows
+from truing.kernel import Kernel, Origin
+from truing.packed import Packed, pack, unpack
+from truing.setup import Setup
+from truing.testing.subject import Subject, fail
+
+ROWS = 7
+SAME = 1e-12
+SLOPE = 1e-6
+
+
+def finite_at_defaults(subject: Subject) -> None:
+    """The defaults give finite results."""
+    if subject.obstacle:
+        fail(f"{subject.model.name}: the defaults cannot be calculated: {subject.obstacle}")
+
+
+def batch_equals_loop(subject: Subject) -> None:
+    """Seven rows in one call are what seven calls give, to 1e-12, every Float input varied."""
+    import numpy as np
+
+    columns = _columns(subject)
+    batch = evaluate_rows(subject.setup, columns, ROWS)
+    for row in range(ROWS):
+        alone = subject.model.read_results(evaluate(subject.at({name: float(v[row]) for name, v in columns.items()})))
+        if row in batch.reasons:
+            fail(f"{subject.model.name}: row {row} fails in a batch ({batch.reasons[row]}) and does not fail alone")
+        for name, values in batch.results.items():
+            here, there = np.asarray(values[row]), np.asarray(alone[name], dtype=float)
+            here = here[: there.shape[0]] if there.ndim else here
+            scale = np.maximum(np.abs(there), np.nanmax(np.abs(values)))
+            if not np.all(np.abs(here - there) <= SAME * scale):
+                fail(
+                    f"{subject.model.name}: '{name}' of row {row} is {_short(here)} in a batch and {_short(there)} "
+                    "alone; write np.where, not if, on anything that may vary"
+                )
+
+
+def _columns(subject: Subject) -> dict[str, Any]:
+    import numpy as np
+
+    points = subject.points(ROWS)
+    return {name: np.array([point[name] for point in points]) for name in subject.scattering}
+
+
+def _short(value: Any) -> str:
+    return f"{float(value):.15g}" if not value.ndim else str(value)
+
+
+def inputs_untouched(subject: Subject) -> None:
+    """A call leaves the arrays it was given as they were."""
+    import numpy as np
+
+    columns = _columns(subject)
+    before = {name: values.copy() for name, values in columns.items()}
+    own = subject.model.read_inputs(subject.setup.inputs)
+    series = {name: np.copy(value) for name, value in own.items() if isinstance(value, np.ndarray)}
+    evaluate_rows(subject.setup, columns, ROWS)
+    after = {**own, **columns}
+    for name, values in {**before, **series}.items():
+        if not np.array_equal(values, after[name], equal_nan=True):
+            fail(f"{subject.model.name}: the function writes to the input '{name}'; take a copy before changing it")
+
+
+def seeds_decide(subject: Subject) -> None:
+    """The same inputs give the same results, the same seed the same draws, and a tolerance leaves the others alone."""
+    import numpy as np
+
+    from truing.studies.scatter import scatter_of
+
+    name = subject.model.name
+    one, two = (subject.model.read_results(evaluate(subject.setup)) for _ in range(2))
+    for result, value in one.items():
+        if not np.array_equal(value, two[result], equal_nan=True):
+            fail(f"{name}: '{result}' differs between two calls with the same inputs; randomness is handed in")
+    first, again, other = (scatter_of(subject.setup).draw(seed, 0, 64) for seed in (0, 0, 1))
+    for column, values in first.items():
+        if not np.array_equal(values, again[column]):
+            fail(f"{name}: '{column}' is drawn differently with the same seed; draw from the generator that is given")
+        if np.array_equal(values, other[column]) and np.ptp(values):
+            fail(f"{name}: '{column}' is drawn alike with another seed; draw from the generator that is given")
+
+
+def serial_equals_parallel(subject: Subject) -> None:
+    """A worker process computes the same numbers, bit for bit. Skipped where no process could find the model."""
+    import numpy as np
+
+    from truing.executors import in_order, open_executor
+
+    origin = _origin_of(subject)
+    if origin is None:
+        return
+    setup = replace(subject.setup, origin=origin)
+    jobs = [(pack(setup), batch) for batch in range(2)]
+    with open_executor("processes:1") as executor:
+        far = list(in_order(executor, _drawn_rows, jobs))
+    for here, there in zip(map(_drawn_rows, jobs), far, strict=True):
+        for name, values in here.results.items():
+            if not np.array_equal(values, there.results[name], equal_nan=True):
+                fail(f"{subject.model.name}: '{name}' is different in another process; avoid globals and set order")
+
+
+def _drawn_rows(job: tuple[Packed, int]) -> Rows:
+    from truing.studies.scatter import scatter_of
+
+    packed, batch = job
+    setup = unpack(packed)
+    return evaluate_rows(setup, scatter_of(setup).draw(setup.seed, batch, 32), 32)
+
+
+def _origin_of(subject: Subject) -> Origin | None:
+    """Return an origin by which another process finds this very model, or None."""
+    parts = subject.model.function.__module__.split(".")
+    names = [".".join(parts[:count]) for count in range(len(parts), 0, -1)]
+    modules = [module for name in names if (module := sys.modules.get(name)) and getattr(module, "__spec__", None)]
+    for module in modules:
+        if not hasattr(module, "truing_models"):
+            continue
+        for offer in Kernel([module]).offers.values():
+            if offer.model.function is subject.model.function and offer.model.name == subject.model.name:
+                return offer.origin
+    return None
+
+
+def derivatives_are_exact(subject: Subject) -> None:
+    """Derivatives that the model states equal central differences of the function, to 1e-6."""
+    if subject.model.derivatives is None:
+        return
+    for point in ({}, *subject.points(1)):
+        setup = subject.at(point)
+        for result, by_input in subject.model.derivatives(setup.inputs).items():
+            for name, stated in by_input.items():
+                _compare_slope(subject, setup, (result, name), float(stated))
+
+
+def _compare_slope(subject: Subject, setup: Setup, pair: tuple[str, str], stated: float) -> None:
+    from truing.units import unit_factor
+
+    result, name = pair
+    if result not in subject.model.own_result_fields or name not in subject.scattering:
+        fail(f"{subject.model.name}: derivatives() names '{result}' by '{name}', which is no result by an input")
+    value = float(setup.nominal(name))
+    reach = 0.1 * abs(value) or unit_factor(subject.model.input_fields[name].unit)
+    found = [_difference(subject, setup, pair, reach * share) for share in (1.0, 0.1, 1e-2, 1e-3)]
+    known = [slope for slope in found if slope is not None]
+    if len(known) < 2:
+        return
+    nearest = min(known, key=lambda slope: abs(slope - stated))
+    unsure = min(abs(one - other) for one, other in pairwise(known))
+    if abs(nearest - stated) > SLOPE * abs(stated) + 3 * unsure:
+        fail(
+            f"{subject.model.name}: the derivative of '{result}' by '{name}' is stated as {stated:.9g}; "
+            f"differences of the function give {nearest:.9g} (SI)"
+        )
+
+
+def _difference(subject: Subject, setup: Setup, pair: tuple[str, str], step: float) -> float | None:
+    """Return the central difference of fourth order, or None where a step is impossible."""
+    import numpy as np
+
+    result, name = pair
+    values = float(setup.nominal(name)) + step * np.array([-2.0, -1.0, 1.0, 2.0])
+    rows = evaluate_rows(setup, {name: values}, 4, wanted={result})
+    if rows.failed.any():
+        return None
+    far_low, low, high, far_high = rows.results[result]
+    return float((8 * (high - low) - (far_high - far_low)) / (12 * step))
+
+
+def bounds_are_answered(subject: Subject) -> None:
+    """What lies outside a bound is refused by name; what lies on an inclusive bound is calculated or told why not."""
+    for name, item in subject.scattering.items():
+        spec = item.spec
+        assert isinstance(spec, Given)
+        bounds: Mapping[str, float | None] = {
+            "above": spec.above, "at least": spec.at_least, "below": spec.below, "at most": spec.at_most,
+        }  # fmt: skip
+        for word, bound in bounds.items():
+            if bound is None:
+                continue
+            _refused(subject, name, word, _beyond(bound, word))
+            if word in {"at least", "at most"}:
+                _answered(subject, name, bound)
+
+
+def _beyond(bound: float, word: str) -> float:
+    """Return a value just outside; an exclusive bound is outside itself."""
+    if word in {"above", "below"}:
+        return bound
+    step = max(abs(bound), 1.0) * 1e-3
+    return bound - step if word == "at least" else bound + step
+
+
+def _refused(subject: Subject, name: str, word: str, value: float) -> None:
+    from truing.inputs_file import setup_from_settings
+
+    unit = subject.model.input_fields[name].unit
+    try:
+        setup_from_settings(subject.offer, {name: f"{value!r} {unit}".strip()})
+    except TruingError as error:
+        if name not in str(error) or not (word in str(error) or "absolute zero" in str(error)):
+            fail(f"{subject.model.name}: {name} = {value:g} {unit} is refused with other words: {error}")
+        return
+    fail(f"{subject.model.name}: {name} = {value:g} {unit} is accepted, but it must be {word} its bound")
+
+
+def _answered(subject: Subject, name: str, bound: float) -> None:
+    from truing.units import to_si
+
+    unit = subject.model.input_fields[name].unit
+    try:
+        evaluate(subject.at({name: to_si(bound, unit)}))
+    except InfeasibleError as error:
+        if "is not finite" in str(error):
+            fail(
+                f"{subject.model.name}: with {name} = {bound:g} {unit}, which its bounds allow, {error}; "
+                "exclude the bound (above, below) or state what must hold"
+            )

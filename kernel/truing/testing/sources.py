@@ -1,0 +1,215 @@
+"""Checks of error sources: effects that vanish, where they act, and whether their order matters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import combinations
+from typing import Any
+
+from truing.declare.scope import formula_scope
+from truing.declare.sources import Effect, Unknown
+from truing.errors import InfeasibleError, TruingError
+from truing.evaluate import evaluate
+from truing.formulas import parse
+from truing.setup import Setup, SwitchedOn
+from truing.testing.subject import Subject, fail
+
+SAME = 1e-12
+COMMUTES = 0.01
+SHAPES = (0.0, 0.5, 1.0)
+SIZES = (0.5, 0.05, 5e-3, 5e-5, 5e-7)
+
+Values = dict[str, Any]
+
+
+def spreads_resolve(subject: Subject) -> None:
+    """Every spread means a standard deviation at the defaults, above 0, and every price a number there."""
+    for tolerance in subject.model.tolerances.values():
+        for name in tolerance.on:
+            try:
+                target = subject.setup.target(name)
+                found = tolerance.spread.resolve(target) if target.nominal == target.nominal else None
+            except TruingError as error:
+                fail(f"{subject.model.name}: tolerance '{tolerance.name}' on '{name}': {error}")
+            if found is not None and not found.sd > 0:
+                fail(f"{subject.model.name}: tolerance '{tolerance.name}' on '{name}' does not scatter; write off()")
+            if found is not None and tolerance.price is not None:
+                _priced(subject, tolerance.name, tolerance.price, found.width)
+
+
+def _priced(subject: Subject, tolerance: str, price: Any, width: float) -> None:
+    import numpy as np
+
+    from truing.formulas import evaluate as value_of_formula
+    from truing.units import from_si
+
+    paid = value_of_formula(parse(price.formula), {"width": from_si(width, price.width)})
+    if not np.isfinite(paid) or paid < 0:
+        fail(f"{subject.model.name}: the price of tolerance '{tolerance}' is {paid:g} at its declared width")
+
+
+def zero_is_the_base(subject: Subject) -> None:
+    """An effect whose amplitudes are 0 changes nothing, whatever its shapes and conditions."""
+    for point in ({}, *subject.points(1)):
+        setup = _off_reference(subject.at(point))
+        base = _answers(setup)
+        for effect in subject.model.effects.values():
+            for share in SHAPES:
+                values = {item.name: 0.0 if item.is_amplitude else _shape(item, share) for item in effect.unknowns}
+                changed = _changed(_answers(_with(setup, effect, values)), base)
+                if changed:
+                    shapes = ", ".join(f"{key} = {value:g}" for key, value in values.items())
+                    fail(
+                        f"{subject.model.name}: effect '{effect.name}' changes '{changed[0]}' although its amplitudes "
+                        f"are 0 ({shapes}, SI)"
+                    )
+
+
+def references_are_neutral(subject: Subject) -> None:
+    """An effect that needs conditions changes nothing while all of them stay at their references."""
+    base = _answers(subject.setup)
+    for effect in subject.model.effects.values():
+        if not effect.needs:
+            continue
+        setup = _switched(subject.setup, effect)
+        changed = _changed(_answers(setup), base) if setup is not None else []
+        if changed:
+            needs = " and ".join(f"'{need.name}'" for need in effect.needs)
+            fail(
+                f"{subject.model.name}: effect '{effect.name}' changes '{changed[0]}' although {needs} stays at its "
+                "reference, where it is to vanish"
+            )
+
+
+def effects_act(subject: Subject) -> None:
+    """An effect that is on, off its reference, changes some result."""
+    setup = _off_reference(subject.setup)
+    base = _answers(setup)
+    for effect in subject.model.effects.values():
+        switched = _switched(setup, effect)
+        if switched is not None and not _changed(_answers(switched), base):
+            fail(f"{subject.model.name}: effect '{effect.name}' is on and changes no result")
+
+
+def only_last_results_are_edited(subject: Subject) -> None:
+    """An effect on the results edits none that another formula depends on: it would reach nothing behind it."""
+    setup = _off_reference(subject.setup)
+    base = _answers(setup)
+    users = dict(_users(subject))
+    for effect in subject.model.effects.values():
+        switched = _switched(setup, effect) if effect.place == "results" else None
+        for name in _changed(_answers(switched), base) if switched is not None else []:
+            if name in users:
+                fail(
+                    f"{subject.model.name}: effect '{effect.name}' edits the result '{name}', on which '{users[name]}' "
+                    "depends; let it act on the inputs (on_inputs)"
+                )
+
+
+def _users(subject: Subject) -> Iterator[tuple[str, str]]:
+    """Yield each result that a formula names, with the result whose formula it is."""
+    for item in subject.model.own_result_fields.values():
+        text = getattr(item.spec, "formula", "")
+        if text:
+            scope = formula_scope(subject.model, item)
+            meant = {scope[name].name for name in parse(text).names}
+            yield from ((name, item.name) for name in meant & set(subject.model.own_result_fields) - {item.name})
+
+
+def order_matters(subject: Subject) -> list[str]:
+    """Name the pairs of effects at one place whose order changes a result by more than 1 % of what they do."""
+    setup = _off_reference(subject.setup)
+    base = _answers(setup)
+    found: list[str] = []
+    for first, second in combinations(subject.model.effects.values(), 2):
+        if first.place != second.place:
+            continue
+        pair = [_switched(setup, effect) for effect in (first, second)]
+        if pair[0] is None or pair[1] is None:
+            continue
+        on = (*pair[0].effects, *pair[1].effects)
+        share = _difference_by_order(setup, on, base)
+        if share > COMMUTES:
+            found.append(f"'{first.name}' and '{second.name}' do not commute: their order changes {share:.0%} of it")
+    return found
+
+
+def _difference_by_order(setup: Setup, on: tuple[SwitchedOn, ...], base: Values) -> float:
+    """Return the largest difference that the order makes, as a share of what both do together."""
+    import numpy as np
+
+    answers = []
+    for order in (on, on[::-1]):
+        errors = [source for source in setup.model.errors if source not in [item.effect for item in on]]
+        model = replace(setup.model, errors=[*errors, *(item.effect for item in order)])
+        try:
+            answers.append(_answers(replace(setup, model=model, effects=order)))
+        except InfeasibleError:
+            return 0.0
+    share = 0.0
+    for name, value in base.items():
+        one, other = (np.asarray(answer[name], dtype=float) - value for answer in answers)
+        size = float(np.max(np.abs([one, other]), initial=0.0))
+        if size > SAME * float(np.max(np.abs(value), initial=0.0)):
+            share = max(share, float(np.max(np.abs(one - other))) / size)
+    return share
+
+
+def _shape(item: Unknown, share: float) -> float:
+    """Return a shape within its bounds, on a logarithmic scale where it is positive, SI."""
+    from truing.units import to_si
+
+    if item.low > 0:
+        return float(to_si(item.low * (item.high / item.low) ** share, item.unit))
+    return float(to_si(item.low + share * (item.high - item.low), item.unit))
+
+
+def _amplitude(item: Unknown, share: float) -> float:
+    from truing.units import to_si
+
+    return float(to_si(share * max((item.low, item.high), key=abs), item.unit))
+
+
+def _switched(setup: Setup, effect: Effect[Any, Any]) -> Setup | None:
+    """Return the setup with the effect on, half as large as it may be, or less; None where no size is possible."""
+    for size in SIZES:
+        values = {
+            item.name: _amplitude(item, size) if item.is_amplitude else _shape(item, 0.5) for item in effect.unknowns
+        }
+        switched = _with(setup, effect, values)
+        try:
+            _answers(switched)
+        except InfeasibleError:
+            continue
+        return switched
+    return None
+
+
+def _with(setup: Setup, effect: Effect[Any, Any], values: Mapping[str, float]) -> Setup:
+    return replace(setup, effects=(SwitchedOn(effect, values),))
+
+
+def _off_reference(setup: Setup) -> Setup:
+    """Move every condition off its reference, by ten of its units."""
+    from truing.units import unit_factor
+
+    moved = {name: item.zero + 10 * unit_factor(item.unit) for name, item in setup.model.conditions.items()}
+    return replace(setup, conditions={**setup.conditions, **moved})
+
+
+def _answers(setup: Setup) -> Values:
+    """Return what the gauge shows, by flat name."""
+    return setup.model.read_results(evaluate(setup, reading=True))
+
+
+def _changed(answers: Values, base: Values) -> list[str]:
+    import numpy as np
+
+    def differs(name: str) -> bool:
+        one, other = np.asarray(answers[name], dtype=float), np.asarray(base[name], dtype=float)
+        if one.shape != other.shape:
+            return True
+        return bool(np.any(np.abs(one - other) > SAME * np.abs(other)))
+
+    return [name for name in base if differs(name)]

@@ -1,0 +1,140 @@
+"""The model under test: its setup at the defaults, and points near them that it can answer."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from truing.declare.fields import InputField, with_values
+from truing.declare.model import Model
+from truing.declare.specs import Given
+from truing.errors import InfeasibleError, TruingError, UsageError
+from truing.evaluate import evaluate
+from truing.kernel import Offer, Origin
+from truing.setup import Setup, default_setup
+
+if TYPE_CHECKING:
+    import numpy as np
+
+ATTEMPTS = 12
+NARROWER = (0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-6)
+
+
+def fail(sentence: str) -> NoReturn:
+    """End a check with the sentence that its reader needs."""
+    raise AssertionError(sentence)
+
+
+@dataclass(frozen=True)
+class Subject:
+    """One model, with what every check asks of it."""
+
+    model: Model[Any, Any]
+
+    @cached_property
+    def offer(self) -> Offer:
+        """The model as the command line would offer it."""
+        name = self.model.name
+        return Offer(name, self.model, Origin(name, "", "", "", f"entry:{name}"))
+
+    @cached_property
+    def setup(self) -> Setup:
+        """The defaults; where a data file has none, the shipped example."""
+        try:
+            return default_setup(self.model)
+        except UsageError:
+            from truing.inputs_file import read_setup
+
+            if self.model.example is None:
+                raise
+            return read_setup(self.model.example, self.offer)
+
+    @cached_property
+    def obstacle(self) -> str:
+        """Why the model cannot be run at its defaults, or nothing."""
+        try:
+            evaluate(self.setup)
+        except TruingError as error:
+            return str(error)
+        return ""
+
+    @property
+    def scattering(self) -> dict[str, InputField]:
+        """The inputs that a batch can vary."""
+        return {name: item for name, item in self.model.input_fields.items() if item.varies}
+
+    def at(self, point: Mapping[str, float]) -> Setup:
+        """Return the setup with these inputs, SI."""
+        fields = self.model.input_fields
+        changed = {fields[name].path: value for name, value in point.items()}
+        return replace(self.setup, inputs=with_values(self.setup.inputs, changed))
+
+    def points(self, count: int) -> list[dict[str, float]]:
+        """Return inputs in SI near the defaults, within their bounds, that the model can answer; the same every time.
+
+        Every input moves by up to a tenth of its value, or by three standard deviations or a tenth of its unit where
+        it is 0; by less where the model finds that impossible.
+        """
+        import numpy as np
+
+        rng = np.random.default_rng(20)
+        found: list[dict[str, float]] = []
+        for share in NARROWER:
+            for _ in range(ATTEMPTS + count):
+                if len(found) == count:
+                    return found
+                point = {name: self._near(item, share, rng) for name, item in self.scattering.items()}
+                if self._answers(point):
+                    found.append(point)
+        fail(f"{self.model.name}: no point within a millionth of the defaults can be calculated; state what must hold")
+
+    def _answers(self, point: Mapping[str, float]) -> bool:
+        try:
+            evaluate(self.at(point))
+        except InfeasibleError:
+            return False
+        return True
+
+    def _near(self, item: InputField, share: float, rng: np.random.Generator) -> float:
+        from truing.units import to_si
+
+        value, spec = float(self.setup.nominal(item.name)), item.spec
+        assert isinstance(spec, Given)
+        if value != value or (spec.whole and share < 0.1):
+            return value
+        if spec.whole:
+            moved = value + float(rng.integers(-1, 2))
+        else:
+            moved = value + share * self._span(item, value) * float(rng.uniform(-1, 1))
+        closed = (spec.at_least, spec.at_most)
+        low, high = (to_si(bound, item.unit) if bound is not None else None for bound in closed)
+        moved = max(moved, low) if low is not None else moved
+        moved = min(moved, high) if high is not None else moved
+        above, below = (to_si(bound, item.unit) if bound is not None else None for bound in (spec.above, spec.below))
+        outside = (above is not None and moved <= above) or (below is not None and moved >= below)
+        return value if outside else moved
+
+    def _span(self, item: InputField, value: float) -> float:
+        """Return how far a tenth of the input reaches, times ten."""
+        from truing.units import unit_factor
+
+        if item.unit in {"degC", "degF", "°C", "°F"}:
+            return 100 * unit_factor(item.unit)
+        if value:
+            return abs(value)
+        return self._widest.get(item.name, 0.0) * 30 or unit_factor(item.unit)
+
+    @cached_property
+    def _widest(self) -> dict[str, float]:
+        """The largest standard deviation declared on each input, where it resolves."""
+        widest: dict[str, float] = {}
+        try:
+            spreads = self.setup.distributions()
+        except TruingError:
+            return widest
+        for inner in spreads.values():
+            for name, distribution in inner.items():
+                widest[name] = max(widest.get(name, 0.0), distribution.sd)
+        return widest
