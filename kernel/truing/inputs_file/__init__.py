@@ -64,6 +64,7 @@ def _setup(document: Document, offer: Offer, folder: Path) -> Setup:
     faults = document.faults
     unreadable = _prune(document.data, ())
     _switch_off(document.data)
+    document.data.setdefault("inputs", {})
     try:
         file_model(offer.model).model_validate(document.data, context=reading)
     except ValidationError as error:
@@ -72,7 +73,7 @@ def _setup(document: Document, offer: Offer, folder: Path) -> Setup:
     studies = assemble.studies_of(offer.model, reading.values, late)
     faults += [*each(late, document), *assemble.spread_faults(offer.model, document, reading.values)]
     if faults:
-        raise InputError(in_order(faults, document.file))
+        raise InputError(in_order(faults, document))
     return assemble.make_setup(offer, reading, studies, document.file)
 
 

@@ -29,12 +29,16 @@ _PLACE = re.compile(r" \(at (?:line \d+, column \d+|end of document)\)$")
 
 @dataclass
 class Document:
-    """What a text says: nested data, the file and line of every name, and what was wrong with its spelling."""
+    """What a text says: nested data, the file and line of every name, and what was wrong with its spelling.
+
+    ``overrides`` are the places that are no lines of the file, in the order given.
+    """
 
     file: str
     data: dict[str, Any] = field(default_factory=dict)
     places: dict[Path, tuple[str, int | None]] = field(default_factory=dict)
     faults: list[Fault] = field(default_factory=list)
+    overrides: list[str] = field(default_factory=list)
 
     def fault(self, path: Path, message: str) -> Fault:
         """Return a fault at the place of a name, or of the nearest section around it."""
@@ -65,9 +69,7 @@ def read_document(text: str, file: str) -> Document:
     found = list(statements(text))
     try:
         document.data = tomllib.loads(text)
-    except RecursionError:
-        document.faults.append(Fault("is nested too deeply", file))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         _Repair(document).run(found)
         if not document.faults:
             document.faults.append(Fault(_sentence(error), file, _line(error)))
@@ -173,9 +175,7 @@ class _Repair:
         for statement in found:
             try:
                 self.read(statement)
-            except RecursionError:
-                self.say(statement, "is nested too deeply")
-            except ValueError as error:
+            except (ValueError, RecursionError) as error:
                 self.say(statement, _sentence(error))
 
     def say(self, statement: Statement, sentence: str) -> None:
@@ -200,7 +200,7 @@ class _Repair:
             for part in path:
                 value = value[part]
         except ValueError as error:
-            meant = _meant(assignment[1], assignment[2])
+            meant = None if "digits" in str(error) else _meant(assignment[1], assignment[2])
             self.say(statement, meant[0] if meant else _sentence(error))
             if meant is None or meant[1] is None:
                 self.keep((*self.section, *path), None, statement)
@@ -274,13 +274,15 @@ def _short(text: str) -> str:
     return shown(text)[1:-1]
 
 
-def _sentence(error: ValueError) -> str:
+def _sentence(error: ValueError | RecursionError) -> str:
+    if isinstance(error, RecursionError):
+        return "is nested too deeply"
     message = _PLACE.sub("", str(error))
     if "integer string conversion" in message:
         message = "a number has too many digits"
     return f"this is no TOML: {message[:1].lower()}{message[1:]}"
 
 
-def _line(error: ValueError) -> int | None:
+def _line(error: ValueError | RecursionError) -> int | None:
     found = re.search(r"\(at line (\d+),", str(error))
     return int(found[1]) if found else None

@@ -20,6 +20,7 @@ def apply_overrides(document: Document, model: Model[Any, Any], overrides: Seque
         name, equals, value = text.partition("=")
         name, value = name.strip(), value.strip()
         place = f"{label} {_one_line(text)}".strip()
+        document.overrides.append(place)
         if not equals or not name:
             document.faults.append(Fault("write name=value, such as load='3 kN'", place))
             continue

@@ -144,9 +144,10 @@ class _Words:
         )
 
 
-def in_order(faults: Sequence[Fault], file: str) -> list[Fault]:
-    """Sort faults by line, those of the command line last; beyond 200 they are counted."""
-    ordered = sorted(faults, key=lambda fault: (fault.file != file, fault.line or 0))
+def in_order(faults: Sequence[Fault], document: Document) -> list[Fault]:
+    """Sort faults by line, those of overrides behind them as given; beyond 200 they are counted."""
+    file, places = document.file, {place: order for order, place in enumerate(document.overrides, start=1)}
+    ordered = sorted(faults, key=lambda fault: (places.get(fault.file, 0), fault.line or 0))
     unique = list(dict.fromkeys(ordered))
     if len(unique) <= MOST_FAULTS:
         return unique

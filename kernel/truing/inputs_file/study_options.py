@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import sys
-from typing import Any, get_type_hints
+from collections.abc import Sequence
+from typing import Any, get_origin, get_type_hints
 
 from truing.declare.model import Study
+from truing.inputs_file.values import written
 
 
 def options_of(study: Study) -> dict[str, Any]:
@@ -40,22 +43,33 @@ def read_option(study: Study, name: str, hint: Any, raw: Any) -> Any:
     from pydantic import ConfigDict, PydanticUserError, TypeAdapter, ValidationError
 
     if isinstance(raw, bool) and not _takes_bool(hint):
-        raise ValueError(f"study '{study.name}': {name} = {str(raw).lower()} is no {_spoken(hint)}")
+        raise ValueError(f"study '{study.name}': {name} = {written(raw)} is no {_spoken(hint)}")
     try:
         config = None if dataclasses.is_dataclass(hint) else ConfigDict(arbitrary_types_allowed=True)
         value = TypeAdapter(hint, config=config).validate_python(raw)
     except ValidationError as error:
-        words = error.errors(include_url=False, include_input=False)[0]["msg"]
-        raise ValueError(f"study '{study.name}': {name}: {words[:1].lower()}{words[1:]}") from None
+        raise ValueError(f"study '{study.name}': {_wrong(name, hint, raw, error)}") from None
     except PydanticUserError:
         raise ValueError(f"study '{study.name}': {name} cannot be set in a file") from None
-    if isinstance(value, float) and value not in {float("inf")} and value - value != 0:
+    if isinstance(value, float) and not math.isfinite(value):
         raise ValueError(f"study '{study.name}': {name} is not a finite number")
+    if isinstance(value, int) and abs(value) >= 2**63:
+        raise ValueError(f"study '{study.name}': {name} is too large")
     return value
 
 
 def _takes_bool(hint: Any) -> bool:
     return hint is Any or hint is bool or bool in getattr(hint, "__args__", ())
+
+
+def _wrong(name: str, hint: Any, raw: Any, error: Any) -> str:
+    """Say in one sentence what an option should be; pydantic's own words where the type is not a plain one."""
+    if hint in {int, float, str}:
+        return f"{name} = {written(raw)} is no {_spoken(hint)}"
+    if get_origin(hint) in {tuple, list, Sequence} and not isinstance(raw, (list, str)):
+        return f"{name} = {written(raw)} is no list; write {name} = [...]"
+    words = error.errors(include_url=False, include_input=False)[0]["msg"]
+    return f"{name} = {written(raw)}: {words[:1].lower()}{words[1:]}"
 
 
 def _spoken(hint: Any) -> str:

@@ -57,26 +57,25 @@ def read_number(name: str, raw: Any, unit: str) -> float:
             raise SentenceError(f"{name}: {error}") from None
     if isinstance(raw, bool) or not isinstance(raw, (int, float)):
         raise SentenceError(
-            f"{name} = {_written(raw)} is no {'number' if unit in PURE else 'quantity'}; write {_like(name, unit)}"
+            f"{name} = {written(raw)} is no {'number' if unit in PURE else 'quantity'}; write {_like(name, unit)}"
         )
+    if isinstance(raw, int) and abs(raw) > 10**300:
+        raise SentenceError(f"{name} is too large for a number")
     if not math.isfinite(raw):
         raise SentenceError(f"{name} is {raw}, which is not a finite number")
     if unit not in PURE:
         from truing.units import human_dimension
 
         like = _like(name, unit, raw)
-        raise SentenceError(f"{name} = {_written(raw)} has no unit; it is {human_dimension(unit)}: write {like}")
-    try:
-        return float(raw)
-    except OverflowError:
-        raise SentenceError(f"{name} is too large for a number") from None
+        raise SentenceError(f"{name} = {written(raw)} has no unit; it is {human_dimension(unit)}: write {like}")
+    return float(raw)
 
 
 def _like(name: str, unit: str, value: float = 1.0) -> str:
     return f"{name} = {plain(value)}" if unit in PURE else f'{name} = "{plain(value)} {unit}"'
 
 
-def _written(raw: Any) -> str:
+def written(raw: Any) -> str:
     """Return a TOML value as the file shows it, shortened."""
     if isinstance(raw, bool):
         return str(raw).lower()
@@ -152,7 +151,7 @@ def bounds_in_words(item: InputField) -> str:
 def _switch(item: InputField, raw: Any) -> bool:
     if not isinstance(raw, bool):
         raise SentenceError(
-            f"{item.name} = {_written(raw)} is no switch; write {item.name} = true or {item.name} = false"
+            f"{item.name} = {written(raw)} is no switch; write {item.name} = true or {item.name} = false"
         )
     return raw
 
@@ -160,7 +159,7 @@ def _switch(item: InputField, raw: Any) -> bool:
 def _integer(item: InputField, raw: Any) -> int:
     whole = int(raw) if isinstance(raw, float) and raw.is_integer() else raw
     if isinstance(whole, bool) or not isinstance(whole, int):
-        raise SentenceError(f"{item.name} = {_written(raw)} is no whole number; write {item.name} = 3")
+        raise SentenceError(f"{item.name} = {written(raw)} is no whole number; write {item.name} = 3")
     if abs(whole) > 2**53:
         raise SentenceError(f"{item.name} is too large for a whole number")
     keep_bounds(item, whole)
@@ -168,20 +167,20 @@ def _integer(item: InputField, raw: Any) -> int:
 
 
 def _choice(item: InputField, raw: Any) -> Any:
-    text = _written(raw) if isinstance(raw, (bool, int)) else raw
+    text = written(raw) if isinstance(raw, (bool, int)) else raw
     if not isinstance(text, str) or text not in item.choices:
         from truing.declare.near_miss import near_miss
 
         offered = " or ".join(f"'{choice}'" for choice in item.choices)
         meant = near_miss(text[:80], item.choices) if isinstance(text, str) else ""
-        raise SentenceError(f"{item.name} = {_written(raw)} is not offered; choose {offered}.{meant}")
+        raise SentenceError(f"{item.name} = {written(raw)} is not offered; choose {offered}.{meant}")
     default = getattr(item.spec, "default", None)
     return int(text) if isinstance(default, int) and not isinstance(default, bool) else text
 
 
 def _text(item: InputField, raw: Any) -> str:
     if not isinstance(raw, str):
-        raise SentenceError(f'{item.name} = {_written(raw)} is no text; write {item.name} = "..."')
+        raise SentenceError(f'{item.name} = {written(raw)} is no text; write {item.name} = "..."')
     return raw
 
 
@@ -224,7 +223,7 @@ def _plain_series(item: InputField, given: list[Any]) -> tuple[Any, ...]:
     for place, value in enumerate(given, start=1):
         if type(value) is not kind:
             word = {int: "whole number", float: "number", str: "text", bool: "switch"}.get(kind, "value of its kind")
-            raise SentenceError(f"{item.name}[{place}] = {_written(value)} is no {word}")
+            raise SentenceError(f"{item.name}[{place}] = {written(value)} is no {word}")
     return tuple(given)
 
 

@@ -90,7 +90,7 @@ class CsvFile:
                 rows, lines = [], []
         if rows:
             yield Chunk(list(zip(*rows, strict=True)), tuple(lines))
-        if not any_row and not self.faults.found:
+        if not any_row:
             self.faults.add("holds a header but no rows", self.header_line)
 
     def _fits(self, row: list[str], line: int) -> bool:
@@ -100,7 +100,8 @@ class CsvFile:
             return True
         hint = "; with decimal commas, put semicolons between the cells" if len(row) > width else ""
         hint = "" if self.decimal_comma else hint
-        self.faults.add(f"this row has {len(row)} cells, expected {width} as in the header{hint}", line)
+        cells = "1 cell" if len(row) == 1 else f"{len(row)} cells"
+        self.faults.add(f"this row has {cells}, expected {width} as in the header{hint}", line)
         return False
 
 

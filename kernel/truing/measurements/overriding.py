@@ -41,7 +41,7 @@ class RowsFile:
 
     Inputs that may vary and conditions are arrays (n,), every other input a list of n values. Where a cell is empty
     the value of the inputs file stands. ``series`` holds columns of inputs that run along an axis. ``cells`` are all
-    columns verbatim, by the header as written.
+    columns verbatim, by the header as written; ``others`` names the columns that override nothing.
     """
 
     file: str
@@ -49,6 +49,7 @@ class RowsFile:
     series: Mapping[str, NDArray[np.float64]]
     cells: Mapping[str, tuple[str, ...]]
     lines: tuple[int, ...]
+    others: tuple[str, ...] = ()
 
     @property
     def headers(self) -> tuple[str, ...]:
@@ -126,7 +127,8 @@ def read_rows(path: Path, offer: Offer, setup: Setup) -> RowsFile:
         columns[header.name] = filled if item is not None and not item.varies else np.array(filled, dtype=float)
     table.faults.raise_any()
     written = {header.text: tuple(cells) for header, cells in zip(table.headers, texts.cells, strict=True)}
-    return RowsFile(str(path), columns, series, written, tuple(texts.lines))
+    others = tuple(header.name for header in table.headers if not _is_known(header.name, setup))
+    return RowsFile(str(path), columns, series, written, tuple(texts.lines), others)
 
 
 def _is_known(name: str, setup: Setup) -> bool:

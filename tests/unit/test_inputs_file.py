@@ -1,0 +1,640 @@
+"""The inputs file: what is read, and what is said of everything that cannot be."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given as drawn
+from hypothesis import settings as drawing
+from hypothesis import strategies as st
+from sample_models import PIN_OFFER, PIN_WEAR, STAGE_OFFER, Census
+
+from truing.declare.spreads import Band, Grade, Off, Zone
+from truing.errors import InputError
+from truing.inputs_file import json_schema, read_setup, setup_from_settings, setup_from_text
+from truing.setup import Setup, default_setup
+
+SURFACE = 'surface = { file = "flank.txt", spacing = "0.4 um" }'
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "flank.txt").write_text("1\n2\n4\n")
+    return tmp_path
+
+
+def pin(text: str) -> Setup:
+    return setup_from_text(text, PIN_OFFER, file="wear.toml", folder=Path())
+
+
+def faults(text: str) -> list[str]:
+    with pytest.raises(InputError) as caught:
+        pin(text)
+    return str(caught.value).splitlines()
+
+
+def stage(text: str, folder: Path) -> Setup:
+    return setup_from_text(text, STAGE_OFFER, file="stage.toml", folder=folder)
+
+
+def stage_faults(text: str, folder: Path) -> list[str]:
+    with pytest.raises(InputError) as caught:
+        stage(text, folder)
+    return str(caught.value).splitlines()
+
+
+# What is read
+
+
+def test_values_are_converted_and_the_rest_is_default() -> None:
+    setup = pin('[inputs]\nload = "0.2 kN"\ntime = "24 h"\nrate = 4e-8\n')
+    assert (setup.inputs.load, setup.inputs.time, setup.inputs.rate) == (200.0, 86400.0, 4e-8)
+    assert setup.inputs.area == pytest.approx(28e-6, rel=1e-15)
+    assert setup.stated == {"load", "time", "rate"}
+
+
+def test_an_empty_section_list_is_the_default_setup() -> None:
+    setup = pin("# nothing stated\n")
+    assert replace(setup, file="") == default_setup(PIN_WEAR, PIN_OFFER.origin)
+
+
+def test_every_section_is_read() -> None:
+    setup = pin("""
+plugin = "pin_wear"
+[sheet]
+project = "Rig 7"
+revision = 2
+date = 2024-02-29
+detail = "full"
+company = ""
+[inputs]
+load = "150 N"
+[tolerances]
+load = "±3 N"
+hardness = "off"
+[conditions]
+probe_temperature = "35 degC"
+[effects.running_in]
+length = "30 m"
+extra = { value = "5 um", sd = "0.5 um" }
+covariance = [[0.25, 0.1], [0.1, 4.0]]
+[calibrated]
+hardness = "2.2 GPa"
+[studies]
+run = ["second", "census"]
+seed = 0
+[studies.census]
+draws = 50
+method = "quasi"
+of = ["pressure"]
+[units]
+depth = "mm"
+load = "kN"
+""")
+    assert setup.head == {"project": "Rig 7", "revision": "2", "date": "2024-02-29"}
+    assert (setup.detail, setup.seed) == ("full", 0)
+    assert setup.spreads == {"load": Band("3 N", "±"), "hardness": Off()}
+    assert setup.conditions == {"probe_temperature": pytest.approx(308.15)}
+    assert setup.calibrated == {"hardness": 2.2e9}
+    assert setup.studies == (Census(name="second"), Census(draws=50, method="quasi", of=("pressure",)))
+    assert setup.units == {"depth": "mm", "load": "kN"}
+    (on,) = setup.effects
+    assert on.effect is PIN_WEAR.effects["running_in"]
+    assert on.values == {"extra": pytest.approx(5e-6), "length": 30.0}
+    assert on.sds == {"extra": pytest.approx(0.5e-6), "length": 2.0}
+    np.testing.assert_allclose(on.covariance, [[0.25e-12, 0.1e-6], [0.1e-6, 4.0]], rtol=1e-12)
+
+
+def test_parts_choices_counts_series_and_files(folder: Path) -> None:
+    text = f"""[inputs]
+teeth_sun = 19
+bore_planet = "1 in"
+reading = "printed"
+planets = 4
+is_hardened = false
+face_factor = 1.2
+oil = "140 degF"
+profile = ["1 um", "0.002 mm"]
+orders = [3, 5, 7]
+{SURFACE}
+"""
+    setup = stage(text, folder)
+    inputs = setup.inputs
+    assert (inputs.sun.teeth, inputs.planet.teeth, inputs.planets) == (19.0, 31.0, 4)
+    assert inputs.planet.bore == pytest.approx(25.4e-3)
+    assert (inputs.reading, inputs.is_hardened, inputs.face_factor) == ("printed", False, 1.2)
+    assert inputs.oil == pytest.approx(333.15)
+    np.testing.assert_allclose(inputs.profile, [1e-6, 2e-6])
+    assert inputs.orders == (3, 5, 7)
+    assert (inputs.surface.heights, inputs.surface.spacing) == ((1.0, 2.0, 4.0), "0.4 um")
+    assert setup.files == {"surface": hashlib.sha256(b"1\n2\n4\n").hexdigest()}
+
+
+def test_a_series_may_share_one_unit_and_a_file_a_short_form(folder: Path) -> None:
+    setup = stage(f'[inputs]\nprofile = {{ values = [1, 2.5], unit = "um" }}\n{SURFACE}\n', folder)
+    np.testing.assert_allclose(setup.inputs.profile, [1e-6, 2.5e-6])
+    assert stage_faults('[inputs]\nsurface = "flank.txt"\n', folder) == [
+        'stage.toml:2: surface: the reader needs spacing too; write surface = { file = "...", spacing = ... }'
+    ]
+
+
+def test_an_optional_input_left_out_is_nan_and_does_not_scatter(folder: Path) -> None:
+    setup = stage(f"[inputs]\n{SURFACE}\n", folder)
+    assert math.isnan(setup.inputs.face_factor)
+    assert setup.spreads["face_factor"] == Off()
+    given = stage(
+        f'[inputs]\nface_factor = 1.1\n{SURFACE}\n[tolerances]\nface_factor = {{ zone = ["0", "0.4"] }}\n', folder
+    )
+    assert given.spreads["face_factor"] == Zone("0", "0.4")
+    assert stage_faults(f'[inputs]\n{SURFACE}\n[tolerances]\nface_factor = {{ zone = ["0", "0.4"] }}\n', folder) == [
+        "stage.toml:4: 'face_factor' is not given, so it has no tolerance; state it or write \"off\""
+    ]
+
+
+def test_a_grade_is_read_for_every_size_it_is_on(folder: Path) -> None:
+    assert stage(f'[inputs]\n{SURFACE}\n[tolerances]\nbores = "IT6"\n', folder).spreads["bores"] == Grade("IT6")
+    found = stage_faults(f'[inputs]\n{SURFACE}\nbore_planet = "4 m"\n[tolerances]\nbores = "IT6"\n', folder)
+    assert len(found) == 1
+    assert found[0].startswith("stage.toml:5: bores: ")
+    assert "3150 mm" in found[0]
+
+
+def test_a_declared_grade_that_the_stated_size_outgrows_is_told_at_the_size(folder: Path) -> None:
+    found = stage_faults(f'[inputs]\n{SURFACE}\nbore_planet = "4 m"\n', folder)
+    assert len(found) == 1
+    assert found[0].startswith("stage.toml:3: tolerance 'bores': ")
+
+
+@pytest.mark.parametrize("mark", ["", "\ufeff"])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_byte_order_marks_and_line_ends(tmp_path: Path, mark: str, end: str) -> None:
+    path = tmp_path / "Größe 1.toml"
+    path.write_bytes((mark + end.join(["[inputs]", 'load = "3 kN"', 'speed = "1 mm"', ""])).encode())
+    with pytest.raises(InputError) as caught:
+        read_setup(path, PIN_OFFER)
+    assert [fault.line for fault in caught.value.faults] == [3]
+
+
+def test_old_names_answer_with_a_warning() -> None:
+    setup = pin("[inputs]\nk_wear = 5e-8\n")
+    assert setup.inputs.rate == 5e-8
+    assert setup.warnings == ("'k_wear' is now called 'rate'; the old name goes with pin_wear 2.0",)
+    assert faults("[inputs]\nk_wear = 5e-8\nrate = 4e-8\n") == [
+        "wear.toml:2: 'k_wear' is the old name of 'rate', which is given too; leave 'k_wear' out"
+    ]
+
+
+# What --set says
+
+
+def test_overrides_replace_what_the_file_says(tmp_path: Path) -> None:
+    path = tmp_path / "wear.toml"
+    path.write_text('[inputs]\nload = "3 kN"\nspeed = "oops"\n[effects.warm_probe]\nslope = "1 um/K"\n')
+    overrides = [
+        "load=4 kN", "speed = 2 m/s", "inputs.rate=1e-8", "probe_temperature=30 degC", "tolerances.load=±0.1 kN",
+        "effects.warm_probe.slope=-1 um/K", "studies.census.draws=7", "studies.run=[\"census\"]", "seed=3",
+        "sheet.project=A=B", "units.depth=mm", "calibrated.hardness=2 GPa", "detail=short",
+        'tolerances.hardness={zone = ["0 GPa", "0.2 GPa"]}', 'studies.census.of=["pressure"]',
+    ]  # fmt: skip
+    setup = read_setup(path, PIN_OFFER, overrides=overrides)
+    assert (setup.inputs.load, setup.inputs.speed, setup.inputs.rate) == (4000.0, 2.0, 1e-8)
+    assert setup.conditions["probe_temperature"] == pytest.approx(303.15)
+    assert setup.spreads == {"load": Band("0.1 kN", "±"), "hardness": Zone("0 GPa", "0.2 GPa")}
+    assert setup.effects[0].values == {"slope": pytest.approx(-1e-6)}
+    assert setup.studies == (Census(draws=7, of=("pressure",)),)
+    assert (setup.seed, setup.detail, setup.head["project"]) == (3, "short", "A=B")
+    assert (setup.units, setup.calibrated) == ({"depth": "mm"}, {"hardness": 2e9})
+    assert setup.file == str(path)
+
+
+def test_an_effect_is_switched_off(tmp_path: Path) -> None:
+    path = tmp_path / "wear.toml"
+    path.write_text('[effects.warm_probe]\nslope = "1 um/K"\n')
+    assert len(read_setup(path, PIN_OFFER).effects) == 1
+    assert read_setup(path, PIN_OFFER, overrides=["effects.warm_probe=off"]).effects == ()
+
+
+def test_faults_of_overrides_come_after_those_of_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "wear.toml"
+    path.write_text('[inputs]\nspeed = "1 m"\n')
+    with pytest.raises(InputError) as caught:
+        read_setup(path, PIN_OFFER, overrides=["laod=3 kN", "area=3 mm", "nonsense", "studies.census.draws=x"])
+    assert str(caught.value).splitlines() == [
+        f"{path}:2: speed: '1 m' is a length (m), expected a speed (m/s)",
+        "--set laod=3 kN: pin_wear has no input 'laod'. Did you mean 'load' (F, normal load on the pin, N)?",
+        "--set area=3 mm: area: '3 mm' is a length (mm), expected an area (mm²)",
+        "--set nonsense: write name=value, such as load='3 kN'",
+        "--set studies.census.draws=x: study 'census': draws = 'x' is no whole number",
+    ]
+
+
+def test_settings_of_published_numbers(folder: Path) -> None:
+    setup = setup_from_settings(PIN_OFFER, {"load": "3 kN", "tolerances.load": "sd 1 %"})
+    assert setup.inputs.load == 3000.0
+    assert setup.spreads["load"] == Band("1 %", "sd")
+    with pytest.raises(InputError, match=r"^settings area=1 N: area: '1 N' is a force"):
+        setup_from_settings(PIN_OFFER, {"area": "1 N"})
+
+
+@pytest.mark.parametrize(("text", "expected"), [("true", True), ("false", False)])
+def test_switches_counts_and_files_on_the_command_line(folder: Path, text: str, expected: bool) -> None:
+    path = folder / "stage.toml"
+    path.write_text("[inputs]\n")
+    overrides = [f"is_hardened={text}", "planets=5", "reading=printed", SURFACE.replace(" = ", "=", 1), "orders=[4]"]
+    setup = read_setup(path, STAGE_OFFER, overrides=[*overrides, 'profile=["1 um"]'])
+    assert setup.inputs.is_hardened is expected
+    assert (setup.inputs.planets, setup.inputs.reading, setup.inputs.orders) == (5, "printed", (4,))
+    assert setup.inputs.surface.heights == (1.0, 2.0, 4.0)
+
+
+# Bad input: one value
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        ('load = "3 m"', "load: '3 m' is a length (m), expected a force (N)"),
+        ('speed = "3 mms"', "speed: unknown unit 'mms'; did you mean 'mm'?"),
+        ('load = "120"', "load: '120' has no unit; expected a force such as '120 N'"),
+        ("load = 120", "load = 120 has no unit; it is a force: write load = \"120 N\""),
+        ("load = 1.5", "load = 1.5 has no unit; it is a force: write load = \"1.5 N\""),
+        ('load = "9**9**9 kN"', "load: '9**9**9 kN' is not a number followed by a unit"),
+        ('load = "nan N"', "load: 'nan N' is not a finite number"),
+        ('load = "inf"', "load: 'inf' is not a finite number"),
+        ("rate = nan", "rate is nan, which is not a finite number"),
+        ("rate = -inf", "rate is -inf, which is not a finite number"),
+        ("load = +inf", "load is inf, which is not a finite number"),
+        ('load = "0,36 N"', "load: '0,36 N' has a decimal comma; write '0.36 N'"),
+        (
+            'load = "360 ± 0.05 N"',
+            "load: '360 ± 0.05 N' holds a tolerance; write the nominal value here, the rest under [tolerances]",
+        ),
+        ('load = "-3 N"', "load is -3 N; it must be above 0 N"),
+        ('load = "0 kN"', "load is 0 N; it must be above 0 N"),
+        ("load = true", "load = true is no quantity; write load = \"1 N\""),
+        ("rate = false", "rate = false is no number; write rate = 1"),
+        ("load = [1, 2]", "load = a list is no quantity; write load = \"1 N\""),
+        ("load = 2024-01-01", "load = '2024-01-01' is no quantity; write load = \"1 N\""),
+        ("load = 10 mm", 'load = 10 mm needs quotation marks; write load = "10 mm"'),
+        ('load = "1e400 N"', "load: '1e400 N' is too large for a number"),
+    ],
+)  # fmt: skip
+def test_a_wrong_value_of_an_input(line: str, sentence: str) -> None:
+    assert f"wear.toml:3: {sentence}" in faults(f"[inputs]\n# a comment\n{line}\n")
+
+
+def test_a_number_of_any_length_is_refused_quickly() -> None:
+    begin = time.perf_counter()
+    assert "too many digits" in faults(f"[inputs]\nrate = {'9' * 5000}\n")[0]
+    assert "too large" in faults(f"[inputs]\nrate = {'9' * 400}\n")[0]
+    assert faults('[inputs]\nload = "9**9**9 kN"\n')
+    assert time.perf_counter() - begin < 5
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        ("teeth_sun = 4", "teeth_sun is 4; it must be at least 5"),
+        ("teeth_planet = 501", "teeth_planet is 501; it must be at most 500"),
+        ("teeth_sun = 20.5", "teeth_sun is 20.5; it must be a whole number"),
+        ('bore_sun = "0 mm"', "bore_sun is 0 mm; it must be above 0 mm"),
+        ("planets = 2.5", "planets = 2.5 is no whole number; write planets = 3"),
+        ("planets = true", "planets = true is no whole number; write planets = 3"),
+        ("planets = 1", "planets is 1; it must be at least 2"),
+        ("is_hardened = 1", "is_hardened = 1 is no switch; write is_hardened = true or is_hardened = false"),
+        (
+            'reading = "complet"',
+            "reading = 'complet' is not offered; choose 'printed' or 'complete'. Did you mean 'complete'?",
+        ),
+        ("face_factor = 0.9", "face_factor is 0.9; it must be at least 1"),
+        ('oil = "-300 degC"', "oil: '-300 degC' lies below absolute zero"),
+        ("profile = []", 'profile is a series; write profile = ["1 um", ...]'),
+        ('profile = ["1 um", "2 N"]', "profile[2]: '2 N' is a force (N), expected a length (µm)"),
+        ('orders = [1, "a"]', "orders[2] = 'a' is no whole number"),
+        ('teeth = 20', "stage has no input 'teeth'. Did you mean 'teeth_sun' (z_1, number of teeth)?"),
+    ],
+)  # fmt: skip
+def test_a_wrong_value_of_other_kinds(folder: Path, line: str, sentence: str) -> None:
+    assert stage_faults(f"[inputs]\n{SURFACE}\n{line}\n", folder) == [f"stage.toml:3: {sentence}"]
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        ('{ file = "flnak.txt", spacing = "1" }', "there is no file 'flnak.txt' beside the inputs file"),
+        ('{ file = "flank.txt", spacing = "1", hieght_unit = "m" }', "Did you mean 'height_unit'?"),
+        ('{ file = "broken.txt", spacing = "1" }', "'broken.txt' cannot be read: could not convert string to float"),
+        ('{ file = ".", spacing = "1" }', "there is no file '.'"),
+        ("{ spacing = 1 }", 'write surface = { file = "data.txt" }'),
+        ("3", 'write surface = { file = "data.txt" }'),
+    ],
+)
+def test_a_data_file_that_cannot_be_read(folder: Path, value: str, words: str) -> None:
+    (folder / "broken.txt").write_text("1\nx\n")
+    (found,) = stage_faults(f"\n[inputs]\nsurface = {value}\n", folder)
+    assert found.startswith("stage.toml:3: surface")
+    assert words in found
+
+
+# Bad input: names and sections
+
+
+def test_misspelt_missing_and_extra_names_in_one_answer(folder: Path) -> None:
+    assert stage_faults('plugin = "gears.stage"\n[inputs]\nplanest = 3\nlubricant = "oil"\n', folder) == [
+        "stage.toml:2: stage needs the input 'surface' (measured flank); "
+        'write surface = { file = "data.txt" } under [inputs]',
+        "stage.toml:3: stage has no input 'planest'. Did you mean 'planets' (number of planets)?",
+        "stage.toml:4: stage has no input 'lubricant'. (there are: teeth_sun, bore_sun, teeth_planet, bore_planet, "
+        "reading, planets, is_hardened, face_factor, oil, profile, orders, surface)",
+    ]
+
+
+def test_a_missing_file_without_any_section(folder: Path) -> None:
+    assert stage_faults("# nothing\n", folder)[0].startswith("stage.toml: stage needs the input 'surface'")
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ('[input]\nload = "3 N"', "1: 'input' is no section of an inputs file. Did you mean 'inputs'?"),
+        ('load = "3 N"', "1: 'load' is an input; write it under [inputs]"),
+        ("inputs = 3", "1: 'inputs' is a section; write [inputs] and its entries below it"),
+        ('[inputs]\nprobe_temperature = 3', "2: 'probe_temperature' is a condition; write it under [conditions]"),
+        ('[conditions]\nload = "3 N"', "2: 'load' is an input; write it under [inputs]"),
+        ('[inputs]\nrunning_in = "3 um"', "2: 'running_in' is an effect; write it under [effects.running_in]"),
+        ('[tolerances]\narea = "±1 mm^2"', "2: 'area' is an input without a declared tolerance"),
+        ('[tolerances]\nload = "3 N"', "2: load: '3 N' is no tolerance; write '±0.05 mm'"),
+        ('[tolerances]\nload = "±3 mm"', "2: load: '3 mm' is a length (mm), expected a force (N)"),
+        ('[tolerances]\nload = "IT6"', "2: load: IT6 is a grade for lengths"),
+        ("[tolerances]\nload = 3", "2: load: a tolerance is a text such as"),
+        ('[tolerances]\nload = "sd -3 %"', "2: load: "),
+        ('[conditions]\nprobe_temperature = "3 K/m"', "2: probe_temperature: '3 K/m' is "),
+        ('[effects.runing_in]\nextra = "3 um"', "1: pin_wear has no effect 'runing_in'. Did you mean 'running_in'?"),
+        ('[effects.warm_probe]\nslope = "3 um/K"', "2: slope is 3 um/K; it must lie from -2 to 2 um/K"),
+        ('[effects.warm_probe]\nslope = { sd = "3 um/K" }', "2: slope is written "),
+        ('[effects.warm_probe]\nslope = { value = "1 um/K", sd = "-1 um/K" }', "2: sd of slope is negative"),
+        ("[effects]\nwarm_probe = true", "2: 'warm_probe' is a section; write [effects.warm_probe]"),
+        ('[effects.warm_probe]\nslope = "1 um/K"\ncovariance = [[-1]]', "3: covariance holds a negative variance"),
+        ('[effects.warm_probe]\nslope = "1 um/K"\ncovariance = [1]', "3: covariance is a list of 1 rows of 1 numbers"),
+        ('[calibrated]\nhardness = "-1 GPa"', "2: hardness is -1 GPa; it must be above 0 GPa"),
+        ('[studies]\nrun = ["cencus"]', "2: run names 'cencus', which is no study. Did you mean 'census'?"),
+        ('[studies]\nrun = ["census", "census"]', "2: run names 'census' twice"),
+        ('[studies]\nrun = "census"', '2: run is a list of studies; write run = ["census"]'),
+        ("[studies]\nseed = -1", "2: seed: a whole number from 0 upwards is expected"),
+        ("[studies.census]\ndraw = 5", "2: study 'census' has no option 'draw'. Did you mean 'draws'?"),
+        ("[studies.census]\ndraws = true", "2: study 'census': draws = true is no whole number"),
+        ("[studies.census]\nshare = nan", "2: study 'census': share is not a finite number"),
+        ('[studies.census]\nname = "x"', "2: study 'census' has no option 'name'."),
+        ("[studies.senses]\ndraws = 5", "1: pin_wear has no study 'senses'. Did you mean 'census'?"),
+        ('[units]\ndepth = "N"', "2: depth: 'N' is a force (N), expected a length (µm)"),
+        ('[units]\ndpeth = "mm"', "2: pin_wear has no result or input 'dpeth'. Did you mean 'depth' (h, worn "),
+        ("[units]\ndepth = 3", "2: depth: a text in quotation marks is expected"),
+        ('[sheet]\nprojct = "x"', "2: the sheet has no entry 'projct'. Did you mean 'project'?"),
+        ('[sheet]\ndetail = "long"', "2: detail: choose short, normal or full."),
+        ("[sheet]\nproject = true", "2: project: a text in quotation marks is expected"),
+        ('plugin = "gear"', "1: this file is for 'gear'; the calculation is 'pin_wear'"),
+        ("plugin = 3", "1: plugin: a text in quotation marks is expected"),
+    ],
+)  # fmt: skip
+def test_a_wrong_name_or_section(text: str, sentence: str) -> None:
+    (found,) = faults(text + "\n")
+    assert found.startswith(f"wear.toml:{sentence}")
+
+
+def test_an_effect_needs_all_its_unknowns() -> None:
+    assert faults('[inputs]\n[effects.running_in]\nextra = "3 um"\n') == [
+        "wear.toml:2: effect 'running_in' is on, so its unknown 'length' must be given (from 10 to 5000 m)"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("matrix", "words"),
+    [
+        ("[[1, 0.5], [0.4, 1]]", "not symmetric"),
+        ("[[1, 2], [2, 1]]", "a correlation beyond 1"),
+        ("[[1, nan], [nan, 1]]", "a list of 2 rows"),
+        ("[[1, 0], [0]]", "over extra [um], length [m]"),
+    ],
+)
+def test_an_impossible_covariance(matrix: str, words: str) -> None:
+    (found,) = faults(f'[effects.running_in]\nextra = "3 um"\nlength = "30 m"\ncovariance = {matrix}\n')
+    assert found.startswith("wear.toml:4: covariance")
+    assert words in found
+
+
+# Bad input: the text itself
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("[inputs\n", ["1: '[inputs' is no heading of a section; write it like [inputs]"]),
+        ("[inputs]\nload\n", ["2: 'load' is no line of TOML; write name = \"value\""]),
+        ("[inputs]\nload: 3 N\n", ["2: 'load: 3 N' is no line of TOML; write name = \"value\""]),
+        ("[inputs]\nload =\n", ['2: load has no value; write load = "value"']),
+        ('[inputs]\nload = "3 N\n', ['2: the closing quotation mark is missing; write load = "3 N"']),
+        (
+            '[inputs]\nload = "3 N"\nload = "4 N"\n',
+            ["3: 'load' is given twice (first in line 2); write it once"],
+        ),
+        ("[inputs]\n[units]\n[inputs]\n", ["3: the section [inputs] occurs twice (first in line 1); write it once"]),
+        (
+            '[inputs]\nload = 10 N # heavy\nspeed = 5 mms\nrate = "x"\n',
+            [
+                '2: load = 10 N needs quotation marks; write load = "10 N"',
+                '3: speed = 5 mms needs quotation marks; write speed = "5 mms"',
+                "3: speed: unknown unit 'mms'; did you mean 'mm'?",
+                "4: rate: 'x' does not begin with a number; write it like '5 mm'",
+            ],
+        ),
+        ("[inputs]\nrate = [1,\nload = \"1 m\"\n", [
+            "2: this is no TOML: ", "3: load: '1 m' is a length (m), expected a force (N)",
+        ]),
+        ("a = " + "[" * 3000 + "\n", ["1: is nested too deeply"]),
+        (".".join("a" * 60) + " = 1\n", ["1: holds a name with more than 40 dots"]),
+        ("\x00", ["1: "]),
+    ],
+)  # fmt: skip
+def test_a_text_that_is_no_toml(text: str, expected: list[str]) -> None:
+    found = faults(text)
+    assert len(found) == len(expected)
+    for sentence, beginning in zip(found, expected, strict=True):
+        assert sentence.startswith(f"wear.toml:{beginning}")
+
+
+def test_a_broken_line_does_not_hide_that_a_file_is_named(folder: Path) -> None:
+    """An input whose line cannot be read is not called missing as well."""
+    assert [text.split(":")[1] for text in stage_faults("[inputs]\nsurface = {file = \n", folder)] == ["2"]
+
+
+def test_lines_are_right_behind_long_texts_and_lists() -> None:
+    text = (
+        '[sheet]\nproject = """\na = 1\n[inputs]\n"""\n[studies]\nrun = [\n  "census", # one\n]\n[inputs]\nlaod = 1\n'
+    )
+    assert faults(text)[0].startswith("wear.toml:11: pin_wear has no input 'laod'")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "sentence"),
+    [
+        ("empty.toml", b"", "is empty; `calc init pin_wear` writes an example"),
+        ("blank.toml", b"\n \n", "is empty; `calc init pin_wear` writes an example"),
+        ("binary.toml", b"\x7fELF\x00\x01", "is a binary file; inputs are a TOML text in UTF-8"),
+        ("book.xlsx", b"PK\x03\x04...", "is a spreadsheet; inputs are a TOML text file; save tables as CSV UTF-8"),
+        ("book.toml", b"PK\x03\x04...", "is a spreadsheet; inputs are a TOML text file; save tables as CSV UTF-8"),
+        ("old.xls", b"\xd0\xcf\x11\xe0", "is a spreadsheet; inputs are a TOML text file; save tables as CSV UTF-8"),
+        ("wide.toml", "[inputs]".encode("utf-16"), "is text in UTF-16; save it as UTF-8"),
+        ("large.toml", b"#" * 2_000_001, "is too large: 2.0 MB, at most 2 MB are read"),
+    ],
+)
+def test_a_file_that_is_no_inputs_file(tmp_path: Path, name: str, content: bytes, sentence: str) -> None:
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(InputError) as caught:
+        read_setup(path, PIN_OFFER)
+    assert str(caught.value) == f"{path}: {sentence}"
+
+
+def test_latin_1_is_told_with_its_line(tmp_path: Path) -> None:
+    path = tmp_path / "latin.toml"
+    path.write_bytes("[sheet]\nproject = 'Prüfstand'\n".encode("latin-1"))
+    with pytest.raises(InputError) as caught:
+        read_setup(path, PIN_OFFER)
+    assert str(caught.value) == f"{path}:2: is not UTF-8 text; save it as UTF-8"
+
+
+def test_a_folder_and_a_missing_file(tmp_path: Path) -> None:
+    (tmp_path / "wear.toml").write_text("")
+    with pytest.raises(InputError, match="is a folder; name a file"):
+        read_setup(tmp_path, PIN_OFFER)
+    with pytest.raises(InputError, match=r"no such file\. Did you mean 'wear.toml'\?"):
+        read_setup(tmp_path / "waer.toml", PIN_OFFER)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a = [\n" * 200_000,
+        "[[a]]\n" * 200_000,
+        "[" * 1_900_000,
+        "x" * 1_900_000,
+        "x = 1\n" * 200_000,
+        "[inputs]\n" + "".join(f"load{i} = 1\n" for i in range(100_000)),
+        "[inputs]\n" + '"' * 1_900_000,
+        "a = '''" * 200_000,
+        'a = """\\' * 200_000,
+        "a = {b = " * 100_000,
+        "a." * 900_000 + "b = 1",
+        "a = {" + "b." * 900_000 + "c = 1}",
+        '"a".' * 400_000 + "b = 1",
+        '[inputs]\nload = "' + "9" * 1_900_000 + ' N"',
+        '[inputs]\nload = "1 ' + "m*" * 900_000 + 'N"',
+        "[inputs]\n" + "é" * 900_000 + " = 3",
+    ],
+    ids=range(16),
+)
+def test_a_hostile_file_is_answered_in_bounded_time(text: str) -> None:
+    begin = time.perf_counter()
+    found = faults(text)
+    assert time.perf_counter() - begin < 20
+    assert len(found) <= 201
+    assert all(len(sentence) < 500 for sentence in found)
+
+
+LINES = st.one_of(
+    st.text(max_size=40),
+    st.sampled_from(["[inputs]", "[tolerances]", "[effects.warm_probe]", "[studies]", "[studies.census]", "[units]"]),
+    st.builds(
+        "{} = {}".format,
+        st.sampled_from(["load", "rate", "slope", "run", "seed", "draws", "depth", "plugin", "probe_temperature"]),
+        st.one_of(
+            st.text(max_size=20),
+            st.builds('"{}"'.format, st.text(max_size=20)),
+            st.sampled_from(
+                ['"3 N"', '"±1 N"', "[1]", "{a = 1}", "true", "1e999", "nan", "2001-01-01", '"IT7"', "'x'"]
+            ),
+        ),
+    ),
+)
+
+
+def said(read: Callable[[], object]) -> list[str]:
+    """Return what is wrong, a line each; nothing where all is right. Anything but an InputError fails the test."""
+    try:
+        read()
+    except InputError as error:
+        return [str(fault) for fault in error.faults] or ["an InputError without faults"]
+    return []
+
+
+@drawing(max_examples=400, deadline=2000)
+@drawn(st.one_of(st.text(), st.lists(LINES, max_size=12).map("\n".join)))
+def test_any_text_is_a_setup_or_an_input_error(text: str) -> None:
+    assert all(sentence.startswith("wear.toml:") and "\n" not in sentence for sentence in said(lambda: pin(text)))
+
+
+@drawing(max_examples=100, deadline=2000)
+@drawn(st.binary(max_size=200))
+def test_any_bytes_are_a_setup_or_an_input_error(tmp_path_factory: pytest.TempPathFactory, content: bytes) -> None:
+    path = tmp_path_factory.getbasetemp() / "any.toml"
+    path.write_bytes(content)
+    assert all(sentence.startswith(f"{path}:") for sentence in said(lambda: read_setup(path, PIN_OFFER)))
+
+
+@drawing(max_examples=200, deadline=2000)
+@drawn(st.text(max_size=30))
+def test_any_override_is_a_setup_or_an_input_error(text: str) -> None:
+    names = ("load", text, "studies.census.draws", "tolerances.load", "effects.warm_probe.slope", "effects")
+    for name in names:
+        found = said(lambda name=name: setup_from_settings(PIN_OFFER, {name: text}))
+        assert all(sentence.startswith("settings") for sentence in found)
+
+
+@pytest.mark.parametrize("number", [0.1, 1 / 3, 1e-300, 6.02214076e23, 123456.789012345])
+def test_a_bare_number_arrives_as_it_is(number: float) -> None:
+    assert pin(f"[inputs]\nrate = {number!r}\n").inputs.rate == number
+    assert pin(f'[inputs]\nrate = "{number!r}"\n').inputs.rate == number
+
+
+# The JSON Schema
+
+
+def test_the_schema_is_valid_and_says_what_editors_need(folder: Path) -> None:
+    from jsonschema import Draft202012Validator
+
+    schema = json_schema(STAGE_OFFER)
+    Draft202012Validator.check_schema(schema)
+    assert schema["$schema"] == "https://json-schema.org/draft/2020-12/schema"
+    inputs = schema["$defs"]["Inputs"]
+    assert inputs["required"] == ["surface"]
+    assert inputs["properties"]["bore_sun"]["default"] == "30 mm"
+    assert inputs["properties"]["bore_sun"]["description"] == "d_1: bore; above 0 mm"
+    assert inputs["properties"]["reading"]["enum"] == ["printed", "complete"]
+    assert inputs["properties"]["teeth_sun"]["minimum"] == 5
+    assert inputs["properties"]["face_factor"]["description"] == "K_H: face load factor; at least 1; optional"
+    validator = Draft202012Validator(schema)
+    right = {"inputs": {"surface": {"file": "a"}, "teeth_sun": 7, "reading": "printed", "bore_sun": "3 mm"}}
+    assert list(validator.iter_errors(right)) == []
+    wrong = {"inputs": {"surface": 3, "teeth_sun": 4, "reading": "x", "bore_sun": 3, "planest": 3}, "nonsense": {}}
+    assert len(list(validator.iter_errors(wrong))) == 6
+
+
+def test_the_schema_of_studies_and_effects() -> None:
+    from jsonschema import Draft202012Validator
+
+    schema = json_schema(PIN_OFFER)
+    Draft202012Validator.check_schema(schema)
+    json.dumps(schema, allow_nan=False)
+    census = schema["$defs"]["Studies"]["properties"]["census"]["properties"]
+    assert census["draws"] == {"type": "integer", "default": 1000}
+    assert census["method"]["enum"] == ["plain", "quasi"]
+    assert schema["$defs"]["Effect_running_in"]["required"] == ["extra", "length"]
+    assert schema["$defs"]["Tolerances"]["properties"]["hardness"]["default"] == "lognormal sd 6 %"

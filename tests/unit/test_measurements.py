@@ -1,0 +1,378 @@
+"""Tables: CSV with units in the header."""
+
+from __future__ import annotations
+
+import io
+import math
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given as drawn
+from hypothesis import settings as drawing
+from hypothesis import strategies as st
+from sample_models import PIN_OFFER, PIN_WEAR, STAGE, STAGE_OFFER, Surface
+
+from truing.errors import InputError, OutputError
+from truing.measurements import Case, DataTable, read_cases, read_rows, read_table, write_table
+from truing.setup import Setup, default_setup
+
+KNOWN = {"time": "h", "depth": "um", "probe_temperature": "degC", "rate": "", "slope": "um/K"}
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Callable[[str | bytes], Path]:
+    def write(content: str | bytes) -> Path:
+        path = tmp_path / "rows.csv"
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+        return path
+
+    return write
+
+
+Write = Callable[[str | bytes], Path]
+
+
+def faults(read: Callable[[], object]) -> list[str]:
+    """Return what is wrong as "LINE: sentence", without the name of the file."""
+    with pytest.raises(InputError) as caught:
+        read()
+    return [f"{fault.line}: {fault.message}" for fault in caught.value.faults]
+
+
+def data_faults(path: Path) -> list[str]:
+    return faults(lambda: read_table(path, KNOWN))
+
+
+def pin_setup() -> Setup:
+    return default_setup(PIN_WEAR, PIN_OFFER.origin)
+
+
+# Measured data
+
+GERMAN = "time [h];depth [1e-6 m];run\r\n1,5;2;a\r\n2;,5;a\r\n"
+ENGLISH = "time [h],depth [um],run\n1.5,2,a\n2,.5,a\n"
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        ENGLISH,
+        GERMAN,
+        "\ufeff" + GERMAN,
+        "\ufeff" + ENGLISH.replace("\n", "\r\n"),
+        ENGLISH.replace(",", "\t"),
+        GERMAN.replace(";", "\t"),
+        ENGLISH.replace(",", ";"),
+        '"time [h]" , "depth [um]" , "run"\n"1.5" , "2" , "a"\n2 , 0.5 , "a"\n',
+        "# rig 7, Monday\n\n" + ENGLISH + "\n# end\n\n",
+        ENGLISH.replace("\n", ",\n"),
+        "time[min],depth[mm],run\n90,2e-3,a\n+120,5E-4,a\n",
+    ],
+)
+def test_every_way_to_write_the_same_table(table: Write, content: str) -> None:
+    found = read_table(table(content), KNOWN)
+    np.testing.assert_allclose(found.columns["time"], [5400.0, 7200.0], rtol=1e-15)
+    np.testing.assert_allclose(found.columns["depth"], [2e-6, 0.5e-6], rtol=1e-15)
+    assert found.columns["run"] == ("a", "a")
+    assert found.labels == {"run"}
+    assert len(found) == 2
+
+
+def test_units_lines_and_missing_cells(table: Write) -> None:
+    content = 'time [h],note,depth [um],probe_temperature [degF]\n1,"two\nlines",,50\n#\n\n2,x,3,\n,,nan,68\n'
+    found = read_table(table(content), KNOWN)
+    assert found.lines == (2, 6, 7)
+    assert found.units == {"time": "h", "note": "", "depth": "um", "probe_temperature": "degF"}
+    np.testing.assert_array_equal(found.columns["time"], [3600.0, 7200.0, math.nan])
+    np.testing.assert_array_equal(np.isnan(found.columns["depth"]), [True, False, True])
+    np.testing.assert_allclose(found.columns["probe_temperature"], [283.15, math.nan, 293.15], rtol=1e-12)
+    assert found.columns["note"] == ("two\nlines", "x", "")
+
+
+def test_unknown_columns_are_kept_in_si_where_their_unit_is_known(table: Write) -> None:
+    content = "oil [degC],play [mm],gain,wind [Bft],batch,time [h]\n20,3,1,4,A7,1\n30,4,2,5,8,2\n"
+    found = read_table(table(content), KNOWN)
+    np.testing.assert_allclose(found.columns["oil"], [293.15, 303.15])
+    np.testing.assert_allclose(found.columns["play"], [3e-3, 4e-3])
+    np.testing.assert_array_equal(found.columns["gain"], [1, 2])
+    np.testing.assert_array_equal(found.columns["wind"], [4, 5])
+    assert found.columns["batch"] == ("A7", "8")
+    assert found.labels == {"batch"}
+
+
+def test_a_standard_deviation_is_a_difference(table: Write) -> None:
+    content = "probe_temperature [degC],sigma_probe_temperature [K],depth [um],sigma_depth [nm]\n20,0.5,1,100\n"
+    found = read_table(table(content), KNOWN)
+    np.testing.assert_allclose(found.columns["sigma_probe_temperature"], [0.5])
+    np.testing.assert_allclose(found.columns["sigma_depth"], [1e-7])
+    (sentence,) = data_faults(table("time [h],sigma_depth [N]\n1,2\n"))
+    assert sentence == "1: column 'sigma_depth [N]': 'N' is a force (N), expected a length (µm)"
+    assert data_faults(table("sigma_depth [um]\n1\n-2\n")) == ["3: sigma_depth: a standard deviation is 0 or more"]
+
+
+def test_a_run_is_a_label_even_where_it_is_a_number(table: Write) -> None:
+    assert read_table(table("run,time [h]\n1,2\n2,3\n"), KNOWN).columns["run"] == ("1", "2")
+
+
+@pytest.mark.parametrize("mark", ["[-]", "[1]", "[]", ""])
+def test_pure_numbers(table: Write, mark: str) -> None:
+    np.testing.assert_array_equal(read_table(table(f"rate {mark}\n3e-8\n"), KNOWN).columns["rate"], [3e-8])
+
+
+@pytest.mark.parametrize(
+    ("content", "sentences"),
+    [
+        ("time\n1\n", ["1: column 'time' has no unit; it is a time: write 'time [h]'"]),
+        ("time [mm]\n1\n", ["1: column 'time [mm]': 'mm' is a length (mm), expected a time (h)"]),
+        ("depth [mms]\n1\n", ["1: column 'depth [mms]': unknown unit 'mms'; did you mean 'mm'?"]),
+        ("slope [degC]\n1\n", ["1: column 'slope [degC]': 'degC' is a temperature level (°C), expected "]),
+        ("time [h],depth [um],time [s]\n1,2,3\n", ["1: the column 'time' occurs twice"]),
+        ("time [h],,depth [um]\n1,2,3\n", ["1: column 2 has no name"]),
+        ("time [h\n1\n", ["1: the header 'time [h' cannot be read; write it like 'load [N]'"]),
+        ("time [h]\n", ["1: holds a header but no rows"]),
+        (
+            "time [h],depth [um]\n1\n2,3\n4,5,6\n1,5,2,3\n",
+            [
+                "2: this row has 1 cell, expected 2 as in the header",
+                "4: this row has 3 cells, expected 2 as in the header; with decimal commas, ",
+                "5: this row has 4 cells, expected 2 as in the header; with decimal commas, ",
+            ],
+        ),
+        (
+            "time [h];depth [um]\nx;1.234,5\n3 mm;inf\n1e400;1_0\n1;1.234.567\n",
+            [
+                "2: time: 'x' is no number",
+                "2: depth: '1.234,5' has marks between the thousands; write the digits alone",
+                "3: time: '3 mm' holds more than a number; the unit stands in the header, as in 'load [N]'",
+                "3: depth: 'inf' is not a finite number",
+                "4: time: '1e400' is too large for a number",
+                "4: depth: '1_0' holds more than a number",
+                "5: depth: '1.234.567' has marks between the thousands",
+            ],
+        ),
+        ('time [h],depth [um]\n"1,5",2\n', [
+            "2: time: '1,5' has a decimal comma; put semicolons between the columns, or write a point"
+        ]),
+        ("time [mm],depth\n1,x\n2\n", [
+            "1: column 'time [mm]': 'mm' is a length (mm), expected a time (h)",
+            "1: column 'depth' has no unit; it is a length: write 'depth [um]'",
+            "2: depth: 'x' is no number",
+            "3: this row has 1 cell, expected 2 as in the header",
+        ]),
+    ],
+)  # fmt: skip
+def test_faults_of_a_table(table: Write, content: str, sentences: list[str]) -> None:
+    found = data_faults(table(content))
+    assert len(found) == len(sentences)
+    for one, beginning in zip(found, sentences, strict=True):
+        assert one.startswith(beginning)
+
+
+def test_words_for_missing_are_faults_in_a_column_of_inputs(table: Write) -> None:
+    path = table("time [h],depth [um]\nNaN,NaN\n1,2\n")
+    assert math.isnan(read_table(path, KNOWN).columns["time"][0])  # type: ignore[arg-type]
+    assert faults(lambda: read_table(path, KNOWN, inputs={"time"})) == [
+        "2: time: 'NaN' is no number; leave the cell empty where a value is missing"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "sentence"),
+    [
+        ("rows.csv", b"", "is empty; the first line of a table holds the names, with units such as 'load [N]'"),
+        ("rows.csv", b"\n  \n", "is empty; the first line of a table holds the names, with units such as 'load [N]'"),
+        ("rows.csv", b"# only words\n", "is empty; the first line of a table holds the names"),
+        ("rows.csv", b"a\0b", "is a binary file; a table is CSV text in UTF-8"),
+        ("rows.xlsx", b"PK\x03\x04", "is a spreadsheet; save it as CSV UTF-8"),
+        ("rows.csv", b"PK\x03\x04", "is a spreadsheet; save it as CSV UTF-8"),
+        ("rows.ods", b"PK\x03\x04", "is a spreadsheet; save it as CSV UTF-8"),
+        ("rows.csv", "time [h]\n1".encode("utf-16"), "is text in UTF-16; save it as UTF-8"),
+        ("rows.csv", "note\nPrüfung\n".encode("latin-1"), "is not UTF-8 text; save it as CSV UTF-8"),
+        ("rows.csv", b"note\n" + b"x" * 200_000 + b"\n", "this is no CSV: field larger than field limit"),
+    ],
+)
+def test_a_file_that_is_no_table(tmp_path: Path, name: str, content: bytes, sentence: str) -> None:
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(InputError) as caught:
+        read_table(path, KNOWN)
+    assert str(path) in str(caught.value)
+    assert sentence in str(caught.value)
+
+
+def test_a_table_above_512_megabytes_is_refused_by_its_size(tmp_path: Path) -> None:
+    path = tmp_path / "huge.csv"
+    with path.open("wb") as stream:
+        stream.truncate(512_000_001)
+    begin = time.perf_counter()
+    with pytest.raises(InputError, match=r"is too large: 512\.0 MB, at most 512 MB are read"):
+        read_table(path, KNOWN)
+    assert time.perf_counter() - begin < 1
+
+
+def test_many_faults_are_counted(table: Write) -> None:
+    path = table("time [h]\n" + "x\n" * 5000)
+    found = data_faults(path)
+    assert len(found) == 201
+    assert found[-1] == "None: and 4800 faults more"
+
+
+def test_rows_beyond_one_chunk_keep_their_places(table: Write) -> None:
+    count = 20_001
+    path = table("time [s],depth [m],batch\n" + "".join(f"{i},{i / 7!r},b{i}\n" for i in range(count)))
+    found = read_table(path, KNOWN)
+    np.testing.assert_array_equal(found.columns["time"], np.arange(count))
+    np.testing.assert_array_equal(found.columns["depth"], np.arange(count) / 7)
+    assert found.columns["batch"][-1] == f"b{count - 1}"
+    assert found.lines == tuple(range(2, count + 2))
+
+
+# Cases
+
+
+def test_cases_override_inputs_and_conditions(table: Write) -> None:
+    content = (
+        "case;load [kN];rate;probe_temperature [degC];note\nlight;0,1;3e-8;30;as built\n;;;;\nheavy;3;;;x\n;2;;;\n"
+    )
+    cases = read_cases(table(content), PIN_OFFER, pin_setup())
+    assert cases == [
+        Case(1, 2, "light", {"load": 100.0, "rate": 3e-8, "probe_temperature": 303.15}),
+        Case(2, 4, "heavy", {"load": 3000.0}),
+        Case(3, 5, "3", {"load": 2000.0}),
+    ]
+
+
+def test_cases_of_every_kind_of_input(table: Write) -> None:
+    setup = default_setup(STAGE, surface=Surface((1.0,), "1 um"))
+    content = "name,reading,is_hardened,planets,teeth_sun\nA,printed,no,4,19\nB,complete,TRUE,3,\n"
+    cases = read_cases(table(content), STAGE_OFFER, setup)
+    assert [case.values for case in cases] == [
+        {"reading": "printed", "is_hardened": False, "planets": 4, "teeth_sun": 19.0},
+        {"reading": "complete", "is_hardened": True, "planets": 3},
+    ]
+    content = "name,reading,is_hardened,planets,teeth_sun,bore_sun\nA,prined,maybe,2.5,4,3\n"
+    assert faults(lambda: read_cases(table(content), STAGE_OFFER, setup)) == [
+        "1: column 'bore_sun' has no unit; it is a length: write 'bore_sun [mm]'",
+        "2: reading = 'prined' is not offered; choose 'printed' or 'complete'. Did you mean 'printed'?",
+        "2: is_hardened = 'maybe' is no switch; write is_hardened = true or is_hardened = false",
+        "2: planets = 2.5 is no whole number; write planets = 3",
+        "2: teeth_sun is 4; it must be at least 5",
+    ]
+    assert faults(lambda: read_cases(table("surface,orders\na,1\n"), STAGE_OFFER, setup)) == [
+        "1: surface cannot change from row to row; state it in the inputs file",
+        "1: orders cannot change from row to row; state it in the inputs file",
+    ]
+
+
+def test_faults_of_cases(table: Write) -> None:
+    content = "laod [N],depth [um],load [m],area [mm^2],speed [m/s]\n1,2,3,-4,nan\n1,2,3,0,inf\n"
+    assert faults(lambda: read_cases(table(content), PIN_OFFER, pin_setup())) == [
+        "1: pin_wear has no input 'laod'. Did you mean 'load'?",
+        "1: pin_wear has no input 'depth'. It is a result; cases change inputs.",
+        "1: column 'load [m]': 'm' is a length (m), expected a force (N)",
+        "2: area is -4 mm^2; it must be above 0 mm^2",
+        "2: speed: 'nan' is no number; leave the cell empty where a value is missing",
+        "3: area is 0 mm^2; it must be above 0 mm^2",
+        "3: speed: 'inf' is not a finite number",
+    ]
+
+
+# Rows of a virtual measurement
+
+
+def test_rows_keep_what_is_written(table: Write) -> None:
+    content = "load [kN];probe_temperature [degC];depth [um];batch\n0,1;30;2,5;A\n;;;B\n"
+    found = read_rows(table(content), PIN_OFFER, pin_setup())
+    np.testing.assert_allclose(found.columns["load"], [100.0, 120.0])
+    np.testing.assert_allclose(found.columns["probe_temperature"], [303.15, 293.15])
+    assert set(found.columns) == {"load", "probe_temperature"}
+    assert found.others == ("depth", "batch")
+    assert found.headers == ("load [kN]", "probe_temperature [degC]", "depth [um]", "batch")
+    assert found.cells["load [kN]"] == ("0,1", "")
+    assert found.cells["batch"] == ("A", "B")
+    assert len(found) == 2
+
+
+def test_rows_of_other_kinds_and_of_a_series(table: Write) -> None:
+    setup = default_setup(STAGE, surface=Surface((1.0,), "1 um"))
+    found = read_rows(table("planets,profile [um],lag [mm]\n4,1,0\n,2,1\n"), STAGE_OFFER, setup)
+    assert found.columns == {"planets": [4, 3]}
+    np.testing.assert_allclose(found.series["profile"], [1e-6, 2e-6])
+    assert found.others == ("lag",)
+
+
+def test_rows_keep_bounds(table: Write) -> None:
+    assert faults(lambda: read_rows(table("load [N]\n1\n-1\n"), PIN_OFFER, pin_setup())) == [
+        "3: load is -1 N; it must be above 0 N"
+    ]
+
+
+# Writing
+
+
+@drawing(max_examples=100, deadline=None)
+@drawn(st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=1))
+def test_numbers_round_trip_exactly(tmp_path_factory: pytest.TempPathFactory, values: list[float]) -> None:
+    path = tmp_path_factory.getbasetemp() / "out.csv"
+    write_table(path, ["gain", "x [furlong*zzz]"], [np.array(values), values])
+    found = read_table(path, {})
+    np.testing.assert_array_equal(found.columns["gain"], values)
+    np.testing.assert_array_equal(found.columns["x"], values)
+
+
+def test_what_is_written() -> None:
+    stream = io.StringIO()
+    columns = [np.array([0.1, math.nan]), ["a,b", 'say "c"'], [1, None], [True, False]]
+    write_table(stream, ["depth [um]", "batch", "planets", "on"], columns)
+    assert stream.getvalue() == 'depth [um],batch,planets,on\n0.1,"a,b",1,true\n,"say ""c""",,false\n'
+
+
+def test_a_table_is_complete_or_absent(tmp_path: Path) -> None:
+    path = tmp_path / "deep" / "out.csv"
+    write_table(path, ["a"], [[1.0]])
+    with pytest.raises(ValueError, match="shorter"):
+        write_table(path, ["a", "b"], [[1.0, 2.0], [1.0]])
+    assert path.read_text() == "a\n1.0\n"
+    assert os.listdir(path.parent) == ["out.csv"]
+
+
+def test_a_table_below_an_ordinary_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="cannot be written"):
+        write_table(tmp_path / "file" / "out.csv", ["a"], [[1.0]])
+
+
+# Anything at all
+
+CELLS = st.one_of(
+    st.text(max_size=8), st.sampled_from(["1", "1,5", "nan", "", '"', "#", ";", "time [h]", "depth [um]"])
+)
+
+
+@drawing(max_examples=300, deadline=2000)
+@drawn(
+    st.one_of(
+        st.text(),
+        st.builds(
+            lambda rows, mark: "time [h],depth [um]\n" + "\n".join(mark.join(row) for row in rows),
+            st.lists(st.lists(CELLS, max_size=4), max_size=6),
+            st.sampled_from([",", ";"]),
+        ),
+    )
+)
+def test_any_text_is_a_table_or_an_input_error(tmp_path_factory: pytest.TempPathFactory, text: str) -> None:
+    path = tmp_path_factory.getbasetemp() / "any.csv"
+    path.write_text(text, encoding="utf-8", newline="")
+    setup = pin_setup()
+    for read in (lambda: read_table(path, KNOWN), lambda: read_cases(path, PIN_OFFER, setup)):
+        try:
+            found = read()
+        except InputError:
+            continue
+        assert len(found) > 0
+        if isinstance(found, DataTable):
+            assert all(len(values) == len(found) for values in found.columns.values())
