@@ -9,6 +9,7 @@ from press_linkage.increments import source
 from press_linkage.mechanism import exact_derivatives, press_linkage
 from press_linkage.published import PUBLISHED
 from press_linkage.quantities import Press, Slider
+from press_linkage.readings import Readings
 from press_linkage.sections import SECTIONS
 from truing import (
     Allocation,
@@ -110,6 +111,7 @@ PRESS_LINKAGE = Model(
         Sensitivity(of=("slider_position", "slider_tilt"), gives=influence),
         Reliability(gives=chances),
         Allocation(rule="balanced", of="slider_position", finest="IT5", gives=synthesis),
+        Readings(finest="IT5"),
     ],
     sheet=SECTIONS,
     published=PUBLISHED,

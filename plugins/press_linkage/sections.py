@@ -1,5 +1,158 @@
 """The sheet, in the order an engineer reads it."""
 
-from truing import Section
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING
 
-SECTIONS: list[Section] = []
+from press_linkage.answers import LINKS, sources_of
+from press_linkage.drawn_answers import along_the_synthesis, over_the_turn, salience_bars, way
+from press_linkage.drawn_mechanism import mechanism
+from press_linkage.increments import KINDS, POLAR_ANGLES
+from press_linkage.published import WHERE
+from press_linkage.quantities import Press, Slider
+from truing import Block, Drawing, Section, Table, Words
+
+if TYPE_CHECKING:
+    from truing import Record
+
+    Run = Record[Press, Slider]
+
+CHAIN = (
+    "crank_direction", "platform_height", "rod_direction", "ground_distance", "knee_along", "knee_across", "knee_y",
+    "knee_z", "drive_direction", "upper_direction", "lower_direction", "nominal_position", "slider_shift",
+)  # fmt: skip
+INFLUENCES = (
+    "lower_knee_length", "upper_knee_length", "knee_drive_length", "slider_half_width", "slider_joint_angle",
+    "ground_pivot_radius", "ground_pivot_angle", "platform_arm", "rod_length", "crank_radius", "crank_angle",
+    "crank_pivot_radius", "crank_pivot_angle", "platform_half_width", "platform_joint_angle",
+)  # fmt: skip
+MICROMETRE_2 = 1e-12
+MICRORADIAN_2 = 1e-12
+
+
+def travel(record: "Run") -> Sequence[Block]:
+    """The way of the slider over one turn, where the crank turns fully."""
+    return [
+        Drawing(
+            "Slider over one turn of the crank",
+            partial(way, record),
+            "The crank turns 140° up and 220° down or the other way round; near the bottom the slider hardly moves.",
+        )
+    ]
+
+
+def saliences(record: "Run") -> Sequence[Block]:
+    """The paper's Figs. 2 and 3, and the same over the turn."""
+    caption = "Nominal mechanism. Away from the bottom dead centre the driven chain takes over."
+    turn = Drawing("Influence and salience over one turn", partial(over_the_turn, record), caption)
+    found = record.studies.get("sensitivity")
+    if found is None or not {"slider_position", "slider_tilt"} <= set(found.derivatives):
+        return [turn]
+    caption = "As Figs. 2 and 3 of the paper; lengths in metres, angles in radians. Blue: the key errors."
+    return [Drawing("Salience of the errors", partial(salience_bars, found), caption), turn]
+
+
+def variances(record: "Run") -> Sequence[Block]:
+    """What each kind of error contributes to both variances."""
+    found = record.studies.get("sensitivity")
+    if found is None or not {"slider_position", "slider_tilt"} <= set(found.derivatives):
+        return []
+    rows: list[tuple[str | float, ...]] = []
+    for kind in (*KINDS, "platform_arm"):
+        parts = [
+            found.sd[result] ** 2 * sum(found.share[result].get(name, 0.0) for name in sources_of((kind,))) / square
+            for result, square in (("slider_position", MICROMETRE_2), ("slider_tilt", MICRORADIAN_2))
+        ]
+        place = "link" if kind in LINKS else "joint, across" if kind in POLAR_ANGLES else "joint, along"
+        rows.append((kind.replace("_", " "), "drive" if kind == "crank_angle" else place, *parts))
+    rows.sort(key=lambda row: -float(row[2]))
+    table = Table(
+        "Where the scatter comes from",
+        ("error, both sides together", "kind", "variance of position", "variance of tilt"),
+        rows,
+        ("", "", "µm²", "µrad²"),
+        "Tightening links changes the rows 'link' only.",
+    )
+    return [table]
+
+
+def tightening(record: "Run") -> Sequence[Block]:
+    """The reliabilities along the synthesis, with the paper's where it is the paper's reading."""
+    allotted = record.studies.get("allocation")
+    if allotted is None or set(allotted.start) != {"slider_position", "slider_tilt"}:
+        return []
+    printed = {}
+    if record.inputs.reading == "printed":
+        names = {"slider_position": "position_reliability", "slider_tilt": "tilt_reliability"}
+        printed = {check: (WHERE[name][1], WHERE[f"{name}_final"][1]) for check, name in names.items()}
+    caption = "Dashed: the goals. Diamonds: what the paper prints." if printed else "Dashed: the goals."
+    return [Drawing("Reliability along the synthesis", partial(along_the_synthesis, allotted, printed), caption)]
+
+
+def other_reading(record: "Run") -> Sequence[Block]:
+    """The other reading beside this one, so that nobody takes the printed reliabilities for the whole."""
+    compared = record.studies.get("readings")
+    if compared is None:
+        return []
+    words = Words(
+        "The printed reliabilities leave out the installation errors across the radius of a joint, which the paper's "
+        "Table 3 tolerates as well. The reading 'complete' has every error in force.",
+        "finding",
+    )
+    return [words, compared.table()]
+
+
+SECTIONS = [
+    Section(
+        "Mechanism and slider",
+        "slider_position", "slider_tilt", "face_height_1", "face_height_2", "permitted_tilt",
+        text="Two cranks A-B lower the platform O1 through the rods B-E. Its arm ends at B5; from there the knee "
+        "drives B5-G push the knees M-G-H outward, and the slider O2 goes down. z counts downward from O, side 1 lies "
+        "at y > 0.",
+        figure=mechanism,
+        caption="To scale. Orange: crank and rod. Blue: knee drive and knee. Dotted: the ways of crank pin and knee.",
+    ),
+    Section(
+        "Dead centres and stroke",
+        "bdc_direction", "bdc_platform_height", "bdc_position", "tdc_crank_angle", "tdc_position", "stroke",
+        "smallest_sine",
+        text="At the bottom dead centre crank and rod are stretched, at the top one they are folded. Both are those of "
+        "the nominal mechanism; deviations never move them.",
+        blocks=travel,
+    ),
+    Section(
+        "Position of the nominal mechanism",
+        *CHAIN,
+        text="One side, link by link; the other is its mirror image.",
+    ),
+    Section(
+        "Influence of the errors",
+        *(f"influence_{kind}" for kind in INFLUENCES),
+        text="Change of the slider face over one joint by each error of its side, from the loop increments. In the "
+        "slider position each counts half (the platform arm, common to both sides, fully); in the tilt an error behind the "
+        "platform counts by its share in 2 l, one of the driven chain not at all, because the platform is guided.",
+    ),
+    Section(
+        "Salience",
+        "salience_position_key", "salience_tilt_key",
+        text="The paper ranks errors by their share in the sum of all sensitivities. This adds metres per metre to "
+        "metres per radian and so depends on the units; the share of the variance below does not.",
+        blocks=saliences,
+    ),
+    Section(
+        "Reliability",
+        "variance_links", "variance_joints_along", "variance_joints_across", "variance_other", "position_sd", "tilt_sd",
+        "position_reliability", "tilt_reliability",
+        text="First order, as in the paper; the study 'reliability' below draws machines on the exact kinematics.",
+        blocks=variances,
+    ),
+    Section(
+        "Accuracy synthesis",
+        *(f"coefficient_{link}" for link in LINKS),
+        "adjustments", "position_reliability_final", "tilt_reliability_final",
+        text="Among the links at the coarsest grade, the one with the smallest coefficient is made one grade finer, "
+        "until both goals are met or every link is at the finest grade.",
+        blocks=tightening,
+    ),
+    Section("Both readings of the paper", blocks=other_reading),
+]  # fmt: skip
