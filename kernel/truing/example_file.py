@@ -13,6 +13,7 @@ from truing.errors import PluginError
 from truing.inputs_file.defaults import default_of, spread_text, toml_key, toml_value
 from truing.inputs_file.values import PURE, plain
 from truing.kernel import Offer
+from truing.setup import DEFAULT_SEED
 
 WIDTH = 100
 HEAD = {"project": "", "drawing": "", "revision": "", "prepared_by": "", "checked_by": "", "approved_by": ""}
@@ -139,7 +140,7 @@ def _studies(model: Model[Any, Any]) -> Iterator[str]:
         return
     yield from _heading("studies", "Which studies run, in this order, and where their random numbers begin.")
     yield f"# run = {toml_value([study.name for study in model.studies])}"
-    yield "# seed = 1"
+    yield f"# seed = {DEFAULT_SEED}"
     for study in model.studies:
         options = [f"# {name} = {toml_value(value)}" for name, value in _options(study).items()]
         if options:

@@ -14,6 +14,8 @@ from truing.declare.spreads import Distribution, Off, Spread, Target
 from truing.errors import UsageError
 from truing.kernel import Added, Origin
 
+DEFAULT_SEED = 0
+
 
 @dataclass(frozen=True)
 class SwitchedOn:
@@ -41,7 +43,7 @@ class Setup:
     units: Mapping[str, str] = field(default_factory=dict)
     head: Mapping[str, str] = field(default_factory=dict)
     detail: str = "normal"
-    seed: int = 1
+    seed: int = DEFAULT_SEED
     added: tuple[Added, ...] = ()
     file: str = ""
     files: Mapping[str, str] = field(default_factory=dict)

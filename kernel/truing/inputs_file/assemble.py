@@ -16,7 +16,7 @@ from truing.inputs_file.checks import renamed
 from truing.inputs_file.document import Document
 from truing.inputs_file.values import Reading
 from truing.kernel import Offer
-from truing.setup import Setup, SwitchedOn
+from truing.setup import DEFAULT_SEED, Setup, SwitchedOn
 
 Values = Mapping[tuple[str, ...], Any]
 
@@ -168,7 +168,7 @@ def make_setup(offer: Offer, reading: Reading, studies: tuple[Study, ...], file:
         units=of("units"),
         detail=head.pop("detail", "normal"),
         head=head,
-        seed=values.get(("studies", "seed"), 1),
+        seed=values.get(("studies", "seed"), DEFAULT_SEED),
         added=offer.added,
         file=file,
         files=dict(reading.files),

@@ -267,6 +267,14 @@ def _meant(key: str, rest: str) -> tuple[str, str | None] | None:
     value = value.split("#")[0].strip()
     if value[:1] in "\"'[{" or any(mark in value for mark in '"=\n\\'):
         return None
+    comma = re.fullmatch(r"([+-]?\d*),(\d+)\s*([^\d\s,.].*)?", value)
+    if comma:
+        number = f"{comma[1]}.{comma[2]}"
+        meant = f'"{number} {_short(comma[3])}"' if comma[3] else number
+        return (
+            f"{key} = {_short(value)} has a decimal comma; write {key} = {meant}",
+            f"{number} {comma[3] or ''}".strip(),
+        )
     return f'{key} = {_short(value)} needs quotation marks; write {key} = "{_short(value)}"', value
 
 
@@ -278,6 +286,8 @@ def _sentence(error: ValueError | RecursionError) -> str:
     if isinstance(error, RecursionError):
         return "is nested too deeply"
     message = _PLACE.sub("", str(error))
+    if "Unescaped '\\'" in message or "hex value" in message:
+        return "a backslash stands alone in a text; put the text in 'single' marks, or write / instead"
     if "integer string conversion" in message:
         message = "a number has too many digits"
     return f"this is no TOML: {message[:1].lower()}{message[1:]}"

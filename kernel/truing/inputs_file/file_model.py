@@ -26,6 +26,7 @@ from truing.inputs_file.schema_words import (
     unknown_schema,
 )
 from truing.inputs_file.values import Reading
+from truing.setup import DEFAULT_SEED
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -169,7 +170,7 @@ def _effect(effect: Effect[Any, Any]) -> dict[str, Entry]:
 def _studies(model: Model[Any, Any]) -> dict[str, Entry]:
     names = [study.name for study in model.studies]
     run = {"type": "array", "items": {"enum": names} if names else {}, "uniqueItems": True}
-    seed = {"type": "integer", "minimum": 0, "default": 1, "description": "Where the random numbers begin."}
+    seed = {"type": "integer", "minimum": 0, "default": DEFAULT_SEED, "description": "Where the random numbers begin."}
     entries = {
         "run": Entry(checks.of_run(names), {**run, "description": "The studies that run, in this order."}),
         "seed": Entry(checks.stored(("studies", "seed"), checks.seed), seed),

@@ -107,6 +107,8 @@ class _Words:
             ):
                 heading = f"[effects.{name}]" if other == "effects" else f"[{other}]"
                 return f"{what}; write it under {heading}"
+        if section in {"", "inputs", "conditions"} and name in self.model.result_fields:
+            return "a result; it is calculated, not stated"
         if section == "tolerances" and name in self.model.input_fields:
             names = ", ".join(self.model.tolerances) or "none"
             return f"an input without a declared tolerance (tolerances: {names})"
@@ -116,7 +118,7 @@ class _Words:
         """Return the nearest name with its symbol, note and unit, or nothing."""
         if self.near_misses > _MOST_NEAR_MISSES or len(name) > 80:
             return ""
-        meant = near_miss(name, list(known))
+        meant = near_miss(name, list(known)) or near_miss(name.lower(), list(known))
         if not meant:
             return ""
         close = meant.split("'")[1]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from truing.declare.blocks import Words
 from truing.declare.published import Finding
 from truing.published import ComparedRow
+from truing.setup import DEFAULT_SEED
 
 if TYPE_CHECKING:
     from truing.formulas import Formula
@@ -29,7 +30,7 @@ class Provenance:
     python: str
     packages: Mapping[str, str] = field(default_factory=dict)
     input_hash: str = ""
-    seed: int = 1
+    seed: int = DEFAULT_SEED
     date: str = ""
     added: Sequence[tuple[str, str, str]] = ()
     """What guests added: what, plugin, version."""
@@ -114,6 +115,8 @@ class CheckRow:
     limit: Value
     margin: str
     passed: bool
+    chance: str = ""
+    """What the value is the probability of, where it is one."""
 
 
 @dataclass(frozen=True)
@@ -207,6 +210,8 @@ class Sheet:
     chapters: tuple[Chapter, ...]
     checks: tuple[CheckRow, ...]
     inputs: tuple[InputRow, ...]
+    idle_inputs: tuple[InputRow, ...]
+    """Inputs left at a default of 0, which a sheet that is not a full one only names."""
     tolerances: tuple[ToleranceRow, ...]
     conditions: tuple[ConditionRow, ...]
     effects: tuple[EffectRow, ...]
@@ -214,5 +219,5 @@ class Sheet:
     compared_elsewhere: tuple[ComparedRow, ...]
     findings: tuple[Finding, ...]
     warnings: tuple[str, ...]
-    references: tuple[tuple[str, str], ...]
+    references: tuple[str, ...]
     provenance: Provenance
