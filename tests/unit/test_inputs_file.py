@@ -370,6 +370,8 @@ def test_a_missing_file_without_any_section(folder: Path) -> None:
         ('[inputs]\nprobe_temperature = 3', "2: 'probe_temperature' is a condition; write it under [conditions]"),
         ('[conditions]\nload = "3 N"', "2: 'load' is an input; write it under [inputs]"),
         ('[inputs]\nrunning_in = "3 um"', "2: 'running_in' is an effect; write it under [effects.running_in]"),
+        ('[inputs]\ndepth = "3 um"', "2: 'depth' is a result; it is calculated, not stated"),
+        ('[inputs]\nLOAD = "3 N"', "2: pin_wear has no input 'LOAD'. Did you mean 'load'"),
         ('[tolerances]\narea = "±1 mm^2"', "2: 'area' is an input without a declared tolerance"),
         ('[tolerances]\nload = "3 N"', "2: load: '3 N' is no tolerance; write '±0.05 mm'"),
         ('[tolerances]\nload = "±3 mm"', "2: load: '3 mm' is a length (mm), expected a force (N)"),
@@ -437,6 +439,9 @@ def test_an_impossible_covariance(matrix: str, words: str) -> None:
     ("text", "expected"),
     [
         ("[inputs\n", ["1: '[inputs' is no heading of a section; write it like [inputs]"]),
+        ("[inputs]\nrate = 0,5 # half\n", ["2: rate = 0,5 has a decimal comma; write rate = 0.5"]),
+        ("[inputs]\nload = 0,36 kN\n", ['2: load = 0,36 kN has a decimal comma; write load = "0.36 kN"']),
+        ('[sheet]\nlogo = "C:\\images\\logo.png"\n', ["2: a backslash stands alone in a text; put the text in "]),
         ("[inputs]\nload\n", ["2: 'load' is no line of TOML; write name = \"value\""]),
         ("[inputs]\nload: 3 N\n", ["2: 'load: 3 N' is no line of TOML; write name = \"value\""]),
         ("[inputs]\nload =\n", ['2: load has no value; write load = "value"']),
