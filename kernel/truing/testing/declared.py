@@ -131,11 +131,15 @@ def example_can_be_read(subject: Subject) -> None:
 
 def inputs_survive_a_file(subject: Subject) -> None:
     """Inputs written as JSON and as an inputs file are read back the same."""
+    from truing.inputs_file import setup_from_text
+    from truing.inputs_file.defaults import toml_key, toml_value
+
     for point in ({}, *subject.points(1)):
         setup = subject.at(point)
         stated = {name: value for name, value in _stated(subject, setup) if value is not None}
-        text = "[inputs]\n" + "".join(f"{name} = {_toml(value)}\n" for name, value in _through_json(stated).items())
-        from truing.inputs_file import setup_from_text
+        text = "[inputs]\n" + "".join(
+            f"{toml_key(name)} = {toml_value(value)}\n" for name, value in _through_json(stated).items()
+        )
 
         try:
             back = setup_from_text(text, subject.offer, file="inputs.toml", folder=_folder(subject))
@@ -166,12 +170,6 @@ def _stated(subject: Subject, setup: Any) -> Iterator[tuple[str, Any]]:
 def _through_json(stated: dict[str, Any]) -> dict[str, Any]:
     back: dict[str, Any] = json.loads(json.dumps(stated, allow_nan=False))
     return back
-
-
-def _toml(value: Any) -> str:
-    from truing.inputs_file.defaults import toml_value
-
-    return toml_value(value)
 
 
 def _folder(subject: Subject) -> Path:

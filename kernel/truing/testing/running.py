@@ -122,6 +122,8 @@ def _drawn_rows(job: tuple[Packed, int]) -> Rows:
 
 def _origin_of(subject: Subject) -> Origin | None:
     """Return an origin by which another process finds this very model, or None."""
+    if subject.origin is not None:
+        return subject.origin
     parts = subject.model.function.__module__.split(".")
     names = [".".join(parts[:count]) for count in range(len(parts), 0, -1)]
     modules = [module for name in names if (module := sys.modules.get(name)) and getattr(module, "__spec__", None)]
@@ -158,7 +160,8 @@ def _compare_slope(subject: Subject, setup: Setup, pair: tuple[str, str], stated
     if len(known) < 2:
         return
     nearest = min(known, key=lambda slope: abs(slope - stated))
-    unsure = min(abs(one - other) for one, other in pairwise(known))
+    height = abs(float(subject.model.read_results(evaluate(setup))[result]))
+    unsure = max(min(abs(one - other) for one, other in pairwise(known)), sys.float_info.epsilon * height / reach)
     if abs(nearest - stated) > SLOPE * abs(stated) + 3 * unsure:
         fail(
             f"{subject.model.name}: the derivative of '{result}' by '{name}' is stated as {stated:.9g}; "

@@ -29,15 +29,16 @@ def fail(sentence: str) -> NoReturn:
 
 @dataclass(frozen=True)
 class Subject:
-    """One model, with what every check asks of it."""
+    """One model, with what every check asks of it; ``origin`` tells another process where to find it."""
 
     model: Model[Any, Any]
+    origin: Origin | None = None
 
     @cached_property
     def offer(self) -> Offer:
         """The model as the command line would offer it."""
         name = self.model.name
-        return Offer(name, self.model, Origin(name, "", "", "", f"entry:{name}"))
+        return Offer(name, self.model, self.origin or Origin(name, "", "", "", f"entry:{name}"))
 
     @cached_property
     def setup(self) -> Setup:

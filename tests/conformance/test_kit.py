@@ -1,0 +1,324 @@
+"""The kit itself: for every check a model that breaks just this promise, because a check that cannot fail is none."""
+
+import itertools
+import sys
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+
+from truing import (
+    Condition,
+    Effect,
+    Float,
+    Model,
+    Price,
+    Published,
+    Require,
+    Section,
+    Tolerance,
+    Unknown,
+    Vary,
+    drawn,
+    found,
+    given,
+    hookimpl,
+    inputs,
+    normal,
+    plus_minus,
+    results,
+)
+from truing.testing import CHECKS, conformance, failures
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "data"))  # where the next import is found
+from pin_wear import PIN_WEAR
+
+
+@inputs
+class Spring:
+    """A spring with a socket for what it has lost."""
+
+    rate: Float = given(2.0, "N/mm", symbol="c", above=0)
+    travel: Float = given(10.0, "mm", symbol="s", at_least=0, at_most=50)
+    lost: Float = given(0.0, "mm", symbol="s_0")
+    coils: Float = given(6, "", whole=True, at_least=1)
+
+
+@results
+class Force:
+    """What it gives."""
+
+    free: Float = found("mm", formula="travel - lost")
+    force: Float = found("N", formula="rate * free")
+    energy: Float = found("J", formula="force * free / 2")
+
+
+def spring(it: Spring) -> Force:
+    """A linear spring."""
+    free = it.travel - it.lost
+    return Force(free=free, force=it.rate * free, energy=it.rate * free**2 / 2)
+
+
+def good(**changes: Any) -> Model[Any, Any]:
+    return Model(**{"name": "spring", "title": "A spring", "function": spring, **changes})
+
+
+def with_function(function: Callable[[Spring], Force]) -> Model[Any, Any]:
+    function.__annotations__ = {"it": Spring, "return": Force}
+    return good(function=function)
+
+
+def branching() -> Model[Any, Any]:
+    return with_result("J", "", lambda it: it.rate * it.travel**2 * (1 if np.ravel(it.travel)[0] < 10e-3 else 2))
+
+
+def with_result(unit: str, formula: str, value: Callable[[Spring], Any]) -> Model[Any, Any]:
+    made = results(type("Made", (), {"__annotations__": {"it": Float}, "it": found(unit, formula=formula)}))
+
+    def function(body: Spring) -> Any:
+        return made(it=value(body))
+
+    function.__annotations__ = {"body": Spring, "return": made}
+    return good(function=function)
+
+
+def with_input(value: Callable[[Any], Any] | None = None, **declared: Any) -> Model[Any, Any]:
+    annotation = declared.pop("annotation", Float)
+    default, unit = declared.pop("default", 1.0), declared.pop("unit", "mm")
+    taken = inputs(type("Taken", (), {"__annotations__": {"it": annotation}, "it": given(default, unit, **declared)}))
+    made = results(type("Made", (), {"__annotations__": {"out": Float}, "out": found("1")}))
+
+    def function(body: Any) -> Any:
+        return made(out=value(body.it) if value else body.it * 0 + 1)
+
+    function.__annotations__ = {"body": taken, "return": made}
+    return good(function=function)
+
+
+def writing(it: Spring) -> Force:
+    """Write to an input, and put the batch in the wrong without changing a result."""
+    answer = spring(it)
+    if isinstance(it.coils, np.ndarray):
+        np.add(it.coils, 1, out=it.coils)
+    return answer
+
+
+CALLS = itertools.count()
+
+
+def forgetful_draw(rng: np.random.Generator, rows: int) -> dict[str, Any]:
+    """Ignore the generator that is handed in."""
+    return {"travel": np.random.default_rng(next(CALLS)).normal(0, 1e-4, rows)}
+
+
+def elsewhere(it: Spring) -> Force:
+    """Give another answer in another process."""
+    import multiprocessing
+
+    answer = spring(it)
+    return answer if multiprocessing.parent_process() is None else replace(answer, energy=answer.energy * 2)
+
+
+@hookimpl
+def truing_models() -> list[Model[Any, Any]]:
+    return [ELSEWHERE]
+
+
+def slopes(it: Spring) -> dict[str, dict[str, Any]]:
+    """Right but for the third digit of one of them."""
+    return {"force": {"rate": it.travel - it.lost, "travel": 1.001 * it.rate}}
+
+
+def losing(it: Spring, *, loss: Float) -> Spring:
+    return replace(it, lost=it.lost + loss)
+
+
+def biased(it: Spring, *, loss: Float) -> Spring:
+    return replace(it, lost=it.lost + loss + 1e-6)
+
+
+def idle(it: Spring, *, loss: Float) -> Spring:
+    return it
+
+
+def shrinking(it: Spring, *, share: Float) -> Spring:
+    return replace(it, lost=it.lost * (1 - share))
+
+
+def stiffer(it: Spring, base: Force, *, extra: Float) -> Force:
+    return replace(base, force=base.force + extra)
+
+
+def warm(it: Spring, base: Force, *, slope: Float, room: Float) -> Force:
+    return replace(base, energy=base.energy + slope * (room - 290.0))
+
+
+LOSS = [Unknown("loss", 0, 1, "mm")]
+ROOM = Condition("room", "degC", reference=20)
+ELSEWHERE = replace(good(), name="elsewhere", function=elsewhere)
+BAD_EXAMPLE = Path(__file__).parents[1] / "data" / "bad_example.toml"
+
+WRONG: dict[str, tuple[Callable[[], Model[Any, Any]], str]] = {
+    "units are known": (
+        lambda: (
+            good(errors=[Effect("loss", on_inputs=losing, unknowns=[Unknown("loss", 0, 0, "mm")])])
+            if False
+            else good(errors=[Tolerance("travel", plus_minus("1 mm"), price=Price("1 / width", "mm", "yaun"))])
+        ),
+        "'yaun'",
+    ),
+    "defaults keep their bounds": (lambda: with_input(default=3.0, above=5), "it must be above 5 mm"),
+    "finite at defaults": (lambda: with_input(lambda it: 1 / (it - 1e-3)), "the defaults cannot be calculated"),
+    "goals can be read": (lambda: good(objectives=[Require("force", at_most="80 mm")]), "Require('force'): '80 mm'"),
+    "spreads resolve": (lambda: good(errors=[Tolerance("lost", normal(sd="3 %"))]), "its nominal is 0"),
+    "printed numbers are of results": (
+        lambda: good(published=[Published(name="Force", result="force", value=20.0, unit="mm")]),
+        "'Force' is printed in 'mm', 'force' is in 'N'",
+    ),
+    "sheet is in order": (
+        lambda: good(sheet=[Section("One", "force"), Section("Two", "force")]),
+        "the result 'force' stands on the sheet 2 times",
+    ),
+    "formulas have the unit": (
+        lambda: with_result("J", "rate * travel", lambda it: it.rate * it.travel),
+        "but the result is declared in 'J'",
+    ),
+    "formulas equal the function": (
+        lambda: with_result("J", "rate * travel**2 / 2", lambda it: it.rate * it.travel**2 / 2 * (1 + 1e-8)),
+        "(rate * travel**2 / 2) is not what is calculated: it gives 0.1, the function gives 0.100000001",
+    ),
+    "batch equals loop": (branching, "write np.where, not if"),
+    "inputs untouched": (lambda: with_function(writing), "the function writes to the input 'coils'"),
+    "seeds decide": (
+        lambda: good(errors=[Tolerance("travel", drawn(forgetful_draw))]),
+        "'travel' is drawn differently with the same seed",
+    ),
+    "serial equals parallel": (lambda: ELSEWHERE, "'energy' is different in another process"),
+    "derivatives are exact": (
+        lambda: good(derivatives=slopes),
+        "the derivative of 'force' by 'travel' is stated as 2002; differences of the function give 2000",
+    ),
+    "bounds are answered": (
+        lambda: with_input(lambda it: 1e-3 / it, at_least=0),
+        "with it = 0 mm, which its bounds allow",
+    ),
+    "inputs survive a file": (
+        lambda: with_input(lambda it: 1.0, default=1.5, unit=None, annotation=Literal[1.5, 2.5]),
+        "not survive a file",
+    ),
+    "example can be read": (lambda: good(example=BAD_EXAMPLE), "the example of `calc init`"),
+    "zero is the base": (
+        lambda: good(errors=[Effect("loss", on_inputs=biased, unknowns=LOSS)]),
+        "effect 'loss' changes 'free' although its amplitudes are 0 (loss = 0, SI)",
+    ),
+    "references are neutral": (
+        lambda: good(errors=[Effect("warm", on_reading=warm, needs=[ROOM], unknowns=[Unknown("slope", 0, 1, "J/K")])]),
+        "effect 'warm' changes 'energy' although 'room' stays at its reference",
+    ),
+    "effects act": (
+        lambda: good(errors=[Effect("loss", on_inputs=idle, unknowns=LOSS)]),
+        "is on and changes no result",
+    ),
+    "only last results are edited": (
+        lambda: good(errors=[Effect("stiffer", on_results=stiffer, unknowns=[Unknown("extra", 0, 1, "N")])]),
+        "edits the result 'force', on which 'energy' depends",
+    ),
+}
+
+
+FILES = {"inputs survive a file", "example can be read"}
+CONSEQUENCES = {
+    "defaults keep their bounds": FILES,  # a file is read with the same bounds
+    "spreads resolve": {"seeds decide", "serial equals parallel", *FILES},  # nothing can be drawn, no file is accepted
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_model_fails_just_this_check(name: str) -> None:
+    make, sentence = WRONG[name]
+    found = failures(make())
+    assert name in found
+    assert set(found) - {name} <= CONSEQUENCES.get(name, set()), found
+    assert sentence in found[name]
+
+
+def test_every_check_has_its_wrong_model() -> None:
+    reported = {"order of effects"}
+    assert set(WRONG) | reported == {check.name for check in CHECKS}
+    assert all(check.promise.endswith(".") for check in CHECKS)
+
+
+@pytest.mark.parametrize("model", [good(), PIN_WEAR, replace(ELSEWHERE, function=spring)], ids=lambda model: model.name)
+def test_a_right_model_passes(model: Model[Any, Any]) -> None:
+    assert failures(model) == {}
+
+
+MORE_WRONG: list[tuple[str, Callable[[], Model[Any, Any]], str]] = [
+    (
+        "units are known",
+        lambda: good(errors=[Effect("l", on_inputs=losing, unknowns=[Unknown("loss", 0, 1, "mms")])]),
+        "",
+    ),
+    ("goals can be read", lambda: good(objectives=[Vary("travel", "5 mm", "1 mm")]), "runs from 5 mm to 1 mm"),
+    ("goals can be read", lambda: good(objectives=[Vary("travel", "1 N", "5 mm")]), "Vary('travel')"),
+    (
+        "goals can be read",
+        lambda: good(objectives=[Require("force", at_most="travel")]),
+        "compares N with 'travel' in mm",
+    ),
+    ("spreads resolve", lambda: good(errors=[Tolerance("travel", plus_minus("0 mm"))]), "does not scatter"),
+    (
+        "printed numbers are of results",
+        lambda: good(published=[Published(name="F", result="force", value=1, unit="N", settings={"travle": "3 mm"})]),
+        "travle",
+    ),
+    (
+        "printed numbers are of results",
+        lambda: good(published=[Published(name="F", result="forse", value=1, unit="N")]),
+        "'forse', which is no result",
+    ),
+    ("formulas have the unit", lambda: with_result("N", "rate + travel", lambda it: it.rate), "formula of 'it'"),
+    (
+        "formulas equal the function",
+        lambda: with_result("mm", "it**2 == travel**2 * 4", lambda it: it.travel),
+        "is not what is calculated: its right side gives 0.0004, its left side gives 0.0001",
+    ),
+]
+
+
+@pytest.mark.parametrize(("name", "make", "sentence"), MORE_WRONG)
+def test_other_ways_to_be_wrong(name: str, make: Callable[[], Model[Any, Any]], sentence: str) -> None:
+    found = failures(make())
+    assert name in found, found
+    assert sentence in found[name]
+
+
+def test_effects_whose_order_matters_are_named() -> None:
+    both = [
+        Effect("losing", on_inputs=losing, unknowns=LOSS),
+        Effect("shrinking", on_inputs=shrinking, unknowns=[Unknown("share", 0, 1)]),
+    ]
+    with pytest.warns(UserWarning, match="'losing' and 'shrinking' do not commute: their order changes"):
+        assert list(failures(good(errors=both))) == ["effects act"]  # nothing to shrink while nothing is lost
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert failures(good(errors=[both[0], Effect("more", on_inputs=losing, unknowns=LOSS)])) == {}
+
+
+test_pin_wear = conformance(PIN_WEAR)
+
+
+def test_conformance_is_a_parametrised_test() -> None:
+    (mark,) = test_pin_wear.pytestmark  # type: ignore[attr-defined]
+    assert mark.name == "parametrize"
+    assert mark.args[1] == CHECKS
+    broken = conformance(WRONG["finite at defaults"][0]())
+    by_name = {check.name: check for check in CHECKS}
+    with pytest.raises(AssertionError, match="the defaults cannot be calculated"):
+        broken(by_name["finite at defaults"])
+    with pytest.raises(pytest.skip.Exception, match="the defaults cannot be calculated"):
+        broken(by_name["batch equals loop"])
