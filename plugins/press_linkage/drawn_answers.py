@@ -25,7 +25,7 @@ LETTERS = {
     "alpha_1": r"\alpha_1", "e": "e", "beta_1": r"\beta_1", "r_M": "r_M", "alpha_2": r"\alpha_2",
     "theta_11": r"\theta_1", "k": "k",
 }  # fmt: skip
-ROWS = 14  # bars that stand below one another at most
+ROWS = 14  # room for as many bars below one another, so that both panels have bars of one height
 NOTHING = 1e-12  # a share below it is rounding
 DRAWN = {
     "lower_knee_length": (BLUE, "-"), "upper_knee_length": (ORANGE, "-"), "knee_drive_length": (GREEN, "-"),
@@ -131,7 +131,7 @@ def _bars(panel: Any, shares: Mapping[str, Any], key: Sequence[str], title: str)
     panel.set_title(f"{title}: {2 * len(key)} key errors, together {whole:.4f}", fontsize=8.5, color=BLUE, loc="left")
     panel.set_xlim(0, 1.22 * max(size.values()))
     panel.tick_params(axis="y", length=0)
-    panel.set_ylim(len(ranked) - ROWS - 0.5, len(ranked) - 0.4)
+    panel.set_ylim(len(ranked) - max(ROWS, len(ranked)) - 0.5, len(ranked) - 0.4)
     panel.set_xlabel("salience of each of the two sides (k: once)")
 
 

@@ -129,8 +129,8 @@ SECTIONS = [
         "Influence of the errors",
         *(f"influence_{kind}" for kind in INFLUENCES),
         text="Change of the slider face over one joint by each error of its side, from the loop increments. In the "
-        "slider position each counts half (the platform arm, common to both sides, fully); in the tilt an error behind the "
-        "platform counts by its share in 2 l, one of the driven chain not at all, because the platform is guided.",
+        "slider position each counts half (the platform arm, common to both sides, fully); in the tilt an error behind "
+        "the platform counts by its share in 2 l, one of the driven chain not at all, because the platform is guided.",
     ),
     Section(
         "Salience",
