@@ -14,6 +14,7 @@ from truing.numbers import ABSENT, RESULT_DIGITS, STATED_DIGITS, format_differen
 from truing.report.context import CheckRow, ConditionRow, EffectRow, InputRow, ToleranceRow, UnknownRow, Value
 from truing.setup import Setup
 from truing.studies.bench import Check
+from truing.studies.checks import check_name
 
 PLACES = {"inputs": "on the inputs", "results": "on the results", "reading": "on the reading"}
 LONGEST_SERIES = 8
@@ -126,21 +127,54 @@ def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
     """Say every limit with what is left of it."""
     from truing.units import unit_text
 
-    fields = calculation.setup.model.result_fields
+    setup = calculation.setup
+    fields = setup.model.result_fields
+    requires = _requires(setup)
+    chances = {check_name(item, requires): item for item in requires if _is_chance(item)}
     for check in calculation.checks:
         item = fields.get(check.name) or fields.get(check.name.partition(" ")[0])
+        chance = chances.get(check.name)
         unit = unit_text(check.unit)
         number = format_number(check.margin, 3)
         yield CheckRow(
             name=check.name,
             symbol=item.symbol if item is not None and item.name == check.name else "",
             note=item.spec.note if item is not None else "",
-            relation=_relation(check, calculation.setup),
+            relation=_relation(check, setup),
             value=Value(format_number(check.value, RESULT_DIGITS), unit),
             limit=Value(format_number(check.limit, STATED_DIGITS), unit),
             margin=_margin(check, number),
             passed=bool(check.passed),
+            chance=_chance_words(chance, calculation) if chance is not None else "",
         )
+
+
+def _requires(setup: Setup) -> list[Require]:
+    return [item for item in setup.model.objectives if isinstance(item, Require)]
+
+
+def _is_chance(require: Require) -> bool:
+    return require.reliability is not None
+
+
+def _chance_words(require: Require, calculation: Calculation) -> str:
+    """Say what a probability is one of: the limit in numbers where it is an input or a result."""
+    setup = calculation.setup
+    limit = require.limit
+    if limit in setup.model.input_fields or limit in calculation.answers:
+        limit = _named_limit(calculation, limit)
+    words = {"at_most": "at most", "at_least": "at least", "within": "from its nominal at most"}[require.kind]
+    return f"probability of being {words} {limit}"
+
+
+def _named_limit(calculation: Calculation, name: str) -> str:
+    """Write a limit that an input or a result gives: its name, and its number where it is one."""
+    setup = calculation.setup
+    value = {**setup.model.read_inputs(setup.inputs), **calculation.answers}[name]
+    words = name.replace("_", " ")
+    if getattr(value, "ndim", 0) or value != value:
+        return words
+    return f"{words} ({' '.join(format_value(value, setup.print_unit(name))).strip()})"
 
 
 def _margin(check: Check, number: str) -> str:
@@ -155,8 +189,5 @@ def _relation(check: Check, setup: Setup) -> str:
     distance = check.limit - check.value
     if distance * check.margin:
         return "≤" if distance * check.margin > 0 else "≥"
-    requires = [item for item in setup.model.objectives if isinstance(item, Require)]
-    lower = any(
-        check.name.startswith(item.result) and (item.kind == "at_least" or item.reliability) for item in requires
-    )
-    return "≥" if lower else "≤"
+    stated = [item for item in _requires(setup) if check.name.startswith(item.result)]
+    return "≥" if any(item.kind == "at_least" or _is_chance(item) for item in stated) else "≤"

@@ -52,11 +52,12 @@ def find_browser() -> Path | None:
 
 
 def _usual_places() -> Iterator[Path]:
-    if sys.platform == "win32":
+    system: str = sys.platform
+    if system == "win32":
         for variable in ("PROGRAMFILES", "PROGRAMFILES(X86)", "LOCALAPPDATA"):
             root = os.environ.get(variable)
             yield from (Path(root, name) for name in WINDOWS if root)
-    elif sys.platform == "darwin":
+    elif system == "darwin":
         yield from (Path(name) for name in MAC)
         yield from (Path.home() / name.lstrip("/") for name in MAC)
 

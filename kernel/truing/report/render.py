@@ -13,7 +13,7 @@ from truing.formulas.write_latex import LatexWriter
 from truing.formulas.write_mathml import MathMLWriter
 from truing.numbers import pretty
 from truing.report import equations
-from truing.report.context import ComparedRow, Equation, FigureView, Provenance, Sheet, TableView, Value
+from truing.report.context import ComparedRow, Entry, Equation, FigureView, Provenance, Sheet, TableView, Value
 from truing.report.markdown import Raw, escaped
 from truing.report.sheet import make_sheet
 from truing.report.templates import template_folder
@@ -24,9 +24,10 @@ if TYPE_CHECKING:
     from truing.calculation import Calculation
     from truing.cases import CasesTable
 
-WIDE = 40.0
-"""A formula wider than this (in em) is set smaller on paper."""
-WIDER = 54.0
+COLUMN = 40.0
+"""How wide a formula may be, in em, beside the words of its result; a wider one stands below them."""
+PAGE = 52.0
+"""How wide a formula may be on A4; a wider one is set smaller there."""
 LONG = 7
 """A sheet with more chapters than this has a table of contents."""
 
@@ -116,8 +117,9 @@ def _html() -> Environment:
         digits=_paper_digits,
         margin=_margin,
         unit=_unit,
+        breakable=_breakable,
     )
-    made.tests["narrow"] = _is_narrow
+    made.tests.update(narrow=_is_narrow, wide=_is_wide)
     return made
 
 
@@ -200,21 +202,30 @@ def _is_narrow(table: TableView) -> bool:
     return len(table.columns) <= 4
 
 
-def _size(width: float) -> str:
-    return " wider" if width > WIDER else " wide" if width > WIDE else ""
+def _is_wide(entry: Entry) -> bool:
+    """Tell whether the formula of an entry needs the whole width of the page."""
+    return entry.equation is not None and max(line.width for line in _html_lines(entry.equation)) > COLUMN
+
+
+def _html_lines(equation: Equation) -> list[equations.Line]:
+    return equations.lines(MathMLWriter(), equation)
 
 
 def _equation_html(equation: Equation) -> Any:
-    """Set a formula as blocks of MathML, one a line."""
-    writer = MathMLWriter()
-    found = equations.lines(writer, equation)
+    """Set a formula as blocks of MathML, one a line; one too wide for a page is set smaller on paper."""
     alternative = escape(f"{equation.name} = {equation.formula.text}")
     blocks = []
-    for place, line in enumerate(found):
-        name = f"line{' next' if place else ''}{_size(line.width)}"
+    for place, line in enumerate(_html_lines(equation)):
+        fit = f' style="--fit: {PAGE / line.width:.3f}"' if line.width > PAGE else ""
         label = f' alttext="{alternative}"' if place == 0 else ""
-        blocks.append(f'<div class="{name}"><math display="block"{label}><mrow>{line.markup}</mrow></math></div>')
+        mathematics = f'<math display="block"{label}><mrow>{line.markup}</mrow></math>'
+        blocks.append(f'<div class="line{" next" if place else ""}"{fit}>{mathematics}</div>')
     return _markup("".join(blocks))
+
+
+def _breakable(name: str) -> Any:
+    """Let a long name break behind its underscores."""
+    return _markup(escape(printable_text(name)).replace("_", "_<wbr>"))
 
 
 def _equation_latex(equation: Equation) -> Raw:

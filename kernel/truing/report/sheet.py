@@ -11,7 +11,7 @@ from truing.numbers import STATED_DIGITS, format_number, format_value
 from truing.published import ComparedRow, in_order
 from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
 from truing.report.content import check_rows, condition_rows, effect_rows, input_rows, tolerance_rows
-from truing.report.context import Chapter, Head, Provenance, Sheet, TableView
+from truing.report.context import Chapter, Head, InputRow, Provenance, Sheet, TableView
 
 if TYPE_CHECKING:
     from truing.cases import CaseResult, CasesTable
@@ -26,6 +26,9 @@ HEAD_FIELDS = {
     "date": "Date",
 }
 SIGNATURES = {"prepared": "Prepared", "checked": "Checked", "approved": "Approved"}
+FEW = 6
+"""So many inputs at a default of 0 still have rows of their own."""
+
 NOT_SHOWN = {"title", "logo"}
 
 
@@ -42,6 +45,7 @@ def make_sheet(
     figures = Figures()
     results = list(result_chapters(Writing(calculation, detail, figures)))
     own, elsewhere = in_order(setup, verified)
+    inputs, idle = _inputs(setup, detail)
     sheet = Sheet(
         head=head_of(setup, provenance),
         detail=detail,
@@ -50,7 +54,8 @@ def make_sheet(
         summary=setup.model.summary,
         chapters=(),
         checks=tuple(check_rows(calculation)),
-        inputs=tuple(input_rows(setup)),
+        inputs=inputs,
+        idle_inputs=idle,
         tolerances=tuple(tolerance_rows(setup)),
         conditions=tuple(condition_rows(setup)),
         effects=tuple(effect_rows(setup)),
@@ -58,7 +63,7 @@ def make_sheet(
         compared_elsewhere=tuple(elsewhere),
         findings=tuple(setup.model.findings),
         warnings=tuple(_warnings(calculation, cases, figures)),
-        references=tuple(references(setup)),
+        references=tuple(references(calculation)),
         provenance=provenance,
     )
     chapters = [*_front(sheet, calculation, cases), *results, *_back(sheet)]
@@ -99,7 +104,7 @@ def verdict(sheet: Sheet, cases: CasesTable | None) -> str:
     broken = [check for check in sheet.checks if not check.passed]
     count = len(sheet.checks)
     if not broken:
-        return "The one check passes." if count == 1 else f"All {count} checks pass."
+        return {1: "The one check passes.", 2: "Both checks pass."}.get(count, f"All {count} checks pass.")
     names = ", ".join(check.note or check.name for check in broken)
     return f"{len(broken)} of {count} checks {'fails' if len(broken) == 1 else 'fail'}: {names}."
 
@@ -127,25 +132,20 @@ def _warnings(calculation: Calculation, cases: CasesTable | None, figures: Figur
     yield from figures.failures
 
 
-def references(setup: Setup) -> Iterator[tuple[str, str]]:
-    """Name the literature of the model and every source that an entry of this sheet names, with what it is used for."""
-    for text in setup.model.cites:
-        yield text, ""
-    used: dict[str, list[str]] = {}
-    specs: list[tuple[str, Any]] = [(name, item.spec) for name, item in setup.model.input_fields.items()]
-    specs += [(name, item.spec) for name, item in setup.model.result_fields.items()]
-    for name, spec in specs:
-        _note(used, getattr(spec, "source", ""), name)
-    for source in setup.model.errors:
-        _note(used, source.source, source.name)
-    for text, names in used.items():
-        few = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
-        yield text, few
+def references(calculation: Calculation) -> Iterator[str]:
+    """Name the literature of the model, then that of the studies that ran."""
+    outcomes = calculation.outcomes.values()
+    texts = [*calculation.setup.model.cites, *(text for outcome in outcomes for text in getattr(outcome, "cites", ()))]
+    yield from dict.fromkeys(texts)
 
 
-def _note(used: dict[str, list[str]], source: str, name: str) -> None:
-    if source:
-        used.setdefault(source, []).append(name.replace("_", " "))
+def _inputs(setup: Setup, detail: str) -> tuple[tuple[InputRow, ...], tuple[InputRow, ...]]:
+    """Part the inputs into rows and, where there are many, those left at a default of 0 without a source."""
+    rows = tuple(input_rows(setup))
+    idle = tuple(row for row in rows if not row.stated and row.value.text == "0" and not row.source)
+    if detail == "full" or len(idle) <= FEW:
+        return rows, ()
+    return tuple(row for row in rows if row not in idle), idle
 
 
 def _front(sheet: Sheet, calculation: Calculation, cases: CasesTable | None) -> Iterator[Chapter]:
