@@ -63,8 +63,8 @@ def form(machines: Machines, demand: Demand, nominal: Mapping[str, float]) -> Fo
     import numpy as np
     from scipy.special import ndtr
 
-    if np.ndim(demand.low) or np.ndim(demand.high):
-        return Form({}, None, "not done: the limit runs along an axis")
+    if machines.setup.model.own_result_fields[demand.result].along:
+        return Form({}, None, "not done: the result runs along an axis")
     if not machines.scatter.dimension:
         return Form({}, None, "not done: nothing scatters")
     sides: dict[str, Side] = {}
