@@ -6,15 +6,11 @@ import hashlib
 import json
 import math
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given as drawn
-from hypothesis import settings as drawing
-from hypothesis import strategies as st
 from sample_models import PIN_OFFER, PIN_WEAR, STAGE_OFFER, Census
 
 from truing.declare.spreads import Band, Grade, Off, Zone
@@ -432,175 +428,9 @@ def test_an_impossible_covariance(matrix: str, words: str) -> None:
     assert words in found
 
 
-# Bad input: the text itself
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("[inputs\n", ["1: '[inputs' is no heading of a section; write it like [inputs]"]),
-        ("[inputs]\nrate = 0,5 # half\n", ["2: rate = 0,5 has a decimal comma; write rate = 0.5"]),
-        ("[inputs]\nload = 0,36 kN\n", ['2: load = 0,36 kN has a decimal comma; write load = "0.36 kN"']),
-        ('[sheet]\nlogo = "C:\\images\\logo.png"\n', ["2: a backslash stands alone in a text; put the text in "]),
-        ("[inputs]\nload\n", ["2: 'load' is no line of TOML; write name = \"value\""]),
-        ("[inputs]\nload: 3 N\n", ["2: 'load: 3 N' is no line of TOML; write name = \"value\""]),
-        ("[inputs]\nload =\n", ['2: load has no value; write load = "value"']),
-        ('[inputs]\nload = "3 N\n', ['2: the closing quotation mark is missing; write load = "3 N"']),
-        (
-            '[inputs]\nload = "3 N"\nload = "4 N"\n',
-            ["3: 'load' is given twice (first in line 2); write it once"],
-        ),
-        ("[inputs]\n[units]\n[inputs]\n", ["3: the section [inputs] occurs twice (first in line 1); write it once"]),
-        (
-            '[inputs]\nload = 10 N # heavy\nspeed = 5 mms\nrate = "x"\n',
-            [
-                '2: load = 10 N needs quotation marks; write load = "10 N"',
-                '3: speed = 5 mms needs quotation marks; write speed = "5 mms"',
-                "3: speed: unknown unit 'mms'; did you mean 'mm'?",
-                "4: rate: 'x' does not begin with a number; write it like '5 mm'",
-            ],
-        ),
-        ("[inputs]\nrate = [1,\nload = \"1 m\"\n", [
-            "2: this is no TOML: ", "3: load: '1 m' is a length (m), expected a force (N)",
-        ]),
-        ("a = " + "[" * 3000 + "\n", ["1: is nested too deeply"]),
-        (".".join("a" * 60) + " = 1\n", ["1: holds a name with more than 40 dots"]),
-        ("\x00", ["1: "]),
-    ],
-)  # fmt: skip
-def test_a_text_that_is_no_toml(text: str, expected: list[str]) -> None:
-    found = faults(text)
-    assert len(found) == len(expected)
-    for sentence, beginning in zip(found, expected, strict=True):
-        assert sentence.startswith(f"wear.toml:{beginning}")
-
-
 def test_a_broken_line_does_not_hide_that_a_file_is_named(folder: Path) -> None:
     """An input whose line cannot be read is not called missing as well."""
     assert [text.split(":")[1] for text in stage_faults("[inputs]\nsurface = {file = \n", folder)] == ["2"]
-
-
-def test_lines_are_right_behind_long_texts_and_lists() -> None:
-    text = (
-        '[sheet]\nproject = """\na = 1\n[inputs]\n"""\n[studies]\nrun = [\n  "census", # one\n]\n[inputs]\nlaod = 1\n'
-    )
-    assert faults(text)[0].startswith("wear.toml:11: pin_wear has no input 'laod'")
-
-
-@pytest.mark.parametrize(
-    ("name", "content", "sentence"),
-    [
-        ("empty.toml", b"", "is empty; `calc init pin_wear` writes an example"),
-        ("blank.toml", b"\n \n", "is empty; `calc init pin_wear` writes an example"),
-        ("binary.toml", b"\x7fELF\x00\x01", "is a binary file; inputs are a TOML text in UTF-8"),
-        ("book.xlsx", b"PK\x03\x04...", "is a spreadsheet; inputs are a TOML text file; save tables as CSV UTF-8"),
-        ("book.toml", b"PK\x03\x04...", "is a spreadsheet; inputs are a TOML text file; save tables as CSV UTF-8"),
-        ("old.xls", b"\xd0\xcf\x11\xe0", "is a spreadsheet; inputs are a TOML text file; save tables as CSV UTF-8"),
-        ("wide.toml", "[inputs]".encode("utf-16"), "is text in UTF-16; save it as UTF-8"),
-        ("large.toml", b"#" * 2_000_001, "is too large: 2.0 MB, at most 2 MB are read"),
-    ],
-)
-def test_a_file_that_is_no_inputs_file(tmp_path: Path, name: str, content: bytes, sentence: str) -> None:
-    path = tmp_path / name
-    path.write_bytes(content)
-    with pytest.raises(InputError) as caught:
-        read_setup(path, PIN_OFFER)
-    assert str(caught.value) == f"{path}: {sentence}"
-
-
-def test_latin_1_is_told_with_its_line(tmp_path: Path) -> None:
-    path = tmp_path / "latin.toml"
-    path.write_bytes("[sheet]\nproject = 'Prüfstand'\n".encode("latin-1"))
-    with pytest.raises(InputError) as caught:
-        read_setup(path, PIN_OFFER)
-    assert str(caught.value) == f"{path}:2: is not UTF-8 text; save it as UTF-8"
-
-
-def test_a_folder_and_a_missing_file(tmp_path: Path) -> None:
-    (tmp_path / "wear.toml").write_text("")
-    with pytest.raises(InputError, match="is a folder; name a file"):
-        read_setup(tmp_path, PIN_OFFER)
-    with pytest.raises(InputError, match=r"no such file\. Did you mean 'wear.toml'\?"):
-        read_setup(tmp_path / "waer.toml", PIN_OFFER)
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "a = [\n" * 200_000,
-        "[[a]]\n" * 200_000,
-        "[" * 1_900_000,
-        "x" * 1_900_000,
-        "x = 1\n" * 200_000,
-        "[inputs]\n" + "".join(f"load{i} = 1\n" for i in range(100_000)),
-        "[inputs]\n" + '"' * 1_900_000,
-        "a = '''" * 200_000,
-        'a = """\\' * 200_000,
-        "a = {b = " * 100_000,
-        "a." * 900_000 + "b = 1",
-        "a = {" + "b." * 900_000 + "c = 1}",
-        '"a".' * 400_000 + "b = 1",
-        '[inputs]\nload = "' + "9" * 1_900_000 + ' N"',
-        '[inputs]\nload = "1 ' + "m*" * 900_000 + 'N"',
-        "[inputs]\n" + "é" * 900_000 + " = 3",
-    ],
-    ids=range(16),
-)
-def test_a_hostile_file_is_answered_in_bounded_time(text: str) -> None:
-    begin = time.perf_counter()
-    found = faults(text)
-    assert time.perf_counter() - begin < 20
-    assert len(found) <= 201
-    assert all(len(sentence) < 500 for sentence in found)
-
-
-LINES = st.one_of(
-    st.text(max_size=40),
-    st.sampled_from(["[inputs]", "[tolerances]", "[effects.warm_probe]", "[studies]", "[studies.census]", "[units]"]),
-    st.builds(
-        "{} = {}".format,
-        st.sampled_from(["load", "rate", "slope", "run", "seed", "draws", "depth", "plugin", "probe_temperature"]),
-        st.one_of(
-            st.text(max_size=20),
-            st.builds('"{}"'.format, st.text(max_size=20)),
-            st.sampled_from(
-                ['"3 N"', '"±1 N"', "[1]", "{a = 1}", "true", "1e999", "nan", "2001-01-01", '"IT7"', "'x'"]
-            ),
-        ),
-    ),
-)
-
-
-def said(read: Callable[[], object]) -> list[str]:
-    """Return what is wrong, a line each; nothing where all is right. Anything but an InputError fails the test."""
-    try:
-        read()
-    except InputError as error:
-        return [str(fault) for fault in error.faults] or ["an InputError without faults"]
-    return []
-
-
-@drawing(max_examples=400, deadline=2000)
-@drawn(st.one_of(st.text(), st.lists(LINES, max_size=12).map("\n".join)))
-def test_any_text_is_a_setup_or_an_input_error(text: str) -> None:
-    assert all(sentence.startswith("wear.toml:") and "\n" not in sentence for sentence in said(lambda: pin(text)))
-
-
-@drawing(max_examples=100, deadline=2000)
-@drawn(st.binary(max_size=200))
-def test_any_bytes_are_a_setup_or_an_input_error(tmp_path_factory: pytest.TempPathFactory, content: bytes) -> None:
-    path = tmp_path_factory.getbasetemp() / "any.toml"
-    path.write_bytes(content)
-    assert all(sentence.startswith(f"{path}:") for sentence in said(lambda: read_setup(path, PIN_OFFER)))
-
-
-@drawing(max_examples=200, deadline=2000)
-@drawn(st.text(max_size=30))
-def test_any_override_is_a_setup_or_an_input_error(text: str) -> None:
-    names = ("load", text, "studies.census.draws", "tolerances.load", "effects.warm_probe.slope", "effects")
-    for name in names:
-        found = said(lambda name=name: setup_from_settings(PIN_OFFER, {name: text}))
-        assert all(sentence.startswith("settings") for sentence in found)
 
 
 @pytest.mark.parametrize("number", [0.1, 1 / 3, 1e-300, 6.02214076e23, 123456.789012345])
