@@ -1,0 +1,243 @@
+"""What the pages show is run: files they ask the reader to write, and commands with the output printed below them.
+
+Marks stand in an HTML comment right above a fenced block:
+
+- ``<!-- file: NAME -->``: the block is this file, whole.
+- ``<!-- changes: NAME -->``: its definitions replace those of the same name in NAME; new ones go above the last.
+- ``<!-- exit: 2 -->``: the last command of the block ends with this code (0 without the mark).
+- ``<!-- not run -->``: the block is not run.
+
+In a ``console`` block every line that begins with ``$`` is a command; what follows is compared with what it prints.
+A line ``...`` stands for any lines, ``...`` within a line for any text. ``python tests/end_to_end/shown_in_docs.py
+PAGE...`` writes the present output into pages whose blocks do not match.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+EXAMPLES = ROOT / "docs" / "examples"
+_FENCE = re.compile(r"(?:^<!-- (?P<mark>[^\n]*?) -->\n)?^```(?P<kind>\w*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Block:
+    """One fenced block of a page: its language, what is in it, its mark, and where its text stands in the page."""
+
+    kind: str
+    text: str
+    mark: str
+    line: int
+    start: int
+
+    def marked(self, word: str) -> str:
+        """Return what the mark says of a word, or nothing."""
+        name, _, value = self.mark.partition(":")
+        return value.strip() if name == word else ""
+
+
+@dataclass(frozen=True)
+class Command:
+    """One command of a console block, and the lines shown below it."""
+
+    words: str
+    shown: str
+
+
+@dataclass
+class Desk:
+    """Where a reader works: a folder, and a place for what is installed."""
+
+    folder: Path
+    site: Path
+    faults: list[str] = field(default_factory=list)
+
+    def run(self, words: str) -> tuple[str, int]:
+        """Run one command as the reader would; return what a terminal shows, and the exit code."""
+        parts = shlex.split(words)
+        if parts[0] == "cd":
+            self.folder = (self.folder / parts[1]).resolve()
+            return "", 0
+        ended = subprocess.run(
+            self._spelled_out(parts), cwd=self.folder, env=self._environment(), stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT, text=True, encoding="utf-8", timeout=300, check=False,
+        )  # fmt: skip
+        quiet = "" if parts[0] == "pip" else ended.stdout
+        return quiet if ended.returncode == 0 or parts[0] != "pip" else ended.stdout, ended.returncode
+
+    def _spelled_out(self, parts: list[str]) -> list[str]:
+        """Use this Python for ``calc``, ``python`` and ``pip``; what is installed goes to a folder of its own."""
+        if parts[0] == "calc":
+            return [sys.executable, "-m", "truing", *parts[1:]]
+        if parts[0] == "python":
+            return [sys.executable, *parts[1:]]
+        if parts[:2] == ["pip", "install"]:
+            what = [part for part in parts[2:] if part != "-e"]
+            offline = ["--no-deps", "--no-build-isolation", "--no-index", "--quiet", "--target", str(self.site)]
+            return [sys.executable, "-m", "pip", "install", *offline, *what]
+        raise AssertionError(f"the pages run calc, python, pip install and cd; not {parts[0]}")
+
+    def _environment(self) -> dict[str, str]:
+        own = {"PYTHONUNBUFFERED": "1", "PYTHONIOENCODING": "utf-8", "PYTHONPATH": str(self.site), "COLUMNS": "80"}
+        kept = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "COV"))}
+        return {**kept, **own, "TERM": "dumb", "NO_COLOR": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+
+
+def desk_in(folder: Path) -> Desk:
+    """Prepare an empty folder with the examples that the manual ships."""
+    work = folder / "work"
+    work.mkdir(parents=True)
+    for file in EXAMPLES.glob("*.*"):
+        shutil.copy(file, work / file.name)
+    return Desk(work, folder / "site")
+
+
+def blocks(page: Path) -> Iterator[Block]:
+    """Give the fenced blocks of a page in order."""
+    text = page.read_text(encoding="utf-8")
+    for found in _FENCE.finditer(text):
+        line = text.count("\n", 0, found.start("text"))
+        yield Block(found["kind"], found["text"], found["mark"] or "", line, found.start("text"))
+
+
+def commands(block: Block) -> Iterator[Command]:
+    """Give the commands of a console block."""
+    for part in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:
+        words, _, shown = part.partition("\n")
+        yield Command(words.strip(), shown)
+
+
+def check_page(page: Path, desk: Desk) -> list[str]:
+    """Do what a page asks and return, by line, where it does not do what the page says."""
+    for block in blocks(page):
+        if block.mark == "not run":
+            continue
+        try:
+            _do(block, desk)
+        except AssertionError as fault:
+            desk.faults.append(f"{page.name}:{block.line}: {fault}")
+    return desk.faults
+
+
+def _do(block: Block, desk: Desk) -> None:
+    if block.kind == "console":
+        for place, (command, end) in enumerate(_with_ends(block), start=1):
+            said, code = desk.run(command.words)
+            assert code == end, f"command {place}, '{command.words}', ended with {code}, not {end}:\n{said}"
+            assert matches(command.shown, said), f"'{command.words}' prints\n{said}\nbut the page shows\n{command.shown}"
+    elif block.marked("file"):
+        file = desk.folder / block.marked("file")
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(block.text, encoding="utf-8")
+    elif block.marked("changes"):
+        file = desk.folder / block.marked("changes")
+        file.write_text(grown(file.read_text(encoding="utf-8"), block.text), encoding="utf-8")
+
+
+def _with_ends(block: Block) -> list[tuple[Command, int]]:
+    """Return the commands with the exit code each must have."""
+    found = list(commands(block))
+    last = int(block.marked("exit") or 0)
+    return [(command, last if command is found[-1] else 0) for command in found]
+
+
+def matches(shown: str, said: str) -> bool:
+    """Compare what a page shows with what a command says; ``...`` stands for anything."""
+    lines = [line.rstrip() for line in shown.strip("\n").splitlines()]
+    pattern = ""
+    for line in lines:
+        if line.strip() == "...":
+            pattern += r"(?:[^\n]*\n)*?"
+        else:
+            pattern += r"[^\n]*".join(re.escape(part) for part in line.split("...")) + r"\n"
+    plain = "".join(line.rstrip() + "\n" for line in said.strip("\n").splitlines())
+    return re.fullmatch(pattern, plain) is not None
+
+
+def grown(before: str, step: str) -> str:
+    """Put the definitions of a step into a file: in the place of those they replace, else above the model.
+
+    What belongs together by name: classes and functions, what is assigned to a name, imports from one module. New
+    imports go below the last one.
+    """
+    old, new = _pieces(before), _pieces(step)
+    kept = {name: new.get(name, text) for name, text in old.items()}
+    fresh = {name: text for name, text in new.items() if name not in old}
+    imports = {name: text for name, text in fresh.items() if name.startswith("import ")}
+    others = {name: text for name, text in fresh.items() if name not in imports}
+    ordered: list[str] = []
+    last_import = [name for name in kept if name.startswith(("import ", "'''"))][-1]
+    model = next(name for name in kept if name.isupper() and "Model(" in kept[name])
+    for name, text in kept.items():
+        ordered += list(others.values()) if name == model else []
+        ordered.append(text)
+        ordered += list(imports.values()) if name == last_import else []
+    return "\n\n".join(ordered) + "\n"
+
+
+def _pieces(text: str) -> dict[str, str]:
+    """Take a file apart into its statements by name."""
+    found: dict[str, str] = {}
+    lines = text.splitlines()
+    for statement in ast.parse(text).body:
+        decorators = getattr(statement, "decorator_list", [])
+        first = min([statement.lineno, *(item.lineno for item in decorators)])
+        found[_name(statement)] = "\n".join(lines[first - 1 : statement.end_lineno])
+    return found
+
+
+def _name(statement: ast.stmt) -> str:
+    if isinstance(statement, ast.ImportFrom):
+        return f"import {statement.module}"
+    if isinstance(statement, ast.Import):
+        return f"import {statement.names[0].name}"
+    if isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Name):
+        return statement.targets[0].id
+    if isinstance(statement, (ast.FunctionDef, ast.ClassDef)):
+        return statement.name
+    if isinstance(statement, ast.If):
+        return "import for the type checker"
+    assert isinstance(statement, ast.Expr), f"line {statement.lineno}: a step holds imports and definitions"
+    return "'''"
+
+
+def rewrite(page: Path, desk: Desk) -> int:
+    """Write the present output into a page where its blocks do not match; return how many commands changed."""
+    text, changed, moved = page.read_text(encoding="utf-8"), 0, 0
+    for block in blocks(page):
+        if block.mark == "not run" or block.kind != "console":
+            if block.mark != "not run":
+                _do(block, desk)
+            continue
+        shown = ""
+        for command, end in _with_ends(block):
+            said, code = desk.run(command.words)
+            if code != end:
+                print(f"{page}:{block.line}: '{command.words}' ended with {code}, not {end}")
+            good = code != end or matches(command.shown, said)
+            changed += not good
+            plain = "".join(line.rstrip() + "\n" for line in said.strip("\n").splitlines())
+            shown += f"$ {command.words}\n" + (command.shown if good else plain)
+        start = block.start + moved
+        text = text[:start] + shown + text[start + len(block.text) :]
+        moved += len(shown) - len(block.text)
+    page.write_text(text, encoding="utf-8")
+    return changed
+
+
+if __name__ == "__main__":
+    import tempfile
+
+    for argument in sys.argv[1:]:
+        with tempfile.TemporaryDirectory() as name:
+            print(argument, rewrite(Path(argument).resolve(), desk_in(Path(name))))
