@@ -7,8 +7,8 @@ import numpy as np
 from press_linkage.closure import cycle_demands, smallest_sine
 from press_linkage.increments import ARM, PASSIVE, POLAR_ANGLES, salience, side_sensitivities, source
 from press_linkage.influence import Influence
-from press_linkage.kinematics import Float, Geometry, Half, crank_at, solve, top_crank_angle
-from press_linkage.mechanism import geometry_of, position_of
+from press_linkage.kinematics import Geometry, Half, crank_at, solve, top_crank_angle
+from press_linkage.mechanism import geometry_of, position_of, without_rounding
 from press_linkage.quantities import Chances, Cycle, Press, Synthesis
 from truing import Allotted, Odds, Sensitivities, Swept, feasible
 
@@ -21,7 +21,6 @@ LINKS = (
 )  # fmt: skip
 ALONG = ("slider_half_width", "crank_pivot_radius", "platform_half_width", "ground_pivot_radius")
 VARIANCES = ("variance_links", "variance_joints_along", "variance_joints_across", "variance_other")
-ROUNDING = 1e-15
 SWING = "; if the crank only swings, leave the sweep out of the studies"
 
 
@@ -64,18 +63,13 @@ def influence(found: Sensitivities) -> Influence:
         platform_height=float(nominal.platform_height),
         nominal_position=float(nominal.slider_position),
         slider_shift=float(shift),
-        **{f"influence_{kind}": _without_rounding(value) for kind, value in by_kind.items()},
+        **{f"influence_{kind}": float(without_rounding(value)) for kind, value in by_kind.items()},
         salience_position_key=_key_salience(found, "slider_position", KEY_POSITION, None),
         salience_tilt_key=_key_salience(found, "slider_tilt", KEY_TILT, PASSIVE),
         **_variances(found),
         position_sd=found.sd.get("slider_position", nan),
         tilt_sd=found.sd.get("slider_tilt", nan),
     )
-
-
-def _without_rounding(value: Float) -> float:
-    """A number, 0 where nothing but rounding is left of it (metres and radians of order 1)."""
-    return 0.0 if abs(float(value)) < ROUNDING else float(value)
 
 
 def _chain(geometry: Geometry, half: Half, crank_angle: float) -> dict[str, float]:

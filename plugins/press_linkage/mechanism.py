@@ -3,12 +3,15 @@
 from collections.abc import Mapping
 from math import radians
 
+import numpy as np
+
 from press_linkage.closure import demands
 from press_linkage.increments import derivatives
 from press_linkage.kinematics import Deviations, Geometry, Position, solve
 from press_linkage.quantities import Press, Side, Slider
 from truing import Float, feasible
 
+ROUNDING = 1e-15
 TILT_LIMITS = {"complete": radians(0.0013), "printed": radians(0.001324)}
 
 
@@ -87,4 +90,13 @@ def press_linkage(press: Press) -> Slider:
 def exact_derivatives(press: Press) -> Mapping[str, Mapping[str, Float]]:
     """Exact derivatives of position and tilt by all 29 sources, from the loop increments in closed form."""
     found = derivatives(geometry_of(press), position_of(press))
-    return {"slider_position": found.position, "slider_tilt": found.tilt}
+    return {
+        result: {name: without_rounding(value) for name, value in by_source.items()}
+        for result, by_source in (("slider_position", found.position), ("slider_tilt", found.tilt))
+    }
+
+
+def without_rounding(value: Float) -> Float:
+    """Sensitivities in m and rad, 0 where nothing but rounding is left (the crank angle at its dead centre)."""
+    kept = np.where(np.abs(value) < ROUNDING, 0.0, value)
+    return kept if kept.ndim else float(kept)

@@ -27,8 +27,8 @@ from truing import (
 )
 
 LITERATURE = [
-    "The paper: 騫華楠, 陶璟, 于隨然, error analysis and accuracy synthesis of a parallel-driven multi-link servo "
-    "press, School of Mechanical Engineering, Shanghai Jiao Tong University.",
+    "The paper: Qian Huanan, Tao Jing, Yu Suiran (騫華楠, 陶璟, 于隨然), error analysis and accuracy synthesis of a "
+    "parallel-driven multi-link servo press, School of Mechanical Engineering, Shanghai Jiao Tong University.",
     "K. W. Chase, S. P. Magleby, J. Gao, Tolerance analysis of 2-D and 3-D mechanical assemblies with small kinematic "
     "adjustments, ADCATS Report 97-5, Brigham Young University, 1997.",
     "K. W. Chase, A. R. Parkinson, A survey of research in the application of tolerance analysis to the design of "

@@ -9,7 +9,7 @@ MISPRINT = (
     "chosen so that the paper's printed results follow; the printed 0.117 rad does not describe the mechanism that the "
     "paper computed"
 )
-ORDER = "mean of (largest influence / its influence) and (tolerance of that link / its tolerance), Table 4"
+ORDER = "Table 4; the formula is reconstructed from its numbers"
 LARGEST = 30.0  # m: no press is larger, so a length above it was meant in another unit
 FARTHEST = 10.0  # mm and mrad: beyond it a part is not off its size, it is another part
 
@@ -172,9 +172,9 @@ class Synthesis:
     tilt_reliability_final: Float = found(
         "", symbol="R_theta'", note="tilt reliability with the tightened links", method="first order, as above"
     )
-    coefficient_lower_knee_length: Float = found("", symbol="r_lh", note="lower knee link", method=ORDER)
-    coefficient_upper_knee_length: Float = found("", symbol="r_lm", note="upper knee link", method=ORDER)
-    coefficient_knee_drive_length: Float = found("", symbol="r_lg", note="knee drive", method=ORDER)
-    coefficient_rod_length: Float = found("", symbol="r_kR", note="connecting rod", method=ORDER)
-    coefficient_crank_radius: Float = found("", symbol="r_a", note="crank", method=ORDER)
-    coefficient_platform_arm: Float = found("", symbol="r_k", note="platform arm", method=ORDER)
+    coefficient_lower_knee_length: Float = found("", symbol="r_lh", note="lower knee link", source=ORDER)
+    coefficient_upper_knee_length: Float = found("", symbol="r_lm", note="upper knee link", source=ORDER)
+    coefficient_knee_drive_length: Float = found("", symbol="r_lg", note="knee drive", source=ORDER)
+    coefficient_rod_length: Float = found("", symbol="r_kR", note="connecting rod", source=ORDER)
+    coefficient_crank_radius: Float = found("", symbol="r_a", note="crank", source=ORDER)
+    coefficient_platform_arm: Float = found("", symbol="r_k", note="platform arm", source=ORDER)

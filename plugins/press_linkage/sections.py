@@ -66,6 +66,7 @@ def variances(record: "Run") -> Sequence[Block]:
         place = "link" if kind in LINKS else "joint, across" if kind in POLAR_ANGLES else "joint, along"
         rows.append((kind.replace("_", " "), "drive" if kind == "crank_angle" else place, *parts))
     rows.sort(key=lambda row: -float(row[2]))
+    rows.append(("all together", "", *(sum(float(row[column]) for row in rows) for column in (2, 3))))
     table = Table(
         "Where the scatter comes from",
         ("error, both sides together", "kind", "variance of position", "variance of tilt"),
@@ -150,8 +151,9 @@ SECTIONS = [
         "Accuracy synthesis",
         *(f"coefficient_{link}" for link in LINKS),
         "adjustments", "position_reliability_final", "tilt_reliability_final",
-        text="Among the links at the coarsest grade, the one with the smallest coefficient is made one grade finer, "
-        "until both goals are met or every link is at the finest grade.",
+        text="The coefficient of a link is half of (influence of the most influential link / its own) plus half of "
+        "(tolerance of that link / its own). Among the links at the coarsest grade, the one with the smallest "
+        "coefficient is made one grade finer, until both goals are met or every link is at the finest grade.",
         blocks=tightening,
     ),
     Section("Both readings of the paper", blocks=other_reading),
