@@ -9,6 +9,7 @@ from typing import Any
 ABSENT = "–"
 """What stands where there is no number: an input that was not given, a search that did not arrive."""
 
+CLOSE = frozenset({"°", "′", "″", "'"})
 RESULT_DIGITS = 5
 STATED_DIGITS = 10
 _NUMBER = re.compile(r"(?P<minus>-?)(?P<digits>\d[\d.]*)(?:e(?P<sign>[+-]?)0*(?P<exponent>\d+))?", re.ASCII)
@@ -63,6 +64,13 @@ def format_difference(si: float, unit: str, digits: int = RESULT_DIGITS) -> tupl
 
     is_level = unit in {"degC", "degF", "°C", "°F"}
     return format_number(si if is_level else si / unit_factor(unit), digits), unit_text("K" if is_level else unit)
+
+
+def with_unit(number: str, unit: str) -> str:
+    """Join a number and its unit; degrees, minutes and seconds of arc follow closely."""
+    if not unit:
+        return number
+    return f"{number}{'' if unit in CLOSE else ' '}{unit}"
 
 
 def _plain(value: Any) -> Any:

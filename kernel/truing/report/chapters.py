@@ -104,7 +104,7 @@ def _studies(writing: Writing) -> Iterator[Chapter]:
     for name, outcome in writing.calculation.outcomes.items():
         found = views(writing, outcome.blocks())
         if found:
-            yield Chapter("", "", name.replace("_", " ").capitalize(), "study", blocks=tuple(found))
+            yield Chapter("", "", f"Study: {name.replace('_', ' ')}", "study", blocks=tuple(found))
 
 
 def _is_scalar(value: Any) -> bool:

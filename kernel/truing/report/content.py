@@ -10,8 +10,26 @@ from truing.declare.fields import Given, InputField
 from truing.declare.goals import Require
 from truing.declare.sources import Tolerance
 from truing.declare.spreads import ByChoice, Distribution, Spread
-from truing.numbers import ABSENT, RESULT_DIGITS, STATED_DIGITS, format_difference, format_number, format_value
-from truing.report.context import CheckRow, ConditionRow, EffectRow, InputRow, ToleranceRow, UnknownRow, Value
+from truing.evaluate import acting_inputs
+from truing.numbers import (
+    ABSENT,
+    RESULT_DIGITS,
+    STATED_DIGITS,
+    format_difference,
+    format_number,
+    format_value,
+    with_unit,
+)
+from truing.report.context import (
+    ChangedInput,
+    CheckRow,
+    ConditionRow,
+    EffectRow,
+    InputRow,
+    ToleranceRow,
+    UnknownRow,
+    Value,
+)
 from truing.setup import Setup
 from truing.studies.bench import Check
 from truing.studies.checks import check_name
@@ -123,6 +141,19 @@ def effect_rows(setup: Setup) -> Iterator[EffectRow]:
         yield EffectRow(effect.name, PLACES[effect.place], tuple(unknowns), why, effect.source)
 
 
+def changed_inputs(setup: Setup) -> Iterator[ChangedInput]:
+    """Say which inputs the effects that are on change, and to what."""
+    if not any(item.effect.place == "inputs" for item in setup.effects):
+        return
+    stated, acting = (setup.model.read_inputs(inputs) for inputs in (setup.inputs, acting_inputs(setup)))
+    for name, item in setup.model.input_fields.items():
+        before, after = stated[name], acting[name]
+        if item.varies and before != after and not (before != before and after != after):
+            unit = setup.print_unit(name)
+            values = (Value(*format_value(value, unit, digits)) for value, digits in ((before, 10), (after, 7)))
+            yield ChangedInput(name, item.symbol, *values)
+
+
 def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
     """Say every limit with what is left of it."""
     from truing.units import unit_text
@@ -163,8 +194,8 @@ def _chance_words(require: Require, calculation: Calculation) -> str:
     limit = require.limit
     if limit in setup.model.input_fields or limit in calculation.answers:
         limit = _named_limit(calculation, limit)
-    words = {"at_most": "at most", "at_least": "at least", "within": "from its nominal at most"}[require.kind]
-    return f"probability of being {words} {limit}"
+    words = {"at_most": "at or below {}", "at_least": "at or above {}", "within": "within {} of its nominal"}
+    return f"probability of staying {words[require.kind].format(limit)}"
 
 
 def _named_limit(calculation: Calculation, name: str) -> str:
@@ -174,7 +205,7 @@ def _named_limit(calculation: Calculation, name: str) -> str:
     words = name.replace("_", " ")
     if getattr(value, "ndim", 0) or value != value:
         return words
-    return f"{words} ({' '.join(format_value(value, setup.print_unit(name))).strip()})"
+    return f"{words} ({with_unit(*format_value(value, setup.print_unit(name)))})"
 
 
 def _margin(check: Check, number: str) -> str:

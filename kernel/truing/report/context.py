@@ -104,6 +104,16 @@ class EffectRow:
 
 
 @dataclass(frozen=True)
+class ChangedInput:
+    """An input that effects change before the calculation sees it."""
+
+    name: str
+    symbol: str
+    stated: Value
+    acting: Value
+
+
+@dataclass(frozen=True)
 class CheckRow:
     """A limit and how far it is kept."""
 
@@ -129,6 +139,8 @@ class Equation:
     symbols: Mapping[str, str]
     numbers: Mapping[str, tuple[str, str]] | None
     results: tuple[Value, ...]
+    departs: bool = False
+    """Whether the calculation's own answer is another one than the formula's: an effect on the results is on."""
 
 
 @dataclass(frozen=True)
@@ -215,6 +227,7 @@ class Sheet:
     tolerances: tuple[ToleranceRow, ...]
     conditions: tuple[ConditionRow, ...]
     effects: tuple[EffectRow, ...]
+    changed: tuple[ChangedInput, ...]
     compared: tuple[ComparedRow, ...]
     compared_elsewhere: tuple[ComparedRow, ...]
     findings: tuple[Finding, ...]

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from truing.declare.fields import Found, InputField, ResultField
 from truing.declare.scope import formula_scope
-from truing.formulas import Formula, parse, symbol_text
+from truing.errors import DeclarationError
+from truing.evaluate import acting_inputs
+from truing.formulas import Formula, evaluate, parse, symbol_text
 from truing.formulas.layout import Layout, Level, Writer, number_leaf, symbol_leaf, symbolic
 from truing.formulas.tree import Binary, Call, Constant, Name, Node, Number, children, simplified
 from truing.numbers import ABSENT, RESULT_DIGITS, format_number, format_value
@@ -31,25 +34,54 @@ class Line:
 
 
 def equation_of(setup: Setup, answers: Mapping[str, Any], item: ResultField) -> Equation | None:
-    """Return the formula of a result with everything that is printed of it, or None where it has none."""
+    """Return the formula of a result with everything that is printed of it, or None where it has none.
+
+    The numbers are those that the function itself was called with: after the effects on the inputs.
+    """
     if not isinstance(item.spec, Found) or not item.spec.formula:
         return None
     formula = parse(item.spec.formula)
-    scope = formula_scope(setup.model, item)
-    inputs = setup.model.read_inputs(setup.inputs)
-    values = {name: {**inputs, **answers}.get(scope[name].name) for name in sorted(formula.names)}
-    fields = {name: scope[name] for name in values}
-    plain = all(_is_single(value) for value in values.values()) and _is_single(answers.get(item.name))
+    fields = {name: field for name, field in formula_scope(setup.model, item).items() if name in formula.names}
+    known = {**setup.model.read_inputs(acting_inputs(setup)), **answers}
+    values = {name: known.get(field.name) for name, field in sorted(fields.items())}
+    plain = all(_is_single(value) for value in (*values.values(), answers.get(item.name)))
     numbered = values if plain else {}
-    numbers = {name: _number(setup, fields[name], value, numeric=item.spec.numeric) for name, value in numbered.items()}
+    numeric = item.spec.numeric
+    computed = _computed(formula, fields, numbered, item) if plain else None
+    shown = answers.get(item.name) if computed is None else computed
     return Equation(
         formula=formula,
         name=item.name,
         symbol=item.symbol,
         symbols={name: field.symbol for name, field in fields.items() if field.symbol},
-        numbers=numbers if plain else None,
-        results=_results(setup, item, answers.get(item.name), numeric=item.spec.numeric) if plain else (),
+        numbers={n: _number(setup, fields[n], v, numeric=numeric) for n, v in numbered.items()} if plain else None,
+        results=_results(setup, item, shown, numeric=numeric) if plain else (),
+        departs=computed is not None and not _agrees(computed, answers[item.name]),
     )
+
+
+def _computed(
+    formula: Formula, fields: Mapping[str, InputField | ResultField], values: Mapping[str, Any], item: ResultField
+) -> float | None:
+    """Return what the formula itself gives, in SI; None for an equation to be solved, and where it gives no number."""
+    from truing.units import from_si, to_si
+
+    numeric = isinstance(item.spec, Found) and item.spec.numeric
+    if formula.left is not None or any(value is None for value in values.values()):
+        return None
+    numbers = {name: from_si(value, fields[name].unit) if numeric else value for name, value in values.items()}
+    try:
+        found = float(evaluate(formula, numbers))
+    except (DeclarationError, TypeError, ValueError):
+        return None
+    if not math.isfinite(found):
+        return None
+    return float(to_si(found, item.unit)) if numeric else found
+
+
+def _agrees(computed: float, answer: Any) -> bool:
+    """Tell whether formula and function say the same; an effect on the results sets them apart."""
+    return abs(computed - float(answer)) <= 1e-6 * max(abs(computed), abs(float(answer)))
 
 
 def _is_single(value: Any) -> bool:

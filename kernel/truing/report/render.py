@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from truing.formulas.symbols import printable
 from truing.formulas.write_latex import LatexWriter
 from truing.formulas.write_mathml import MathMLWriter
-from truing.numbers import pretty
+from truing.numbers import pretty, with_unit
 from truing.report import equations
 from truing.report.context import ComparedRow, Entry, Equation, FigureView, Provenance, Sheet, TableView, Value
 from truing.report.markdown import Raw, escaped
@@ -163,9 +163,7 @@ def _symbol_latex(item: Any) -> Raw:
 
 
 def _value_text(value: Value) -> str:
-    text = pretty(value.text)
-    gap = "" if value.unit in {"°", "′", "″", "'"} else " "
-    return f"{text}{gap}{value.unit}" if value.unit else text
+    return with_unit(pretty(value.text), value.unit)
 
 
 def _value_html(value: Value) -> str:

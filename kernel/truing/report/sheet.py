@@ -10,7 +10,7 @@ from truing.calculation import Calculation
 from truing.numbers import STATED_DIGITS, format_number, format_value
 from truing.published import ComparedRow, in_order
 from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
-from truing.report.content import check_rows, condition_rows, effect_rows, input_rows, tolerance_rows
+from truing.report.content import changed_inputs, check_rows, condition_rows, effect_rows, input_rows, tolerance_rows
 from truing.report.context import Chapter, Head, InputRow, Provenance, Sheet, TableView
 
 if TYPE_CHECKING:
@@ -59,6 +59,7 @@ def make_sheet(
         tolerances=tuple(tolerance_rows(setup)),
         conditions=tuple(condition_rows(setup)),
         effects=tuple(effect_rows(setup)),
+        changed=tuple(changed_inputs(setup)),
         compared=tuple(own),
         compared_elsewhere=tuple(elsewhere),
         findings=tuple(setup.model.findings),
