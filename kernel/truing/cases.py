@@ -9,7 +9,7 @@ from typing import Any
 
 from truing.calculation import Calculation, calculate
 from truing.declare.fields import with_values
-from truing.errors import InfeasibleError
+from truing.errors import Fault, InfeasibleError, InputError
 from truing.evaluate import evaluate_rows
 from truing.measurements import Case
 from truing.setup import Setup
@@ -19,19 +19,37 @@ from truing.studies.checks import limits, plain_checks
 
 @dataclass(frozen=True)
 class CaseResult:
-    """One case: its row in the file, what it changes, its answers in SI and its checks, or why it failed."""
+    """One case, what it answers in SI and its checks, or why it failed."""
 
-    row: int
-    name: str
-    values: Mapping[str, Any]
+    case: Case
     answers: Mapping[str, Any]
     checks: tuple[Check, ...] = ()
     reason: str | None = None
 
     @property
+    def row(self) -> int:
+        """Its row in the file; the first is 1."""
+        return self.case.row
+
+    @property
+    def name(self) -> str:
+        """What the file calls it."""
+        return self.case.name
+
+    @property
+    def values(self) -> Mapping[str, Any]:
+        """The inputs and conditions it changes, in SI."""
+        return self.case.values
+
+    @property
     def margin(self) -> float:
         """The smallest margin of its checks; infinite where there are none."""
         return min((check.margin for check in self.checks), default=float("inf"))
+
+    @property
+    def fault(self) -> Fault:
+        """Why it failed, with file and line."""
+        return Fault(self.reason or "", self.case.file, self.case.line)
 
 
 @dataclass(frozen=True)
@@ -76,17 +94,20 @@ def run_cases(
     """Calculate every case and, in full with its studies, the governing one.
 
     Limits on a chance need the studies of each case; without such limits all cases are one array call. Raises
-    InfeasibleError when no case can be calculated.
+    InputError with every reason and its line when no case can be calculated.
     """
     by_studies = bool(setup.studies) and any(_asks_a_chance(setup))
     done = _one_by_one(setup, cases, executor, progress) if by_studies else _all_at_once(setup, cases)
-    alive = [place for place, case in enumerate(done) if case.reason is None]
-    if not alive:
-        raise InfeasibleError(f"none of the {len(done)} cases can be calculated; the first: {done[0].reason}")
-    governing = min(alive, key=lambda place: done[place].margin)
-    table = CasesTable(tuple(done), governing)
-    full = calculate(case_setup(setup, cases[governing]), executor=executor, progress=progress)
-    return replace(full, failed=table.failed), table
+    while alive := [place for place, case in enumerate(done) if case.reason is None]:
+        governing = min(alive, key=lambda place: done[place].margin)
+        try:
+            full = calculate(case_setup(setup, cases[governing]), executor=executor, progress=progress)
+        except InfeasibleError as error:  # a study asks more than the calculation alone, a full turn for example
+            done[governing] = CaseResult(cases[governing], {}, reason=str(error))
+            continue
+        table = CasesTable(tuple(done), governing)
+        return replace(full, failed=table.failed), table
+    raise InputError([case.fault for case in done])
 
 
 def _asks_a_chance(setup: Setup) -> list[bool]:
@@ -100,9 +121,9 @@ def _one_by_one(setup: Setup, cases: Sequence[Case], executor: Executor, progres
         try:
             found = calculate(case_setup(setup, case), executor=executor)
         except InfeasibleError as error:
-            done.append(CaseResult(case.row, case.name, case.values, {}, reason=str(error)))
+            done.append(CaseResult(case, {}, reason=str(error)))
             continue
-        done.append(CaseResult(case.row, case.name, case.values, found.answers, found.checks))
+        done.append(CaseResult(case, found.answers, found.checks))
     progress("cases", len(cases), len(cases))
     return done
 
@@ -115,13 +136,13 @@ def _all_at_once(setup: Setup, cases: Sequence[Case]) -> list[CaseResult]:
     for place, case in enumerate(cases):
         reason = rows.reasons.get(place)
         if reason is not None:
-            done.append(CaseResult(case.row, case.name, case.values, {}, reason=reason))
+            done.append(CaseResult(case, {}, reason=reason))
             continue
         answers = {name: _plain(values[place]) for name, values in rows.results.items()}
         own = case_setup(setup, case)
         has_limits = bool(limits(own, answers))
         checks = tuple(plain_checks(own, answers)) if has_limits else ()
-        done.append(CaseResult(case.row, case.name, case.values, answers, checks))
+        done.append(CaseResult(case, answers, checks))
     return done
 
 

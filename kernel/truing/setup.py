@@ -29,7 +29,11 @@ class SwitchedOn:
 
 @dataclass(frozen=True, kw_only=True)
 class Setup:
-    """What one inputs file says, checked, in SI. ``spreads`` holds the tolerances in force, by name."""
+    """What one inputs file says, checked, in SI. ``spreads`` holds the tolerances in force, by name.
+
+    ``places`` holds file and line of what is stated, by name of input or condition and ``effects.NAME``; "" is where the
+    inputs begin.
+    """
 
     model: Model[Any, Any]
     origin: Origin
@@ -48,6 +52,7 @@ class Setup:
     file: str = ""
     files: Mapping[str, str] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    places: Mapping[str, tuple[str, int | None]] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
         """Put the effects in the order in which the model declares them: they act in this order."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import math
 import time
 from dataclasses import replace
@@ -15,7 +14,7 @@ from sample_models import PIN_OFFER, PIN_WEAR, STAGE_OFFER, Census
 
 from truing.declare.spreads import Band, Grade, Off, Zone
 from truing.errors import InputError
-from truing.inputs_file import json_schema, read_setup, setup_from_settings, setup_from_text
+from truing.inputs_file import read_setup, setup_from_text
 from truing.setup import Setup, default_setup
 
 SURFACE = 'surface = { file = "flank.txt", spacing = "0.4 um" }'
@@ -59,7 +58,7 @@ def test_values_are_converted_and_the_rest_is_default() -> None:
 
 def test_an_empty_section_list_is_the_default_setup() -> None:
     setup = pin("# nothing stated\n")
-    assert replace(setup, file="") == default_setup(PIN_WEAR, PIN_OFFER.origin)
+    assert replace(setup, file="", places={}) == default_setup(PIN_WEAR, PIN_OFFER.origin)
 
 
 def test_every_section_is_read() -> None:
@@ -188,69 +187,6 @@ def test_old_names_answer_with_a_warning() -> None:
     ]
 
 
-# What --set says
-
-
-def test_overrides_replace_what_the_file_says(tmp_path: Path) -> None:
-    path = tmp_path / "wear.toml"
-    path.write_text('[inputs]\nload = "3 kN"\nspeed = "oops"\n[effects.warm_probe]\nslope = "1 um/K"\n')
-    overrides = [
-        "load=4 kN", "speed = 2 m/s", "inputs.rate=1e-8", "probe_temperature=30 degC", "tolerances.load=±0.1 kN",
-        "effects.warm_probe.slope=-1 um/K", "studies.census.draws=7", "studies.run=[\"census\"]", "seed=3",
-        "sheet.project=A=B", "units.depth=mm", "calibrated.hardness=2 GPa", "detail=short",
-        'tolerances.hardness={zone = ["0 GPa", "0.2 GPa"]}', 'studies.census.of=["pressure"]',
-    ]  # fmt: skip
-    setup = read_setup(path, PIN_OFFER, overrides=overrides)
-    assert (setup.inputs.load, setup.inputs.speed, setup.inputs.rate) == (4000.0, 2.0, 1e-8)
-    assert setup.conditions["probe_temperature"] == pytest.approx(303.15)
-    assert setup.spreads == {"load": Band("0.1 kN", "±"), "hardness": Zone("0 GPa", "0.2 GPa")}
-    assert setup.effects[0].values == {"slope": pytest.approx(-1e-6)}
-    assert setup.studies == (Census(draws=7, of=("pressure",)),)
-    assert (setup.seed, setup.detail, setup.head["project"]) == (3, "short", "A=B")
-    assert (setup.units, setup.calibrated) == ({"depth": "mm"}, {"hardness": 2e9})
-    assert setup.file == str(path)
-
-
-def test_an_effect_is_switched_off(tmp_path: Path) -> None:
-    path = tmp_path / "wear.toml"
-    path.write_text('[effects.warm_probe]\nslope = "1 um/K"\n')
-    assert len(read_setup(path, PIN_OFFER).effects) == 1
-    assert read_setup(path, PIN_OFFER, overrides=["effects.warm_probe=off"]).effects == ()
-
-
-def test_faults_of_overrides_come_after_those_of_the_file(tmp_path: Path) -> None:
-    path = tmp_path / "wear.toml"
-    path.write_text('[inputs]\nspeed = "1 m"\n')
-    with pytest.raises(InputError) as caught:
-        read_setup(path, PIN_OFFER, overrides=["laod=3 kN", "area=3 mm", "nonsense", "studies.census.draws=x"])
-    assert str(caught.value).splitlines() == [
-        f"{path}:2: speed: '1 m' is a length (m), expected a speed (m/s)",
-        "--set laod=3 kN: pin_wear has no input 'laod'. Did you mean 'load' (F, normal load on the pin, N)?",
-        "--set area=3 mm: area: '3 mm' is a length (mm), expected an area (mm²)",
-        "--set nonsense: write name=value, such as load='3 kN'",
-        "--set studies.census.draws=x: study 'census': draws = 'x' is no whole number",
-    ]
-
-
-def test_settings_of_published_numbers(folder: Path) -> None:
-    setup = setup_from_settings(PIN_OFFER, {"load": "3 kN", "tolerances.load": "sd 1 %"})
-    assert setup.inputs.load == 3000.0
-    assert setup.spreads["load"] == Band("1 %", "sd")
-    with pytest.raises(InputError, match=r"^settings area=1 N: area: '1 N' is a force"):
-        setup_from_settings(PIN_OFFER, {"area": "1 N"})
-
-
-@pytest.mark.parametrize(("text", "expected"), [("true", True), ("false", False)])
-def test_switches_counts_and_files_on_the_command_line(folder: Path, text: str, expected: bool) -> None:
-    path = folder / "stage.toml"
-    path.write_text("[inputs]\n")
-    overrides = [f"is_hardened={text}", "planets=5", "reading=printed", SURFACE.replace(" = ", "=", 1), "orders=[4]"]
-    setup = read_setup(path, STAGE_OFFER, overrides=[*overrides, 'profile=["1 um"]'])
-    assert setup.inputs.is_hardened is expected
-    assert (setup.inputs.planets, setup.inputs.reading, setup.inputs.orders) == (5, "printed", (4,))
-    assert setup.inputs.surface.heights == (1.0, 2.0, 4.0)
-
-
 # Bad input: one value
 
 
@@ -354,7 +290,7 @@ def test_misspelt_missing_and_extra_names_in_one_answer(folder: Path) -> None:
 
 
 def test_a_missing_file_without_any_section(folder: Path) -> None:
-    assert stage_faults("# nothing\n", folder)[0].startswith("stage.toml: stage needs the input 'surface'")
+    assert stage_faults("# nothing\n", folder)[0].startswith("stage.toml:1: stage needs the input 'surface'")
 
 
 @pytest.mark.parametrize(
@@ -407,6 +343,16 @@ def test_a_wrong_name_or_section(text: str, sentence: str) -> None:
     assert found.startswith(f"wear.toml:{sentence}")
 
 
+def test_what_a_study_says_against_its_options_is_told_at_each() -> None:
+    assert faults('[studies.census]\ndraws = 0\nof = ["nothing"]\nmethod = "plain"\n') == [
+        "wear.toml:2: study 'census': draws is at least 1",
+        "wear.toml:3: study 'census': of names no result",
+    ]
+    assert faults('[studies.census]\nmethod = "quasi"\ndraws = 3\n') == [
+        "wear.toml:2: study 'census': quasi takes an even number of draws"
+    ]
+
+
 def test_an_effect_needs_all_its_unknowns() -> None:
     assert faults('[inputs]\n[effects.running_in]\nextra = "3 um"\n') == [
         "wear.toml:2: effect 'running_in' is on, so its unknown 'length' must be given (from 10 to 5000 m)"
@@ -437,39 +383,3 @@ def test_a_broken_line_does_not_hide_that_a_file_is_named(folder: Path) -> None:
 def test_a_bare_number_arrives_as_it_is(number: float) -> None:
     assert pin(f"[inputs]\nrate = {number!r}\n").inputs.rate == number
     assert pin(f'[inputs]\nrate = "{number!r}"\n').inputs.rate == number
-
-
-# The JSON Schema
-
-
-def test_the_schema_is_valid_and_says_what_editors_need(folder: Path) -> None:
-    from jsonschema import Draft202012Validator
-
-    schema = json_schema(STAGE_OFFER)
-    Draft202012Validator.check_schema(schema)
-    assert schema["$schema"] == "https://json-schema.org/draft/2020-12/schema"
-    inputs = schema["$defs"]["Inputs"]
-    assert inputs["required"] == ["surface"]
-    assert inputs["properties"]["bore_sun"]["default"] == "30 mm"
-    assert inputs["properties"]["bore_sun"]["description"] == "d_1: bore; above 0 mm"
-    assert inputs["properties"]["reading"]["enum"] == ["printed", "complete"]
-    assert inputs["properties"]["teeth_sun"]["minimum"] == 5
-    assert inputs["properties"]["face_factor"]["description"] == "K_H: face load factor; at least 1; optional"
-    validator = Draft202012Validator(schema)
-    right = {"inputs": {"surface": {"file": "a"}, "teeth_sun": 7, "reading": "printed", "bore_sun": "3 mm"}}
-    assert list(validator.iter_errors(right)) == []
-    wrong = {"inputs": {"surface": 3, "teeth_sun": 4, "reading": "x", "bore_sun": 3, "planest": 3}, "nonsense": {}}
-    assert len(list(validator.iter_errors(wrong))) == 6
-
-
-def test_the_schema_of_studies_and_effects() -> None:
-    from jsonschema import Draft202012Validator
-
-    schema = json_schema(PIN_OFFER)
-    Draft202012Validator.check_schema(schema)
-    json.dumps(schema, allow_nan=False)
-    census = schema["$defs"]["Studies"]["properties"]["census"]["properties"]
-    assert census["draws"] == {"type": "integer", "default": 1000}
-    assert census["method"]["enum"] == ["plain", "quasi"]
-    assert schema["$defs"]["Effect_running_in"]["required"] == ["extra", "length"]
-    assert schema["$defs"]["Tolerances"]["properties"]["hardness"]["default"] == "lognormal sd 6 %"

@@ -74,7 +74,7 @@ def _setup(document: Document, offer: Offer, folder: Path) -> Setup:
     faults += [*each(late, document), *assemble.spread_faults(offer.model, document, reading.values)]
     if faults:
         raise InputError(in_order(faults, document))
-    return assemble.make_setup(offer, reading, studies, document.file)
+    return assemble.make_setup(offer, reading, studies, document)
 
 
 def _prune(table: dict[str, Any], path: tuple[str, ...]) -> set[tuple[str, ...]]:

@@ -131,16 +131,26 @@ def studies_of(model: Model[Any, Any], values: Values, faults: list[tuple[tuple[
     studies: dict[str, Study] = {}
     for study in model.studies:
         options = {path[2]: value for path, value in values.items() if path[:2] == ("studies", study.name)}
-        try:
-            studies[study.name] = dataclasses.replace(study, **options) if options else study  # type: ignore[type-var]
-        except (TruingError, ValueError, TypeError) as error:
-            place = ("studies", study.name, next(iter(options)))
-            faults.append((place, f"study '{study.name}': {error}"))
+        studies[study.name], wrong = _with_options(study, options)
+        faults += [(("studies", study.name, name), f"study '{study.name}': {words}") for name, words in wrong.items()]
     chosen = values.get(("studies", "run"))
     return tuple(studies.values()) if chosen is None else tuple(studies[name] for name in chosen if name in studies)
 
 
-def make_setup(offer: Offer, reading: Reading, studies: tuple[Study, ...], file: str) -> Setup:
+def _with_options(study: Study, options: Mapping[str, Any]) -> tuple[Study, dict[str, str]]:
+    """Return the study with its options, and what it says against any of them, one by one and then together."""
+    wrong: dict[str, str] = {}
+    changed: Any = study
+    for trial in [*({name: value} for name, value in options.items()), dict(options)]:
+        try:
+            changed = dataclasses.replace(study, **trial) if trial else study  # type: ignore[type-var]
+        except (TruingError, ValueError, TypeError) as error:
+            if len(trial) == 1 or not wrong:
+                wrong[next(iter(trial))] = str(error)
+    return (study if wrong else changed), wrong
+
+
+def make_setup(offer: Offer, reading: Reading, studies: tuple[Study, ...], document: Document) -> Setup:
     """Put the checked values together."""
     from truing.declare.fields import make
 
@@ -170,10 +180,21 @@ def make_setup(offer: Offer, reading: Reading, studies: tuple[Study, ...], file:
         head=head,
         seed=values.get(("studies", "seed"), DEFAULT_SEED),
         added=offer.added,
-        file=file,
+        file=document.file,
         files=dict(reading.files),
+        places=places_of(model, document),
         warnings=tuple(of("warnings").values()),
     )
+
+
+def places_of(model: Model[Any, Any], document: Document) -> dict[str, tuple[str, int | None]]:
+    """Return where each input, condition and effect is stated; "" stands for the section of inputs."""
+    old = renamed(model)
+    found = {"": document.places.get(("inputs",)) or document.places.get((), (document.file, None))}
+    for path, place in document.places.items():
+        if len(path) == 2 and path[0] in {"inputs", "conditions", "effects", "calibrated"}:
+            found[f"effects.{path[1]}" if path[0] == "effects" else old.get(path[1], path[1])] = place
+    return found
 
 
 _STATED = {"inputs", "conditions", "tolerances"}

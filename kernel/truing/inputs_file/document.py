@@ -42,7 +42,7 @@ class Document:
 
     def fault(self, path: Path, message: str) -> Fault:
         """Return a fault at the place of a name, or of the nearest section around it."""
-        for length in range(len(path), 0, -1):
+        for length in range(len(path), -1, -1):
             if path[:length] in self.places:
                 file, line = self.places[path[:length]]
                 return Fault(message, file, line)
@@ -59,7 +59,7 @@ class Statement:
 
 def read_document(text: str, file: str) -> Document:
     """Read a TOML text; what cannot be read stands in ``faults`` and the rest in ``data``."""
-    document = Document(file)
+    document = Document(file, places={(): (file, 1)})
     text = text.replace("\r\n", "\n")
     long_key = _LONG_KEY.search(text)
     if long_key:
@@ -72,7 +72,7 @@ def read_document(text: str, file: str) -> Document:
     except (ValueError, RecursionError) as error:
         _Repair(document).run(found)
         if not document.faults:
-            document.faults.append(Fault(_sentence(error), file, _line(error)))
+            document.faults.append(Fault(_sentence(error), file, _line(error) or text.count("\n") + 1))
         return document
     _note_places(document, found)
     return document

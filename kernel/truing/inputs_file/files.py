@@ -19,7 +19,15 @@ def refuse_file(path: Path, *, largest: int, instead: str, is_table: bool) -> No
     """
     sentence = _refusal(path, largest, instead, is_table)
     if sentence:
-        raise InputError([Fault(sentence, str(path))])
+        raise InputError([Fault(sentence, str(path), _first_line(path))])
+
+
+def _first_line(path: Path) -> int | None:
+    """Return the line that a fault of a whole file stands in: the first, if there is a file."""
+    try:
+        return 1 if path.is_file() else None
+    except (OSError, ValueError):
+        return None
 
 
 def _refusal(path: Path, largest: int, instead: str, is_table: bool) -> str:
@@ -67,7 +75,7 @@ def read_text(path: Path, *, instead: str) -> str:
     try:
         content = path.read_bytes()
     except OSError as error:
-        raise InputError([Fault(f"cannot be read: {error.strerror}", str(path))]) from error
+        raise InputError([Fault(f"cannot be read: {error.strerror}", str(path), 1)]) from error
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -114,9 +114,20 @@ def opened(path: Path) -> Iterator[CsvFile]:
         with path.open(encoding="utf-8-sig", newline="") as stream:
             yield _table(path, stream, instead)
     except UnicodeDecodeError:
-        raise InputError([Fault("is not UTF-8 text; save it as CSV UTF-8", str(path))]) from None
+        raise InputError([Fault("is not UTF-8 text; save it as CSV UTF-8", str(path), _foreign_line(path))]) from None
     except OSError as error:
-        raise InputError([Fault(f"cannot be read: {error.strerror or error}", str(path))]) from error
+        raise InputError([Fault(f"cannot be read: {error.strerror or error}", str(path), 1)]) from error
+
+
+def _foreign_line(path: Path) -> int:
+    """Return the first line that is no UTF-8."""
+    with path.open("rb") as stream:
+        for number, line in enumerate(stream, start=1):
+            try:
+                line.decode("utf-8")
+            except UnicodeDecodeError:
+                return number
+    return 1
 
 
 def _table(path: Path, stream: TextIO, instead: str) -> CsvFile:
@@ -128,7 +139,7 @@ def _table(path: Path, stream: TextIO, instead: str) -> CsvFile:
         if first.strip():
             break
     if not first.strip():
-        raise InputError([Fault(f"is empty; {instead}", str(path))])
+        raise InputError([Fault(f"is empty; {instead}", str(path), 1)])
     delimiter = _delimiter(first)
     rows = _rows(first, lines, position, delimiter, faults)
     header, line = next(rows, ([], position))

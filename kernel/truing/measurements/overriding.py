@@ -33,6 +33,7 @@ class Case:
     line: int
     name: str
     values: Mapping[str, Any]
+    file: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ def read_cases(path: Path, offer: Offer, setup: Setup) -> list[Case]:
             table.faults.add(_unknown(header, setup, offer), table.header_line)
     table.faults.raise_any()
     return [
-        Case(row, line, name or f"{row}", found)
+        Case(row, line, name or f"{row}", found, str(path))
         for row, (line, name, found) in enumerate(zip(texts.lines, names, values, strict=True), start=1)
     ]
 
