@@ -69,6 +69,14 @@ class Census:
     name: str = "census"
     gives: None = None
 
+    def __post_init__(self) -> None:
+        if self.draws < 1:
+            raise ValueError("draws is at least 1")
+        if "nothing" in self.of:
+            raise ValueError("of names no result")
+        if self.method == "quasi" and self.draws % 2:
+            raise ValueError("quasi takes an even number of draws")
+
     def run(self, bench: object) -> None:
         """Do nothing."""
 

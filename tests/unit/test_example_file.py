@@ -21,7 +21,7 @@ COMMENTED_OUT = re.compile(r"^# (?=\[|[\w\"]+ = )", re.MULTILINE)
 def test_the_example_is_the_default_setup() -> None:
     setup = setup_from_text(example_text(PIN_OFFER), PIN_OFFER, file="", folder=Path())
     assert setup.stated == set(PIN_WEAR.input_fields)
-    assert replace(setup, stated=frozenset()) == default_setup(PIN_WEAR, PIN_OFFER.origin)
+    assert replace(setup, stated=frozenset(), places={}) == default_setup(PIN_WEAR, PIN_OFFER.origin)
 
 
 def test_what_is_commented_out_states_the_defaults_too() -> None:
@@ -29,7 +29,7 @@ def test_what_is_commented_out_states_the_defaults_too() -> None:
     setup = setup_from_text(text, PIN_OFFER, file="", folder=Path())
     assert [on.effect.name for on in setup.effects] == ["running_in", "warm_probe"]
     assert setup.units == {"pressure": "MPa", "distance": "km", "depth": "um"}
-    plain = replace(setup, stated=frozenset(), effects=(), units={})
+    plain = replace(setup, stated=frozenset(), effects=(), units={}, places={})
     assert plain == default_setup(PIN_WEAR, PIN_OFFER.origin)
 
 

@@ -92,7 +92,7 @@ def test_a_file_that_is_no_inputs_file(tmp_path: Path, name: str, content: bytes
     path.write_bytes(content)
     with pytest.raises(InputError) as caught:
         read_setup(path, PIN_OFFER)
-    assert str(caught.value) == f"{path}: {sentence}"
+    assert str(caught.value) == f"{path}:1: {sentence}"
 
 
 def test_latin_1_is_told_with_its_line(tmp_path: Path) -> None:
