@@ -31,8 +31,8 @@ class SwitchedOn:
 class Setup:
     """What one inputs file says, checked, in SI. ``spreads`` holds the tolerances in force, by name.
 
-    ``places`` holds file and line of what is stated, by name of input or condition and ``effects.NAME``; "" is where the
-    inputs begin.
+    ``places`` holds file and line of what is stated, by name of input or condition and ``effects.NAME``; "" is where
+    the inputs begin.
     """
 
     model: Model[Any, Any]
