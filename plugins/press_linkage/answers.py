@@ -5,13 +5,14 @@ from math import nan, pi
 import numpy as np
 
 from press_linkage.closure import cycle_demands, smallest_sine
-from press_linkage.increments import ARM, PASSIVE, POLAR_ANGLES, salience, side_sensitivities, source
+from press_linkage.increments import ARM, KINDS, PASSIVE, POLAR_ANGLES, salience, side_sensitivities, source
 from press_linkage.influence import Influence
 from press_linkage.kinematics import Geometry, Half, crank_at, solve, top_crank_angle
 from press_linkage.mechanism import geometry_of, position_of, without_rounding
 from press_linkage.quantities import Chances, Cycle, Press, Synthesis
 from truing import Allotted, Odds, Sensitivities, Swept, feasible
 
+EVERY = (*KINDS, "platform_arm")
 KEY_TILT = (
     "slider_joint_angle", "ground_pivot_angle", "lower_knee_length", "upper_knee_length", "knee_drive_length",
 )  # fmt: skip
@@ -64,7 +65,7 @@ def influence(found: Sensitivities) -> Influence:
         nominal_position=float(nominal.slider_position),
         slider_shift=float(shift),
         **{f"influence_{kind}": float(without_rounding(value)) for kind, value in by_kind.items()},
-        salience_position_key=_key_salience(found, "slider_position", KEY_POSITION, None),
+        salience_position_key=_key_salience(found, "slider_position", KEY_POSITION, EVERY),
         salience_tilt_key=_key_salience(found, "slider_tilt", KEY_TILT, PASSIVE),
         **_variances(found),
         position_sd=found.sd.get("slider_position", nan),
@@ -91,10 +92,10 @@ def _chain(geometry: Geometry, half: Half, crank_angle: float) -> dict[str, floa
     return {name: float(value) for name, value in found.items()}
 
 
-def _key_salience(found: Sensitivities, result: str, key: tuple[str, ...], among: tuple[str, ...] | None) -> float:
-    """The share of the key errors in the sum of all sensitivities (of some kinds, where *among* names them)."""
+def _key_salience(found: Sensitivities, result: str, key: tuple[str, ...], among: tuple[str, ...]) -> float:
+    """The share of the key errors in the sum of the sensitivities to errors of the kinds *among*."""
     by_source = found.derivatives.get(result, {})
-    named = {name: by_source[name] for name in (sources_of(among) if among else by_source) if name in by_source}
+    named = {name: by_source[name] for name in sources_of(among) if name in by_source}
     if not set(sources_of(key)) <= set(named):
         return nan
     shares = salience(named)

@@ -6,7 +6,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from press_linkage.answers import KEY_POSITION, KEY_TILT
-from press_linkage.increments import ARM, KINDS, PASSIVE, SYMBOLS, derivatives, salience, side_sensitivities, source
+from press_linkage.increments import (
+    ARM,
+    KINDS,
+    PASSIVE,
+    SOURCES,
+    SYMBOLS,
+    derivatives,
+    salience,
+    side_sensitivities,
+    source,
+)
 from press_linkage.kinematics import solve, top_crank_angle
 from press_linkage.mechanism import geometry_of, position_of
 from press_linkage.quantities import Press, Slider
@@ -112,7 +122,7 @@ def salience_bars(found: "Sensitivities") -> "Figure":
     panels = figure.subplots(1, 2, width_ratios=(1, 1))
     position, tilt = found.derivatives["slider_position"], found.derivatives["slider_tilt"]
     passive = {name: tilt[name] for kind in PASSIVE for name in _both(kind)}
-    _bars(panels[0], salience(position), KEY_POSITION, "slider position")
+    _bars(panels[0], salience({name: position[name] for name in SOURCES}), KEY_POSITION, "slider position")
     _bars(panels[1], salience(passive), KEY_TILT, "slider tilt")
     return figure
 

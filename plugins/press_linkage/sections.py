@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 from press_linkage.answers import LINKS, sources_of
 from press_linkage.drawn_answers import along_the_synthesis, over_the_turn, salience_bars, way
 from press_linkage.drawn_mechanism import mechanism
-from press_linkage.increments import KINDS, POLAR_ANGLES
+from press_linkage.increments import KINDS, POLAR_ANGLES, SOURCES
 from press_linkage.published import WHERE
 from press_linkage.quantities import Press, Slider
 from truing import Block, Drawing, Section, Table, Words
 
 if TYPE_CHECKING:
-    from truing import Record
+    from truing import Record, Sensitivities
 
     Run = Record[Press, Slider]
 
@@ -41,12 +41,19 @@ def travel(record: "Run") -> Sequence[Block]:
     ]
 
 
+def knows_every_error(found: "Sensitivities | None") -> bool:
+    """Whether the sensitivity study ran as declared, for both results and all errors."""
+    return found is not None and all(
+        set(SOURCES) <= set(found.derivatives.get(result, ())) for result in ("slider_position", "slider_tilt")
+    )
+
+
 def saliences(record: "Run") -> Sequence[Block]:
     """The paper's Figs. 2 and 3, and the same over the turn."""
     caption = "Nominal mechanism. Away from the bottom dead centre the driven chain takes over."
     turn = Drawing("Influence and salience over one turn", partial(over_the_turn, record), caption)
     found = record.studies.get("sensitivity")
-    if found is None or not {"slider_position", "slider_tilt"} <= set(found.derivatives):
+    if not knows_every_error(found):
         return [turn]
     caption = "As Figs. 2 and 3 of the paper; lengths in metres, angles in radians. Blue: the key errors."
     return [Drawing("Salience of the errors", partial(salience_bars, found), caption), turn]
@@ -55,7 +62,7 @@ def saliences(record: "Run") -> Sequence[Block]:
 def variances(record: "Run") -> Sequence[Block]:
     """What each kind of error contributes to both variances."""
     found = record.studies.get("sensitivity")
-    if found is None or not {"slider_position", "slider_tilt"} <= set(found.derivatives):
+    if not knows_every_error(found):
         return []
     rows: list[tuple[str | float, ...]] = []
     for kind in (*KINDS, "platform_arm"):

@@ -1,0 +1,371 @@
+"""The press linkage as a calculation: what its paper prints, its two readings, its effect, its sheet, bad input.
+
+Numbers of the paper are those it prints; Reference numbers were computed once by an independent program that shares no
+code with this one, from the reconstructed equations.
+"""
+
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from press_linkage_cases import OTHER
+
+import press_linkage
+from press_linkage import increments, kinematics
+from press_linkage.effects import LINK_TEMPERATURE, link_heating
+from press_linkage.mechanism import press_linkage as slider_of
+from press_linkage.model import PRESS_LINKAGE
+from press_linkage.quantities import Press
+from truing import Drawing, Kernel
+from truing.calculation import Calculation, calculate
+from truing.errors import InfeasibleError
+from truing.inputs_file import setup_from_text
+from truing.published import compare_published
+from truing.report.figures import draw
+from truing.setup import SwitchedOn, default_setup
+from truing.testing import conformance
+
+EXAMPLE = PRESS_LINKAGE.example
+STEEL = 11.5e-6  # 1/K
+
+
+@cache
+def ran(**inputs: Any) -> Calculation:
+    return calculate(default_setup(PRESS_LINKAGE, **inputs))
+
+
+def heated(by: float, expansion: float = STEEL, **inputs: Any) -> Calculation:
+    """The press with its links warmer by so many kelvin."""
+    setup = default_setup(PRESS_LINKAGE, **inputs)
+    effect = SwitchedOn(PRESS_LINKAGE.effects["link_heating"], {"expansion": expansion})
+    warm = {"link_temperature": LINK_TEMPERATURE.zero + by}
+    return calculate(replace(setup, effects=(effect,), conditions=warm))
+
+
+test_press_linkage = conformance(PRESS_LINKAGE)
+
+
+READINGS = [  # to the digits in which both readings are stated; the paper prints 0.5674 0.8870 0.8570 0.9973 and 9
+    ("printed", 0.567, 0.887, 0.856, 0.997, 9),
+    ("complete", 0.492, 0.669, 0.776, 0.928, 12),
+]
+
+
+@pytest.mark.parametrize(("reading", "start", "final", "tilt_start", "tilt_final", "steps"), READINGS)
+def test_both_readings(
+    reading: str, start: float, final: float, tilt_start: float, tilt_final: float, steps: int
+) -> None:
+    answers = ran(reading=reading).answers
+    assert answers["position_reliability"] == pytest.approx(start, abs=5e-4)
+    assert answers["position_reliability_final"] == pytest.approx(final, abs=5e-4)
+    assert answers["tilt_reliability"] == pytest.approx(tilt_start, abs=5e-4)
+    assert answers["tilt_reliability_final"] == pytest.approx(tilt_final, abs=5e-4)
+    assert answers["adjustments"] == steps
+
+
+def test_printed_reaches_its_goals_and_complete_does_not() -> None:
+    assert ran(reading="printed").passed
+    complete = ran(reading="complete")
+    assert [check.passed for check in complete.checks] == [False, False]
+    assert not complete.outcomes["allocation"].reached
+    assert set(complete.outcomes["allocation"].tolerances.values()) == {"IT5"}
+    assert any("not reachable" in warning for warning in complete.warnings)
+
+
+def test_complete_is_the_default() -> None:
+    assert PRESS_LINKAGE.inputs().reading == "complete"
+    assert PRESS_LINKAGE.inputs().ground_pivot_angle == 0.367
+
+
+STEPS = [  # link, width in mm (ISO 286-1), reliabilities: reference numbers
+    ("lower_knee_length", 0.078, 0.6385, 0.9117),
+    ("upper_knee_length", 0.092, 0.7361, 0.9641),
+    ("knee_drive_length", 0.056, 0.7685, 0.9757),
+    ("rod_length", 0.078, 0.7710, 0.9757),
+    ("crank_radius", 0.036, 0.7715, 0.9757),
+    ("platform_arm", 0.044, 0.7726, 0.9757),
+    ("lower_knee_length", 0.055, 0.8221, 0.9882),
+    ("upper_knee_length", 0.065, 0.8727, 0.9958),
+    ("knee_drive_length", 0.040, 0.8869, 0.9971),
+]
+
+
+@pytest.mark.parametrize("number", range(9))
+def test_steps_of_the_synthesis(number: int) -> None:
+    step = ran(reading="printed").outcomes["allocation"].steps[number]
+    link, width, position, tilt = STEPS[number]
+    assert step.tolerance == link
+    assert step.width_after == pytest.approx(width * 1e-3, rel=1e-12)
+    assert step.chances["slider_position"] == pytest.approx(position, abs=6e-5)
+    assert step.chances["slider_tilt"] == pytest.approx(tilt, abs=6e-5)
+
+
+VARIANCES = [  # um^2 of the slider position at the start, both sides: reference numbers
+    ("lower_knee_length", 276.8), ("upper_knee_length", 256.4), ("knee_drive_length", 67.0),
+    ("slider_half_width", 38.3), ("rod_length", 4.8), ("platform_arm", 2.1), ("ground_pivot_radius", 1.2),
+    ("crank_radius", 1.0), ("crank_pivot_radius", 3.6), ("platform_half_width", 0.9), ("slider_joint_angle", 138.9),
+    ("ground_pivot_angle", 112.8), ("crank_pivot_angle", 8.8), ("platform_joint_angle", 2.2),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "variance"), VARIANCES)
+def test_variance_of_each_kind_of_error(name: str, variance: float) -> None:
+    found = ran(reading="complete").outcomes["sensitivity"]
+    tolerance = PRESS_LINKAGE.tolerances[name]
+    share = sum(found.share["slider_position"][source] for source in tolerance.on)
+    assert share * found.sd["slider_position"] ** 2 * 1e12 == pytest.approx(variance, abs=0.06)
+
+
+def test_groups_of_variance_add_up() -> None:
+    answers = ran(reading="printed").answers
+    # the part that tightening links does not change, from the printed pair of reliabilities: 41.3 +- 0.2 um^2
+    assert answers["variance_joints_along"] * 1e12 == pytest.approx(41.3, abs=0.2)
+    assert answers["variance_joints_across"] == answers["variance_other"] == 0.0
+    assert answers["position_sd"] == pytest.approx(25.48e-6, abs=6e-9)
+    assert answers["tilt_sd"] == pytest.approx(15.81e-6, abs=6e-9)
+
+
+@pytest.mark.parametrize(("angle", "height"), [("-40 deg", 3.53002), ("40 deg", 3.53760), ("0 deg", 3.55760)])
+def test_slider_over_the_crank_angle(angle: str, height: float) -> None:
+    assert slider_of(PRESS_LINKAGE.inputs(crank_angle=angle)).slider_position == pytest.approx(height, abs=5e-6)
+
+
+def test_dead_centres() -> None:
+    answers = ran(reading="printed").answers
+    assert answers["bdc_position"] == pytest.approx(3.55760, abs=5e-6)
+    assert answers["tdc_position"] == pytest.approx(2.39436, abs=5e-6)
+    assert answers["stroke"] == pytest.approx(1.16324, abs=5e-6)
+    assert np.degrees(answers["tdc_crank_angle"]) == pytest.approx(-140.30, abs=5e-3)
+    assert np.degrees(answers["bdc_direction"]) == pytest.approx(122.743, abs=5e-4)
+
+
+def test_dead_centres_do_not_depend_on_where_one_looks() -> None:
+    here, there = ran(reading="printed").answers, ran(reading="printed", crank_angle="70 deg").answers
+    assert there["slider_position"] != here["slider_position"]
+    for name in ("bdc_position", "tdc_position", "stroke", "tdc_crank_angle", "bdc_direction", "smallest_sine"):
+        assert there[name] == here[name]
+
+
+def test_salience_of_the_key_errors() -> None:
+    answers = ran(reading="printed").answers
+    assert answers["salience_position_key"] == pytest.approx(0.877, abs=5e-4)
+    assert answers["salience_tilt_key"] == pytest.approx(0.902, abs=5e-4)
+    assert answers["salience_position_key"] == pytest.approx(0.8766, rel=2e-3)  # the paper, section 2.2.1
+    assert answers["salience_tilt_key"] == pytest.approx(0.9006, rel=2e-3)  # the paper, section 2.2.2
+
+
+def test_every_printed_number_comes_out_as_stated() -> None:
+    offer = Kernel([press_linkage], strict=True).offers["press_linkage"]
+    compared = compare_published(offer)
+    assert [row.published.name for row in compared if not row.as_stated] == []
+    assert len(compared) >= 19
+    assert all(row.published.why for row in compared if row.published.verdict == "differs")
+    assert {row.published.value for row in compared} >= {0.8766, 0.9006, 0.5674, 0.8870, 0.8570, 0.9973, 9.0}
+
+
+def test_tilt_limit_in_radians_would_always_be_kept() -> None:
+    assert ran(reading="printed", tilt_limit="0.0013 rad").answers["tilt_reliability"] == pytest.approx(1.0, abs=1e-12)
+    assert ran(tilt_limit="0.0013 deg").answers["permitted_tilt"] == pytest.approx(np.radians(0.0013), rel=1e-14)
+
+
+def test_all_29_sources_are_inputs_with_a_tolerance() -> None:
+    scattering = [name for tolerance in PRESS_LINKAGE.tolerances.values() for name in tolerance.on]
+    assert sorted(scattering) == sorted(increments.SOURCES)
+    assert len(set(scattering)) == 29
+    assert set(increments.SOURCES) <= set(PRESS_LINKAGE.input_fields)
+
+
+def test_every_deviation_reaches_the_exact_kinematics() -> None:
+    for name in increments.SOURCES:
+        moved = slider_of(PRESS_LINKAGE.inputs(**{name: 1e-4, "crank_angle": 0.5}))
+        if name == increments.ARM:
+            wanted = kinematics.solve(kinematics.Geometry(), 0.5, platform_arm=1e-4)
+        else:
+            kind, side = name.rsplit("_deviation_", 1)
+            off = {f"side_{side}": kinematics.Deviations(**{kind: 1e-4})}
+            wanted = kinematics.solve(kinematics.Geometry(), 0.5, **off)
+        assert moved.slider_position == wanted.slider_position, name
+        assert moved.slider_tilt == wanted.slider_tilt, name
+
+
+def test_changed_mechanism_has_the_sensitivities_of_its_exact_kinematics() -> None:
+    names = {name: getattr(OTHER, name) for name in kinematics.Geometry.__dataclass_fields__}
+    found = ran(**names, crank_angle=0.3).outcomes["sensitivity"]
+    assert max(found.agreement.values()) < 1e-8
+    step = 1e-5
+    for name in increments.SOURCES:
+        ends = [slider_of(PRESS_LINKAGE.inputs(**names, crank_angle=0.3, **{name: by})) for by in (step, -step)]
+        by_position = (ends[0].slider_position - ends[1].slider_position) / (2 * step)
+        by_tilt = (ends[0].slider_tilt - ends[1].slider_tilt) / (2 * step)
+        assert found.derivatives["slider_position"][name] == pytest.approx(by_position, abs=1e-8)
+        assert found.derivatives["slider_tilt"][name] == pytest.approx(by_tilt, abs=1e-8)
+
+
+def test_monte_carlo_agrees_with_first_order() -> None:
+    for reading in ("printed", "complete"):
+        odds = ran(reading=reading).outcomes["reliability"]
+        for check, (low, high) in odds.interval.items():
+            middle, half = (high + low) / 2, (high - low) / 2
+            assert abs(odds.analytic[check] - middle) < 2 * half  # 4 standard errors
+        assert odds.mean["slider_position"] - 3.5575988 == pytest.approx(0.0, abs=0.5e-6)
+    assert odds.sd["slider_position"] == pytest.approx(30.2e-6, rel=0.01)  # reference, first order
+    assert odds.sd["slider_tilt"] == pytest.approx(18.7e-6, rel=0.01)
+
+
+def test_heat_of_the_links_per_kelvin() -> None:
+    """46.2 um/K from the six knee links of both sides and 3.7 um/K from platform arm, rods and cranks (reference)."""
+    cold = PRESS_LINKAGE.inputs()
+    warm = link_heating(cold, expansion=STEEL, link_temperature=LINK_TEMPERATURE.zero + 1)
+    base = slider_of(cold).slider_position
+    assert (slider_of(warm).slider_position - base) * 1e6 == pytest.approx(46.2 + 3.7, abs=0.1)
+    assert slider_of(warm).slider_tilt == pytest.approx(0.0, abs=1e-15)
+    sides = {
+        name: replace(getattr(warm, name), crank_radius_deviation=0.0, rod_length_deviation=0.0)
+        for name in ("side_1", "side_2")
+    }
+    knees = replace(warm, platform_arm_deviation=0.0, **sides)
+    assert (slider_of(knees).slider_position - base) * 1e6 == pytest.approx(46.2, abs=0.05)
+
+
+def test_one_warm_side_tilts_the_slider() -> None:
+    warm = link_heating(PRESS_LINKAGE.inputs(), expansion=STEEL, link_temperature=LINK_TEMPERATURE.zero + 1)
+    one = slider_of(replace(warm, side_2=PRESS_LINKAGE.inputs().side_2))
+    assert one.slider_tilt * 1e6 == pytest.approx(14.4, abs=0.05)  # reference: side 1 warmer by 1 K, 14.4 urad
+
+
+def test_link_heating_changes_every_study() -> None:
+    cold, warm = ran(reading="printed"), heated(40.0, reading="printed")
+    for name in ("bdc_position", "stroke", "slider_shift", "salience_position_key", "salience_tilt_key"):
+        assert warm.answers[name] != cold.answers[name], name
+    assert warm.answers["slider_shift"] * 1e6 == pytest.approx(40 * 49.9, rel=2e-3)
+    assert warm.answers["bdc_position"] == warm.answers["slider_position"]
+    for name in ("position_reliability", "tilt_reliability", "position_reliability_final", "coefficient_rod_length"):
+        assert warm.answers[name] != cold.answers[name], name
+    assert (warm.outcomes["sweep"].results["slider_position"] > cold.outcomes["sweep"].results["slider_position"]).all()
+    first, second = (run.outcomes["reliability"].mean["slider_position"] for run in (cold, warm))
+    assert (second - first) * 1e6 == pytest.approx(40 * 49.9, rel=2e-3)
+
+
+def test_link_heating_does_nothing_where_it_vanishes() -> None:
+    cold = ran(reading="printed").answers
+    for run in (heated(0.0, reading="printed"), heated(40.0, expansion=0.0, reading="printed")):
+        for name in PRESS_LINKAGE.own_result_fields:
+            assert run.answers[name] == cold[name], name
+        assert dict(run.answers) == pytest.approx(dict(cold), rel=1e-9)  # derivatives are numeric where an effect is on
+
+
+def test_equal_deviations_of_both_sides_do_not_tilt() -> None:
+    for name in ("knee_drive_length", "ground_pivot_radius", "slider_half_width", "rod_length", "crank_angle"):
+        both = {f"{name}_deviation_{side}": 1e-4 for side in (1, 2)}
+        moved = slider_of(PRESS_LINKAGE.inputs(**both, crank_angle=0.5))
+        assert moved.slider_tilt == pytest.approx(0.0, abs=1e-15)
+        assert moved.slider_position != slider_of(PRESS_LINKAGE.inputs(crank_angle=0.5)).slider_position
+
+
+BAD = [
+    ({"rod_length": "0.8 m", "crank_angle": "-140 deg"}, "the rod cannot reach"),
+    ({"rod_length": "1.2 m"}, "does not close over a full turn of the crank"),
+    ({"knee_drive_length": "0.3 m"}, "loop II, side 1 does not close: the knee drive is open"),
+    ({"lower_knee_length": "0.5 m"}, "loop III, side 1 does not close"),
+    ({"crank_pivot_radius": "0.2 m"}, "crank_pivot_radius > platform_half_width"),
+    ({"lower_knee_length_deviation_2": "-900 mm"}, "loop IV, side 2 does not close"),
+]
+
+
+@pytest.mark.parametrize(("inputs", "words"), BAD)
+def test_impossible_mechanisms_are_named(inputs: dict[str, str], words: str) -> None:
+    with pytest.raises(InfeasibleError, match=re.escape(words)):
+        calculate(default_setup(PRESS_LINKAGE, **inputs))
+
+
+def test_crank_that_only_swings_is_calculated_without_the_sweep() -> None:
+    setup = default_setup(PRESS_LINKAGE, rod_length="1.2 m")
+    with pytest.raises(InfeasibleError, match="leave the sweep out"):
+        calculate(setup)
+    found = calculate(replace(setup, studies=tuple(study for study in setup.studies if study.name != "sweep")))
+    assert np.isfinite(found.answers["position_reliability"])
+
+
+def test_example_repeats_the_paper() -> None:
+    assert EXAMPLE is not None
+    offer = Kernel([press_linkage], strict=True).offers["press_linkage"]
+    setup = setup_from_text(EXAMPLE.read_text(encoding="utf-8"), offer, file=str(EXAMPLE), folder=EXAMPLE.parent)
+    assert setup.inputs.reading == "printed"
+    found = calculate(setup)
+    assert found.passed
+    assert dict(found.answers) == dict(ran(reading="printed").answers)
+
+
+def test_every_commented_line_of_the_example_can_be_uncommented() -> None:
+    assert EXAMPLE is not None
+    offer = Kernel([press_linkage], strict=True).offers["press_linkage"]
+    text = re.sub(r"(?m)^# (?=\[|[a-z_0-9]+ = )", "", EXAMPLE.read_text(encoding="utf-8"))
+    setup = setup_from_text(text, offer, file="example.toml", folder=EXAMPLE.parent)
+    assert setup.effects[0].values == {"expansion": pytest.approx(STEEL)}
+    assert setup.conditions["link_temperature"] == pytest.approx(308.15)
+    named = {item.name for item in PRESS_LINKAGE.tolerances.values()}
+    stated = set(re.findall(r"(?m)^([a-z_]+) = ", text[text.index("[tolerances]") : text.index("[conditions]")]))
+    assert stated == named
+    assert np.isfinite(calculate(setup).answers["position_reliability"])
+
+
+def test_both_readings_stand_on_the_sheet() -> None:
+    table = ran(reading="printed").outcomes["readings"].table()
+    printed, complete = table.rows
+    assert printed[0] == "printed"
+    assert printed[1:6] == pytest.approx([56.74, 88.69, 85.62, 99.71, 9], abs=0.006)
+    assert complete[1:6] == pytest.approx([49.16, 66.91, 77.60, 92.84, 12], abs=0.006)
+    assert (printed[6], complete[6]) == (True, False)
+
+
+def drawings(found: Calculation) -> list[str]:
+    """Every figure of the sheet, as SVG."""
+    made: list[tuple[str, Any]] = []
+    for section in PRESS_LINKAGE.sheet:
+        if section.figure is not None:
+            made.append((section.title, partial(section.figure, found.record)))
+        blocks = section.blocks(found.record) if section.blocks else ()
+        made += [(block.title, block.draw) for block in blocks if isinstance(block, Drawing)]
+    return [draw(what, title=title, ident="f") for title, what in made]
+
+
+@pytest.mark.parametrize(
+    "inputs",
+    [{"reading": "printed"}, {"crank_angle": "-60 deg"}, {"reading": "printed", "ground_pivot_angle": "0.117 rad"}],
+)
+def test_figures_are_drawn(inputs: dict[str, str]) -> None:
+    made = drawings(ran(**inputs))
+    assert len(made) == 5
+    assert all(svg.startswith("<svg") and "nan" not in svg.lower() for svg in made)
+
+
+def test_figures_without_studies() -> None:
+    setup = replace(default_setup(PRESS_LINKAGE, rod_length="1.2 m"), studies=())
+    assert len(drawings(calculate(setup))) == 3
+
+
+def test_importing_the_plugin_is_light() -> None:
+    code = (
+        "import sys, press_linkage; from press_linkage.model import PRESS_LINKAGE; "
+        "heavy = {'pint', 'matplotlib', 'scipy', 'pydantic', 'jinja2'} & set(sys.modules); print(sorted(heavy))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_inputs_are_flat() -> None:
+    wanted = [
+        "crank_radius", "rod_length", "platform_arm", "knee_drive_length", "upper_knee_length", "lower_knee_length",
+        "slider_half_width", "crank_pivot_radius", "platform_half_width", "ground_pivot_radius", "ground_pivot_angle",
+        "crank_angle", "position_limit", "tilt_limit", "position_goal", "tilt_goal", "reading",
+    ]  # fmt: skip
+    assert list(PRESS_LINKAGE.input_fields)[: len(wanted)] == wanted
+    assert len(PRESS_LINKAGE.input_fields) == len(wanted) + 29
+    assert isinstance(PRESS_LINKAGE.inputs(), Press)
+    assert Path(str(EXAMPLE)).is_file()
