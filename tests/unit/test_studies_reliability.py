@@ -249,7 +249,7 @@ def test_a_search_that_fails_is_a_status_and_no_number():
     written = odds.as_json()["total"]["form"]
     assert set(written) == {"status"}
     assert "no convergence" in written["status"]
-    assert any("FORM of total" in getattr(block, "text", "") for block in odds.blocks())
+    assert any("FORM of the total" in getattr(block, "text", "") for block in odds.blocks())
 
 
 def test_form_stands_only_beside_a_sampling():

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.studies.demands import as_number, wilson
+from truing.studies.reading import spoken
 from truing.studies.sampling import Tally
 from truing.studies.synthesis import Plan
 
@@ -78,7 +79,7 @@ def allotted_blocks(allotted: Allotted) -> Sequence[Block]:
     """Return the steps, rule against least cost, and the probabilities along the synthesis."""
     blocks: list[Block] = []
     if not allotted.reached:
-        far = ", ".join(f"{name} {100 * value:.2f} %" for name, value in allotted.final.items())
+        far = " and ".join(f"{spoken(name)} {100 * value:.2f} %" for name, value in allotted.final.items())
         blocks.append(Words(f"The goal is {allotted.rule.status}. It comes to {far}.", "finding"))
     blocks.append(_steps(allotted))
     blocks.append(_comparison(allotted))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.studies.demands import Demand, as_number, worst
-from truing.studies.reading import printed, printed_step, step_unit
+from truing.studies.reading import printed, printed_step, spoken, step_unit
 
 if TYPE_CHECKING:
     from truing.studies.reliability import Curve, Odds
@@ -67,7 +67,7 @@ def odds_blocks(odds: Odds) -> Sequence[Block]:
         blocks.append(_spreads(odds))
     for name, found in odds.form.items():
         if found.probability is None:
-            blocks.append(Words(f"FORM of {name}: {found.status}."))
+            blocks.append(Words(f"FORM of the {spoken(name)}: {found.status}."))
     if odds.curve is not None and odds.curve.probability:
         blocks.append(_drawn(odds, odds.curve))
     return blocks
@@ -128,4 +128,4 @@ def _drawn(odds: Odds, curve: Curve) -> Drawing:
     }
     goals = {demand.name: demand.goal for demand in odds.demands if demand.goal is not None}
     labels = (labelled(curve.over, unit_text(curve.unit)), "probability")
-    return Drawing(f"Probability along {curve.over}", lines(x, series, labels, goals))
+    return Drawing(f"Probability along the {spoken(curve.over)}", lines(x, series, labels, goals))

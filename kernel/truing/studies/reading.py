@@ -64,6 +64,11 @@ def scalar_results(setup: Setup) -> tuple[str, ...]:
     return tuple(name for name, item in setup.model.own_result_fields.items() if not item.along)
 
 
+def spoken(name: str) -> str:
+    """Return a name as words: "slider position"."""
+    return name.replace("_", " ")
+
+
 def step_unit(unit: str) -> str:
     """Return the unit in which differences are printed: kelvin for a temperature level."""
     return "K" if unit in {"degC", "degF", "°C", "°F", "℃", "℉"} else unit

@@ -14,7 +14,7 @@ from truing.evaluate import acting_inputs, effect_column
 from truing.setup import Setup
 from truing.studies.bench import Bench, Check
 from truing.studies.differences import exact_slopes, nominal_of, slopes
-from truing.studies.reading import per, printed_step, result_names, scalar_results, step_unit
+from truing.studies.reading import per, printed_step, result_names, scalar_results, spoken, step_unit
 from truing.studies.sampling import Machines
 from truing.studies.scatter import Scatter, scatter_of
 
@@ -193,7 +193,7 @@ class Sensitivities:
 
     def blocks(self) -> Sequence[Block]:
         """Return, for every result, the sources ranked and a bar for each."""
-        from truing.studies.drawings import bars
+        from truing.studies.drawings import MOST_BARS, bars
 
         blocks: list[Block] = []
         for result in self.derivatives:
@@ -203,7 +203,8 @@ class Sensitivities:
             blocks.append(self._table(result, ranked))
             sizes, label = self._sizes(result, ranked)
             if any(sizes.values()):
-                blocks.append(Drawing(f"What moves {result}", bars(result.replace("_", " "), sizes, label)))
+                caption = f"The {MOST_BARS} largest of {len(sizes)}." if len(sizes) > MOST_BARS else ""
+                blocks.append(Drawing(f"What moves the {spoken(result)}", bars("", sizes, label), caption))
         return blocks
 
     def _ranked(self, result: str) -> list[str]:
@@ -241,7 +242,9 @@ class Sensitivities:
         columns = ["source", "derivative", "unit", "share of variance"]
         extra = ["Sobol index, alone", "Sobol index, total"] if with_indices else []
         note = self._note(result)
-        return Table(f"Sensitivity of {result}", columns + extra, rows, ("", "", "", "%", *("" for _ in extra)), note)
+        return Table(
+            f"Sensitivity of the {spoken(result)}", columns + extra, rows, ("", "", "", "%", *("" for _ in extra)), note
+        )
 
     def _note(self, result: str) -> str:
         from truing.units import unit_factor, unit_text

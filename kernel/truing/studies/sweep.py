@@ -11,7 +11,7 @@ from truing.errors import UsageError
 from truing.evaluate import acting_inputs, evaluate_rows
 from truing.setup import Setup
 from truing.studies.bench import Bench, Check
-from truing.studies.reading import printed, read_range, scattering_name
+from truing.studies.reading import printed, read_range, scattering_name, spoken
 
 if TYPE_CHECKING:
     import numpy as np
@@ -118,7 +118,7 @@ class Swept:
         if self.shown and self._plain():
             from truing.studies.drawings import curves
 
-            blocks.append(Drawing(f"Along {self.over}", curves(self, self._plain()[:4])))
+            blocks.append(Drawing(f"Along the {spoken(self.over)}", curves(self, self._plain()[:4])))
         if self.failed:
             row, reason = self.failed[0]
             count = f"{len(self.failed)} of {len(self.axis)} points have no answer"
@@ -157,4 +157,4 @@ class Swept:
                 row += [float(from_si(values[place], self.units[name])), float(from_si(self.axis[place], unit))]
             rows.append(row)
         columns = ("result", "unit", "smallest", "at", "largest", "at")
-        return Table(f"Along {self.over}: extremes", columns, rows, ("", "", "", unit, "", unit))
+        return Table(f"Extremes along the {spoken(self.over)}", columns, rows, ("", "", "", unit, "", unit))
