@@ -1,0 +1,117 @@
+"""Everything installed anew: our wheel and two strangers' projects in a fresh environment, by pip alone."""
+
+import json
+import os
+import sys
+import sysconfig
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from conftest import GUESTS, ROOT, Answer, copied_guest, process
+
+pytestmark = [pytest.mark.install, pytest.mark.xdist_group("install")]
+OURS = {path.name for path in (ROOT / "plugins").iterdir() if (path / "__init__.py").is_file()}
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build our wheel."""
+    folder = tmp_path_factory.mktemp("wheel")
+    command = [sys.executable, "-m", "build", "--wheel", "--no-isolation", "--outdir", str(folder), str(ROOT)]
+    done = process(command, folder)
+    assert done.code == 0, done.err + done.out
+    (built,) = folder.glob("*.whl")
+    return built
+
+
+@pytest.fixture(scope="module")
+def fresh(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a fresh environment with the wheel and both strangers in it; returns its folder of commands."""
+    folder = tmp_path_factory.mktemp("fresh")
+    environment = folder / "environment"
+    assert process([sys.executable, "-m", "venv", str(environment)], folder).code == 0
+    commands = environment / ("Scripts" if os.name == "nt" else "bin")
+    sources = [str(copied_guest(name, folder)) for name in GUESTS]
+    pip = [str(commands / "python"), "-m", "pip", "--disable-pip-version-check"]
+    done = process([*pip, "install", "--quiet", str(wheel), *sources], folder)
+    assert done.code == 0, done.err
+    check = process([*pip, "check"], folder)
+    assert check.code == 0, check.out
+    return commands
+
+
+def calc(commands: Path, folder: Path, *arguments: str) -> Answer:
+    return process([str(commands / "calc"), *arguments], folder)
+
+
+def test_the_wheel_holds_our_packages_and_no_others(wheel: Path) -> None:
+    names = zipfile.ZipFile(wheel).namelist()
+    tops = {name.split("/")[0] for name in names}
+    assert {top for top in tops if not top.endswith(".dist-info")} == {"truing", *OURS}
+    for package in ("truing", *OURS):
+        assert f"{package}/py.typed" in names
+    assert not [name for name in names if "test_" in name or "__pycache__" in name or name.endswith((".md", ".pyc"))]
+
+
+def test_the_wheel_holds_templates_and_examples(wheel: Path) -> None:
+    names = set(zipfile.ZipFile(wheel).namelist())
+    templates = {path.relative_to(ROOT).as_posix() for path in (ROOT / "templates").rglob("*") if path.is_file()}
+    assert {f"truing/{name}" for name in templates if "__pycache__" not in name} <= names
+    examples = {path.relative_to(ROOT / "plugins").as_posix() for path in (ROOT / "plugins").glob("*/*.toml")}
+    assert examples <= names
+    assert examples
+
+
+def test_the_wheel_names_its_commands_and_plugins(wheel: Path) -> None:
+    archive = zipfile.ZipFile(wheel)
+    (entries,) = (name for name in archive.namelist() if name.endswith("entry_points.txt"))
+    text = archive.read(entries).decode()
+    assert "calc = truing.cli:main" in text
+    assert "press_linkage = press_linkage" in text
+    assert any(name.endswith("licenses/LICENSE") for name in archive.namelist())
+
+
+def test_installed_anew_everything_runs(fresh: Path, tmp_path: Path) -> None:
+    listed = calc(fresh, tmp_path, "plugins")
+    assert listed.code == 0, listed.err
+    for name in ("press_linkage", "screw_joint", "frame_settling"):
+        assert name in listed.out
+    assert "tables.py:6: plugin 'broken_guest' 0.0.7: IndexError" in listed.err
+    assert str(ROOT) not in listed.out + listed.err
+    assert calc(fresh, tmp_path, "describe", "screw_joint").code == 0
+    for name in ("screw_joint", "press_linkage"):
+        assert calc(fresh, tmp_path, "init", name, "-o", f"{name}.toml").code == 0
+        done = calc(fresh, tmp_path, "run", name, "--inputs", f"{name}.toml")
+        assert done.code == 0, done.err
+        sheet = (tmp_path / "runs" / name / "sheet.html").read_text(encoding="utf-8")
+        assert "<math" in sheet
+        results = json.loads((tmp_path / "runs" / name / "results.json").read_text(encoding="utf-8"))
+        assert results["plugin"]["name"] == name
+
+
+def test_what_is_installed_comes_from_the_wheel(fresh: Path, tmp_path: Path) -> None:
+    code = "import truing, pathlib; print(pathlib.Path(truing.__file__).parent)"
+    found = process([str(fresh / "python"), "-c", code], tmp_path).out.strip()
+    assert Path(found).is_relative_to(fresh.parent)
+    assert (Path(found) / "templates" / "sheet.css").is_file()
+    assert sysconfig.get_path("purelib") not in found
+
+
+def test_the_other_names_of_the_command(fresh: Path, tmp_path: Path) -> None:
+    answers = [
+        process([str(fresh / "truing"), "plugins", "--names"], tmp_path),
+        process([str(fresh / "python"), "-m", "truing", "plugins", "--names"], tmp_path),
+    ]
+    assert [answer.out.split() for answer in answers] == [["broken_guest", "press_linkage", "screw_joint"]] * 2
+
+
+def test_a_fresh_process_pool_finds_everything(fresh: Path, tmp_path: Path) -> None:
+    """Results are byte for byte the same with two worker processes."""
+    few = ("--set", "studies.reliability.draws=40000", "--output")
+    for name, workers in (("one", "1"), ("two", "2")):
+        done = calc(fresh, tmp_path, "run", "screw_joint", "--workers", workers, *few, name)
+        assert done.code == 0, done.err
+    one, two = ((tmp_path / name / "results.json").read_bytes() for name in ("one", "two"))
+    assert one == two
