@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeGuard
 
 from press_linkage.answers import LINKS, sources_of
 from press_linkage.drawn_answers import along_the_synthesis, over_the_turn, salience_bars, way
@@ -41,7 +41,7 @@ def travel(record: "Run") -> Sequence[Block]:
     ]
 
 
-def knows_every_error(found: "Sensitivities | None") -> bool:
+def knows_every_error(found: "Sensitivities | None") -> "TypeGuard[Sensitivities]":
     """Whether the sensitivity study ran as declared, for both results and all errors."""
     return found is not None and all(
         set(SOURCES) <= set(found.derivatives.get(result, ())) for result in ("slider_position", "slider_tilt")
