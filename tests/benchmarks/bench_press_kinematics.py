@@ -9,6 +9,7 @@ import time
 import tracemalloc
 
 import numpy as np
+
 from press_linkage.closure import demands
 from press_linkage.increments import KINDS, SOURCES
 from press_linkage.kinematics import Deviations, Geometry, solve
