@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from truing.kernel import Kernel
     from truing.markers import hookimpl, hookspec
     from truing.studies.allocation import Allocation, Allotted
+    from truing.studies.bench import Bench, Check
     from truing.studies.reliability import Odds, Reliability
     from truing.studies.sensitivity import Sensitivities, Sensitivity
     from truing.studies.sweep import Sweep, Swept
@@ -36,6 +37,7 @@ _HOMES = {
     "truing.kernel": ("Kernel",),
     "truing.markers": ("hookimpl", "hookspec"),
     "truing.studies.allocation": ("Allocation", "Allotted"),
+    "truing.studies.bench": ("Bench", "Check"),
     "truing.studies.reliability": ("Odds", "Reliability"),
     "truing.studies.sensitivity": ("Sensitivities", "Sensitivity"),
     "truing.studies.sweep": ("Sweep", "Swept"),
@@ -51,6 +53,7 @@ __all__ = [  # noqa: RUF022  # in the order of a plugin's story
     "Model", "Section", "Record", "Study", "Published", "Finding",
     "Words", "Table", "Drawing", "Block",
     "Sweep", "Swept", "Sensitivity", "Sensitivities", "Reliability", "Odds", "Allocation", "Allotted",
+    "Bench", "Check",
     "hookimpl", "hookspec", "Kernel", "TruingError",
 ]  # fmt: skip
 

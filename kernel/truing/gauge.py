@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from truing.declare.fields import with_values
 from truing.errors import UsageError
-from truing.evaluate import effects_in_order, evaluate_rows
+from truing.evaluate import evaluate_rows
 from truing.setup import Setup
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def one_machine(setup: Setup) -> Setup:
     """Return the setup of this one machine: its calibrated inputs in place, nothing drawn."""
     fields = setup.model.input_fields
     calibrated = {fields[name].path: value for name, value in setup.calibrated.items()}
-    return replace(effects_in_order(setup), inputs=with_values(setup.inputs, calibrated))
+    return replace(setup, inputs=with_values(setup.inputs, calibrated))
 
 
 def shown_by_gauge(setup: Setup, columns: Mapping[str, Any], rows: int) -> Shown:

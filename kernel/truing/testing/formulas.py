@@ -48,10 +48,16 @@ def formulas_have_the_unit(subject: Subject) -> None:
 
 def formulas_equal_the_function(subject: Subject) -> None:
     """Every printed formula gives what the function gives, to 1e-9, at the defaults and two points beside them."""
+    from truing.units import from_si
+
     for point in ({}, *subject.points(2)):
         values = _values(subject, point)
         for item, formula, numeric, scope in formulas_of(subject):
-            _compare(subject, item, formula, _in_formula(formula, values, numeric, scope), values[item.name], numeric)
+            result = values[item.name]
+            expected = from_si(result, item.unit) if numeric and formula.left is None else result
+            fault = _difference(formula, _in_formula(formula, values, numeric, scope), expected)
+            if fault:
+                fail(f"{subject.model.name}: the formula of '{item.name}' ({formula.text}) {fault}")
 
 
 def _values(subject: Subject, point: Mapping[str, float]) -> dict[str, Any]:
@@ -73,24 +79,17 @@ def _in_formula(formula: Formula, values: Mapping[str, Any], numeric: bool, scop
     return given
 
 
-def _compare(
-    subject: Subject, item: ResultField, formula: Formula, given: dict[str, Any], result: Any, numeric: bool
-) -> None:
+def _difference(formula: Formula, given: Mapping[str, Any], expected: Any) -> str:
+    """Say how a formula, or the two sides of an equation, differ from what they are to give; nothing if they agree."""
     import numpy as np
-
-    from truing.units import from_si
 
     with np.errstate(all="ignore"):
         right = np.asarray(value_of(formula.right, given), dtype=float)
-        expected = np.asarray(result if formula.left is None else value_of(formula.left, given), dtype=float)
-    if formula.left is None and numeric:
-        expected = np.asarray(from_si(expected, item.unit))
-    scale = np.maximum(np.abs(right), np.abs(expected))
-    if not np.all(np.abs(right - expected) <= AGREES * scale):
-        number, where = ("its right side", "its left side") if formula.left is not None else ("it", "the function")
-        place = np.unravel_index(np.argmax(np.abs(right - expected)), np.broadcast_shapes(right.shape, expected.shape))
-        one, other = (float(np.broadcast_to(side, scale.shape)[place]) for side in (right, expected))
-        fail(
-            f"{subject.model.name}: the formula of '{item.name}' ({formula.text}) is not what is calculated: "
-            f"{number} gives {one:.12g}, {where} gives {other:.12g}"
-        )
+        other = np.asarray(expected if formula.left is None else value_of(formula.left, given), dtype=float)
+    right, other = np.broadcast_arrays(right, other)
+    wrong = ~(np.abs(right - other) <= AGREES * np.maximum(np.abs(right), np.abs(other)))
+    if not wrong.any():
+        return ""
+    sides = ("it", "the function") if formula.left is None else ("its right side", "its left side")
+    one, two = float(right[wrong][0]), float(other[wrong][0])
+    return f"is not what is calculated: {sides[0]} gives {one:.12g}, {sides[1]} gives {two:.12g}"
