@@ -48,11 +48,10 @@ def letter(kind: str) -> str:
     return LETTERS[SYMBOLS[kind]]
 
 
-def way(record: "Run") -> "Figure":
+def way(press: Press) -> "Figure":
     """Draw the height of the slider over one turn of the crank, with both dead centres."""
     from matplotlib.figure import Figure
 
-    press = record.inputs
     top = float(top_crank_angle(geometry_of(press)))
     height = np.asarray(position_of(press, TURN).slider_position)
     figure = Figure(figsize=(6.4, 2.9), layout="constrained")

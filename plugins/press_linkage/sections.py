@@ -2,12 +2,15 @@
 
 from collections.abc import Sequence
 from functools import partial
+from math import degrees, isfinite
 from typing import TYPE_CHECKING, TypeGuard
 
 from press_linkage.answers import LINKS, sources_of
 from press_linkage.drawn_answers import along_the_synthesis, over_the_turn, salience_bars, way
 from press_linkage.drawn_mechanism import mechanism
 from press_linkage.increments import KINDS, POLAR_ANGLES, SOURCES
+from press_linkage.kinematics import top_crank_angle
+from press_linkage.mechanism import geometry_of
 from press_linkage.published import WHERE
 from press_linkage.quantities import Press, Slider
 from truing import Block, Drawing, Section, Table, Words
@@ -31,14 +34,12 @@ MICRORADIAN_2 = 1e-12
 
 
 def travel(record: "Run") -> Sequence[Block]:
-    """The way of the slider over one turn, where the crank turns fully."""
-    return [
-        Drawing(
-            "Slider over one turn of the crank",
-            partial(way, record),
-            "The crank turns 140° up and 220° down or the other way round; near the bottom the slider hardly moves.",
-        )
-    ]
+    """The way of the slider over one turn, with the effects that are on."""
+    swept = record.studies.get("sweep")
+    up = -degrees(top_crank_angle(geometry_of(record.inputs)))
+    caption = f"The crank turns {up:.0f}° one way and {360 - up:.0f}° the other." if isfinite(up) else "It only swings."
+    press = record.inputs if swept is None else swept.inputs
+    return [Drawing("Slider over one turn of the crank", partial(way, press), caption)]
 
 
 def knows_every_error(found: "Sensitivities | None") -> "TypeGuard[Sensitivities]":
