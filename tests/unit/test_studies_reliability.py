@@ -384,13 +384,18 @@ def test_nothing_required_is_said():
         ({"batch": 0}, "at least 1"),
         ({"method": ("bootstrap",)}, "not bootstrap"),
         ({"method": ()}, "not nothing"),
-        ({"over": "first"}, "go together"),
-        ({"over": "first", "at": "1..2 mm", "points": 1}, "2 to 1000"),
+        ({"points": 1}, "2 to 1000"),
     ],
 )
 def test_options_are_checked(options, sentence):
     with pytest.raises(UsageError, match=sentence):
         Reliability(**options)
+
+
+@pytest.mark.parametrize("options", [{"over": "first"}, {"at": "1..2 mm"}])
+def test_a_curve_needs_input_and_range(options):
+    with pytest.raises(UsageError, match="over and at go together"):
+        odds_of(setup_of(CHAIN), Reliability(**options))
 
 
 def test_the_condition_of_the_models_is_what_the_tests_think():

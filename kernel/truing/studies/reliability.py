@@ -50,6 +50,9 @@ class Reliability:
 
     def run(self, bench: Bench) -> Odds:
         """Answer at the stated inputs, then along ``over`` where asked. Raises UsageError where nothing is required."""
+        if bool(self.over) != bool(self.at):  # here and not when it is made: a file may set one and a plugin the other
+            example = 'over = "working_time", at = "0..6000 h"'
+            raise UsageError(f"study '{self.name}': over and at go together: {example}")
         odds = self._answer(bench, bench.setup, bench.answers, 0)
         curve = self._curve(bench) if self.over else None
         return replace(odds, curve=curve)
@@ -128,9 +131,7 @@ def _check_options(study: Reliability) -> None:
         raise UsageError("form is printed only beside a sampling; add monte_carlo to method")
     if study.draws < 1 or study.batch < 1:
         raise UsageError("draws and batch are at least 1")
-    if bool(study.over) != bool(study.at):
-        raise UsageError(f'study \'{study.name}\': over and at go together: over = "working_time", at = "0..6000 h"')
-    if study.over and not 2 <= study.points <= 1000:
+    if not 2 <= study.points <= 1000:
         raise UsageError(f"points = {study.points}, but a curve has 2 to 1000 points")
 
 
