@@ -14,16 +14,16 @@ FINDINGS = [
     ),
     Finding(
         title="Misprint: the unit of the tilt limit",
-        text="The limit is printed as 0.0013 rad. The tilt scatters with a standard deviation of 16 urad, so 0.0013 "
-        "rad is 82 of them and the reliability would be 1 without any tightening. In degrees the limit is 23 urad "
+        text="The limit is printed as 0.0013 rad. The tilt scatters with a standard deviation of 16 µrad, so 0.0013 "
+        "rad is 82 of them and the reliability would be 1 without any tightening. In degrees the limit is 23 µrad "
         "and the printed reliabilities follow: 0.849 and 0.9965 with 0.0013 degree, 0.856 and 0.997 with 0.001324 "
         "degree, which rounds to the same print (the paper: 0.857 and 0.9973).",
     ),
     Finding(
         title="The printed reliabilities leave out the errors across the radius",
         text="Table 3 tolerates every joint along y and along z. The printed pair of position reliabilities fixes the "
-        "variance that tightening links cannot change: 41 um^2. The errors along the radius give that (with ±0.05 "
-        "mm at the crank pivots; Table 3 says ±0.1 mm). The errors across it alone would add 263 um^2. A "
+        "variance that tightening links cannot change: 41 µm². The errors along the radius give that (with ±0.05 "
+        "mm at the crank pivots; Table 3 says ±0.1 mm). The errors across it alone would add 263 µm². A "
         "sensitivity in m/rad used beside one in mm/mm would lose a factor of a million in just these terms; that "
         "is an inference, the paper does not say so.",
     ),

@@ -32,11 +32,11 @@ WHERE = {
     "coefficient_rod_length": ("order of adjustment, k_R", 4.281, "Table 4"),
     "coefficient_crank_radius": ("order of adjustment, a", 4.876, "Table 4"),
     "coefficient_platform_arm": ("order of adjustment, k", 5.389, "Table 4"),
-    "position_reliability": ("position reliability, start", 0.5674, "conclusions"),
-    "position_reliability_final": ("position reliability, final", 0.8870, "conclusions"),
-    "tilt_reliability": ("tilt reliability, start", 0.8570, "conclusions"),
-    "tilt_reliability_final": ("tilt reliability, final", 0.9973, "conclusions"),
-    "adjustments": ("number of adjustments", 9.0, "conclusions"),
+    "position_reliability": ("position reliability, start", 0.5674, "text after Table 6"),
+    "position_reliability_final": ("position reliability, final", 0.8870, "text after Table 6"),
+    "tilt_reliability": ("tilt reliability, start", 0.8570, "text after Table 6"),
+    "tilt_reliability_final": ("tilt reliability, final", 0.9973, "text after Table 6"),
+    "adjustments": ("number of adjustments", 9.0, "text after Table 6"),
 }
 SALIENCE = ("salience_position_key", "salience_tilt_key")
 ORDER = tuple(name for name in WHERE if name.startswith("coefficient_"))

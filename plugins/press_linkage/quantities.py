@@ -70,7 +70,7 @@ class Press:
         source="the paper works at the bottom dead centre", at_least=-360, at_most=360,
     )  # fmt: skip
     position_limit: Float = given(
-        0.02, "mm", symbol="L_S", note="permitted error of the slider position", source="section 3 of the paper",
+        0.02, "mm", symbol="L_S", note="permitted error of the slider position", source="the paper, text after Table 3",
         above=0,
     )  # fmt: skip
     tilt_limit: Float = given(
@@ -79,11 +79,11 @@ class Press:
     )  # fmt: skip
     position_goal: Float = given(
         0.88, "", symbol="G_S", note="probability that the position error stays within its limit",
-        source="section 3 of the paper", above=0, below=1,
+        source="the paper, text after Table 3", above=0, below=1,
     )  # fmt: skip
     tilt_goal: Float = given(
         0.95, "", symbol="G_theta", note="probability that the tilt stays within its limit",
-        source="section 3 of the paper", above=0, below=1,
+        source="the paper, text after Table 3", above=0, below=1,
     )  # fmt: skip
     reading: Literal["complete", "printed"] = given(
         "complete",

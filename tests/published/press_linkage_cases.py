@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+
 from press_linkage import increments
 from press_linkage.increments import ARM, KINDS, POLAR_ANGLES
 from press_linkage.kinematics import Deviations, Geometry, Position, solve

@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from press_linkage_cases import AROUND, MECHANISMS, PAPER
+
 from press_linkage import closure, kinematics
 from press_linkage.kinematics import Deviations, Geometry, solve
-from press_linkage_cases import AROUND, MECHANISMS, PAPER
 
 
 def broken(geometry: Geometry, angle: float = 0.0, **off: object) -> list[closure.Demand]:

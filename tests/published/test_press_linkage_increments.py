@@ -10,10 +10,11 @@ from math import erf, sqrt
 
 import numpy as np
 import pytest
+from press_linkage_cases import AROUND, MECHANISMS, PAPER, moved, scattered, sensitivities
+
 from press_linkage import increments, kinematics
 from press_linkage.increments import ARM, DRIVEN, KINDS, PASSIVE, POLAR_ANGLES, SOURCES, source
 from press_linkage.kinematics import Deviations, Geometry, solve
-from press_linkage_cases import AROUND, MECHANISMS, PAPER, moved, scattered, sensitivities
 
 
 def test_the_sources_are_29() -> None:

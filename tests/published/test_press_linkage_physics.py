@@ -11,10 +11,11 @@ from math import factorial
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from press_linkage_cases import AROUND, MECHANISMS, PAPER, mirrored, scattered
+
 from press_linkage import kinematics
 from press_linkage.increments import KINDS
 from press_linkage.kinematics import Deviations, Geometry, Half, Position, solve
-from press_linkage_cases import AROUND, MECHANISMS, PAPER, mirrored, scattered
 
 
 def test_bottom_dead_centre() -> None:
