@@ -97,5 +97,6 @@ def _effect(effect: Any) -> dict[str, Any]:
 
 def _objective(item: Any) -> dict[str, Any]:
     kinds: Mapping[type[Any], str] = {Vary: "vary", Minimise: "minimise", Maximise: "maximise", Require: "require"}
-    return {"kind": kinds[type(item)], **{field.name: getattr(item, field.name) for field in dataclasses.fields(item) if field.name != "kind"},
-            **({"limit_kind": item.kind} if isinstance(item, Require) else {})}  # fmt: skip
+    own = {field.name: getattr(item, field.name) for field in dataclasses.fields(item) if field.name != "kind"}
+    limit = {"limit_kind": item.kind} if isinstance(item, Require) else {}
+    return {"kind": kinds[type(item)], **own, **limit}

@@ -13,15 +13,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     0 done; 1 done, but a check fails; 2 usage or input; 3 the plugin failed; 4 no convergence; 130 interrupted.
     """
+    try:
+        return _run(list(sys.argv[1:] if arguments is None else arguments))
+    except KeyboardInterrupt:
+        print("calc: interrupted; nothing was written", file=sys.stderr)  # noqa: T201
+        return 130
+
+
+def _run(words: list[str]) -> int:
     from truing.cli.app import app
     from truing.cli.console import Settings, utf8_streams
 
     utf8_streams()
-    words = list(sys.argv[1:] if arguments is None else arguments)
-    said = {FLAGS[word] for word in words if word in FLAGS}
-    settings = Settings(**dict.fromkeys(said, True))
+    end = words.index("--") if "--" in words else len(words)
+    said = {FLAGS[word] for word in words[:end] if word in FLAGS}
+    kept = [word for word in words[:end] if word not in FLAGS] + words[end:]
     try:
-        app(args=[word for word in words if word not in FLAGS], prog_name="calc", obj=settings)
-    except SystemExit as end:
-        return end.code if isinstance(end.code, int) else 0 if end.code is None else 2
+        app(args=kept, prog_name="calc", obj=Settings(**dict.fromkeys(said, True)))
+    except SystemExit as exit_:
+        return exit_.code if isinstance(exit_.code, int) else 0 if exit_.code is None else 2
     return 0

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 
 from truing.cli.console import columns, one_line, out, out_json, verb
+from truing.cli.words import AsJson
 
 
 @verb
 def compare(
     context: typer.Context,
-    first: Path = typer.Argument(..., help="A run folder."),
-    second: Path = typer.Argument(..., help="Another run folder."),
-    as_json: bool = typer.Option(False, "--json", help="One JSON document on stdout."),
+    first: Annotated[Path, typer.Argument(help="A run folder.")],
+    second: Annotated[Path, typer.Argument(help="Another run folder.")],
+    as_json: AsJson = False,
 ) -> int:
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""
     from truing.compare_runs import changes
@@ -40,7 +41,11 @@ def _words(value: Any) -> str:
         return "-"
     if isinstance(value, dict) and "value" in value:
         number = value["value"]
-        text = format_number(number, 8) if isinstance(number, (int, float)) and not isinstance(number, bool) else str(number)
+        text = (
+            format_number(number, 8)
+            if isinstance(number, (int, float)) and not isinstance(number, bool)
+            else str(number)
+        )
         said = f"{text} {value.get('unit') or ''}".strip()
         return said if value.get("passed", True) else said + " (fails)"
     text = one_line(value)

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import functools
 import json
+import os
+import re
+import shutil
 import sys
+import textwrap
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ParamSpec
 
@@ -18,6 +22,9 @@ if TYPE_CHECKING:
     from truing.studies.bench import Progress
 
 P = ParamSpec("P")
+NARROWEST = 60
+GAP = "  "
+_PLACE = re.compile(r"[^\n]+?:\d+: ")
 
 
 @dataclass(frozen=True)
@@ -27,6 +34,16 @@ class Settings:
     traceback: bool = False
     verbose: bool = False
     quiet: bool = False
+
+    def say(self, text: str) -> None:
+        """Say something that is neither a result nor an error, unless all is to be quiet."""
+        if not self.quiet:
+            say(text)
+
+    def detail(self, text: str) -> None:
+        """Say something that only those want to know who ask for more."""
+        if self.verbose and not self.quiet:
+            say(text)
 
 
 def utf8_streams() -> None:
@@ -52,9 +69,10 @@ def say(text: str) -> None:
     print(text, file=sys.stderr)  # noqa: T201
 
 
-def settings_of(context: typer.Context) -> Settings:
+def settings_of(context: Any) -> Settings:
     """Return the settings of this call."""
-    return context.obj if isinstance(context.obj, Settings) else Settings()
+    said = getattr(context, "obj", None)
+    return said if isinstance(said, Settings) else Settings()
 
 
 def verb(function: Callable[P, int]) -> Callable[P, None]:
@@ -62,28 +80,44 @@ def verb(function: Callable[P, int]) -> Callable[P, None]:
 
     @functools.wraps(function)
     def guarded(*args: P.args, **kwargs: P.kwargs) -> None:
-        context = kwargs.get("context")
-        settings = settings_of(context) if isinstance(context, typer.Context) else Settings()
+        settings = settings_of(kwargs.get("context"))
         try:
             code = function(*args, **kwargs)
-        except KeyboardInterrupt:
-            say("calc: interrupted; nothing was written")
-            code = 130
-        except TruingError as error:
-            if settings.traceback:
-                raise
-            say(str(error) if isinstance(error, InputError) or ":" in str(error).split(" ")[0] else f"calc: {error}")
-            code = error.exit_code
+            sys.stdout.flush()
         except BrokenPipeError:
+            _close_output()
             code = 0
+        except KeyboardInterrupt:
+            say(INTERRUPTED)
+            code = 130
         except Exception as error:
             if settings.traceback:
-                raise
-            say(f"calc: {type(error).__name__}: {error} (this is a fault of the program; --traceback shows where)")
-            code = 3
+                import traceback
+
+                traceback.print_exc()
+            say(sentence_of(error))
+            code = error.exit_code if isinstance(error, TruingError) else 3
         raise typer.Exit(code)
 
     return guarded
+
+
+INTERRUPTED = "calc: interrupted; nothing was written"
+
+
+def sentence_of(error: Exception) -> str:
+    """Return what is said of an error: with the place it names, or in the name of the program."""
+    if not isinstance(error, TruingError):
+        words = one_line(f"{type(error).__name__}: {error}")
+        return f"calc: {words} (this is a fault of the program; --traceback shows where)"
+    has_place = isinstance(error, InputError) or _PLACE.match(str(error))
+    return str(error) if has_place else f"calc: {error}"
+
+
+def _close_output() -> None:
+    """Stop writing to a reader that has gone, so that nothing is said of it at the end."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 @contextmanager
@@ -106,14 +140,35 @@ def progress_bar(settings: Settings) -> Iterator[Progress]:
         yield show
 
 
-def columns(rows: Sequence[Sequence[str]], *, right: Sequence[int] = (), gap: str = "  ") -> str:
-    """Return rows of text in aligned columns; those at the places ``right`` are flush right."""
-    widths = [max(len(row[place]) for row in rows) for place in range(len(rows[0]))] if rows else []
+def columns(rows: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> str:
+    """Return rows of text in aligned columns, one below the other."""
+    return "\n".join(aligned(rows, right=right))
+
+
+def aligned(rows: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> list[str]:
+    """Return each row of text with its columns aligned; those at the places ``right`` are flush right.
+
+    On a terminal the last column is broken to fit; elsewhere every row is one line.
+    """
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    indent = sum(widths[:-1]) + len(GAP) * (len(widths) - 1)
     lines = []
     for row in rows:
-        cells = [cell.rjust(w) if k in right else cell.ljust(w) for k, (cell, w) in enumerate(zip(row, widths, strict=True))]
-        lines.append(gap.join(cells).rstrip())
-    return "\n".join(lines)
+        sized = zip(row, widths, strict=True)
+        cells = [
+            cell.rjust(width) if place in right else cell.ljust(width) for place, (cell, width) in enumerate(sized)
+        ]
+        lines.append("\n".join(broken(GAP.join(cells).rstrip(), indent)))
+    return lines
+
+
+def broken(line: str, indent: int) -> list[str]:
+    """Break a line that is wider than the terminal behind its indent; elsewhere than on a terminal leave it whole."""
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else sys.maxsize
+    if len(line) <= width or width - indent < NARROWEST // 2 or width < NARROWEST:
+        return [line]
+    parts = textwrap.wrap(line[indent:], width - indent) or [""]
+    return [line[:indent] + parts[0], *(" " * indent + part for part in parts[1:])]
 
 
 def one_line(text: object) -> str:

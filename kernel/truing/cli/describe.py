@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 
 from truing.cli.console import columns, one_line, out, out_json, settings_of, verb
 from truing.cli.load import find_offer
+from truing.cli.words import AsJson, Plugin
 from truing.describe import description
 
 
 @verb
 def describe(
     context: typer.Context,
-    plugin: str = typer.Argument(..., help="An installed plugin's name, or a Python file."),
-    as_json: bool = typer.Option(False, "--json", help="One JSON document on stdout."),
-    as_schema: bool = typer.Option(False, "--json-schema", help="The JSON Schema of the inputs file, for editors."),
+    plugin: Plugin,
+    as_json: AsJson = False,
+    as_schema: Annotated[
+        bool, typer.Option("--json-schema", help="The JSON Schema of the inputs file, for editors.")
+    ] = False,
 ) -> int:
     """Show inputs, results, error sources and objectives: symbols, units, bounds, sources."""
     offer = find_offer(plugin, settings_of(context))
@@ -39,9 +42,15 @@ def _lines(said: dict[str, Any]) -> Iterator[str]:
     sections = {
         "Inputs": [_input_row(item) for item in said["inputs"]],
         "Results": [_row(item["name"], _symbol(item), _unit(item["unit"]), item["note"]) for item in said["results"]],
-        "Tolerances": [_row(item["name"], item["spread"], "on " + ", ".join(item["on"]), item["why"]) for item in said["tolerances"]],
+        "Tolerances": [
+            _row(item["name"], item["spread"], "on " + ", ".join(item["on"]), item["why"])
+            for item in said["tolerances"]
+        ],
         "Effects": [_effect_row(item) for item in said["effects"]],
-        "Conditions": [_row(item["name"], f"reference {item['reference']:g}", _unit(item["unit"]), item["note"]) for item in said["conditions"]],
+        "Conditions": [
+            _row(item["name"], f"reference {item['reference']:g}", _unit(item["unit"]), item["note"])
+            for item in said["conditions"]
+        ],
         "Objectives": [_row(*_objective_words(item), "", "") for item in said["objectives"]],
     }
     for title, rows in sections.items():
@@ -80,7 +89,9 @@ def _input_row(item: dict[str, Any]) -> tuple[str, ...]:
 
 
 def _effect_row(item: dict[str, Any]) -> tuple[str, ...]:
-    unknowns = ", ".join(f"{one['name']} {one['low']:g}..{one['high']:g} {_unit(one['unit'])}" for one in item["unknowns"])
+    unknowns = ", ".join(
+        f"{one['name']} {one['low']:g}..{one['high']:g} {_unit(one['unit'])}" for one in item["unknowns"]
+    )
     needs = "needs " + ", ".join(item["needs"]) if item["needs"] else ""
     return _row(item["name"], f"on {item['acts_on']}", unknowns, needs, item["looks_like"])
 

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import Annotated
 
 import typer
 
-from truing.cli.console import out, say, settings_of, verb
+from truing.cli.console import out, settings_of, verb
 from truing.cli.load import find_offer
+from truing.cli.words import OutputFile, Plugin
 from truing.errors import OutputError
 
 
 @verb
 def init(
     context: typer.Context,
-    plugin: str = typer.Argument(..., help="An installed plugin's name, or a Python file."),
-    output: Path | None = typer.Option(None, "-o", "--output", help="The file to write (stdout without it)."),
-    force: bool = typer.Option(False, "--force", help="Replace an existing file."),
+    plugin: Plugin,
+    output: OutputFile = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> int:
     """Write a commented inputs file that holds the paper's example."""
     from truing.example_file import example_text
@@ -32,6 +33,5 @@ def init(
         output.write_text(text, encoding="utf-8")
     except OSError as error:
         raise OutputError(f"{output} cannot be written: {error.strerror}") from None
-    if not settings.quiet:
-        say(f"wrote {output}; now: calc run {plugin} --inputs {output}")
+    settings.say(f"wrote {output}; now: calc run {plugin} --inputs {output}")
     return 0

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import typer
 
-from truing.cli.console import columns, one_line, out, out_json, say, verb
-from truing.kernel import Kernel, entry_points
+from truing.cli.console import columns, one_line, out, out_json, settings_of, verb
+from truing.cli.words import AsJson
+from truing.kernel import Kernel, Offer, entry_points
 
 
 @verb
 def plugins(
     context: typer.Context,
-    names: bool = typer.Option(False, "--names", help="Names only, from metadata; nothing is loaded."),
-    as_json: bool = typer.Option(False, "--json", help="One JSON document on stdout."),
-    strict: bool = typer.Option(False, "--strict", help="End at the first broken plugin."),
+    names: Annotated[bool, typer.Option("--names", help="Names only, from metadata; nothing is loaded.")] = False,
+    as_json: AsJson = False,
+    strict: Annotated[bool, typer.Option("--strict", help="End at the first broken plugin.")] = False,
 ) -> int:
     """List what is installed, from where, which version, and what broke while loading."""
     if names:
@@ -26,15 +29,18 @@ def plugins(
         out_json(_document(kernel))
         return 0
     rows = [("model", "version", "from", "title")]
-    for offer in offers.values():
-        rows.append((offer.name, offer.origin.version, offer.origin.distribution or offer.origin.file, one_line(offer.model.title)))
+    rows += [(offer.name, offer.origin.version, _home(offer), one_line(offer.model.title)) for offer in offers.values()]
     out(columns(rows))
     for offer in offers.values():
         for item in offer.added:
             out(f"  {offer.name}: {item.plugin} {item.version} adds '{item.what}'")
     for broken in kernel.broken:
-        say(f"warning: {broken}")
+        settings_of(context).say(f"warning: {broken}")
     return 0
+
+
+def _home(offer: Offer) -> str:
+    return offer.origin.distribution or offer.origin.file
 
 
 def _document(kernel: Kernel) -> dict[str, object]:
@@ -52,7 +58,13 @@ def _document(kernel: Kernel) -> dict[str, object]:
             for offer in kernel.offers.values()
         ],
         "broken": [
-            {"plugin": item.plugin, "version": item.version, "file": item.file, "line": item.line, "reason": item.reason}
+            {
+                "plugin": item.plugin,
+                "version": item.version,
+                "file": item.file,
+                "line": item.line,
+                "reason": item.reason,
+            }
             for item in kernel.broken
         ],
     }

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from truing.cli.console import columns, one_line, out, out_json, progress_bar, settings_of, verb
+from truing.cli.console import aligned, one_line, out, out_json, progress_bar, settings_of, verb
 from truing.cli.load import find_offer
+from truing.cli.words import AsJson, Plugin
+
+if TYPE_CHECKING:
+    from truing.published import ComparedRow
+
+HEAD = ("quantity", "where", "unit", "paper", "ours", "ratio", "verdict", "obtained", "why")
 
 
 @verb
 def verify(
     context: typer.Context,
-    plugin: str = typer.Argument(..., help="An installed plugin's name, or a Python file."),
-    as_json: bool = typer.Option(False, "--json", help="One JSON document on stdout."),
+    plugin: Plugin,
+    as_json: AsJson = False,
 ) -> int:
     """Print every number of the paper beside ours; exit 0 if every row matches its stated verdict."""
     from truing.published import compare_published
@@ -27,11 +34,11 @@ def verify(
     if as_json:
         out_json({"rows": [_plain(row) for row in rows], "findings": [asdict(item) for item in offer.model.findings]})
     else:
-        _print(offer.model, rows)
+        out("\n".join(_lines(offer.model, rows)))
     return 0 if all(row.as_stated for row in rows) else 1
 
 
-def _plain(row: Any) -> dict[str, Any]:
+def _plain(row: ComparedRow) -> dict[str, Any]:
     printed = row.published
     return {
         "name": printed.name,
@@ -48,23 +55,46 @@ def _plain(row: Any) -> dict[str, Any]:
     }
 
 
-def _print(model: Any, rows: Any) -> None:
-    from truing.numbers import format_number
-
+def _lines(model: Any, rows: Sequence[ComparedRow]) -> Iterator[str]:
     if not rows:
-        out(f"{model.name} states no published numbers")
-    lines = [("quantity", "where", "unit", "paper", "ours", "ratio", "verdict", "obtained", "settings")]
-    for row in rows:
-        said = _plain(row)
-        verdict = said["verdict"] if row.as_stated else f"{said['verdict']}, NOT AS STATED"
-        ratio = "-" if said["ratio"] is None else f"{said['ratio']:.4f}"
-        settings = ", ".join(f"{name} = {value}" for name, value in said["settings"].items())
-        numbers = (format_number(said["paper"], 5), format_number(said["ours"], 5), ratio)
-        lines.append((said["name"], said["where"], said["unit"], *numbers, verdict, said["obtained"], settings))
-    if rows:
-        out(columns([tuple(one_line(cell) for cell in line) for line in lines], right=(3, 4, 5)))
-    for row in rows:
-        if row.published.why:
-            out(f"\n{row.published.name}: {one_line(row.published.why)}")
+        yield f"{model.name} states no published numbers"
+        return
+    reasons = list(dict.fromkeys(one_line(row.published.why) for row in rows if row.published.why))
+    numbers = {reason: f"[{place}]" for place, reason in enumerate(reasons, start=1)}
+    head, *lines = aligned([HEAD, *(_cells(row, numbers) for row in rows)], right=(3, 4, 5))
+    yield head
+    shown: Mapping[str, str] = {}
+    for row, line in zip(rows, lines, strict=True):
+        if row.published.settings != shown:
+            shown = row.published.settings
+            yield "with " + one_line(", ".join(f"{name} = {value}" for name, value in shown.items()) or "the defaults")
+        yield line
+    if numbers:
+        yield ""
+    yield from (f"{number} {reason}" for reason, number in numbers.items())
     for finding in model.findings:
-        out(f"\nFinding: {one_line(finding.title)}\n  {one_line(finding.text)}")
+        yield f"\nFinding: {one_line(finding.title)}\n  {one_line(finding.text)}"
+    yield f"\n{_summary(rows)}"
+
+
+def _cells(row: ComparedRow, numbers: Mapping[str, str]) -> tuple[str, ...]:
+    from truing.numbers import format_number
+    from truing.units import unit_text
+
+    printed = row.published
+    verdict = "matches" if row.matches else "differs"
+    if not row.as_stated:
+        verdict += ", NOT AS STATED"
+    ratio = "-" if row.ratio is None else f"{row.ratio:.4f}"
+    values = (unit_text(printed.unit), format_number(printed.value, 5), format_number(row.value, 5), ratio)
+    why = numbers.get(one_line(printed.why), "")
+    return (one_line(printed.name), one_line(printed.where), *values, verdict, printed.obtained, why)
+
+
+def _summary(rows: Sequence[ComparedRow]) -> str:
+    matching = sum(row.matches for row in rows)
+    wrong = [one_line(row.published.name) for row in rows if not row.as_stated]
+    said = f"{len(rows)} printed numbers: {matching} match, {len(rows) - matching} differ"
+    if not wrong:
+        return f"{said}; every verdict is as stated"
+    return f"{said}; NOT as stated: {', '.join(wrong)} (exit code 1)"

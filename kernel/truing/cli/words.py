@@ -1,0 +1,17 @@
+"""Arguments and options that several verbs share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, TypeAlias
+
+import typer
+
+Plugin: TypeAlias = Annotated[str, typer.Argument(help="An installed plugin's name, or a Python file.")]
+Changed: TypeAlias = Annotated[
+    list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Replace one value of the inputs file.")
+]
+AsJson: TypeAlias = Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")]
+OutputFile: TypeAlias = Annotated[
+    Path | None, typer.Option("-o", "--output", help="The file to write (stdout without it).")
+]
