@@ -27,7 +27,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "docs" / "examples"
-_FENCE = re.compile(r"(?:^<!-- (?P<mark>[^\n]*?) -->\n)?^```(?P<kind>\w*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
+_FENCE = re.compile(
+    r"(?:^<!-- (?P<mark>[^\n]*?) -->\n)?^```(?P<kind>\w*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL
+)
 
 
 @dataclass(frozen=True)
@@ -134,7 +136,9 @@ def _do(block: Block, desk: Desk) -> None:
         for place, (command, end) in enumerate(_with_ends(block), start=1):
             said, code = desk.run(command.words)
             assert code == end, f"command {place}, '{command.words}', ended with {code}, not {end}:\n{said}"
-            assert matches(command.shown, said), f"'{command.words}' prints\n{said}\nbut the page shows\n{command.shown}"
+            assert matches(command.shown, said), (
+                f"'{command.words}' prints\n{said}\nbut the page shows\n{command.shown}"
+            )
     elif block.marked("file"):
         file = desk.folder / block.marked("file")
         file.parent.mkdir(parents=True, exist_ok=True)

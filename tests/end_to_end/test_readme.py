@@ -1,0 +1,81 @@
+"""The README: its two commands as they are written, and its tour, which is run."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+from shown_in_docs import ROOT, blocks, check_page, commands, desk_in
+
+from truing.cli import main
+
+README = ROOT / "README.md"
+
+
+def lines_of(kind: str) -> list[str]:
+    """The lines of the README's blocks of one language."""
+    return [line for block in blocks(README) if block.kind == kind for line in block.text.splitlines()]
+
+
+def parts(line: str) -> list[list[str]]:
+    """The commands that ``&&`` joins, as words."""
+    return [shlex.split(part) for part in line.split(" && ")]
+
+
+def test_there_are_two_commands_of_one_line_each() -> None:
+    first, second = lines_of("sh")
+    assert parts(first) == [
+        ["python3", "-m", "venv", ".venv"],
+        [".venv/bin/pip", "install", "."],
+        [".venv/bin/calc", "run", "press_linkage", "--inputs", "plugins/press_linkage/example.toml"],
+    ]
+    assert parts(second) == [
+        ["python3", "-m", "venv", ".venv"],
+        [".venv/bin/pip", "install", "-e", ".[test]"],
+        [".venv/bin/python", "-m", "pytest", "-n", "auto"],
+    ]
+
+
+def test_windows_has_the_same_two() -> None:
+    for unix, windows in zip(lines_of("sh"), lines_of("powershell"), strict=True):
+        said = windows.replace("\\", "/").replace(".venv/Scripts", ".venv/bin").replace("py -m venv", "python3 -m venv")
+        assert said == unix
+
+
+def test_the_first_command_runs_the_shipped_example_and_the_sheet_is_where_the_readme_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    calc = parts(lines_of("sh")[0])[-1]
+    inputs = ROOT / calc[-1]
+    monkeypatch.chdir(tmp_path)
+    assert main([*calc[1:-1], str(inputs)]) == 0
+    (place,) = re.findall(r"The sheet is then in `(.*?)`", README.read_text(encoding="utf-8"))
+    assert (tmp_path / place).is_file()
+    assert f"sheet: {Path(place)}" in capsys.readouterr().out
+
+
+def test_ci_runs_the_test_command_of_the_readme() -> None:
+    pytest_words = " ".join(parts(lines_of("sh")[1])[-1][1:])
+    script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    assert pytest_words == "-m pytest -n auto"
+    assert pytest_words in script
+    assert ".[test]" in script
+
+
+def test_the_tour_does_what_it_shows(tmp_path: Path) -> None:
+    assert not check_page(README, desk_in(tmp_path))
+
+
+def test_the_tour_visits_what_it_promises() -> None:
+    typed = [command.words for block in blocks(README) if block.kind == "console" for command in commands(block)]
+    assert {words.split()[1] for words in typed} >= {"init", "run", "compare", "verify", "describe"}
+    assert any("--set" in words for words in typed)
+    assert any("./bolt.py" in words for words in typed)
+
+
+def test_the_picture_is_there_and_not_heavy() -> None:
+    (picture,) = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", README.read_text(encoding="utf-8"))
+    assert (ROOT / picture).stat().st_size < 400_000
+    assert (ROOT / picture).read_bytes().startswith(b"\x89PNG")

@@ -1,0 +1,83 @@
+"""The manual is run: every file it asks for is written, every command is typed, and the output shown is compared."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from shown_in_docs import EXAMPLES, ROOT, blocks, check_page, commands, desk_in, grown, matches
+
+TUTORIAL = ROOT / "docs" / "tutorial" / "first_calculation.md"
+PAGES = sorted(page for page in (ROOT / "docs").rglob("*.md") if any(block.kind == "console" for block in blocks(page)))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_a_page_does_what_it_shows(page: Path, tmp_path: Path) -> None:
+    assert not check_page(page, desk_in(tmp_path))
+
+
+def test_the_tutorial_is_among_the_pages_and_runs_every_verb_it_teaches() -> None:
+    assert TUTORIAL in PAGES
+    typed = [command.words for block in blocks(TUTORIAL) if block.kind == "console" for command in commands(block)]
+    assert {words.split()[1] for words in typed if words.startswith("calc")} == {
+        "run", "init", "compare", "verify", "plugins",
+    }  # fmt: skip
+
+
+def test_the_tutorial_ends_with_the_file_that_is_shipped() -> None:
+    text = ""
+    for block in blocks(TUTORIAL):
+        if block.marked("file") == "coil_spring.py":
+            text = block.text
+        elif block.marked("changes") == "coil_spring.py":
+            text = grown(text, block.text)
+    shipped = (EXAMPLES / "coil_spring.py").read_text(encoding="utf-8")
+    assert by_statement(text) == by_statement(shipped)
+
+
+def by_statement(text: str) -> list[str]:
+    """The statements of a file without their layout and order."""
+    import ast
+
+    return sorted(ast.dump(statement) for statement in ast.parse(text).body)
+
+
+@pytest.mark.parametrize(
+    ("shown", "said", "same"),
+    [
+        ("rate  2.4933  N/mm\n", "rate  2.4933  N/mm\n", True),
+        ("rate  2.4934  N/mm\n", "rate  2.4933  N/mm\n", False),
+        ("first\n...\nlast\n", "first\nlast\n", True),
+        ("first\n...\nlast\n", "first\none\ntwo\nlast\n", True),
+        ("first\n...\nlast\n", "first\none\nlast\nmore\n", False),
+        ("took ... s\n", "took 1.25 s\n", True),
+        ("took ... s\n", "took 1.25 s\nlonger\n", False),
+        ("", "something\n", False),
+    ],
+)
+def test_output_is_compared_line_by_line(shown: str, said: str, same: bool) -> None:
+    assert matches(shown, said) is same
+
+
+def test_a_step_replaces_what_has_its_name_and_puts_the_rest_above_the_model() -> None:
+    before = '"""Words."""\n\nfrom truing import Model\n\nM = Model(a=1)\n\n\ndef hook():\n    return [M]\n'
+    step = "from truing import Model, given\n\nimport math\n\nPI = math.pi\n\nM = Model(a=2)\n"
+    assert grown(before, step).split("\n\n") == [
+        '"""Words."""', "from truing import Model, given", "import math", "PI = math.pi", "M = Model(a=2)",
+        "def hook():\n    return [M]\n",
+    ]  # fmt: skip
+
+
+def test_a_page_that_lies_is_found(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("```console\n$ calc plugins --names\nno_such_plugin\n```\n", encoding="utf-8")
+    faults = check_page(page, desk_in(tmp_path))
+    assert len(faults) == 1
+    assert faults[0].startswith("page.md:1: 'calc plugins --names' prints\n")
+
+
+def test_a_page_that_hides_an_exit_code_is_found(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("```console\n$ calc init no_such_plugin\n...\n```\n", encoding="utf-8")
+    (fault,) = check_page(page, desk_in(tmp_path))
+    assert "ended with 2, not 0" in fault

@@ -1,0 +1,365 @@
+"""The manual is complete: every hook, verb, option, word, error and study option has its place; links arrive."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import json
+import math
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+import truing
+from truing import Allocation, Kernel, Record, Reliability, Sensitivity, Sweep, Table, errors, hookspecs
+from truing.errors import TruingError, UnitError
+from truing.evaluate import evaluate
+from truing.loading import load_file
+from truing.setup import SwitchedOn, default_setup
+from truing.studies.allocation import Allotted
+from truing.studies.checks import plain_checks
+from truing.studies.reliability import Curve, Odds
+from truing.studies.sensitivity import Sensitivities
+from truing.studies.sweep import Swept
+from truing.testing import CHECKS
+from truing.units import read_quantity, same_dimension, to_si
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+REFERENCE = DOCS / "reference"
+PAGES = sorted([*DOCS.rglob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"])
+HOOKS = sorted(
+    name for name, item in vars(hookspecs).items() if name.startswith("truing_") and inspect.isfunction(item)
+)
+STUDIES: dict[type[Any], type[Any]] = {
+    Sweep: Swept, Sensitivity: Sensitivities, Reliability: Odds, Allocation: Allotted,
+}  # fmt: skip
+
+
+def page(*names: str) -> str:
+    """The text of a page of the reference."""
+    return REFERENCE.joinpath(*names).read_text(encoding="utf-8")
+
+
+def verbs() -> dict[str, list[str]]:
+    """Every verb of the command line with the names of its options and arguments, as typer declares them."""
+    import typer.main
+
+    from truing.cli.app import app
+
+    group: Any = typer.main.get_command(app)
+    return {
+        name: [spelling for parameter in command.params for spelling in spellings(parameter)]
+        for name, command in group.commands.items()
+    }
+
+
+def spellings(parameter: Any) -> list[str]:
+    """How an option is written; an argument by its name in capitals."""
+    if parameter.param_type_name == "argument":
+        return ["RUN" if parameter.name in {"first", "second"} else parameter.name.upper()]
+    return [spelling for spelling in parameter.opts if spelling not in {"--help", "-h"}]
+
+
+@pytest.mark.parametrize("hook", HOOKS)
+def test_every_hook_has_a_page_and_a_test(hook: str) -> None:
+    assert page("hooks", f"{hook}.md").startswith(f"## {hook}(")
+    written = "\n".join(file.read_text(encoding="utf-8") for file in (ROOT / "tests").rglob("test_*.py"))
+    assert re.search(rf"def test_\w*{hook}", written), f"no test is named after {hook}"
+
+
+def test_there_are_four_hooks() -> None:
+    assert len(HOOKS) == 4
+    assert {file.stem for file in (REFERENCE / "hooks").glob("*.md")} == set(HOOKS)
+
+
+@pytest.fixture
+def spring() -> ModuleType:
+    """The finished file of the tutorial."""
+    return load_file(DOCS / "examples" / "coil_spring.py")
+
+
+def guest(hook: str) -> ModuleType:
+    """The example of a hook's page as a plugin."""
+    (code,) = re.findall(r"```python\n(.*?)```", page("hooks", f"{hook}.md"), re.DOTALL)
+    made = ModuleType(f"guest_of_{hook}")
+    exec(compile(code, made.__name__, "exec"), made.__dict__)
+    return made
+
+
+def test_truing_models_offers_a_calculation(spring: ModuleType) -> None:
+    assert Kernel([spring], strict=True).offer("coil_spring").model is spring.COIL_SPRING
+
+
+def test_truing_error_sources_adds_what_its_page_shows(spring: ModuleType) -> None:
+    offer = Kernel([spring, guest("truing_error_sources")], strict=True).offer("coil_spring")
+    assert list(offer.model.effects) == ["softening", "sag"]
+    assert [(added.what, added.plugin) for added in offer.added] == [("sag", "guest_of_truing_error_sources")]
+    setup = default_setup(offer.model)
+    effect = SwitchedOn(offer.model.effects["sag"], {"sag_of_coils": 0.2})
+    base, sagged = evaluate(setup), evaluate(dataclasses.replace(setup, effects=(effect,)))
+    assert sagged.rate == pytest.approx(base.rate / 0.8, rel=1e-12)
+
+
+def test_truing_objectives_adds_what_its_page_shows(spring: ModuleType) -> None:
+    offer = Kernel([spring, guest("truing_objectives")], strict=True).offer("coil_spring")
+    checks = {check.name: check for check in plain_checks(default_setup(offer.model), {"rate": 4e3, "stress": 0.0})}
+    assert checks["rate"].limit == 5
+    assert checks["rate"].margin == pytest.approx(0.2)
+
+
+def test_truing_reports_adds_what_its_page_shows(spring: ModuleType) -> None:
+    offer = Kernel([spring, guest("truing_reports")], strict=True).offer("coil_spring")
+    section = offer.model.sheet[-1]
+    assert section.title == "Wire"
+    assert section.blocks is not None
+    setup = default_setup(offer.model)
+    (wire,) = section.blocks(Record(setup.inputs, evaluate(setup), {}, {}, offer.model.function))
+    volume_mm3 = math.pi / 4 * 1.0**2 * math.pi * 8.0 * 8.0
+    assert isinstance(wire, Table)
+    assert wire.rows[0][1] == pytest.approx(volume_mm3 * 7.85e-3, rel=1e-3)
+
+
+@pytest.mark.parametrize(("verb", "options"), verbs().items(), ids=list(verbs()))
+def test_every_verb_has_a_page_that_names_all_its_options(verb: str, options: list[str]) -> None:
+    text = page("verbs", f"{verb}.md")
+    assert text.startswith(f"# calc {verb}\n")
+    assert "Exit codes:" in text
+    missing = [option for option in options if not re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", text)]
+    assert not missing
+
+
+def test_no_page_is_about_a_verb_that_is_gone() -> None:
+    assert {file.stem for file in (REFERENCE / "verbs").glob("*.md")} == set(verbs())
+
+
+@pytest.mark.parametrize("option", ["--version", "--verbose", "--quiet", "--traceback", "-v", "-q", "--help"])
+def test_what_holds_for_every_verb_is_said_once(option: str) -> None:
+    short = {"--verbose": "-v", "--quiet": "-q"}.get(option, option)
+    assert f"`{short}`" in (DOCS / "index.md").read_text(encoding="utf-8") or f"calc {option}" in (
+        DOCS / "index.md"
+    ).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", truing.__all__)
+def test_every_word_a_plugin_uses_is_explained(name: str) -> None:
+    words = rf"(?<!\w){name}(?!\w)"
+    assert re.search(words, page("declaring.md")) or re.search(words, page("studies.md"))
+
+
+FUNCTIONS = [
+    name for name in truing.__all__ if inspect.isfunction(getattr(truing, name)) and name not in {"inputs", "results"}
+]
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_every_argument_of_a_word_is_named(name: str) -> None:
+    text = page("declaring.md")
+    arguments = [item for item in inspect.signature(getattr(truing, name)).parameters if item not in {"spreads", "of"}]
+    spoken = {"half": "plus_minus(", "chooser": "by_choice(", "low": "zone(", "high": "zone(", "name": f"{name}("}
+    missing = [
+        item
+        for item in arguments
+        if not re.search(rf"(?<!\w){item}(?!\w)", text) and spoken.get(item, "\0") not in text
+    ]
+    assert not missing
+
+
+@pytest.mark.parametrize(
+    "name",
+    [name for name, item in vars(errors).items() if inspect.isclass(item) and issubclass(item, TruingError)]
+    + ["Fault"],
+)
+def test_every_error_stands_in_the_tree(name: str) -> None:
+    assert re.search(rf"(?<!\w){name}(?!\w)", page("errors.md"))
+
+
+def test_the_tree_of_errors_has_the_right_exit_codes() -> None:
+    for line in re.findall(r"^[│├└─ ]*(\w+Error) +exit (\d)", page("errors.md"), re.MULTILINE):
+        assert getattr(errors, line[0]).exit_code == int(line[1])
+
+
+def sections(text: str) -> dict[str, str]:
+    """The chapters of a page by their titles."""
+    parts = re.split(r"^## (.+)$", text, flags=re.MULTILINE)
+    return dict(zip(parts[1::2], parts[2::2], strict=True))
+
+
+@pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.__name__)
+def test_every_option_of_a_study_is_in_its_table_with_its_default(study: type[Any]) -> None:
+    text = sections(page("studies.md"))[study.__name__]
+    rows = dict(re.findall(r"^\| (`[^|]+`) \| ([^|]*) \|", text, re.MULTILINE))
+    named = {name: default for names, default in rows.items() for name in re.findall(r"`(\w+)`", names)}
+    fields = {item.name: item for item in dataclasses.fields(study)}
+    assert set(named) == set(fields)
+    for name, item in fields.items():
+        number = named[name].replace(" ", "")
+        if isinstance(item.default, int) and not isinstance(item.default, bool):
+            assert number == str(item.default)
+
+
+@pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.__name__)
+def test_every_attribute_of_an_outcome_is_named(study: type[Any]) -> None:
+    text = sections(page("studies.md"))[study.__name__]
+    outcomes = [STUDIES[study], Curve] if study is Reliability else [STUDIES[study]]
+    methods = {"as_json", "blocks", "checks", "warnings", "of"}
+    for outcome in outcomes:
+        names = {item.name for item in dataclasses.fields(outcome)}
+        names |= {name for name, item in vars(outcome).items() if isinstance(item, property)}
+        assert not [name for name in names - methods if f"`{name}" not in text]
+
+
+def test_the_json_of_the_studies_is_json() -> None:
+    shown = re.findall(r"```json\n(.*?)```", page("studies.md"), re.DOTALL)
+    assert len(shown) == len(STUDIES)
+    for text in shown:
+        json.loads(text)
+
+
+def test_every_field_of_results_json_is_explained() -> None:
+    from truing.run_documents import results_document
+
+    named = set(re.findall(r'^ +"(\w+)": ', inspect.getsource(results_document), re.MULTILINE))
+    explained = set(re.findall(r"^\| `(\w+)` \|", page("run_folder.md"), re.MULTILINE))
+    assert len(named) > 10
+    assert named <= explained
+
+
+def test_every_check_of_the_kit_is_listed_with_its_promise() -> None:
+    text = page("conformance.md")
+    for check in CHECKS:
+        assert f"| {check.name} | {check.promise} |" in text
+
+
+def table(text: str, title: str) -> list[list[str]]:
+    """The rows of the first table of a chapter, header left out."""
+    rows = re.findall(r"^\|(.+)\|$", sections(text)[title], re.MULTILINE)
+    return [[cell.strip() for cell in row.split("|")] for row in rows[2:]]
+
+
+SPELLED_ALIKE = [
+    [unit for unit in re.findall(r"`([^`]+)`", row[0]) if unit != "W/m·K"]
+    for row in table(page("units.md"), "How a quantity is written")
+    if "; " not in row[0]
+]
+
+
+@pytest.mark.parametrize("units", SPELLED_ALIKE, ids=lambda units: units[0])
+def test_units_said_to_be_the_same_are_the_same(units: list[str]) -> None:
+    for unit in units[1:]:
+        assert same_dimension(unit, units[0])
+        assert to_si(1.0, unit) == pytest.approx(to_si(1.0, units[0]), rel=1e-14)
+
+
+REFUSED = [text for row in table(page("units.md"), "What is refused") for text in re.findall(r'`"([^"]+)"`', row[0])]
+
+
+@pytest.mark.parametrize("text", REFUSED)
+def test_what_the_page_of_units_refuses_is_refused(text: str) -> None:
+    with pytest.raises(UnitError):
+        read_quantity(text, "degC" if text == "5 C" else "m")
+
+
+def test_the_sentence_about_counts_and_angles_is_the_one_that_is_said() -> None:
+    (sentence,) = re.findall(r"```text\n(.*?)\n```", sections(page("units.md"))["Counts and angles"], re.DOTALL)
+    with pytest.raises(UnitError, match=re.escape(sentence)):
+        read_quantity("3000 rpm", "rad/s")
+
+
+@pytest.mark.parametrize("unit", ["degC", "K"])
+def test_levels_and_differences_are_written_as_the_page_says(unit: str) -> None:
+    (row,) = [row for row in table(page("units.md"), "Temperatures: levels and differences") if f"`{unit}`" in row[0]]
+    for text in re.findall(r'`"([^"]+)"`', row[1]):
+        read_quantity(text, unit)
+
+
+def test_an_ambiguous_unit_is_refused() -> None:
+    with pytest.raises(UnitError, match="ambiguous"):
+        read_quantity("1 W/m·K", "W/(m*K)")
+
+
+SPREADS = [
+    (python, file)
+    for row in table(page("declaring.md"), "Tolerances")
+    for python, file in [(row[0].strip("`"), row[1].strip("`"))]
+    if file.startswith('"') and python != "word"
+]
+
+
+@pytest.mark.parametrize(("python", "file"), SPREADS)
+def test_a_spread_reads_the_same_in_python_and_in_a_file(python: str, file: str) -> None:
+    from truing.declare.spreads import Target, off, read_spread
+
+    declared = eval(python, {name: getattr(truing, name) for name in truing.__all__})
+    target = Target("length", 0.25, "m", lambda name: 0.25)
+    assert read_spread(file.strip('"'), off()).resolve(target) == declared.resolve(target)
+
+
+def links(text: str) -> Iterator[str]:
+    """The targets of the links and pictures of a page, code left out."""
+    prose = re.sub(r"```.*?```|`[^`\n]*`", "", text, flags=re.DOTALL)
+    yield from re.findall(r"\]\(([^)\s]+)\)", prose)
+
+
+def anchors(text: str) -> set[str]:
+    """The anchors that GitHub and mkdocs make of a page's headings."""
+    prose = re.sub(r"```.*?```", "", text, flags=re.DOTALL)
+    titles = re.findall(r"^#+ (.+)$", prose, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", title.lower()).strip().replace(" ", "-") for title in titles}
+
+
+@pytest.mark.parametrize("file", PAGES, ids=lambda file: str(file.relative_to(ROOT)))
+def test_links_inside_the_manual_lead_somewhere(file: Path) -> None:
+    for link in links(file.read_text(encoding="utf-8")):
+        if link.startswith(("https://", "http://")):
+            continue
+        target, _, anchor = link.partition("#")
+        place = (file.parent / target).resolve() if target else file
+        assert place.exists(), f"{link}: no such file"
+        assert ROOT in place.parents, f"{link}: leads out of the project"
+        if anchor:
+            assert anchor in anchors(place.read_text(encoding="utf-8")), f"{link}: no such heading"
+
+
+@pytest.mark.parametrize("file", PAGES, ids=lambda file: str(file.relative_to(ROOT)))
+def test_pages_name_no_machine_and_fetch_no_picture(file: Path) -> None:
+    text = file.read_text(encoding="utf-8")
+    assert not re.findall(r"(?:/home/|/work/|/root/|/tmp/|/Users/|[A-Z]:\\\\)\S*", text)
+    assert not re.findall(r"!\[[^\]]*\]\(https?:", text)
+    assert "<img" not in text
+
+
+def test_every_page_can_be_reached_from_the_index() -> None:
+    seen: set[Path] = set()
+    todo = [DOCS / "index.md"]
+    while todo:
+        file = todo.pop()
+        if file in seen or file.suffix != ".md":
+            continue
+        seen.add(file)
+        todo += [
+            (file.parent / link.partition("#")[0]).resolve()
+            for link in links(file.read_text(encoding="utf-8"))
+            if "://" not in link
+        ]
+    assert not set(DOCS.rglob("*.md")) - seen
+
+
+@pytest.mark.parametrize("file", PAGES, ids=lambda file: str(file.relative_to(ROOT)))
+def test_python_on_a_page_can_be_parsed(file: Path) -> None:
+    for code in re.findall(r"^```python\n(.*?)^```", file.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE):
+        compile(code, str(file), "exec")
+
+
+@pytest.mark.parametrize("file", PAGES, ids=lambda file: str(file.relative_to(ROOT)))
+def test_toml_on_a_page_can_be_parsed(file: Path) -> None:
+    import tomllib
+
+    text = file.read_text(encoding="utf-8")
+    for mark, code in re.findall(r"(<!-- file: wrong.toml -->\n)?```toml\n(.*?)```", text, re.DOTALL):
+        if not mark:
+            tomllib.loads(code)
