@@ -170,7 +170,7 @@ def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
         yield CheckRow(
             name=check.name,
             symbol=item.symbol if item is not None and item.name == check.name else "",
-            note=item.spec.note if item is not None else "",
+            note=item.spec.note if item is not None else check.note,
             relation=_relation(check, setup),
             value=Value(format_number(check.value, RESULT_DIGITS), unit),
             limit=Value(format_number(check.limit, STATED_DIGITS), unit),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -47,8 +46,8 @@ def equation_of(setup: Setup, answers: Mapping[str, Any], item: ResultField) -> 
     plain = all(_is_single(value) for value in (*values.values(), answers.get(item.name)))
     numbered = values if plain else {}
     numeric = item.spec.numeric
-    computed = _computed(formula, fields, numbered, item) if plain else None
-    shown = answers.get(item.name) if computed is None else computed
+    departing = _departing(formula, fields, numbered, answers.get(item.name), item) if plain else None
+    shown = answers.get(item.name) if departing is None else departing
     return Equation(
         formula=formula,
         name=item.name,
@@ -56,32 +55,35 @@ def equation_of(setup: Setup, answers: Mapping[str, Any], item: ResultField) -> 
         symbols={name: field.symbol for name, field in fields.items() if field.symbol},
         numbers={n: _number(setup, fields[n], v, numeric=numeric) for n, v in numbered.items()} if plain else None,
         results=_results(setup, item, shown, numeric=numeric) if plain else (),
-        departs=computed is not None and not _agrees(computed, answers[item.name]),
+        departs=departing is not None,
     )
 
 
-def _computed(
-    formula: Formula, fields: Mapping[str, InputField | ResultField], values: Mapping[str, Any], item: ResultField
-) -> float | None:
-    """Return what the formula itself gives, in SI; None for an equation to be solved, and where it gives no number."""
+def _departing(
+    formula: Formula, fields: Mapping[str, InputField | ResultField], values: Mapping[str, Any], answer: Any,
+    item: ResultField,
+) -> float | None:  # fmt: skip
+    """Return what the formula itself gives, in SI, where that is not the calculation's answer (an effect is on).
+
+    Rounding is no difference: neither a millionth of the value nor what a billionth of any operand makes of it. None
+    also for an equation that is solved, and where the formula gives no number.
+    """
     from truing.units import from_si, to_si
 
     numeric = isinstance(item.spec, Found) and item.spec.numeric
-    if formula.left is not None or any(value is None for value in values.values()):
+    if formula.left is not None or answer is None or any(value is None for value in values.values()):
         return None
     numbers = {name: from_si(value, fields[name].unit) if numeric else value for name, value in values.items()}
+    stated = from_si(float(answer), item.unit) if numeric else float(answer)
     try:
         found = float(evaluate(formula, numbers))
+        nearby = [float(evaluate(formula, {**numbers, name: numbers[name] * (1 + 1e-9)})) for name in numbers]
     except (DeclarationError, TypeError, ValueError):
         return None
-    if not math.isfinite(found):
+    rounding = sum(abs(near - found) for near in nearby)
+    if not abs(found - stated) > 1e-6 * max(abs(found), abs(stated)) + rounding:
         return None
     return float(to_si(found, item.unit)) if numeric else found
-
-
-def _agrees(computed: float, answer: Any) -> bool:
-    """Tell whether formula and function say the same; an effect on the results sets them apart."""
-    return abs(computed - float(answer)) <= 1e-6 * max(abs(computed), abs(float(answer)))
 
 
 def _is_single(value: Any) -> bool:

@@ -56,6 +56,7 @@ def perform(setup: Setup, offer: Offer, order: RunOrder, progress: Progress) -> 
     started = time.time()
     with open_executor("serial" if order.workers == 1 else f"processes:{order.workers}") as executor:
         calculation, cases = _calculate(setup, offer, order, executor=executor, progress=progress)
+        lost = int(getattr(executor, "losses", 0))
     verified = compare_published(offer, progress=progress, known=calculation)
     provenance = provenance_of(calculation.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
     sheet = make_sheet(calculation, provenance=provenance, verified=verified, cases=cases)
@@ -66,7 +67,7 @@ def perform(setup: Setup, offer: Offer, order: RunOrder, progress: Progress) -> 
         calculation,
         offer,
         provenance=provenance,
-        run_info=_run_info(started, order),
+        run_info=_run_info(started, order.workers, lost),
         sheets=sheets,
         cases=cases,
     )
@@ -92,7 +93,7 @@ def _calculate(
     return run_cases(setup, read_cases(order.cases, offer, setup), executor=executor, progress=progress)
 
 
-def _run_info(started: float, order: RunOrder) -> dict[str, Any]:
+def _run_info(started: float, workers: int, lost: int) -> dict[str, Any]:
     """Return what may differ between two equal runs: date, duration, machine, user, workers."""
     import getpass
 
@@ -106,5 +107,5 @@ def _run_info(started: float, order: RunOrder) -> dict[str, Any]:
         "machine": platform.node(),
         "system": platform.platform(),
         "user": user,
-        "workers": {"count": order.workers, "lost": 0},
+        "workers": {"count": workers, "lost": lost},
     }

@@ -1,0 +1,94 @@
+"""The sheet on paper: printed by the browser as ``calc run --pdf`` does it."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from truing.errors import OutputError
+from truing.report.pdf import find_browser, pdf_bytes, print_pdf
+
+POINT = 25.4 / 72
+
+
+def words_of(pdf: Path) -> str:
+    if shutil.which("pdftotext") is None:
+        pytest.skip("pdftotext is not on this machine: the words of the PDF were not read")
+    done = subprocess.run(["pdftotext", "-enc", "UTF-8", str(pdf), "-"], capture_output=True, check=True)
+    return re.sub(r"\s+", " ", done.stdout.decode("utf-8"))
+
+
+def sizes_of(pdf: Path) -> set[tuple[float, float]]:
+    boxes = re.findall(rb"/MediaBox \[\s*0 0 ([\d.]+) ([\d.]+)\s*\]", pdf.read_bytes())
+    return {(round(float(width) * POINT), round(float(height) * POINT)) for width, height in boxes}
+
+
+@pytest.fixture(scope="session")
+def printed(sheet: Path, chromium: Path) -> Path:
+    pdf = sheet.with_suffix(".pdf")
+    print_pdf(sheet, pdf, chromium)
+    return pdf
+
+
+def test_the_print_is_complete(sheet: Path, printed: Path) -> None:
+    """Every chapter's heading, the last row of every table and the end of the sheet are on paper."""
+    text = words_of(printed)
+    html = sheet.read_text(encoding="utf-8")
+    headings = re.findall(r'<h2 id="[^"]+"><span class="place">(\d+)</span> ([^<]+)</h2>', html)
+    assert len(headings) > 7
+    assert [title for _, title in headings if unescaped(title) not in text] == []
+    assert re.search(r"Calculated 2026-11-21", text)
+
+
+def unescaped(text: str) -> str:
+    from html import unescape
+
+    return re.sub(r"\s+", " ", unescape(text))
+
+
+def test_pages_are_numbered_and_named(sheet: Path, printed: Path) -> None:
+    text = words_of(printed)
+    count = printed.read_bytes().count(b"/Type /Page\n") or printed.read_bytes().count(b"/Type /Page/")
+    assert count > 2
+    assert [page for page in range(1, count + 1) if not re.search(rf"\b{page} ?/ ?{count}\b", text)] == []
+    title = unescaped(re.findall(r"<h1>([^<]+)</h1>", sheet.read_text(encoding="utf-8"))[0])
+    assert text.count(title) >= count
+
+
+def test_the_paper_is_a4_unless_letter_is_asked_for(sheet: Path, printed: Path, chromium: Path, tmp_path: Path) -> None:
+    assert sizes_of(printed) == {(210, 297)}
+    print_pdf(sheet, tmp_path / "letter.pdf", chromium, paper="letter")
+    assert sizes_of(tmp_path / "letter.pdf") == {(216, 279)}
+
+
+def test_printing_touches_nothing_but_the_pdf(sheet: Path, chromium: Path, tmp_path: Path) -> None:
+    copy = tmp_path / "Ein Blatt & mehr" / "sheet.html"
+    copy.parent.mkdir()
+    shutil.copyfile(sheet, copy)
+    print_pdf(copy, copy.with_suffix(".pdf"), chromium)
+    assert sorted(path.name for path in copy.parent.iterdir()) == ["sheet.html", "sheet.pdf"]
+    assert copy.read_bytes() == sheet.read_bytes()
+
+
+def test_a_browser_that_prints_nothing_is_said_in_one_sentence(sheet: Path, tmp_path: Path) -> None:
+    dumb = shutil.which("true")
+    if dumb is None:
+        pytest.skip("there is no program 'true' on this machine")
+    with pytest.raises(OutputError, match=r"^true printed no PDF \(exit 0\); open sheet.html in any browser"):
+        print_pdf(sheet, tmp_path / "sheet.pdf", Path(dumb))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_browser_that_is_not_there_is_said_in_one_sentence(
+    sheet: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(OutputError, match=r"cannot be started: No such file"):
+        print_pdf(sheet, tmp_path / "sheet.pdf", tmp_path / "chrome")
+    monkeypatch.setenv("CHROME_PATH", str(tmp_path / "chrome"))
+    assert find_browser() is None
+    with pytest.raises(OutputError, match=r"no Chromium, Chrome or Edge was found .* print it to PDF \(Ctrl\+P\)"):
+        pdf_bytes("<p>sheet</p>")

@@ -1,0 +1,326 @@
+"""The sheet: what it says, at every level of detail, in both languages, whatever its texts try to be."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from truing.calculation import Calculation, calculate
+from truing.cases import run_cases
+from truing.executors import open_executor
+from truing.inputs_file import read_setup, setup_from_text
+from truing.kernel import Kernel, Offer
+from truing.measurements import read_cases
+from truing.published import compare_published
+from truing.report.context import Provenance
+from truing.report.render import css_text, html_of, markdown_of, sheet_html, sheet_markdown
+from truing.report.sheet import make_sheet
+from truing.report.templates import template_folder
+from truing.run_documents import provenance_of
+from truing.setup import Setup
+
+DATA = Path(__file__).parents[1] / "data"
+HOSTILE = "<script>alert(1)</script> {{7*7}} $x$ | # `code` [link](https://evil.example) **bold** & \"' # next"
+VOID = {"meta", "br", "wbr", "img"}
+
+
+@pytest.fixture(scope="module")
+def offer() -> Offer:
+    kernel = Kernel(strict=True)
+    kernel.add_file(DATA / "hostile_pin.py")
+    return kernel.offer("hostile_pin")
+
+
+@pytest.fixture(scope="module")
+def setup(offer: Offer) -> Setup:
+    return read_setup(DATA / "hostile_pin.toml", offer)
+
+
+@pytest.fixture(scope="module")
+def calculation(setup: Setup) -> Calculation:
+    return calculate(setup)
+
+
+@pytest.fixture(scope="module")
+def provenance(setup: Setup) -> Provenance:
+    return provenance_of(setup, date="2026-11-21")
+
+
+@pytest.fixture(scope="module")
+def html(calculation: Calculation, provenance: Provenance, offer: Offer) -> str:
+    return sheet_html(calculation, provenance=provenance, verified=compare_published(offer))
+
+
+@pytest.fixture(scope="module")
+def markdown(calculation: Calculation, provenance: Provenance, offer: Offer) -> str:
+    return sheet_markdown(calculation, provenance=provenance, verified=compare_published(offer))
+
+
+class Page(HTMLParser):
+    """Reads a page strictly: what is opened is closed, and every text stands somewhere."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(convert_charrefs=True)
+        self.open: list[str] = []
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.words: list[str] = []
+        self.feed(text)
+        self.close()
+        assert not self.open
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if "style" not in self.open:
+            self.words.append(data)
+
+    @property
+    def text(self) -> str:
+        return re.sub(r"\s+", " ", "".join(self.words))
+
+
+def test_the_page_is_well_formed_and_holds_only_elements_that_cannot_act(html: str) -> None:
+    names = {tag for tag, _ in Page(html).tags}
+    assert not names & {"script", "iframe", "object", "embed", "link", "form", "input", "base", "audio", "video", "img"}
+    assert {"math", "mfrac", "svg", "table", "caption", "h1", "h2"} <= names
+
+
+def test_no_attribute_runs_or_fetches_anything(html: str) -> None:
+    for tag, attributes in Page(html).tags:
+        assert not [name for name in attributes if name.startswith("on")], tag
+        for name in ("src", "href", "xlink:href", "action", "srcset", "data", "formaction"):
+            assert (attributes.get(name) or "#").startswith("#"), (tag, attributes)
+    style = html[html.index("<style>") : html.index("</style>")]
+    assert "url(" not in style
+    assert "@import" not in style
+
+
+def test_the_policy_forbids_everything_but_the_pages_own_style(html: str) -> None:
+    metas = [attributes for tag, attributes in Page(html).tags if tag == "meta"]
+    policies = [meta["content"] for meta in metas if meta.get("http-equiv") == "Content-Security-Policy"]
+    assert policies == ["default-src 'none'; style-src 'unsafe-inline'; img-src data:"]
+
+
+def test_hostile_texts_are_printed_as_they_are(html: str) -> None:
+    text = Page(html).text
+    assert text.count(HOSTILE) >= 12
+    assert "49" not in re.sub(r"[\da-f]{64}", "", text)
+
+
+def test_identifiers_are_unique_and_every_link_inside_the_page_arrives(html: str) -> None:
+    tags = Page(html).tags
+    identifiers = [attributes["id"] for _, attributes in tags if "id" in attributes]
+    assert len(identifiers) == len(set(identifiers))
+    targets = {(attributes.get("href") or "")[1:] for tag, attributes in tags if tag == "a"}
+    assert targets <= set(identifiers)
+    assert len(targets) > 5
+
+
+def test_headings_descend_in_order_and_tables_are_labelled(html: str) -> None:
+    page = Page(html)
+    levels = [int(tag[1]) for tag, _ in page.tags if re.fullmatch("h[1-6]", tag)]
+    assert levels[0] == 1
+    assert set(levels[1:]) == {2}
+    assert next(attributes for tag, attributes in page.tags if tag == "html")["lang"] == "en"
+    assert all("scope" in attributes for tag, attributes in page.tags if tag == "th")
+    assert sum(tag == "caption" for tag, _ in page.tags) == sum(tag == "table" for tag, _ in page.tags)
+
+
+def test_markdown_holds_no_html_and_no_template_mark(markdown: str) -> None:
+    assert "<" not in markdown
+    assert "{{7" not in markdown
+    assert "https://" not in markdown
+
+
+def test_every_table_of_the_markdown_has_equal_rows(markdown: str) -> None:
+    from markdown_it import MarkdownIt
+
+    tokens = MarkdownIt("commonmark").enable("table").parse(markdown)
+    rows = sum(token.type == "tr_open" for token in tokens)
+    lines = [line for line in markdown.splitlines() if line.startswith("|")]
+    rules = [line for line in lines if re.fullmatch(r"[|\s:-]+", line) and "---" in line]
+    assert rows == len(lines) - len(rules)
+    for _, group in groups(markdown):
+        assert len({line.count("|") for line in group}) == 1, group[0]
+
+
+def groups(markdown: str) -> list[tuple[int, list[str]]]:
+    found: list[tuple[int, list[str]]] = []
+    for place, line in enumerate(markdown.splitlines()):
+        if line.startswith("|"):
+            if found and found[-1][0] + len(found[-1][1]) == place:
+                found[-1][1].append(line)
+            else:
+                found.append((place, [line]))
+    return found
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["Werk Süd", "A. Müller", "4711-02", "1 of 3 checks fails: worn depth.", "lognormal sd 6 %", "running in"],
+)
+def test_both_sheets_say_the_same(html: str, markdown: str, words: str) -> None:
+    assert words in Page(html).text
+    assert words in markdown
+
+
+def test_inputs_say_whether_they_are_stated(html: str) -> None:
+    text = Page(html).text
+    assert re.search(r"normal load on the pin load ?130N ?stated", text)
+    assert re.search(r"running time time ?200h ?default", text)
+    assert "not given" in text
+
+
+def test_checks_are_told_by_words_and_not_by_colour(html: str) -> None:
+    rows = re.findall(r'<tr class="(passed|broken)">.*?</tr>', html, re.DOTALL)
+    assert rows == ["passed", "broken", "passed"]
+    text = Page(html).text
+    assert text.count("✓ pass") == 2
+    assert text.count("✗ FAIL") == 1
+
+
+def test_a_tolerance_that_is_off_is_not_in_force(html: str) -> None:
+    assert "day and night" not in html
+
+
+def test_numbers_of_formulas_are_those_the_calculation_ran_with(markdown: str) -> None:
+    """The effect adds 3 µm * (1 - exp(-360 km / 500 m)) to the stated 2 µm, so the formula must start from 5 µm."""
+    assert "With them the calculation runs with $h_{0}$ = 5 µm instead of 2 µm." in markdown
+    depth = markdown[markdown.index("**worn depth** (depth)") :].split("$$")[1]
+    assert r"= 5\thinspace \mathrm{\mu{}m} + " in depth
+    assert depth.rstrip().endswith(r"= 28.878\thinspace \mathrm{\mu{}m}")
+
+
+def test_an_effect_on_the_results_sets_the_answer_apart_from_the_formula(markdown: str) -> None:
+    """0.1 µm/K over 15 K on top of 28.878 µm."""
+    assert "$h$ = 30.378 µm in the calculation, with the effects on the results that are on" in markdown
+
+
+def test_a_long_sum_is_broken_into_lines(html: str) -> None:
+    entry = re.search(r"<code>both</code>.*?</div>\s*</dd>", html.replace("<wbr>", ""), re.DOTALL)
+    assert entry is not None
+    assert entry[0].count('<math display="block"') >= 3
+
+
+@pytest.mark.parametrize(
+    ("detail", "shown", "hidden"),
+    [
+        ("short", ["Checks", "Main results", "Provenance"], ["Inputs", "Wear", "Only in full", "References"]),
+        ("normal", ["Checks", "Inputs", "Wear", "Materials", "References"], ["Main results", "Only in full"]),
+        ("full", ["Checks", "Inputs", "Wear", "Only in full", "Provenance"], ["Main results"]),
+    ],
+)
+def test_detail_chooses_the_chapters(
+    setup: Setup, provenance: Provenance, detail: str, shown: list[str], hidden: list[str]
+) -> None:
+    sheet = make_sheet(calculate(replace(setup, detail=detail)), provenance=provenance)
+    titles = [chapter.title for chapter in sheet.chapters]
+    assert [title for title in shown if title not in titles] == []
+    assert [title for title in hidden if title in titles] == []
+    assert [int(chapter.number) for chapter in sheet.chapters] == list(range(1, len(titles) + 1))
+
+
+def test_a_result_hidden_at_this_level_does_not_come_back_as_a_further_one(
+    setup: Setup, provenance: Provenance
+) -> None:
+    sheet = make_sheet(calculate(setup), provenance=provenance)
+    names = [entry.name for chapter in sheet.chapters for entry in chapter.entries]
+    assert "root" not in names
+    assert sorted(names) == sorted(set(names))
+
+
+def test_a_full_sheet_shows_results_along_an_axis_as_a_thinned_table(setup: Setup, provenance: Provenance) -> None:
+    sheet = make_sheet(calculate(replace(setup, detail="full")), provenance=provenance)
+    tables = [block for chapter in sheet.chapters for block in chapter.blocks if hasattr(block, "rows")]
+    table = next(table for table in tables if table.title == "Along moment")
+    assert [len(table.rows), table.rows[0][0], table.rows[-1][0]] == [25, "0", "200"]
+    assert table.note == "25 of 1201 rows"
+
+
+def test_the_paper_is_compared_under_its_own_settings(offer: Offer) -> None:
+    """120 N on 28 mm² are 4.2857 MPa; at 240 N the law without effects gives 44.08 µm where "the paper" has 40."""
+    first, second = compare_published(offer)
+    assert first.value == pytest.approx(120 / 28, rel=1e-12)
+    assert (first.matches, first.as_stated) == (True, True)
+    assert second.value == pytest.approx(3e-8 * 240 / 28e-6 * 0.5 * 200 * 3600 / 2.1e9 * 1e6, rel=1e-12)
+    assert (second.matches, second.as_stated) == (False, True)
+
+
+def test_rows_that_this_run_reproduces_come_first(offer: Offer) -> None:
+    setup = setup_from_text('[inputs]\nload = "240 N"', offer, file="x", folder=Path())
+    calculation = calculate(setup)
+    sheet = make_sheet(calculation, provenance=provenance_of(setup), verified=compare_published(offer))
+    assert [row.published.name for row in sheet.compared] == ["depth at double load"]
+    assert [row.published.name for row in sheet.compared_elsewhere] == ["pressure"]
+
+
+def test_a_figure_that_fails_is_a_warning_and_not_the_end(offer: Offer, setup: Setup, provenance: Provenance) -> None:
+    from truing import Section
+
+    def broken(record: Any) -> Any:
+        raise ZeroDivisionError("nothing to divide by")
+
+    model = replace(offer.model, sheet=[Section("Broken", figure=broken)])
+    sheet = make_sheet(calculate(replace(setup, model=model, effects=())), provenance=provenance)
+    assert any("the figure 'Broken' failed: ZeroDivisionError: nothing to divide by" in text for text in sheet.warnings)
+    assert "could not be drawn" in html_of(sheet)
+    assert "could not be drawn" in markdown_of(sheet)
+
+
+def test_cases_are_listed_and_the_governing_one_is_marked(offer: Offer, tmp_path: Path) -> None:
+    file = tmp_path / "cases.csv"
+    file.write_text("case,load [N]\nlight,60\nheavy <b>,200\nmiddle,120\n", encoding="utf-8")
+    setup = setup_from_text("", offer, file="x", folder=tmp_path)
+    with open_executor("serial") as executor:
+        calculation, cases = run_cases(setup, read_cases(file, offer, setup), executor=executor)
+    sheet = make_sheet(calculation, provenance=provenance_of(setup), cases=cases)
+    table = next(block for chapter in sheet.chapters if chapter.title == "Cases" for block in chapter.blocks)
+    assert [row[:2] for row in table.rows] == [("light", "60"), ("heavy <b>", "200"), ("middle", "120")]  # type: ignore[union-attr]
+    assert table.marked == 1  # type: ignore[union-attr]
+    assert sheet.verdict == "3 of 3 cases fail; the governing case is heavy <b>."
+    assert "heavy &lt;b&gt;" in html_of(sheet)
+    assert "**heavy &lt;b&gt;**" in markdown_of(sheet)
+
+
+@pytest.mark.parametrize("text", ["</style><script>", '"; } body { display: none', "\\", "Ø 5 µm", "\n\n*/"])
+def test_the_title_in_the_margin_cannot_leave_its_string(text: str) -> None:
+    assert re.fullmatch(r"(?:[A-Za-z0-9]|\\[0-9a-f]+ )*", css_text(text))
+
+
+def test_the_same_run_gives_the_same_sheet(calculation: Calculation, provenance: Provenance) -> None:
+    assert sheet_html(calculation, provenance=provenance) == sheet_html(calculation, provenance=provenance)
+
+
+def test_the_templates_are_found() -> None:
+    names = {path.name for path in template_folder().iterdir()}
+    assert {"sheet.html.j2", "sheet.md.j2", "sheet.css", "parts"} <= names
+
+
+@pytest.mark.parametrize(
+    ("head", "expected"),
+    [
+        ({}, [("Project", ""), ("Drawing", ""), ("Revision", ""), ("Date", "2026-11-21")]),
+        ({"project": "P", "date": "1 May"}, [("Project", "P"), ("Drawing", ""), ("Revision", ""), ("Date", "1 May")]),
+    ],
+)
+def test_the_title_block_leaves_room_for_what_is_not_stated(
+    setup: Setup, provenance: Provenance, head: Mapping[str, str], expected: list[tuple[str, str]]
+) -> None:
+    sheet = make_sheet(calculate(replace(setup, head=head)), provenance=provenance)
+    assert list(sheet.head.fields) == expected
+    assert sheet.head.signatures == (("Prepared", ""), ("Checked", ""), ("Approved", ""))

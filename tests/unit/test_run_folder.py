@@ -1,0 +1,282 @@
+"""Run folders: complete or absent, ours or left alone; inputs that give the run again; results that are equal files."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from truing import run_folder
+from truing.calculation import Calculation, calculate
+from truing.errors import OutputError, UnknownPluginError
+from truing.inputs_file import read_setup, setup_from_text
+from truing.inputs_written import complete_inputs, exact, input_hash
+from truing.kernel import Kernel, Offer
+from truing.run_documents import clean, provenance_of, results_document
+from truing.run_folder import demand_place, is_run, json_text, load_run, npz_bytes, write_folder, write_run
+from truing.units import read_quantity, to_si
+
+DATA = Path(__file__).parents[1] / "data"
+
+
+@pytest.fixture(scope="module")
+def offer() -> Offer:
+    kernel = Kernel(strict=True)
+    kernel.add_file(DATA / "hostile_pin.py")
+    return kernel.offer("hostile_pin")
+
+
+@pytest.fixture(scope="module")
+def calculation(offer: Offer) -> Calculation:
+    return calculate(read_setup(DATA / "hostile_pin.toml", offer))
+
+
+def write(folder: Path, calculation: Calculation, offer: Offer, **more: Any) -> dict[str, Any]:
+    return write_run(
+        folder,
+        calculation,
+        offer,
+        provenance=provenance_of(calculation.setup, date="2026-11-21"),
+        run_info={"date": "2026-11-21T10:00:00+0000", "duration_s": 1.5},
+        sheets={"sheet.html": "<p>sheet</p>", "sheet.md": "# sheet\n"},
+        **more,
+    )
+
+
+def leftovers(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_a_run_folder_holds_everything(tmp_path: Path, calculation: Calculation, offer: Offer) -> None:
+    folder = tmp_path / "runs" / "Größe 1"
+    document = write(folder, calculation, offer)
+    assert leftovers(folder) == ["arrays.npz", "inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md"]
+    assert load_run(folder) == document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert json.loads((folder / "run.json").read_text(encoding="utf-8"))["duration_s"] == 1.5
+    assert leftovers(tmp_path / "runs") == ["Größe 1"]
+
+
+def test_results_are_in_printed_units_with_signed_margins(calculation: Calculation) -> None:
+    """130 N on 28 mm²: 4.642857 MPa, (80 - 4.642857)/80 of the limit left; 360 km are 60/300 above 300 km."""
+    document = results_document(calculation, provenance_of(calculation.setup))
+    assert document["schema"] == "truing.results/1"
+    assert document["results"]["pressure"] == {"value": pytest.approx(130 / 28, rel=1e-12), "unit": "MPa"}
+    margins = {check["name"]: (check["margin"], check["passed"]) for check in document["checks"]}
+    assert margins["pressure"] == (pytest.approx((80 - 130 / 28) / 80, rel=1e-12), True)
+    assert margins["distance"] == (pytest.approx(0.2, rel=1e-12), True)
+    assert margins["depth"][1] is False
+    assert document["inputs"]["cover"] == {"value": None, "unit": "mm"}
+    assert document["tolerances"]["room"] == {"spread": "off", "on": {}}
+    load = document["tolerances"]["load"]["on"]["load"]
+    assert load == {"mean": pytest.approx(130), "sd": pytest.approx(3.9, rel=1e-12), "unit": "N"}
+    assert document["effects"]["running_in"]["extra"]["sd"] == pytest.approx(0.2, rel=1e-12)
+    assert document["conditions"]["frame"] == {"value": pytest.approx(35, abs=1e-9), "unit": "degC"}
+
+
+def test_large_results_stand_in_the_arrays(tmp_path: Path, calculation: Calculation, offer: Offer) -> None:
+    document = write(tmp_path / "run", calculation, offer, arrays={"drawn": np.arange(4.0)})
+    entry = document["results"]["course"]
+    assert entry == {"value": None, "unit": "um", "array": "course", "shape": [1201]}
+    with np.load(tmp_path / "run" / "arrays.npz") as arrays:
+        assert sorted(arrays) == ["course", "drawn", "moment"]
+        assert arrays["course"] == pytest.approx(np.asarray(calculation.answers["course"]) * 1e6)
+
+
+def test_equal_runs_are_equal_files(tmp_path: Path, calculation: Calculation, offer: Offer) -> None:
+    write(tmp_path / "one", calculation, offer)
+    write(tmp_path / "two", calculate(calculation.setup), offer)
+    for name in ("results.json", "arrays.npz", "inputs.toml"):
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
+
+
+def test_packed_arrays_do_not_know_the_time() -> None:
+    arrays = {"b": np.arange(3), "a": np.ones((2, 2))}
+    assert npz_bytes(arrays) == npz_bytes(dict(reversed(arrays.items())))
+
+
+def test_results_hold_no_token_that_is_no_json(calculation: Calculation, offer: Offer) -> None:
+    document = results_document(calculation, provenance_of(calculation.setup))
+    assert "NaN" not in json_text(document)
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        json_text({"value": math.nan})
+
+
+def test_studies_are_made_plain() -> None:
+    said = {"a": np.float64(1.5), "b": (np.nan, np.inf, 2), "c": np.array([[1, 2]]), 3: np.bool_(True), "d": {"y", "x"}}
+    assert clean(said) == {"a": 1.5, "b": [None, None, 2], "c": [[1, 2]], "3": True, "d": ["x", "y"]}
+
+
+def test_complete_inputs_give_the_run_again(tmp_path: Path, calculation: Calculation, offer: Offer) -> None:
+    folder = tmp_path / "run"
+    document = write(folder, calculation, offer)
+    again = calculate(read_setup(folder / "inputs.toml", offer))
+    assert results_document(again, provenance_of(again.setup)) == document
+    written = [complete_inputs(setup, folder).splitlines()[:9] for setup in (again.setup, calculation.setup)]
+    assert written[0] == written[1]
+
+
+def test_the_hash_follows_what_decides_the_results_and_nothing_else(offer: Offer) -> None:
+    def hash_of(text: str) -> str:
+        return input_hash(setup_from_text(text, offer, file="x", folder=Path()))
+
+    plain = hash_of("")
+    assert hash_of('[sheet]\nproject = "P"\ndetail = "full"') == plain
+    assert hash_of('[inputs]\nload = "0.12 kN"') == plain
+    others = ['[inputs]\nload = "121 N"', '[tolerances]\nload = "off"', '[units]\ndepth = "mm"', "[studies]\nseed = 7"]
+    assert len({plain, *map(hash_of, others)}) == 5
+
+
+@given(st.floats(-1e12, 1e12, allow_nan=False), st.sampled_from(["mm", "deg", "um", "MPa", "h", "kW", "l/min"]))
+def test_an_input_is_written_so_that_it_reads_the_same(value: float, unit: str) -> None:
+    """Exactly, for every number that a text in this unit can give at all."""
+    si = to_si(value, unit)
+    if abs(value) < 1e-200:
+        return
+    assert read_quantity(exact(si, unit), unit) == si
+
+
+@pytest.mark.parametrize(("unit", "text"), [("mm", "0.05"), ("deg", "0.001324"), ("um", "12.5"), ("kN", "0.1")])
+def test_an_input_is_written_as_briefly_as_it_was_stated(unit: str, text: str) -> None:
+    assert exact(read_quantity(f"{text} {unit}", unit), unit) == f"{text} {unit}"
+
+
+def test_a_tolerance_that_follows_a_choice_is_left_to_follow_it() -> None:
+    press = Kernel.installed().offer("press_linkage")
+    setup = setup_from_text('[inputs]\nreading = "printed"', press, file="x", folder=Path())
+    text = complete_inputs(setup)
+    again = setup_from_text(text.replace('"printed"', '"complete"'), press, file="y", folder=Path())
+    wanted = setup_from_text('[inputs]\nreading = "complete"', press, file="z", folder=Path())
+    assert again.distributions() == wanted.distributions() != setup.distributions()
+
+
+def test_an_earlier_run_is_replaced_whole(tmp_path: Path, calculation: Calculation, offer: Offer) -> None:
+    folder = tmp_path / "run"
+    write(folder, calculation, offer)
+    (folder / "notes.txt").write_text("left by the earlier run")
+    write(folder, calculation, offer)
+    assert "notes.txt" not in leftovers(folder)
+    assert leftovers(tmp_path) == ["run"]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        {},
+        {"thesis.txt": "years of work"},
+        {"results.json": "{}", "run.json": "{}"},
+        {"results.json": '{"schema": "truing.results/1"}'},
+        {"results.json": "no json", "run.json": "{}"},
+        {"results.json": "[1]", "run.json": "{}"},
+    ],
+)
+def test_a_folder_that_is_no_run_of_ours_is_left_alone(tmp_path: Path, content: dict[str, str]) -> None:
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    for name, text in content.items():
+        (folder / name).write_text(text)
+    assert not is_run(folder)
+    with pytest.raises(OutputError, match="so it is left alone"):
+        write_folder(folder, {"results.json": "x"})
+    assert {path.name: path.read_text() for path in folder.iterdir()} == content
+    assert leftovers(tmp_path) == ["folder"]
+
+
+def test_a_place_below_a_file_is_refused_in_one_sentence(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(OutputError, match=r"file is a file, so there can be no folder below it; name another place$"):
+        demand_place(tmp_path / "file" / "runs" / "one")
+    with pytest.raises(OutputError, match=r"is a file; a run is a folder"):
+        demand_place(tmp_path / "file")
+
+
+def test_a_place_that_is_free_is_not_touched_by_asking(tmp_path: Path) -> None:
+    demand_place(tmp_path / "runs" / "one")
+    assert leftovers(tmp_path) == []
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, OSError(28, "No space left on device")])
+@pytest.mark.parametrize("has_earlier_run", [False, True])
+def test_an_interrupted_run_leaves_nothing_of_itself(
+    tmp_path: Path,
+    calculation: Calculation,
+    offer: Offer,
+    monkeypatch: pytest.MonkeyPatch,
+    error: Any,
+    has_earlier_run: bool,
+) -> None:
+    folder = tmp_path / "runs" / "one"
+    if has_earlier_run:
+        write(folder, calculation, offer)
+    before = {path.name: path.read_bytes() for path in folder.iterdir()} if has_earlier_run else None
+
+    def interrupted(part: Path, target: Path) -> None:
+        assert leftovers(part)
+        raise error
+
+    monkeypatch.setattr(run_folder, "_put_in_place", interrupted)
+    with pytest.raises(KeyboardInterrupt if error is KeyboardInterrupt else OutputError):
+        write(folder, calculation, offer)
+    if before is None:
+        assert leftovers(tmp_path) == []
+    else:
+        assert leftovers(tmp_path / "runs") == ["one"]
+        assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
+def test_an_interrupt_between_the_two_moves_brings_the_earlier_run_back(
+    tmp_path: Path, calculation: Calculation, offer: Offer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "one"
+    write(folder, calculation, offer)
+    (folder / "sheet.md").write_text("the earlier one")
+    move = Path.rename
+
+    def rename(self: Path, target: Path) -> Path:
+        if self.name.endswith(".part"):
+            raise KeyboardInterrupt
+        return move(self, target)
+
+    monkeypatch.setattr(Path, "rename", rename)
+    with pytest.raises(KeyboardInterrupt):
+        write(folder, calculation, offer)
+    monkeypatch.undo()
+    assert leftovers(tmp_path) == ["one"]
+    assert (folder / "sheet.md").read_text() == "the earlier one"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="permissions are another matter on Windows")
+def test_a_run_folder_can_be_read_by_whoever_may_read_its_neighbours(
+    tmp_path: Path, calculation: Calculation, offer: Offer
+) -> None:
+    write(tmp_path / "run", calculation, offer)
+    (tmp_path / "plain").mkdir()
+    assert (tmp_path / "run").stat().st_mode == (tmp_path / "plain").stat().st_mode
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (None, "holds no results.json"),
+        ("{", "cannot be read"),
+        ('{"schema": "other/1"}', "is no truing.results/1 document"),
+    ],
+)
+def test_what_is_no_run_is_not_loaded(tmp_path: Path, content: str | None, sentence: str) -> None:
+    if content is not None:
+        (tmp_path / "results.json").write_text(content)
+    with pytest.raises(UnknownPluginError, match=sentence):
+        load_run(tmp_path)
+
+
+def test_what_guests_added_is_listed(calculation: Calculation) -> None:
+    provenance = replace(provenance_of(calculation.setup), added=[("hot_oil", "guest", "0.2")])
+    added = results_document(calculation, provenance)["added"]
+    assert added == [{"what": "hot_oil", "plugin": "guest", "version": "0.2"}]
