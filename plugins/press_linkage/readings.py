@@ -8,7 +8,7 @@ from press_linkage.mechanism import permitted_tilt
 from truing import Allocation, Allotted, Block, Table
 
 if TYPE_CHECKING:
-    from truing.studies.bench import Bench, Check
+    from truing import Bench, Check
 
 READINGS = ("printed", "complete")
 CHECKS = {"slider_position": "position", "slider_tilt": "tilt"}

@@ -3,7 +3,6 @@
 import json
 import os
 import sys
-import sysconfig
 import zipfile
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import pytest
 
 from conftest import GUESTS, ROOT, Answer, copied_guest, process
 
-pytestmark = [pytest.mark.install, pytest.mark.xdist_group("install")]
+pytestmark = pytest.mark.install
 OURS = {path.name for path in (ROOT / "plugins").iterdir() if (path / "__init__.py").is_file()}
 
 
@@ -74,44 +73,48 @@ def test_the_wheel_names_its_commands_and_plugins(wheel: Path) -> None:
 
 
 def test_installed_anew_everything_runs(fresh: Path, tmp_path: Path) -> None:
-    listed = calc(fresh, tmp_path, "plugins")
+    """One test for all that needs the fresh environment: making it takes longer than using it."""
+    _comes_from_the_wheel(fresh, tmp_path)
+    _lists_and_describes(fresh, tmp_path)
+    for name in ("screw_joint", "press_linkage"):
+        _runs(fresh, tmp_path, name)
+    _shares_the_work(fresh, tmp_path)
+
+
+def _comes_from_the_wheel(fresh: Path, folder: Path) -> None:
+    code = "import truing, pathlib; print(pathlib.Path(truing.__file__).parent)"
+    found = process([str(fresh / "python"), "-c", code], folder).out.strip()
+    assert Path(found).is_relative_to(fresh.parent)
+    assert (Path(found) / "templates" / "sheet.css").is_file()
+
+
+def _lists_and_describes(fresh: Path, folder: Path) -> None:
+    listed = calc(fresh, folder, "plugins")
     assert listed.code == 0, listed.err
     for name in ("press_linkage", "screw_joint", "frame_settling"):
         assert name in listed.out
     assert "tables.py:6: plugin 'broken_guest' 0.0.7: IndexError" in listed.err
     assert str(ROOT) not in listed.out + listed.err
-    assert calc(fresh, tmp_path, "describe", "screw_joint").code == 0
-    for name in ("screw_joint", "press_linkage"):
-        assert calc(fresh, tmp_path, "init", name, "-o", f"{name}.toml").code == 0
-        done = calc(fresh, tmp_path, "run", name, "--inputs", f"{name}.toml")
-        assert done.code == 0, done.err
-        sheet = (tmp_path / "runs" / name / "sheet.html").read_text(encoding="utf-8")
-        assert "<math" in sheet
-        results = json.loads((tmp_path / "runs" / name / "results.json").read_text(encoding="utf-8"))
-        assert results["plugin"]["name"] == name
-
-
-def test_what_is_installed_comes_from_the_wheel(fresh: Path, tmp_path: Path) -> None:
-    code = "import truing, pathlib; print(pathlib.Path(truing.__file__).parent)"
-    found = process([str(fresh / "python"), "-c", code], tmp_path).out.strip()
-    assert Path(found).is_relative_to(fresh.parent)
-    assert (Path(found) / "templates" / "sheet.css").is_file()
-    assert sysconfig.get_path("purelib") not in found
-
-
-def test_the_other_names_of_the_command(fresh: Path, tmp_path: Path) -> None:
-    answers = [
-        process([str(fresh / "truing"), "plugins", "--names"], tmp_path),
-        process([str(fresh / "python"), "-m", "truing", "plugins", "--names"], tmp_path),
-    ]
+    assert calc(fresh, folder, "describe", "screw_joint").code == 0
+    others = [[str(fresh / "truing")], [str(fresh / "python"), "-m", "truing"]]
+    answers = [process([*command, "plugins", "--names"], folder) for command in others]
     assert [answer.out.split() for answer in answers] == [["broken_guest", "press_linkage", "screw_joint"]] * 2
 
 
-def test_a_fresh_process_pool_finds_everything(fresh: Path, tmp_path: Path) -> None:
+def _runs(fresh: Path, folder: Path, name: str) -> None:
+    assert calc(fresh, folder, "init", name, "-o", f"{name}.toml").code == 0
+    done = calc(fresh, folder, "run", name, "--inputs", f"{name}.toml")
+    assert done.code == 0, done.err
+    assert "<math" in (folder / "runs" / name / "sheet.html").read_text(encoding="utf-8")
+    results = json.loads((folder / "runs" / name / "results.json").read_text(encoding="utf-8"))
+    assert results["plugin"]["name"] == name
+
+
+def _shares_the_work(fresh: Path, folder: Path) -> None:
     """Results are byte for byte the same with two worker processes."""
     few = ("--set", "studies.reliability.draws=40000", "--output")
     for name, workers in (("one", "1"), ("two", "2")):
-        done = calc(fresh, tmp_path, "run", "screw_joint", "--workers", workers, *few, name)
+        done = calc(fresh, folder, "run", "screw_joint", "--workers", workers, *few, name)
         assert done.code == 0, done.err
-    one, two = ((tmp_path / name / "results.json").read_bytes() for name in ("one", "two"))
+    one, two = ((folder / name / "results.json").read_bytes() for name in ("one", "two"))
     assert one == two

@@ -1,0 +1,175 @@
+"""The house keeps its own rules: floors, types, style, sizes, and the list of names for plugin authors."""
+
+import ast
+import configparser
+import importlib
+import re
+import sys
+import tomllib
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import truing
+from conftest import ROOT, Answer, process
+
+CODE = [*sorted((ROOT / "kernel").rglob("*.py")), *sorted((ROOT / "plugins").rglob("*.py"))]
+PACKAGES = sorted(path.parent.name for path in (ROOT / "plugins").glob("*/__init__.py"))
+SHARED = {"gear_geometry"}  # what several gear papers share: no hooks, and every plugin may import it
+FOR_AUTHORS = {"truing"}
+
+
+def tool(*arguments: str) -> Answer:
+    return process([sys.executable, "-m", *arguments], ROOT)
+
+
+def test_floors() -> None:
+    code = "import sys; from importlinter.cli import lint_imports; sys.exit(lint_imports())"
+    answer = process([sys.executable, "-c", code], ROOT)
+    assert answer.code == 0, answer.out + answer.err
+
+
+def test_types() -> None:
+    answer = tool("mypy")
+    assert answer.code == 0, answer.out
+
+
+def test_style() -> None:
+    answer = tool("ruff", "check", "kernel", "plugins", "tests")
+    assert answer.code == 0, answer.out
+
+
+def test_format() -> None:
+    answer = tool("ruff", "format", "--check", "kernel", "plugins", "tests")
+    assert answer.code == 0, answer.out
+
+
+# What the type checker catches in a plugin, before anything runs
+
+
+def test_the_plugin_of_the_style_page_is_typed() -> None:
+    answer = tool("mypy", "--strict", str(ROOT / "tests" / "data" / "pin_wear.py"))
+    assert answer.code == 0, answer.out
+
+
+def test_every_mistake_in_a_plugin_is_caught() -> None:
+    file = ROOT / "tests" / "data" / "pin_wear_wrong.py"
+    lines = file.read_text(encoding="utf-8").splitlines()
+    wrong = {number for number, line in enumerate(lines, start=1) if "# WRONG" in line}
+    answer = process(
+        [sys.executable, "-m", "mypy", "--strict", "--config-file", str(ROOT / "pyproject.toml"), str(file)],
+        ROOT,
+        {"MYPYPATH": str(file.parent)},
+    )
+    found = {int(number) for number in re.findall(r"pin_wear_wrong\.py:(\d+): error", answer.out)}
+    assert len(wrong) == 13
+    assert found == wrong, answer.out
+
+
+# Packaging and contracts speak of every package
+
+
+def test_every_package_is_in_the_contracts_and_in_the_type_check() -> None:
+    contracts = configparser.ConfigParser()
+    contracts.read(ROOT / ".importlinter")
+
+    def named(section: str, key: str) -> set[str]:
+        return set(contracts[section][key].split())
+
+    assert named("importlinter", "root_packages") == {"truing", *PACKAGES}
+    assert named("importlinter:contract:kernel", "forbidden_modules") == set(PACKAGES)
+    assert named("importlinter:contract:plugins", "source_modules") == set(PACKAGES)
+    assert named("importlinter:contract:neighbours", "modules") == set(PACKAGES) - SHARED
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert set(project["tool"]["mypy"]["packages"]) == {"truing", *PACKAGES}
+    entries = project["project"]["entry-points"]["truing.plugins"]
+    assert {value.split(":")[0] for value in entries.values()} == set(PACKAGES) - SHARED
+
+
+@pytest.mark.parametrize("package", ["truing", *PACKAGES])
+def test_every_package_is_marked_as_typed(package: str) -> None:
+    module = importlib.import_module(package)
+    assert (Path(str(module.__file__)).parent / "py.typed").is_file()
+
+
+def imports_of(file: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{file}: imports are absolute"
+            yield str(node.module)
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_a_plugin_imports_what_its_author_is_given(package: str) -> None:
+    allowed = {package, "numpy", "scipy", "matplotlib", *SHARED, *sys.stdlib_module_names}
+    for file in sorted((ROOT / "plugins" / package).rglob("*.py")):
+        for name in imports_of(file):
+            assert name in FOR_AUTHORS or name.split(".")[0] in allowed, f"{file} imports {name}"
+
+
+# Names for plugin authors
+
+
+def test_every_name_for_authors_is_there() -> None:
+    for name in truing.__all__:
+        assert getattr(truing, name) is not None
+        assert name in dir(truing)
+    assert not [name for name, count in Counter(truing.__all__).items() if count > 1]
+    with pytest.raises(AttributeError, match="module 'truing' has no attribute 'Modle'"):
+        truing.Modle  # type: ignore[attr-defined]  # noqa: B018
+
+
+def test_the_type_checker_sees_the_same_names() -> None:
+    tree = ast.parse(Path(str(truing.__file__)).read_text(encoding="utf-8"))
+    seen = {
+        alias.name: node.module
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and str(node.module).startswith("truing.")
+        for alias in node.names
+    }
+    assert seen == truing._HOME
+    assert set(seen) == set(truing.__all__)
+
+
+# Small pieces
+
+
+def functions_of(file: Path) -> Iterator[ast.FunctionDef]:
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef):
+            yield node
+
+
+def test_files_are_small() -> None:
+    long = {str(file): count for file in CODE if (count := len(file.read_text(encoding="utf-8").splitlines())) > 400}
+    assert not long
+
+
+def test_functions_are_small() -> None:
+    long = [
+        f"{file}:{function.lineno}: {function.name} has {length} lines"
+        for file in CODE
+        for function in functions_of(file)
+        if (length := (function.end_lineno or 0) - function.lineno + 1) > 40
+    ]
+    assert not long
+
+
+def test_functions_take_few_arguments_by_position() -> None:
+    """More than five come by keyword only, which the words of a declaration and the command line's verbs do."""
+    many = [
+        f"{file}:{function.lineno}: {function.name} takes {count}"
+        for file in CODE
+        for function in functions_of(file)
+        if (count := len([*function.args.posonlyargs, *function.args.args])) > 5 and "cli" not in file.parts
+    ]
+    assert not many
+
+
+@pytest.mark.parametrize("word", ["TODO", "FIXME", "XXX", "NotImplementedError"])
+def test_nothing_is_left_for_later(word: str) -> None:
+    assert not [str(file) for file in CODE if word in file.read_text(encoding="utf-8")]
