@@ -4,6 +4,7 @@ import itertools
 import math
 
 import pytest
+
 from truing import fits
 from truing.errors import TruingError, UnitError
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+
 from truing import units
 from truing.errors import TruingError, UnitError
 from truing.units import Quantity, names
