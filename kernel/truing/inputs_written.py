@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from truing.declare.fields import InputField
     from truing.declare.model import Study
 
-LEVELS = {"degC", "degF", "°C", "°F"}
 PURE = {"", "1", "-"}
 
 
@@ -51,7 +50,10 @@ def complete_inputs(setup: Setup, folder: Path | None = None) -> str:
 def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield every section of the inputs file with its entries as plain TOML values."""
     detail = {"detail": setup.detail} if setup.detail != "normal" else {}
-    yield "sheet", {**{name: str(text) for name, text in setup.head.items()}, **detail}
+    head = {name: str(text) for name, text in setup.head.items()}
+    if folder is not None and head.get("logo"):
+        head["logo"] = _seen_from(folder, Path(setup.file).parent / head["logo"])
+    yield "sheet", {**head, **detail}
     inputs = setup.model.read_inputs(setup.inputs)
     fields = setup.model.input_fields
     stated = {name: _input(setup, fields[name], value, folder) for name, value in inputs.items()}
@@ -112,24 +114,19 @@ def _input(setup: Setup, item: InputField, value: Any, folder: Path | None) -> A
 
 def _file(setup: Setup, name: str, folder: Path | None) -> Any:
     """Return what the inputs file says of a data file, with its path as seen from ``folder``; without one, its hash."""
-    if folder is None:
-        return setup.files.get(name, "")
-    import tomllib
+    table = dict(setup.tables.get(name, {}))
+    if not table:
+        return None
+    return {**table, "file": setup.files.get(name, "") if folder is None else _seen_from(folder, Path(table["file"]))}
 
-    try:
-        data = tomllib.loads(Path(setup.file).read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError):
-        return None
-    table = data.get("inputs", {}).get(name)
-    table = {"file": table} if isinstance(table, str) else table
-    if not isinstance(table, dict) or "file" not in table:
-        return None
-    path = Path(setup.file).parent / str(table["file"])
+
+def _seen_from(folder: Path, path: Path) -> str:
+    """Return the path of a file as seen from a folder, with slashes; from another drive, the whole of it."""
     try:
         relative = os.path.relpath(path, folder)
-    except ValueError:  # another drive
+    except ValueError:
         relative = str(path.resolve())
-    return {**table, "file": relative.replace("\\", "/")}
+    return relative.replace("\\", "/") if os.name == "nt" else relative
 
 
 def _spread(setup: Setup, name: str) -> str:
@@ -141,13 +138,13 @@ def _spread(setup: Setup, name: str) -> str:
 
 
 def _effect(item: SwitchedOn) -> dict[str, Any]:
-    from truing.units import unit_factor
+    from truing.units import difference_unit, unit_factor
 
     said: dict[str, Any] = {}
     for unknown in item.effect.unknowns:
         value = exact(item.values[unknown.name], unknown.unit)
         sd = item.sds.get(unknown.name)
-        scale = "K" if unknown.unit in LEVELS else unknown.unit
+        scale = difference_unit(unknown.unit)
         said[unknown.name] = value if sd is None else {"value": value, "sd": exact(sd, scale)}
     if item.covariance:
         factors = [unit_factor(unknown.unit) for unknown in item.effect.unknowns]

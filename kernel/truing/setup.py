@@ -51,6 +51,7 @@ class Setup:
     added: tuple[Added, ...] = ()
     file: str = ""
     files: Mapping[str, str] = field(default_factory=dict)
+    tables: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     places: Mapping[str, tuple[str, int | None]] = field(default_factory=dict, compare=False)
 

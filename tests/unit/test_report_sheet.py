@@ -172,7 +172,7 @@ def groups(markdown: str) -> list[tuple[int, list[str]]]:
 
 @pytest.mark.parametrize(
     "words",
-    ["Werk Süd", "A. Müller", "4711-02", "1 of 3 checks fails: worn depth.", "lognormal sd 6 %", "running in"],
+    ["Werk Süd", "A. Müller", "4711-02", "1 of 3 checks fails: depth.", "lognormal sd 6 %", "running in"],
 )
 def test_both_sheets_say_the_same(html: str, markdown: str, words: str) -> None:
     assert words in Page(html).text
@@ -280,6 +280,41 @@ def test_a_figure_that_fails_is_a_warning_and_not_the_end(offer: Offer, setup: S
     assert any("the figure 'Broken' failed: ZeroDivisionError: nothing to divide by" in text for text in sheet.warnings)
     assert "could not be drawn" in html_of(sheet)
     assert "could not be drawn" in markdown_of(sheet)
+
+
+@pytest.mark.parametrize("rows", [[["a"], ["a", 1.0, "too many"]], "no table at all"])
+def test_blocks_of_a_guest_do_not_take_the_sheet_away(setup: Setup, provenance: Provenance, rows: Any) -> None:
+    """Rows too short or too long are printed as far as they go; what is no table is said to have failed."""
+    from truing import Section, Table
+
+    def blocks(record: Any) -> Any:
+        return [Table("T", ["one", "two"], rows)] if isinstance(rows, list) else rows
+
+    model = replace(setup.model, sheet=[Section("Guest", blocks=blocks)])
+    sheet = make_sheet(calculate(replace(setup, model=model)), provenance=provenance)
+    said = [text for text in sheet.warnings if "'Guest' failed" in text]
+    assert len(said) == (0 if isinstance(rows, list) else 1)
+    assert ("could not be written" in html_of(sheet)) == bool(said)
+    assert ("could not be written" in markdown_of(sheet)) == bool(said)
+
+
+def test_a_logo_stands_in_the_file_itself(setup: Setup, provenance: Provenance, tmp_path: Path) -> None:
+    (tmp_path / "sign.svg").write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
+    stated = replace(setup, head={"logo": "sign.svg"}, file=str(tmp_path / "in.toml"))
+    images = [
+        attributes
+        for tag, attributes in Page(sheet_html(calculate(stated), provenance=provenance)).tags
+        if tag == "img"
+    ]
+    assert [(image["src"] or "")[:26] for image in images] == ["data:image/svg+xml;base64,"]
+    assert images[0]["alt"]
+
+
+@pytest.mark.parametrize("name", ["missing.png", "/etc/hostname", "https://evil.example/x.png", "a\0.png"])
+def test_a_logo_that_cannot_be_shown_is_a_warning(setup: Setup, provenance: Provenance, name: str) -> None:
+    sheet = make_sheet(calculate(replace(setup, head={"logo": name})), provenance=provenance)
+    assert sheet.head.logo == ""
+    assert len([text for text in sheet.warnings if text.startswith("the logo '")]) == 1
 
 
 def test_cases_are_listed_and_the_governing_one_is_marked(offer: Offer, tmp_path: Path) -> None:

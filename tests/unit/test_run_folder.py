@@ -280,3 +280,61 @@ def test_what_guests_added_is_listed(calculation: Calculation) -> None:
     provenance = replace(provenance_of(calculation.setup), added=[("hot_oil", "guest", "0.2")])
     added = results_document(calculation, provenance)["added"]
     assert added == [{"what": "hot_oil", "plugin": "guest", "version": "0.2"}]
+
+
+def test_data_files_are_named_as_seen_from_the_run_folder(tmp_path: Path) -> None:
+    """With --set, too: what was read last is what the inputs of the run name."""
+    (tmp_path / "plugin.py").write_text(PROFILED, encoding="utf-8")
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "flank.txt").write_text("1 2 3")
+    (tmp_path / "data" / "other.txt").write_text("4 5 6")
+    (tmp_path / "logo.svg").write_text("<svg/>")
+    inputs = '[sheet]\nlogo = "logo.svg"\n[inputs]\nprofile = { file = "data/flank.txt", factor = 2.0 }\n'
+    (tmp_path / "in.toml").write_text(inputs)
+    kernel = Kernel(strict=True)
+    kernel.add_file(tmp_path / "plugin.py")
+    offer = kernel.offer("profiled")
+    stated = '{ file = "data/other.txt", factor = 3.0 }'
+    for overrides, mean in (([], 4.0), ([f"profile={stated}"], 15.0)):
+        calculation = calculate(read_setup(tmp_path / "in.toml", offer, overrides=overrides))
+        document = write(tmp_path / "runs" / "one", calculation, offer)
+        assert document["results"]["mean"]["value"] == mean
+        again = read_setup(tmp_path / "runs" / "one" / "inputs.toml", offer)
+        assert calculate(again).answers["mean"] == mean
+        assert input_hash(again) == document["input_hash"]
+        assert (Path(again.file).parent / again.head["logo"]).read_text() == "<svg/>"
+
+
+PROFILED = """
+from dataclasses import dataclass
+from pathlib import Path
+from truing import Float, Model, found, hookimpl, inputs, loaded, results
+
+
+@dataclass(frozen=True)
+class Profile:
+    heights: tuple[float, ...]
+
+
+def read_profile(path: Path, factor: float = 1.0) -> Profile:
+    return Profile(tuple(factor * float(word) for word in path.read_text().split()))
+
+
+@inputs
+class Flank:
+    profile: Profile = loaded(read_profile, note="heights along the flank")
+
+
+@results
+class Answer:
+    mean: Float = found("", note="mean height")
+
+
+def average(flank: Flank) -> Answer:
+    return Answer(mean=sum(flank.profile.heights) / len(flank.profile.heights))
+
+
+@hookimpl
+def truing_models() -> list[Model[Flank, Answer]]:
+    return [Model(name="profiled", title="Mean of a profile", function=average)]
+"""

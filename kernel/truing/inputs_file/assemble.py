@@ -182,6 +182,7 @@ def make_setup(offer: Offer, reading: Reading, studies: tuple[Study, ...], docum
         added=offer.added,
         file=document.file,
         files=dict(reading.files),
+        tables=dict(reading.tables),
         places=places_of(model, document),
         warnings=tuple(of("warnings").values()),
     )

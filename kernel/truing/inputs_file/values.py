@@ -24,11 +24,12 @@ class SentenceError(ValueError):
 
 @dataclass
 class Reading:
-    """What was read so far: values in SI by section and name, hashes of data files, and where these are looked for."""
+    """What was read so far: values in SI by section and name, data files with their hashes, where they are looked for."""
 
     folder: Path
     values: dict[tuple[str, ...], Any] = field(default_factory=dict)
     files: dict[str, str] = field(default_factory=dict)
+    tables: dict[str, dict[str, Any]] = field(default_factory=dict)
     faults: list[tuple[tuple[str, ...], str]] = field(default_factory=list)
 
 
@@ -242,6 +243,7 @@ def _loaded(item: InputField, raw: Any, reading: Reading) -> Any:
             raise SentenceError(f"{item.name}: there is no file {shown(table['file'])} beside the inputs file ({path})")
         with path.open("rb") as stream:
             reading.files[item.name] = hashlib.file_digest(stream, "sha256").hexdigest()
+        reading.tables[item.name] = {"file": str(path.absolute()), **options}
         return spec.reader(path, **options)
     except SentenceError:
         raise

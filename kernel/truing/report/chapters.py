@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from truing.calculation import Calculation
@@ -16,6 +18,7 @@ from truing.report.context import BlockView, Chapter, Entry, FigureView, TableVi
 from truing.report.equations import equation_of, value_text
 from truing.report.figures import draw
 from truing.setup import Setup
+from truing.studies.bench import Outcome
 
 RANK = {"short": 0, "normal": 1, "full": 2}
 LONGEST_TABLE = {"short": 20, "normal": 60, "full": 1000}
@@ -83,7 +86,8 @@ def _of_section(writing: Writing, section: Section) -> Chapter:
         figure = section.figure
         blocks.append(writing.figures.view(section.title, lambda: figure(record), section.caption))
     if section.blocks is not None:
-        blocks += views(writing, section.blocks(record))
+        made = section.blocks
+        blocks += _guarded(writing, section.title, lambda: views(writing, made(record)))
     return Chapter("", "", section.title, "results", text=section.text, entries=entries, blocks=tuple(blocks))
 
 
@@ -102,9 +106,13 @@ def _main_results(writing: Writing) -> Iterator[Chapter]:
 
 def _studies(writing: Writing) -> Iterator[Chapter]:
     for name, outcome in writing.calculation.outcomes.items():
-        found = views(writing, outcome.blocks())
+        found = _guarded(writing, f"study {name}", partial(_said, writing, outcome))
         if found:
             yield Chapter("", "", f"Study: {name.replace('_', ' ')}", "study", blocks=tuple(found))
+
+
+def _said(writing: Writing, outcome: Outcome) -> list[BlockView]:
+    return views(writing, outcome.blocks())
 
 
 def _is_scalar(value: Any) -> bool:
@@ -203,6 +211,17 @@ def _columns_table(writing: Writing, title: str, names: Sequence[str], most: int
     return TableView(title, tuple(titles), headings, rows, (True,) * len(names), note)
 
 
+def _guarded(writing: Writing, title: str, make: Callable[[], list[BlockView]]) -> list[BlockView]:
+    """Make the blocks of a guest; where its code fails that is said in their place, and the sheet goes on."""
+    try:
+        return make()
+    except Exception as error:
+        frame = traceback.extract_tb(error.__traceback__)[-1]
+        place = f"{frame.filename}:{frame.lineno}"
+        writing.figures.failures.append(f"{place}: '{title}' failed: {type(error).__name__}: {error}")
+        return [Words(f"What '{title}' says could not be written.", kind="warning")]
+
+
 def views(writing: Writing, blocks: Sequence[Block]) -> list[BlockView]:
     """Turn the blocks of a study or a section into what is printed."""
     return [_view(writing, block) for block in blocks]
@@ -222,7 +241,8 @@ def table_view(table: Table, most: int) -> TableView:
     from truing.units import unit_text
 
     shown = table.rows[:most]
-    rows = tuple(tuple(value_text(cell) for cell in row) for row in shown)
+    width = len(table.columns)
+    rows = tuple(tuple([*map(value_text, row), *[""] * width][:width]) for row in shown)
     numeric = tuple(
         bool(shown) and all(_is_numeric(row[place]) for row in shown if place < len(row))
         for place in range(len(table.columns))

@@ -20,7 +20,6 @@ from truing.setup import Setup
 LINE = 36.0
 """How wide a line may be, in em, before it is broken: the column of formulas on A4."""
 
-LEVELS = {"degC", "degF", "°C", "°F"}
 INPUT_DIGITS = 7
 
 
@@ -98,7 +97,9 @@ def _number(setup: Setup, item: InputField | ResultField, value: Any, *, numeric
     if numeric:
         return format_value(value, item.unit, digits)[0], ""
     unit = setup.print_unit(item.name)
-    return format_value(value, "K" if unit in LEVELS else unit, digits)
+    from truing.units import difference_unit
+
+    return format_value(value, difference_unit(unit), digits)
 
 
 def _results(setup: Setup, item: ResultField, value: Any, *, numeric: bool) -> tuple[Value, ...]:

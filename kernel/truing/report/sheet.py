@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from truing.calculation import Calculation
@@ -26,6 +28,8 @@ HEAD_FIELDS = {
     "date": "Date",
 }
 SIGNATURES = {"prepared": "Prepared", "checked": "Checked", "approved": "Approved"}
+PICTURES = {".svg": "image/svg+xml", ".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg"}
+LARGEST_LOGO = 500_000
 FEW = 6
 """So many inputs at a default of 0 still have rows of their own."""
 
@@ -63,7 +67,7 @@ def make_sheet(
         compared=tuple(own),
         compared_elsewhere=tuple(elsewhere),
         findings=tuple(setup.model.findings),
-        warnings=tuple(_warnings(calculation, cases, figures)),
+        warnings=tuple(_warnings(calculation, cases, figures.failures)),
         references=tuple(references(calculation)),
         provenance=provenance,
     )
@@ -86,6 +90,7 @@ def head_of(setup: Setup, provenance: Provenance) -> Head:
     ]
     signatures = [(label, given.get(f"{name}_by", given.get(name, ""))) for name, label in SIGNATURES.items()]
     title = given.get("title", setup.model.title)
+    logo, _ = logo_of(setup)
     parts = [title, given.get("project", ""), given.get("drawing", ""), given.get("revision", "")]
     return Head(
         title=title,
@@ -93,7 +98,26 @@ def head_of(setup: Setup, provenance: Provenance) -> Head:
         fields=(*shown, *others),
         signatures=tuple(signatures),
         footer=" · ".join(part for part in parts if part),
+        logo=logo,
     )
+
+
+def logo_of(setup: Setup) -> tuple[str, str]:
+    """Return the company's sign as a data address, and what is wrong with it; the file lies beside the inputs file."""
+    name = str(setup.head.get("logo", "")).strip()
+    if not name:
+        return "", ""
+    kind = PICTURES.get(Path(name).suffix.lower())
+    if kind is None:
+        return "", f"the logo '{name}' is left out: it must be a {', '.join(PICTURES)} file"
+    try:
+        with (Path(setup.file).parent / name).open("rb") as stream:
+            content = stream.read(LARGEST_LOGO + 1)
+    except (OSError, ValueError) as error:
+        return "", f"the logo '{name}' is left out: {getattr(error, 'strerror', None) or error}"
+    if len(content) > LARGEST_LOGO:
+        return "", f"the logo '{name}' is left out: it is larger than {LARGEST_LOGO // 1000} kB"
+    return f"data:{kind};base64,{b64encode(content).decode()}", ""
 
 
 def verdict(sheet: Sheet, cases: CasesTable | None) -> str:
@@ -106,7 +130,7 @@ def verdict(sheet: Sheet, cases: CasesTable | None) -> str:
     count = len(sheet.checks)
     if not broken:
         return {1: "The one check passes.", 2: "Both checks pass."}.get(count, f"All {count} checks pass.")
-    names = ", ".join(check.note or check.name for check in broken)
+    names = ", ".join(check.name.replace("_", " ") for check in broken)
     return f"{len(broken)} of {count} checks {'fails' if len(broken) == 1 else 'fail'}: {names}."
 
 
@@ -123,14 +147,15 @@ def case_name(case: CaseResult) -> str:
     return case.name or f"row {case.row}"
 
 
-def _warnings(calculation: Calculation, cases: CasesTable | None, figures: Figures) -> Iterator[str]:
+def _warnings(calculation: Calculation, cases: CasesTable | None, failures: Sequence[str]) -> Iterator[str]:
     yield from calculation.warnings
+    yield from filter(None, [logo_of(calculation.setup)[1]])
     shown = calculation.failed[:20] if cases is None else ()
     for row, reason in shown:
         yield f"row {row} failed: {reason}"
     if len(calculation.failed) > len(shown) and cases is None:
         yield f"{len(calculation.failed) - len(shown)} further rows failed"
-    yield from figures.failures
+    yield from failures
 
 
 def references(calculation: Calculation) -> Iterator[str]:
