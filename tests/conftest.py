@@ -15,7 +15,7 @@ ROOT = TESTS.parent
 GUESTS = ("screw_joint", "broken_guest")
 
 collect_ignore = ["third_party", "data"]
-sys.path.append(str(TESTS / "data"))
+sys.path += [str(TESTS / "data"), str(TESTS / "data" / "gear_record")]
 
 
 @dataclass(frozen=True)

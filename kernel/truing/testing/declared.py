@@ -134,9 +134,10 @@ def inputs_survive_a_file(subject: Subject) -> None:
     from truing.inputs_file import setup_from_text
     from truing.inputs_file.defaults import toml_key, toml_value
 
+    files = _stated_files(subject)
     for point in ({}, *subject.points(1)):
         setup = subject.at(point)
-        stated = {name: value for name, value in _stated(subject, setup) if value is not None}
+        stated = {name: value for name, value in _stated(subject, setup) if value is not None} | files
         text = "[inputs]\n" + "".join(
             f"{toml_key(name)} = {toml_value(value)}\n" for name, value in _through_json(stated).items()
         )
@@ -146,9 +147,20 @@ def inputs_survive_a_file(subject: Subject) -> None:
         except InputError as error:
             fail(f"{subject.model.name}: inputs do not survive a file: {error}")
         before, after = (subject.model.read_inputs(one.inputs) for one in (setup, back))
-        for name in stated:
+        for name in stated.keys() - files.keys():
             if not _same(before[name], after[name]):
                 fail(f"{subject.model.name}: '{name}' is {before[name]!r} before and {after[name]!r} after a file (SI)")
+
+
+def _stated_files(subject: Subject) -> dict[str, Any]:
+    """Return the data files as the example names them."""
+    import tomllib
+
+    from truing.example_file import example_text
+
+    needed = [name for name, item in subject.model.input_fields.items() if item.kind == "file"]
+    named = tomllib.loads(example_text(subject.offer)).get("inputs", {}) if needed else {}
+    return {name: named[name] for name in needed if name in named}
 
 
 def _stated(subject: Subject, setup: Any) -> Iterator[tuple[str, Any]]:

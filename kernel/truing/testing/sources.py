@@ -83,12 +83,11 @@ def references_are_neutral(subject: Subject) -> None:
 
 
 def effects_act(subject: Subject) -> None:
-    """An effect that is on, off its reference, changes some result."""
-    setup = _off_reference(subject.setup)
-    base = _answers(setup)
+    """An effect that is on, off its reference, changes some result, at the defaults or at one of three other points."""
+    setups = [_off_reference(subject.at(point)) for point in ({}, *subject.points(3))]
     for effect in subject.model.effects.values():
-        switched = _switched(setup, effect)
-        if switched is not None and not _changed(_answers(switched), base):
+        switched = [(setup, on) for setup in setups if (on := _switched(setup, effect)) is not None]
+        if switched and not any(_changed(_answers(on), _answers(setup)) for setup, on in switched):
             fail(f"{subject.model.name}: effect '{effect.name}' is on and changes no result")
 
 

@@ -119,9 +119,9 @@ class Subject:
 
     def _span(self, item: InputField, value: float) -> float:
         """Return how far a tenth of the input reaches, times ten."""
-        from truing.units import unit_factor
+        from truing.units import difference_unit, unit_factor
 
-        if item.unit in {"degC", "degF", "°C", "°F"}:
+        if difference_unit(item.unit) != item.unit:
             return 100 * unit_factor(item.unit)
         if value:
             return abs(value)
