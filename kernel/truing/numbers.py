@@ -60,10 +60,9 @@ def format_value(si: Any, unit: str, digits: int = RESULT_DIGITS) -> tuple[str, 
 
 def format_difference(si: float, unit: str, digits: int = RESULT_DIGITS) -> tuple[str, str]:
     """Write an SI difference (a standard deviation, a width): levels of temperature differ by kelvins."""
-    from truing.units import unit_factor, unit_text
+    from truing.units import difference_unit
 
-    is_level = unit in {"degC", "degF", "°C", "°F"}
-    return format_number(si if is_level else si / unit_factor(unit), digits), unit_text("K" if is_level else unit)
+    return format_value(si, difference_unit(unit), digits)
 
 
 def with_unit(number: str, unit: str) -> str:

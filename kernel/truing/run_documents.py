@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from truing.calculation import Calculation
 from truing.declare.spreads import ByChoice
-from truing.inputs_written import LEVELS, PURE, input_hash
+from truing.inputs_written import PURE, input_hash
 from truing.report.context import Provenance
 from truing.setup import Setup, SwitchedOn
 
@@ -174,7 +174,7 @@ def _input_value(setup: Setup, item: InputField, value: Any) -> dict[str, Any]:
 
 
 def _tolerances(setup: Setup) -> dict[str, Any]:
-    from truing.units import from_si, unit_factor
+    from truing.units import difference_unit, from_si, unit_factor
 
     said: dict[str, Any] = {}
     scattering = setup.distributions()
@@ -182,7 +182,7 @@ def _tolerances(setup: Setup) -> dict[str, Any]:
         on = {}
         for target, item in scattering.get(name, {}).items():
             unit = setup.print_unit(target)
-            sd = item.sd if unit in LEVELS else item.sd / unit_factor(unit)
+            sd = item.sd / unit_factor(difference_unit(unit))
             on[target] = {"mean": _number(from_si(item.mean, unit)), "sd": _number(sd), "unit": unit}
         said[name] = {"spread": _spread_words(setup, name) if on else "off", "on": on}
     return said
@@ -194,14 +194,14 @@ def _spread_words(setup: Setup, name: str) -> str:
 
 
 def _effect_values(item: SwitchedOn) -> dict[str, Any]:
-    from truing.units import unit_factor
+    from truing.units import difference_unit, unit_factor
 
     said = {}
     for unknown in item.effect.unknowns:
         value = _value(item.values[unknown.name], unknown.unit)
         sd = item.sds.get(unknown.name)
         if sd is not None:
-            value["sd"] = _number(sd if unknown.unit in LEVELS else sd / unit_factor(unknown.unit))
+            value["sd"] = _number(sd / unit_factor(difference_unit(unknown.unit)))
         said[unknown.name] = value
     return said
 

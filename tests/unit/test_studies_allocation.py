@@ -100,7 +100,9 @@ def test_an_unreachable_goal_says_how_far_it_came():
 def test_allocation_has_the_last_word_on_a_check():
     setup = replace(default_setup(PRESS), studies=(Reliability(draws=1000), Allocation(draws=1000)))
     checks = {check.name: check for check in calculate(setup).checks}
-    assert set(checks) == {"position", "tilt"}
+    assert set(checks) == {"position", "tilt", "goal reached"}
+    ratios = [checks[name].value / checks[name].limit for name in ("position", "tilt")]
+    assert checks["goal reached"].value == min(ratios)
     assert checks["position"].value == pytest.approx(0.8869, abs=6e-5)
     assert checks["position"].limit == 0.88
 

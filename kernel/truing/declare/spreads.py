@@ -287,9 +287,9 @@ def drawn(function: Callable[[Any, int], Mapping[str, Any]]) -> Drawn:
 
 def difference(text: str, unit: str) -> float:
     """Read a difference: like any quantity, except that levels of temperature differ by kelvins."""
-    from truing.units import read_quantity
+    from truing.units import difference_unit, read_quantity
 
-    return read_quantity(text, "K" if unit in {"degC", "degF", "°C", "°F"} else unit)
+    return read_quantity(text, difference_unit(unit))
 
 
 def _positive(value: float, text: str) -> float:

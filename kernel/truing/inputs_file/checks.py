@@ -156,7 +156,9 @@ def _keep_within(unknown: Unknown, value: float) -> None:
 
 def _sd(unknown: Unknown, raw: Any) -> float:
     """Return a standard deviation in SI; that of a temperature level is a difference."""
-    unit = "K" if unknown.unit in {"degC", "degF", "°C", "°F"} else unknown.unit
+    from truing.units import difference_unit
+
+    unit = difference_unit(unknown.unit)
     value = read_number(f"sd of {unknown.name}", raw, unit)
     if value < 0:
         raise SentenceError(f"sd of {unknown.name} is negative; a standard deviation is 0 or more")

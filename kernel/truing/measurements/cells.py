@@ -20,7 +20,6 @@ _NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
 _COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?|(?=[eE]|$))(?:[eE][+-]?\d+)?")
 _MISSING_WORDS = {"nan", "na", "n/a", "#n/a", "null", "none", "-"}
 _INFINITE = re.compile(r"[+-]?(?:inf|infinity|∞)", re.IGNORECASE)
-_LEVELS = {"degC", "degF", "°C", "°F"}
 
 
 def read_cell(text: str, *, decimal_comma: bool, may_be_missing_word: bool = False) -> float:
@@ -78,7 +77,7 @@ def read_cells(
 
 def header_fault(header: Header, declared: str, *, is_difference: bool = False) -> str:
     """Return what is wrong with the unit in a header where ``declared`` is expected, or nothing."""
-    from truing.units import demand_dimension, human_dimension
+    from truing.units import demand_dimension, difference_unit, human_dimension
 
     wanted = difference_unit(declared) if is_difference else declared
     if header.unit is None:
@@ -90,8 +89,3 @@ def header_fault(header: Header, declared: str, *, is_difference: bool = False) 
     except UnitError as error:
         return f"column {shown(header.text)}: {error}"
     return ""
-
-
-def difference_unit(unit: str) -> str:
-    """Return the unit of a difference: kelvin for levels of temperature, else the unit itself."""
-    return "K" if unit in _LEVELS else unit

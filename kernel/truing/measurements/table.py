@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from truing.errors import UnitError
-from truing.measurements.cells import PURE, difference_unit, header_fault, read_cell, read_cells
+from truing.measurements.cells import PURE, header_fault, read_cell, read_cells
 from truing.measurements.csv_text import Chunk, CsvFile, Header, opened
 
 if TYPE_CHECKING:
@@ -97,6 +97,8 @@ class _Known:
     def made(self) -> NDArray[np.float64]:
         """Return the column in SI."""
         import numpy as np
+
+        from truing.units import difference_unit
 
         unit = self.header.unit or ""
         return in_si(np.concatenate(self.parts), difference_unit(unit) if self.is_sigma else unit)

@@ -90,14 +90,15 @@ def _is_single(value: Any) -> bool:
 
 
 def _number(setup: Setup, item: InputField | ResultField, value: Any, *, numeric: bool) -> tuple[str, str]:
-    """Return what stands for a name: in the printed unit, or bare in the declared unit of a numeric formula."""
+    """Return what stands for a name: in the printed unit (levels of temperature in kelvin), or bare in the declared unit."""
+    from truing.units import difference_unit
+
     if value is None or value != value:
         return ABSENT, ""
     digits = INPUT_DIGITS if isinstance(item, InputField) else RESULT_DIGITS
     if numeric:
         return format_value(value, item.unit, digits)[0], ""
     unit = setup.print_unit(item.name)
-    from truing.units import difference_unit
 
     return format_value(value, difference_unit(unit), digits)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from truing.declare.blocks import Block
@@ -21,6 +21,8 @@ from truing.studies.grades import Shop, open_shop, with_grades
 from truing.studies.sampling import Budget, Machines, Tally, sample
 from truing.studies.scatter import scatter_of
 from truing.studies.synthesis import Plan, Step, by_rule, coefficients, least_cost
+
+GOAL_REACHED = "probability after the allocation over its goal, the smallest of all"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,12 +205,11 @@ class Allotted:
         return allotted_blocks(self)
 
     def checks(self) -> Sequence[Check]:
-        """Compare the probability after the synthesis, first order, with each goal."""
-        return [
-            chance_check(demand.name, self.final[demand.name], demand.goal)
-            for demand in self.shop.demands
-            if demand.goal is not None
-        ]
+        """Compare the probability after the synthesis, first order, with each goal; and say whether all are reached."""
+        goals = {demand.name: demand.goal for demand in self.shop.demands if demand.goal is not None}
+        each = [chance_check(name, self.final[name], goal) for name, goal in goals.items()]
+        worst = min(self.final[name] / goal if goal else 1.0 for name, goal in goals.items())
+        return [*each, replace(chance_check("goal reached", worst, 1.0), note=GOAL_REACHED)]
 
     def warnings(self) -> Sequence[str]:
         """Say what cannot be reached, and where the exact model contradicts first order."""

@@ -19,7 +19,10 @@ def silent(task: str, done: int, total: int) -> None:
 
 @dataclass(frozen=True)
 class Check:
-    """A limit and how far it is kept: margin > 0 is safe, everywhere. Values are in ``unit``."""
+    """A limit and how far it is kept: margin > 0 is safe, everywhere. Values are in ``unit``.
+
+    ``note`` says what is compared, where the name is not that of a result.
+    """
 
     name: str
     value: float
@@ -27,6 +30,7 @@ class Check:
     unit: str
     margin: float
     passed: bool
+    note: str = ""
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from truing.declare.fields import in_si
 from truing.declare.goals import Require
+from truing.evaluate import evaluate
 from truing.setup import Setup
 from truing.studies.bench import Check
 
@@ -40,18 +41,26 @@ def limits(setup: Setup, answers: dict[str, Any]) -> list[Limit]:
 
 def _limit(require: Require, others: list[Require], setup: Setup, answers: dict[str, Any]) -> Limit:
     amount = limit_amount(require, setup, answers)
-    nominal = answers[require.result]
     low, high = -float("inf"), float("inf")
     if require.kind == "at_most":
         high = amount
     elif require.kind == "at_least":
         low = amount
     else:
-        low, high = nominal - amount, nominal + amount
+        centre = of_design(setup, require.result, answers)
+        low, high = centre - amount, centre + amount
     goal = require.reliability
     if isinstance(goal, str):
         goal = float(setup.nominal(goal))
     return Limit(check_name(require, others), require.result, low, high, goal, require)
+
+
+def of_design(setup: Setup, result: str, answers: dict[str, Any]) -> Any:
+    """Return a result of the design itself, from which ``within`` is measured: effects are no part of it."""
+    acts = any(item.effect.place != "reading" for item in setup.effects)
+    if not acts or result not in setup.model.own_result_fields:
+        return answers[result]
+    return setup.model.read_results(evaluate(replace(setup, effects=())))[result]
 
 
 def limit_amount(require: Require, setup: Setup, answers: dict[str, Any]) -> Any:
@@ -77,12 +86,15 @@ def plain_checks(setup: Setup, answers: dict[str, Any]) -> list[Check]:
 def _plain(limit: Limit, setup: Setup, answers: dict[str, Any]) -> Check:
     import numpy as np
 
-    from truing.units import from_si
+    from truing.units import difference_unit, from_si
 
     unit = setup.print_unit(limit.result)
     at_least = limit.require.kind == "at_least"
-    stated = limit.low if at_least else limit.high
-    values, bounds = np.broadcast_arrays(*np.atleast_1d(np.asarray(answers[limit.result], dtype=float), stated))
+    value, stated = answers[limit.result], limit.low if at_least else limit.high
+    if limit.require.kind == "within":
+        unit = difference_unit(unit)
+        value, stated = abs(value - (limit.low + limit.high) / 2), (limit.high - limit.low) / 2
+    values, bounds = np.broadcast_arrays(*np.atleast_1d(np.asarray(value, dtype=float), stated))
     worst = int(np.argmin(values - bounds) if at_least else np.argmax(values - bounds))
     value, bound = float(from_si(values[worst], unit)), float(from_si(bounds[worst], unit))
     margin = margin_of(value, bound, at_least=at_least)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.studies.demands import Demand, as_number, worst
-from truing.studies.reading import printed, printed_step, spoken, step_unit
+from truing.studies.reading import printed, printed_step, spoken
 
 if TYPE_CHECKING:
     from truing.studies.reliability import Curve, Odds
@@ -100,7 +100,7 @@ def _note(odds: Odds) -> str:
 
 def _spreads(odds: Odds) -> Table:
     """Show mean and spread of every required result that is one number, each in its own unit."""
-    from truing.units import unit_text
+    from truing.units import difference_unit, unit_text
 
     rows: list[list[Any]] = []
     for result, unit in odds.units.items():
@@ -110,7 +110,7 @@ def _spreads(odds: Odds) -> Table:
         first = next(odds.first_sd[demand.name] for demand in odds.demands if demand.result == result)
         ends = [printed(end, unit) for end in (moments.smallest, moments.largest)]
         spread = [printed_step(moments.sd, unit), printed_step(first, unit)]
-        rows.append([result, unit_text(step_unit(unit)), printed(moments.mean, unit), *spread, *ends])
+        rows.append([result, unit_text(difference_unit(unit)), printed(moments.mean, unit), *spread, *ends])
     columns = ("result", "unit", "mean", "standard deviation", "first order", "smallest", "largest")
     return Table("Scatter of the results", columns, rows)
 

@@ -69,14 +69,11 @@ def spoken(name: str) -> str:
     return name.replace("_", " ")
 
 
-def step_unit(unit: str) -> str:
-    """Return the unit in which differences are printed: kelvin for a temperature level."""
-    return "K" if unit in {"degC", "degF", "°C", "°F", "℃", "℉"} else unit
-
-
 def per(unit: str, source: str) -> str:
     """Return the unit of a derivative: "mm/deg"."""
-    above, below = step_unit(unit), step_unit(source)
+    from truing.units import difference_unit
+
+    above, below = difference_unit(unit), difference_unit(source)
     if below in {"", "1", "-"}:
         return above
     if any(sign in below for sign in "*/·- "):
@@ -101,6 +98,6 @@ def printed_step(value: Any, unit: str) -> Any:
     import numpy as np
 
     from truing.studies.demands import as_number
-    from truing.units import unit_factor
+    from truing.units import difference_unit, unit_factor
 
-    return as_number(np.asarray(value, dtype=float) / unit_factor(step_unit(unit)))
+    return as_number(np.asarray(value, dtype=float) / unit_factor(difference_unit(unit)))

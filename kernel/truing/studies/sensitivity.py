@@ -14,7 +14,7 @@ from truing.evaluate import acting_inputs, effect_column
 from truing.setup import Setup
 from truing.studies.bench import Bench, Check
 from truing.studies.differences import exact_slopes, nominal_of, slopes
-from truing.studies.reading import per, printed_step, result_names, scalar_results, spoken, step_unit
+from truing.studies.reading import per, printed_step, result_names, scalar_results, spoken
 from truing.studies.sampling import Machines
 from truing.studies.scatter import Scatter, scatter_of
 
@@ -178,13 +178,13 @@ class Sensitivities:
         }
 
     def _entry(self, result: str, source: str) -> dict[str, Any] | None:
-        from truing.units import unit_factor
+        from truing.units import difference_unit, unit_factor
 
         unit, source_unit = self.units.get(result, ""), self.units.get(source, "")
         derivative = printed_step(self.derivatives[result][source], unit)
         if derivative is None:
             return None
-        derivative *= unit_factor(step_unit(source_unit))
+        derivative *= unit_factor(difference_unit(source_unit))
         entry = {"derivative": derivative, "unit": per(unit, source_unit), "share": self.share[result][source]}
         if source in self.sobol_first.get(result, {}):
             entry["sobol_first"] = self.sobol_first[result][source]
@@ -215,9 +215,9 @@ class Sensitivities:
 
     def _sizes(self, result: str, ranked: Sequence[str]) -> tuple[dict[str, float], str]:
         """Return the length of each bar: what one standard deviation does, or where nothing scatters the derivative."""
-        from truing.units import unit_factor, unit_text
+        from truing.units import difference_unit, unit_factor, unit_text
 
-        unit = step_unit(self.units.get(result, ""))
+        unit = difference_unit(self.units.get(result, ""))
         if self.sd[result] > 0:
             whole = self.sd[result] / unit_factor(unit)
             signed = {name: (1.0 if self.derivatives[result][name] >= 0 else -1.0) for name in ranked}
@@ -247,9 +247,9 @@ class Sensitivities:
         )
 
     def _note(self, result: str) -> str:
-        from truing.units import unit_factor, unit_text
+        from truing.units import difference_unit, unit_factor, unit_text
 
-        unit = step_unit(self.units.get(result, ""))
+        unit = difference_unit(self.units.get(result, ""))
         words = []
         if self.sd[result] > 0:
             size = f"{self.sd[result] / unit_factor(unit):.4g} {unit_text(unit)}".strip()

@@ -91,6 +91,11 @@ def same_dimension(unit_a: str, unit_b: str) -> bool:
     return meaning(unit_a).same_kind(meaning(unit_b))
 
 
+def difference_unit(unit: str) -> str:
+    """Return the unit of a difference: kelvin for a level of temperature, else the unit itself."""
+    return "K" if meaning(unit).level else unit
+
+
 @overload
 def to_si(value: float, unit: str) -> float: ...
 @overload
