@@ -45,7 +45,8 @@ class Broken:
 
     def __str__(self) -> str:
         place = f"{self.file}:{self.line}" if self.line else self.file
-        return f"{place}: plugin '{self.plugin}' {self.version}: {self.reason}"
+        name = f"'{self.plugin}' {self.version}".rstrip()
+        return f"{place}: plugin {name}: {self.reason}"
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,8 @@ def find_offer(word: str, settings: Settings, *, strict: bool = False) -> Offer:
     """Return the model that ``word`` names, after saying which plugins were left out."""
     kernel = Kernel.installed(strict=strict)
     if word.endswith(".py"):
+        if not Path(word).is_file():
+            raise UnknownPluginError(f"{word}: no such file")
         origin = kernel.add_file(Path(word))
         wanted = origin.name
     else:

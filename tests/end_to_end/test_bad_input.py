@@ -1,0 +1,457 @@
+"""What cannot be used is refused in one sentence that says what, where and what to do; nothing is half-written."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import time
+from collections.abc import Callable
+from math import acos, atan2, cos, hypot, sin, sqrt
+from pathlib import Path
+
+import pytest
+from block import write_block
+
+from conftest import Answer, Calc
+
+DATA = Path(__file__).parents[1] / "data"
+PIN = DATA / "pin_wear.py"
+
+Refused = Callable[..., list[str]]
+
+
+def listing(folder: Path) -> list[tuple[str, int]]:
+    """Return everything below a folder, with its size."""
+    return sorted((str(path.relative_to(folder)), path.lstat().st_size) for path in folder.rglob("*"))
+
+
+@pytest.fixture
+def refused(calc: Calc, tmp_path: Path) -> Refused:
+    """Run ``calc``, which must end with exit code 2, leave the folder as it was and print no result."""
+
+    def run(*arguments: str | Path) -> list[str]:
+        before = listing(tmp_path)
+        answer = calc(*arguments)
+        assert listing(tmp_path) == before
+        return sentences(answer)
+
+    return run
+
+
+def sentences(answer: Answer) -> list[str]:
+    """Return what was said of a refusal, line by line."""
+    assert answer.code == 2, answer
+    assert answer.out == ""
+    assert "Traceback" not in answer.err
+    lines = answer.err.rstrip("\n").split("\n")
+    assert all(line.strip() for line in lines)
+    return lines
+
+
+def faults(refused: Refused, folder: Path, text: str | bytes, *more: str | Path, name: str = "press.toml") -> list[str]:
+    """Write an inputs file and return what is said of it; each fault begins with file and line."""
+    path = folder / name
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    found = refused("run", "press_linkage", "--inputs", name, *more)
+    for line in found:
+        assert re.match(rf"{re.escape(name)}:\d+: |--set \S+=", line), line
+    return found
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        ('crank_radius = "0.36 kN"', "crank_radius: '0.36 kN' is a force (kN), expected a length (m)"),
+        ('ground_pivot_angle = "1 m"', "ground_pivot_angle: '1 m' is a length (m), expected an angle (rad)"),
+        ('rod_length = "1304 mms"', "rod_length: unknown unit 'mms'; did you mean 'mm'?"),
+        ("rod_length = 1.304", 'rod_length = 1.304 has no unit; it is a length: write rod_length = "1.304 m"'),
+        ('rod_length = "1.304"', "rod_length: '1.304' has no unit; expected a length such as '1.304 m'"),
+        ('rod_length = "9**9**9 kN"', "rod_length: '9**9**9 kN' is not a number followed by a unit"),
+        ("rod_length = nan", "rod_length is nan, which is not a finite number"),
+        ("rod_length = inf", "rod_length is inf, which is not a finite number"),
+        ('rod_length = "NaN m"', "rod_length: 'NaN m' is not a finite number"),
+        ('rod_length = "-infinity m"', "rod_length: '-infinity m' is not a finite number"),
+        ('crank_radius = "0,36 m"', "crank_radius: '0,36 m' has a decimal comma; write '0.36 m'"),
+        ('crank_radius = "-0.36 m"', "crank_radius is -0.36 m; it must be above 0 m"),
+        ('crank_radius = "0 m"', "crank_radius is 0 m; it must be above 0 m"),
+        (
+            'crank_radius = "360 ± 0.05 mm"',
+            "crank_radius: '360 ± 0.05 mm' holds a tolerance; "
+            "write the nominal value here, the rest under [tolerances]",
+        ),
+        ("crank_radius = 360 mm", 'crank_radius = 360 mm needs quotation marks; write crank_radius = "360 mm"'),
+        ('crank_radius = "0.36 m', 'the closing quotation mark is missing; write crank_radius = "0.36 m"'),
+        ("crank_radius = = 3", "this is no TOML: invalid value"),
+    ],
+)
+def test_one_wrong_line_is_named(refused: Refused, tmp_path: Path, line: str, sentence: str) -> None:
+    text = f'plugin = "press_linkage"\n[inputs]\nreading = "printed"\n{line}\n'
+    assert faults(refused, tmp_path, text) == [f"press.toml:4: {sentence}"]
+
+
+def test_a_tower_of_powers_is_answered_at_once(refused: Refused, tmp_path: Path) -> None:
+    begin = time.perf_counter()
+    (found,) = faults(refused, tmp_path, '[inputs]\nposition_limit = "9**9**9 kN"\n')
+    assert time.perf_counter() - begin < 2
+    assert found.startswith("press.toml:2: position_limit: '9**9**9 kN'")
+    (found,) = faults(refused, tmp_path, "[inputs]\n", "--set", "position_limit=9**9**9 kN")
+    assert found.startswith("--set position_limit=9**9**9 kN: ")
+
+
+def test_b_equals_10_mm_without_quotes(refused: Refused, tmp_path: Path) -> None:
+    found = faults(refused, tmp_path, "[inputs]\nb = 10 mm\n")
+    assert found[0] == 'press.toml:2: b = 10 mm needs quotation marks; write b = "10 mm"'
+    assert found[1].startswith("press.toml:2: press_linkage has no input 'b'.")
+    assert len(found) == 2
+
+
+def test_misspelt_extra_and_wrong_entries_are_named_together(refused: Refused, tmp_path: Path) -> None:
+    text = (
+        '[inputs]\nrod_lenght = "1.304 m"\ncolour = "grey"\ncrank_radius = 0.36\nreading = "prnted"\n'
+        '[tolerances]\ncrank_radus = "IT7"\n[effects.link_heating]\n[studies]\nrun = ["sweeep"]\n'
+        '[shet]\nproject = "x"\n'
+    )
+    found = faults(refused, tmp_path, text)
+    assert [line.split(": ")[0] for line in found] == [f"press.toml:{line}" for line in (2, 3, 4, 5, 7, 8, 10, 11)]
+    expected = [
+        "no input 'rod_lenght'. Did you mean 'rod_length' (k_R, connecting rod, B to E, m)?",
+        "no input 'colour'.",
+        'write crank_radius = "0.36 m"',
+        "Did you mean 'printed'?",
+        "Did you mean 'crank_radius'",
+        "its unknown 'expansion' must be given (from -20 to 20 um/(m*K))",
+        "Did you mean 'sweep'?",
+        "Did you mean 'sheet'?",
+    ]
+    for words, line in zip(expected, found, strict=True):
+        assert words in line
+
+
+def test_a_missing_field_is_named_with_the_section_it_belongs_to(calc: Calc, tmp_path: Path) -> None:
+    shutil.copy(DATA / "worn_surface.py", tmp_path)
+    (tmp_path / "s.toml").write_text('\n[inputs]\nlod = "3 N"\n')
+    before = listing(tmp_path)
+    found = sentences(calc("run", "./worn_surface.py", "--inputs", "s.toml"))
+    assert [line for line in listing(tmp_path) if "__pycache__" not in line[0]] == before
+    assert found == [
+        "s.toml:2: worn_surface needs the input 'surface' (measured flank); "
+        'write surface = { file = "data.txt" } under [inputs]',
+        "s.toml:3: worn_surface has no input 'lod'. Did you mean 'load' (F, pressing force, N)?",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("lines", "blamed", "words"),
+    [
+        (
+            ['crank_radius = "0.36 m"', 'lower_knee_length = "0.5 m"'],
+            3,
+            "loop III, side 1 does not close: the lower link cannot reach the slider, it needs |l - y_G| < l_h",
+        ),
+        (
+            ['upper_knee_length = "0.4 m"', 'crank_radius = "0.36 m"'],
+            2,
+            "loop II, side 1 does not close: the knee drive is open, it needs |l_m - l_g| < |M - B_5| < l_m + l_g",
+        ),
+        (
+            ['rod_length = "0.5 m"'],
+            2,
+            "loop I has no bottom dead centre: crank and rod in line do not reach the platform; it needs "
+            "crank_pivot_radius - platform_half_width < crank_radius + rod_length",
+        ),
+        (
+            ['rod_length = "0.7 m"', 'crank_angle = "-120 deg"'],
+            2,
+            "loop I, side 1 does not close: the rod cannot reach the platform, it needs |e cos(beta_1) - y_B| < k_R",
+        ),
+    ],
+)
+def test_a_loop_that_cannot_close_names_loop_side_and_inequality(
+    refused: Refused, tmp_path: Path, lines: list[str], blamed: int, words: str
+) -> None:
+    (found,) = faults(refused, tmp_path, "\n".join(["[inputs]", *lines, ""]))
+    assert found.startswith(f"press.toml:{blamed}: {words}")
+
+
+def test_a_loop_that_cannot_close_on_one_side_only(refused: Refused, tmp_path: Path) -> None:
+    """Knee drive and upper link together just reach from B5 to M; a deviation makes them too short on side 2."""
+    drive = ground_distance() - 1.7 + 0.0002
+    text = (
+        f'[inputs]\nknee_drive_length = "{drive} m"\nslider_half_width = "1 m"\n'
+        'upper_knee_length_deviation_2 = "-0.1 mm"\n[studies]\nrun = []\n'
+    )
+    (tmp_path / "press.toml").write_text(text)
+    found = faults(refused, tmp_path, text, "--set", "upper_knee_length_deviation_2=-0.3 mm")
+    assert len(found) == 1
+    assert "loop V, side 2 does not close: the knee drive is open, it needs |l_m - l_g| < |M - B_5|" in found[0]
+
+
+def test_a_singular_position_is_named(refused: Refused, tmp_path: Path) -> None:
+    """With l_h equal to the reach l - y_G the lower link is horizontal; y_G follows from the knee triangle."""
+    knee = knee_reach()
+    text = f'[inputs]\nlower_knee_length = "{knee!r} m"\n[studies]\nrun = []\n'
+    (found,) = faults(refused, tmp_path, text)
+    assert found.startswith(
+        "press.toml:2: loop III, side 1 is singular: the lower link is horizontal (|sin(theta_18)| < 1e-6)"
+    )
+
+
+def ground_joint() -> tuple[float, float]:
+    """Return M as seen from B5 at the bottom dead centre of the paper's press: outward, downward."""
+    height = sqrt((0.36 + 1.304) ** 2 - (1.2 - 0.3) ** 2) + 0.6
+    return 1.393 * cos(0.367), 1.393 * sin(0.367) - height
+
+
+def ground_distance() -> float:
+    """Return how far M is from B5."""
+    return hypot(*ground_joint())
+
+
+def knee_reach() -> float:
+    """Return the horizontal distance from the knee to the slider joint at the dead centre, by the law of cosines."""
+    outward, downward = ground_joint()
+    corner = acos((0.868**2 + ground_distance() ** 2 - 1.7**2) / (2 * 0.868 * ground_distance()))
+    reach = 1.6 - 0.868 * cos(atan2(downward, outward) + corner)
+    return reach * (1 + 1e-14)
+
+
+def test_what_is_impossible_by_set_or_in_the_example_names_that(refused: Refused, tmp_path: Path) -> None:
+    (tmp_path / "press.toml").write_text('[inputs]\ncrank_radius = "0.35 m"\n')
+    (found,) = refused("run", "press_linkage", "--inputs", "press.toml", "--set", "lower_knee_length=0.5 m")
+    assert found.startswith("--set lower_knee_length=0.5 m: loop III, side 1 does not close")
+    first, second = refused("run", "press_linkage", "--set", "rod_length=0.5 m", "-v")
+    assert first.startswith("no --inputs")
+    assert second.startswith("--set rod_length=0.5 m: loop I has no bottom dead centre")
+    (found,) = refused("run", PIN, "--set", "load=500 kN", "-q")
+    assert found == "--set load=500 kN: the contact flows: load exceeds hardness times area"
+
+
+def test_a_fault_in_the_shipped_example_names_its_file(calc: Calc, tmp_path: Path) -> None:
+    write_block(tmp_path)
+    example = tmp_path / "example.toml"
+    example.write_text('plugin = "block"\n[inputs]\nload = "3 kN"\nfriction = 1.5\n')
+    answer = calc("run", "./block.py")
+    assert (answer.code, answer.out) == (2, "")
+    assert answer.err.split("\n")[1] == f"{example}:4: the block sticks: friction must be below 1"
+    example.write_text('plugin = "block"\n[inputs]\nload = "3 kg"\n')
+    answer = calc("run", "./block.py", "-q")
+    assert (answer.code, answer.out) == (2, "")
+    assert answer.err == f"{example}:3: load: '3 kg' is a mass (kg), expected a force (N)\n"
+    assert not (tmp_path / "runs").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "sentence"),
+    [
+        ("press.toml", b"", "is empty; `calc init press_linkage` writes an example"),
+        ("press.toml", b" \n\r\n\t", "is empty; `calc init press_linkage` writes an example"),
+        ("press.toml", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "is a binary file; inputs are a TOML text in UTF-8"),
+        ("press.toml", b"\x7fELF\x02\x01\x01\0", "is a binary file; inputs are a TOML text in UTF-8"),
+        ("press.xlsx", b"PK\x03\x04rest", "is a spreadsheet; inputs are a TOML text file; save tables as CSV UTF-8"),
+        ("press.toml", b"PK\x03\x04rest", "is a spreadsheet; inputs are a TOML text file; save tables as CSV UTF-8"),
+        ("press.toml", "[inputs]\n".encode("utf-16"), "is text in UTF-16; save it as UTF-8"),
+    ],
+)
+def test_a_file_that_holds_no_inputs(
+    refused: Refused, tmp_path: Path, name: str, content: bytes, sentence: str
+) -> None:
+    assert faults(refused, tmp_path, content, name=name) == [f"{name}:1: {sentence}"]
+
+
+def test_text_in_another_coding_names_its_line(refused: Refused, tmp_path: Path) -> None:
+    content = '[sheet]\nproject = "x"\nprepared_by = "Müller"\n'.encode("latin-1")
+    assert faults(refused, tmp_path, content) == ["press.toml:3: is not UTF-8 text; save it as UTF-8"]
+
+
+def test_inputs_above_two_megabytes_are_refused_by_their_size(refused: Refused, tmp_path: Path) -> None:
+    content = b"[inputs]\n" + b"#" * 2_000_000
+    begin = time.perf_counter()
+    assert faults(refused, tmp_path, content) == ["press.toml:1: is too large: 2.0 MB, at most 2 MB are read"]
+    with (tmp_path / "press.toml").open("wb") as stream:
+        stream.truncate(3_000_000_000)
+    (found,) = refused("run", "press_linkage", "--inputs", "press.toml")
+    assert found == "press.toml:1: is too large: 3000.0 MB, at most 2 MB are read"
+    assert time.perf_counter() - begin < 2
+
+
+def test_a_syntax_error_and_a_duplicate_key_do_not_hide_each_other(refused: Refused, tmp_path: Path) -> None:
+    text = '[inputs]\ncrank_radius = "0.36 m"\nrod_length = \ncrank_radius = "0.36 m"\n[inputs\nx = 1\n'
+    found = faults(refused, tmp_path, text)
+    assert found[0] == 'press.toml:3: rod_length has no value; write rod_length = "value"'
+    assert found[1] == "press.toml:4: 'crank_radius' is given twice (first in line 2); write it once"
+    assert found[2].startswith("press.toml:5: '[inputs' is no heading of a section; write it like [inputs]")
+
+
+@pytest.mark.parametrize("path", ["nowhere.toml", "."])
+def test_a_place_without_inputs(refused: Refused, tmp_path: Path, path: str) -> None:
+    (tmp_path / "nowhere2.toml").write_text("[inputs]\n")
+    (found,) = refused("run", "press_linkage", "--inputs", path)
+    words = "no such file. Did you mean 'nowhere2.toml'?" if path != "." else "is a folder; name a file"
+    assert found == f"{path}: {words}"
+
+
+@pytest.mark.parametrize(
+    ("content", "expected"),
+    [
+        (
+            b"case,crank_angle [deg]\na,1\nb\nc,3,4\n",
+            [
+                "3: this row has 1 cell, expected 2 as in the header",
+                "4: this row has 3 cells, expected 2 as in the header; "
+                "with decimal commas, put semicolons between the cells",
+            ],
+        ),
+        (b"crank_angle [N]\n1\n", ["1: column 'crank_angle [N]': 'N' is a force (N), expected an angle (°)"]),
+        (b"crank_angle [degg]\n1\n", ["1: column 'crank_angle [degg]': unknown unit 'degg'; did you mean 'deg'?"]),
+        (
+            b"crank_angle\n1\n",
+            ["1: column 'crank_angle' has no unit; it is an angle: write 'crank_angle [deg]'"],
+        ),
+        (b"crank_angle [deg]\n", ["1: holds a header but no rows"]),
+        (b"crank_angle [deg]\nx\nnan\n1e999\n", [
+            "2: crank_angle: 'x' is no number",
+            "3: crank_angle: 'nan' is no number; leave the cell empty where a value is missing",
+            "4: crank_angle: '1e999' is too large for a number",
+        ]),
+        (b"rod_length [m]\n-1\n", ["2: rod_length is -1 m; it must be above 0 m"]),
+        (b"", ["1: is empty; the first line of a table holds the names, with units such as 'load [N]'"]),
+        (b"\0\1\2", ["1: is a binary file; a table is CSV text in UTF-8"]),
+        (b"PK\x03\x04", ["1: is a spreadsheet; save it as CSV UTF-8"]),
+        ("case\nx\nPrüfung\n".encode("latin-1"), ["3: is not UTF-8 text; save it as CSV UTF-8"]),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize(("verb", "option"), [("run", "--cases"), ("table", "--rows")])
+def test_a_table_with_faults(
+    refused: Refused, tmp_path: Path, content: bytes, expected: list[str], verb: str, option: str
+) -> None:
+    (tmp_path / "press.toml").write_text("[inputs]\n")
+    (tmp_path / "cases.csv").write_bytes(content)
+    found = refused(verb, "press_linkage", "--inputs", "press.toml", option, "cases.csv")
+    assert found == [f"cases.csv:{sentence}" for sentence in expected]
+
+
+def test_a_misspelt_column_of_cases_is_refused_and_one_of_rows_is_said(
+    refused: Refused, calc: Calc, tmp_path: Path
+) -> None:
+    (tmp_path / "press.toml").write_text("[inputs]\n")
+    (tmp_path / "cases.csv").write_text("crank_angel [deg],crank_radius [mm]\n1,360\n")
+    (found,) = refused("run", "press_linkage", "--inputs", "press.toml", "--cases", "cases.csv")
+    assert found == "cases.csv:1: press_linkage has no input 'crank_angel'. Did you mean 'crank_angle'?"
+    answer = calc("table", "press_linkage", "--inputs", "press.toml", "--rows", "cases.csv")
+    assert answer.code == 0
+    assert answer.err == "column 'crank_angel' changes nothing and is kept as it stands. Did you mean 'crank_angle'?\n"
+    assert answer.out.startswith("crank_angel [deg],crank_radius [mm],face_height_1 [mm],")
+
+
+def test_an_xlsx_in_the_place_of_a_table(refused: Refused, tmp_path: Path) -> None:
+    (tmp_path / "press.toml").write_text("[inputs]\n")
+    (tmp_path / "rows.xlsx").write_bytes(b"PK\x03\x04")
+    (found,) = refused("table", "press_linkage", "--inputs", "press.toml", "--rows", "rows.xlsx")
+    assert found == "rows.xlsx:1: is a spreadsheet; save it as CSV UTF-8"
+
+
+def test_bom_decimal_comma_semicolon_and_crlf_are_read(calc: Calc, tmp_path: Path) -> None:
+    (tmp_path / "press.toml").write_bytes(b'\xef\xbb\xbf[inputs]\r\ncrank_radius = "0.36 m"\r\n')
+    (tmp_path / "plain.csv").write_text("crank_angle [deg],note\n-40.5,a\n40,b\n")
+    content = "\ufeffcrank_angle [deg];note\r\n-40,5;a\r\n40,0;b\r\n"
+    (tmp_path / "excel.csv").write_bytes(content.encode())
+    plain = calc("table", "press_linkage", "--inputs", "press.toml", "--rows", "plain.csv")
+    excel = calc("table", "press_linkage", "--inputs", "press.toml", "--rows", "excel.csv")
+    assert (plain.code, excel.code) == (0, 0), excel.err
+    rows = [[line.split(",")[2:] for line in answer.out.split("\n")] for answer in (plain, excel)]
+    assert len(rows[0][1]) >= 5
+    assert rows[0][1:3] == [rows[1][1][1:], rows[1][2][1:]]  # a quoted "-40,5" holds one comma more
+
+
+def test_an_output_below_an_ordinary_file(refused: Refused, tmp_path: Path) -> None:
+    (tmp_path / "press.toml").write_text("[inputs]\n")
+    (tmp_path / "file").write_text("mine\n")
+    (found,) = refused("run", "press_linkage", "-i", "press.toml", "-o", "file/runs/here")
+    where = tmp_path / "file"
+    assert found == f"calc: file/runs/here: {where} is a file, so there can be no folder below it; name another place"
+    (found,) = refused("run", "press_linkage", "-i", "press.toml", "-o", "file")
+    assert found == "calc: file: is a file; a run is a folder, name another place"
+    for verb, option in (("init", ()), ("table", ("-i", "press.toml", "--rows", "rows.csv"))):
+        (tmp_path / "rows.csv").write_text("crank_angle [deg]\n1\n")
+        (found,) = refused(verb, "press_linkage", *option, "-o", "file/x")
+        assert found.startswith("calc: file/x")
+        assert found.endswith("Not a directory") or "exists" in found
+
+
+def test_an_existing_folder_that_is_no_run_of_ours(refused: Refused, tmp_path: Path) -> None:
+    (tmp_path / "press.toml").write_text("[inputs]\n")
+    (tmp_path / "holiday").mkdir()
+    (tmp_path / "holiday" / "beach.jpg").write_bytes(b"dear")
+    (found,) = refused("run", "press_linkage", "-i", "press.toml", "-o", "holiday")
+    left = "so it is left alone; name another folder or remove this one"
+    assert found == f"calc: holiday: is an existing folder but no run of ours, {left}"
+    (tmp_path / "holiday" / "results.json").write_text('{"schema": "of somebody else"}')
+    (tmp_path / "holiday" / "run.json").write_text("{}")
+    (found,) = refused("run", "press_linkage", "-i", "press.toml", "-o", "holiday")
+    assert found == f"calc: holiday: is an existing folder but no run of ours, {left}"
+
+
+def test_a_table_that_would_replace_what_it_reads(refused: Refused, tmp_path: Path) -> None:
+    (tmp_path / "press.toml").write_text("[inputs]\n")
+    (tmp_path / "rows.csv").write_text("crank_angle [deg]\n1\n")
+    (found,) = refused("table", "press_linkage", "-i", "press.toml", "--rows", "rows.csv", "-o", "./rows.csv")
+    assert found == "calc: rows.csv is read by this command; name another file for the output"
+
+
+def test_a_plugin_that_nobody_offers(refused: Refused) -> None:
+    (found,) = refused("run", "press_linkge")
+    assert found == "calc: no plugin offers 'press_linkge'. Did you mean 'press_linkage'? Installed: press_linkage."
+    (found,) = refused("describe", "./nowhere.py")
+    assert found == "calc: ./nowhere.py: no such file"
+
+
+HOSTILE = "<script>alert(1)</script> {{7*7}} {% raw %} $x$ | # `code` [a](javascript:b) ![c](d) &amp; \\ __x__"
+
+
+def test_what_a_project_is_called_is_inert_on_both_sheets(calc: Calc, tmp_path: Path) -> None:
+    text = "\n".join(f"{key} = '{HOSTILE}'" for key in ("project", "drawing", "prepared_by"))
+    (tmp_path / "pin.toml").write_text(f"[sheet]\n{text}\n[studies]\nrun = []\n")
+    answer = calc("run", PIN, "--inputs", "pin.toml")
+    assert answer.code in {0, 1}, answer.err
+    page = (tmp_path / "runs/pin/sheet.html").read_text(encoding="utf-8")
+    assert "<script>alert" not in page
+    assert "&lt;script&gt;alert(1)&lt;/script&gt; {{7*7}} {% raw %} $x$ | # `code`" in page
+    assert 'href="javascript' not in page
+    sheet = (tmp_path / "runs/pin/sheet.md").read_text(encoding="utf-8")
+    lines = [line for line in sheet.split("\n") if "7\\*7" in line or "7*7" in line]
+    assert lines
+    assert "49" not in "".join(lines)
+    for line in lines:
+        bare = re.sub(r"\\.", "", line)  # what Markdown takes as itself
+        for mark in ("<script", "$", "`", "[a](", "__"):
+            assert mark not in bare, line
+        if line.startswith("|"):
+            assert bare.count("|") == sheet_columns(sheet, line)
+        else:
+            assert not bare.startswith(("# |", "#  "))
+
+
+def sheet_columns(sheet: str, line: str) -> int:
+    """Return how many bars a row of the table has that this line stands in: as many as the rule below its head."""
+    lines = sheet.split("\n")
+    rules = [one for one in lines[: lines.index(line)] if re.fullmatch(r"\|[ :|-]+\|", one)]
+    return rules[-1].count("|")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("rnu", "press_linkage"), "No such command 'rnu'. Did you mean 'run'?"),
+        (("run", "press_linkage", "--input", "x.toml"), "--inputs"),
+        (("table", "press_linkage"), "--inputs"),
+        (("run", "press_linkage", "--workers", "0"), "--workers"),
+        (("run",), "plugin"),
+    ],
+)
+def test_a_wrong_call_says_what_is_missing(calc: Calc, tmp_path: Path, arguments: tuple[str, ...], words: str) -> None:
+    answer = calc(*arguments)
+    assert answer.code == 2
+    assert answer.out == ""
+    assert words in answer.err
+    assert "Traceback" not in answer.err
+    assert listing(tmp_path) == []

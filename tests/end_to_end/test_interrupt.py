@@ -1,0 +1,91 @@
+"""Ctrl-C in the middle of a long calculation: exit 130, and everything is as it was before."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from test_bad_input import listing
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
+
+INPUTS = '[inputs]\nreading = "printed"\n[studies]\nrun = ["reliability"]\n[studies.reliability]\ndraws = 2000000000\n'
+
+
+def children_of(process: int) -> list[int]:
+    """Return the processes that a process has started, theirs included."""
+    found: list[int] = []
+    for task in Path(f"/proc/{process}/task").iterdir():
+        for child in (task / "children").read_text().split():
+            found += [int(child), *children_of(int(child))]
+    return found
+
+
+def is_alive(process: int) -> bool:
+    """Tell whether a process still runs; one that only waits to be counted does not."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def interrupted(folder: Path, *more: str, after: float) -> tuple[subprocess.CompletedProcess[str], list[int]]:
+    """Start a run that would take hours, interrupt it as a terminal does, and return its end and its children."""
+    (folder / "press.toml").write_text(INPUTS)
+    command = [sys.executable, "-m", "truing", "run", "press_linkage", "--inputs", "press.toml", *more]
+    process = subprocess.Popen(
+        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    try:
+        time.sleep(after)
+        assert process.poll() is None, process.communicate()
+        children = children_of(process.pid) if Path("/proc/self/task").exists() else []
+        os.killpg(process.pid, signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    finally:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+    return subprocess.CompletedProcess(command, process.returncode, out, err), children
+
+
+@pytest.mark.parametrize("after", [1.0, 4.0])
+def test_an_interrupted_run_leaves_nothing(tmp_path: Path, after: float) -> None:
+    (tmp_path / "press.toml").write_text(INPUTS)
+    before = listing(tmp_path)
+    end, _ = interrupted(tmp_path, "--output", "deep/down/here", after=after)
+    assert end.returncode == 130
+    assert end.stdout == ""
+    assert end.stderr == "calc: interrupted; nothing was written\n"
+    assert listing(tmp_path) == before
+
+
+def test_an_interrupted_run_leaves_the_earlier_one_as_it_was(tmp_path: Path) -> None:
+    (tmp_path / "press.toml").write_text(INPUTS)
+    quick = ["--set", "studies.run=[]", "-q"]
+    command = [sys.executable, "-m", "truing", "run", "press_linkage", "--inputs", "press.toml", *quick]
+    assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
+    before = [(path.name, path.read_bytes()) for path in sorted((tmp_path / "runs/press").iterdir())]
+    end, _ = interrupted(tmp_path, after=4.0)
+    assert end.returncode == 130
+    assert [(path.name, path.read_bytes()) for path in sorted((tmp_path / "runs/press").iterdir())] == before
+    assert [path.name for path in (tmp_path / "runs").iterdir()] == ["press"]
+
+
+def test_an_interrupted_run_leaves_no_worker_behind(tmp_path: Path) -> None:
+    (tmp_path / "press.toml").write_text(INPUTS)
+    before = listing(tmp_path)
+    end, children = interrupted(tmp_path, "--workers", "2", "-o", "new/run", after=8.0)
+    assert end.returncode == 130
+    assert end.stderr == "calc: interrupted; nothing was written\n"
+    assert listing(tmp_path) == before
+    if Path("/proc/self/task").exists():
+        assert len(children) >= 2
+        until = time.monotonic() + 20
+        while any(map(is_alive, children)) and time.monotonic() < until:
+            time.sleep(0.2)
+        assert [child for child in children if is_alive(child)] == []
