@@ -7,14 +7,20 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Concatenate, Generic, Literal, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, Generic, Literal, TypeAlias, TypeVar
 
 from truing.declare.goals import Price
 from truing.declare.spreads import Spread
 from truing.errors import DeclarationError
 
-I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
-R = TypeVar("R")
+if TYPE_CHECKING:
+    from typing_extensions import TypeVar as TypeVarWithDefault
+
+    I = TypeVarWithDefault("I", default=Any)  # noqa: E741  # inputs, as in Model[I, R]
+    R = TypeVarWithDefault("R", default=Any)
+else:
+    I = TypeVar("I")  # noqa: E741
+    R = TypeVar("R")
 Place = Literal["inputs", "results", "reading"]
 
 
