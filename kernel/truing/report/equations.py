@@ -90,7 +90,7 @@ def _is_single(value: Any) -> bool:
 
 
 def _number(setup: Setup, item: InputField | ResultField, value: Any, *, numeric: bool) -> tuple[str, str]:
-    """Return what stands for a name: in the printed unit (levels of temperature in kelvin), or bare in the declared unit."""
+    """Return what stands for a name: in the printed unit (temperature levels in kelvin), or bare in the declared one."""
     from truing.units import difference_unit
 
     if value is None or value != value:
@@ -98,9 +98,7 @@ def _number(setup: Setup, item: InputField | ResultField, value: Any, *, numeric
     digits = INPUT_DIGITS if isinstance(item, InputField) else RESULT_DIGITS
     if numeric:
         return format_value(value, item.unit, digits)[0], ""
-    unit = setup.print_unit(item.name)
-
-    return format_value(value, difference_unit(unit), digits)
+    return format_value(value, difference_unit(setup.print_unit(item.name)), digits)
 
 
 def _results(setup: Setup, item: ResultField, value: Any, *, numeric: bool) -> tuple[Value, ...]:
