@@ -232,7 +232,8 @@ def test_every_field_of_results_json_is_explained() -> None:
 def test_every_check_of_the_kit_is_listed_with_its_promise() -> None:
     text = page("conformance.md")
     for check in CHECKS:
-        assert f"| {check.name} | {check.promise} |" in text
+        row = f"| {check.name} | {check.promise} |"
+        assert row in text, f"docs/reference/conformance.md needs the row {row}"
 
 
 def table(text: str, title: str) -> list[list[str]]:
