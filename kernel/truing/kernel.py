@@ -102,7 +102,7 @@ class Kernel:
 
     def add_file(self, path: Path) -> Origin:
         """Load one Python file as a plugin; it needs no packaging. Its folder may hold modules it imports."""
-        origin = Origin(path.stem, "", "", str(path), f"file:{path.resolve()}")
+        origin = Origin(path.stem.replace(".", "_"), "", "", str(path), f"file:{path.resolve()}")
         self.add(origin, lambda: load_file(path))
         return origin
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -29,7 +30,9 @@ def load_file(path: Path) -> ModuleType:
     taken = sys.modules.get(path.stem)
     if taken is not None and getattr(taken, "__file__", None) == str(path):
         return taken
-    name = path.stem if taken is None and importlib.util.find_spec(path.stem) is None else f"truing_file_{path.stem}"
+    plain = re.sub(r"\W", "_", path.stem)
+    is_free = plain == path.stem and taken is None and importlib.util.find_spec(plain) is None
+    name = plain if is_free else f"truing_file_{plain}"
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:
         raise UnknownPluginError(f"{path}: not a Python file")

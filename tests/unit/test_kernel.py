@@ -372,6 +372,16 @@ def test_a_single_file_is_a_plugin(tmp_path: Path) -> None:
     assert again.offer("my_calculation").model.name == "pin"
 
 
+@pytest.mark.parametrize("stem", ["my calc-2", "rev.3", "größe", "2fast"])
+def test_files_with_odd_names(tmp_path: Path, stem: str) -> None:
+    file = tmp_path / f"{stem}.py"
+    file.write_text(GOOD.format(name="pin"), encoding="utf-8")
+    kernel = Kernel()
+    origin = kernel.add_file(file)
+    assert kernel.offer(origin.name).model.name == "pin"
+    assert kernel_for(origin.ref).offer(origin.name).model.name == "pin"
+
+
 def test_a_file_named_like_a_module_hides_nobody(tmp_path: Path) -> None:
     import json
 
