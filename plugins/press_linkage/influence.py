@@ -15,7 +15,7 @@ class Influence:
         formula="acos((platform_half_width - crank_pivot_radius) / (crank_radius + rod_length)) + crank_angle",
     )  # fmt: skip
     platform_height: Float = found(
-        "mm", symbol="z_1", note="platform centre O1",
+        "m", digits=7, symbol="z_1", note="platform centre O1",
         formula="crank_radius * sin(crank_direction) + sqrt(rod_length**2 - "
         "(platform_half_width - crank_pivot_radius - crank_radius * cos(crank_direction))**2)",
     )  # fmt: skip
@@ -25,7 +25,7 @@ class Influence:
         "platform_half_width - crank_pivot_radius - crank_radius * cos(crank_direction))",
     )  # fmt: skip
     ground_distance: Float = found(
-        "mm", symbol="d", note="end of the platform arm B5 to ground joint M",
+        "m", digits=7, symbol="d", note="end of the platform arm B5 to ground joint M",
         formula="hypot(ground_pivot_radius * cos(ground_pivot_angle), "
         "ground_pivot_radius * sin(ground_pivot_angle) - platform_height - platform_arm)",
     )  # fmt: skip
@@ -38,12 +38,12 @@ class Influence:
         formula="sqrt((knee_drive_length / ground_distance)**2 - knee_along**2)",
     )  # fmt: skip
     knee_y: Float = found(
-        "mm", symbol="y_G", note="knee G, outward",
+        "m", digits=7, symbol="y_G", note="knee G, outward",
         formula="ground_pivot_radius * cos(ground_pivot_angle) * knee_along - "
         "(ground_pivot_radius * sin(ground_pivot_angle) - platform_height - platform_arm) * knee_across",
     )  # fmt: skip
     knee_z: Float = found(
-        "mm", symbol="z_G", note="knee G, downward",
+        "m", digits=7, symbol="z_G", note="knee G, downward",
         formula="platform_height + platform_arm + "
         "(ground_pivot_radius * sin(ground_pivot_angle) - platform_height - platform_arm) * knee_along + "
         "ground_pivot_radius * cos(ground_pivot_angle) * knee_across",
@@ -62,7 +62,7 @@ class Influence:
         formula="acos((slider_half_width - knee_y) / lower_knee_length)",
     )  # fmt: skip
     nominal_position: Float = found(
-        "mm", symbol="z_2,0", note="slider of the nominal mechanism",
+        "mm", digits=7, symbol="z_2,0", note="slider of the nominal mechanism",
         formula="knee_z + lower_knee_length * sin(lower_direction)",
     )  # fmt: skip
     slider_shift: Float = found(

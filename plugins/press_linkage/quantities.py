@@ -99,13 +99,14 @@ class Slider:
     """Where the slider is, exactly, with every deviation present."""
 
     face_height_1: Float = found(
-        "mm", symbol="z_F1", note="slider face over joint H1", method="exact position, loops I to III"
+        "mm", digits=7, symbol="z_F1", note="slider face over joint H1", method="exact position, loops I to III"
     )
     face_height_2: Float = found(
-        "mm", symbol="z_F2", note="slider face over joint H2", method="exact position, loops IV to VI"
+        "mm", digits=7, symbol="z_F2", note="slider face over joint H2", method="exact position, loops IV to VI"
     )
     slider_position: Float = found(
-        "mm", symbol="z_2", note="slider height, downward from O", formula="(face_height_1 + face_height_2) / 2",
+        "mm", digits=7, symbol="z_2", note="slider height, downward from O",
+        formula="(face_height_1 + face_height_2) / 2",
         source="Eq. (7), reconstructed",
     )  # fmt: skip
     slider_tilt: Float = found(
@@ -127,7 +128,7 @@ class Cycle:
         formula="acos((platform_half_width - crank_pivot_radius) / (crank_radius + rod_length))",
     )  # fmt: skip
     bdc_platform_height: Float = found(
-        "mm", symbol="z_1,B", note="platform at the bottom dead centre",
+        "m", digits=7, symbol="z_1,B", note="platform at the bottom dead centre",
         formula="sqrt((crank_radius + rod_length)**2 - (crank_pivot_radius - platform_half_width)**2)",
     )  # fmt: skip
     tdc_crank_angle: Float = found(
@@ -135,12 +136,18 @@ class Cycle:
         formula="-acos((crank_pivot_radius - platform_half_width) / (rod_length - crank_radius)) - bdc_direction",
     )  # fmt: skip
     bdc_position: Float = found(
-        "mm", symbol="z_2,B", note="slider at the bottom dead centre", method="exact position at crank angle 0"
+        "mm",
+        digits=7,
+        symbol="z_2,B",
+        note="slider at the bottom dead centre",
+        method="exact position at crank angle 0",
     )
     tdc_position: Float = found(
-        "mm", symbol="z_2,T", note="slider at the top dead centre", method="exact position at the angle above"
+        "mm", digits=7, symbol="z_2,T", note="slider at the top dead centre", method="exact position at the angle above"
     )
-    stroke: Float = found("mm", symbol="H", note="stroke of the slider", formula="bdc_position - tdc_position")
+    stroke: Float = found(
+        "mm", digits=7, symbol="H", note="stroke of the slider", formula="bdc_position - tdc_position"
+    )
     smallest_sine: Float = found(
         "", symbol="s_min", note="closest approach to a singular position over the turn (0 is singular)",
         method="least of the sines of theta_21, theta_18 and theta_19 - theta_17, both sides",

@@ -143,7 +143,7 @@ def _result_row(calculation: Calculation, name: str) -> tuple[str, ...]:
     value, print_unit = calculation.answers[name], calculation.setup.print_unit(name)
     if getattr(value, "ndim", 0):
         return (name, *_range_words(value, print_unit), one_line(item.spec.note))
-    return (name, *format_value(value, print_unit), one_line(item.spec.note))
+    return (name, *format_value(value, print_unit, item.digits), one_line(item.spec.note))
 
 
 def _range_words(values: Any, print_unit: str) -> tuple[str, str]:

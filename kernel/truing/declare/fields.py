@@ -65,11 +65,16 @@ def found(
     along: str = "",
     method: str = "",
     source: str = "",
+    digits: int = 5,
 ) -> Any:
-    """Declare a result; with ``numeric`` every name in the formula is its number in its declared unit."""
+    """Declare a result; with ``numeric`` every name in the formula is its number in its declared unit.
+
+    ``digits`` are the significant ones of print: more of them for a position that is known to a hundredth.
+    """
     spec = Found(
-        unit=unit, symbol=symbol, note=note, formula=formula, numeric=numeric, along=along, method=method, source=source
-    )
+        unit=unit, symbol=symbol, note=note, formula=formula, numeric=numeric, along=along, method=method,
+        source=source, digits=digits,
+    )  # fmt: skip
     return field(metadata={KEY: spec})
 
 
@@ -217,6 +222,11 @@ class ResultField:
     def unit(self) -> str:
         """The declared unit."""
         return self.spec.unit
+
+    @property
+    def digits(self) -> int:
+        """How many significant digits are printed."""
+        return self.spec.digits if isinstance(self.spec, Found) else 5
 
     @property
     def along(self) -> str:

@@ -54,7 +54,7 @@ class Loaded:
 
 @dataclass(frozen=True, kw_only=True)
 class Found:
-    """One result as declared; ``formula`` is what the sheet prints and a test evaluates."""
+    """One result as declared; ``formula`` is what the sheet prints and a test evaluates, with so many ``digits``."""
 
     unit: str
     symbol: str = ""
@@ -64,6 +64,7 @@ class Found:
     along: str = ""
     method: str = ""
     source: str = ""
+    digits: int = 5
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -142,7 +142,7 @@ def _entry(writing: Writing, name: str, *, with_formula: bool) -> Entry:
         name=name,
         symbol=item.symbol,
         note=item.spec.note,
-        value=Value(*format_value(answers[name], writing.setup.print_unit(name))),
+        value=Value(*format_value(answers[name], writing.setup.print_unit(name), item.digits)),
         equation=equation_of(writing.setup, answers, item) if with_formula else None,
         method=getattr(item.spec, "method", ""),
         source=getattr(item.spec, "source", ""),

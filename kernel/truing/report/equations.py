@@ -95,7 +95,7 @@ def _number(setup: Setup, item: InputField | ResultField, value: Any, *, numeric
 
     if value is None or value != value:
         return ABSENT, ""
-    digits = INPUT_DIGITS if isinstance(item, InputField) else RESULT_DIGITS
+    digits = INPUT_DIGITS if isinstance(item, InputField) else item.digits
     if numeric:
         return format_value(value, item.unit, digits)[0], ""
     return format_value(value, difference_unit(setup.print_unit(item.name)), digits)
@@ -104,9 +104,9 @@ def _number(setup: Setup, item: InputField | ResultField, value: Any, *, numeric
 def _results(setup: Setup, item: ResultField, value: Any, *, numeric: bool) -> tuple[Value, ...]:
     """Return the result as the formula gives it and, where that is another unit, as it is printed."""
     unit = setup.print_unit(item.name)
-    last = Value(*format_value(value, unit))
+    last = Value(*format_value(value, unit, item.digits))
     if numeric and unit != item.unit:
-        return Value(*format_value(value, item.unit)), last
+        return Value(*format_value(value, item.unit, item.digits)), last
     return (last,)
 
 
