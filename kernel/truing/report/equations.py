@@ -17,8 +17,8 @@ from truing.numbers import ABSENT, RESULT_DIGITS, format_number, format_value
 from truing.report.context import Equation, Value
 from truing.setup import Setup
 
-LINE = 36.0
-"""How wide a line may be, in em, before it is broken: the column of formulas on A4."""
+LINE = 34.0
+"""How wide a line may be, in em as estimated (it may come out a sixth wider): the column of formulas on A4 is 38."""
 
 INPUT_DIGITS = 7
 
@@ -90,7 +90,7 @@ def _is_single(value: Any) -> bool:
 
 
 def _number(setup: Setup, item: InputField | ResultField, value: Any, *, numeric: bool) -> tuple[str, str]:
-    """Return what stands for a name: in the printed unit (temperature levels in kelvin), or bare in the declared one."""
+    """Return what stands for a name: in the printed unit (temperature levels in kelvin) or bare in the declared one."""
     from truing.units import difference_unit
 
     if value is None or value != value:

@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from truing.calculation import Calculation
     from truing.cases import CasesTable
 
-COLUMN = 40.0
+COLUMN = equations.LINE
 """How wide a formula may be, in em, beside the words of its result; a wider one stands below them."""
-PAGE = 52.0
+PAGE = 45.0
 """How wide a formula may be on A4; a wider one is set smaller there."""
 LONG = 7
 """A sheet with more chapters than this has a table of contents."""
