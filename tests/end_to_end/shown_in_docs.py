@@ -74,8 +74,8 @@ class Desk:
             self._spelled_out(parts), cwd=self.folder, env=self._environment(), stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, text=True, encoding="utf-8", timeout=300, check=False,
         )  # fmt: skip
-        quiet = "" if parts[0] == "pip" else ended.stdout
-        return quiet if ended.returncode == 0 or parts[0] != "pip" else ended.stdout, ended.returncode
+        said = ended.stdout.replace("\\", "/") if os.name == "nt" else ended.stdout  # the pages show paths with /
+        return "" if parts[0] == "pip" and ended.returncode == 0 else said, ended.returncode
 
     def _spelled_out(self, parts: list[str]) -> list[str]:
         """Use this Python for ``calc``, ``python`` and ``pip``; what is installed goes to a folder of its own."""

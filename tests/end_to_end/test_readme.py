@@ -65,7 +65,8 @@ def test_ci_runs_the_test_command_of_the_readme() -> None:
 
 
 def test_the_tour_does_what_it_shows(tmp_path: Path) -> None:
-    assert not check_page(README, desk_in(tmp_path))
+    faults = check_page(README, desk_in(tmp_path))
+    assert not faults, "\n".join(faults)
 
 
 def test_the_tour_visits_what_it_promises() -> None:

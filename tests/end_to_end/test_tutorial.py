@@ -13,7 +13,8 @@ PAGES = sorted(page for page in (ROOT / "docs").rglob("*.md") if any(block.kind 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_a_page_does_what_it_shows(page: Path, tmp_path: Path) -> None:
-    assert not check_page(page, desk_in(tmp_path))
+    faults = check_page(page, desk_in(tmp_path))
+    assert not faults, "\n".join(faults)
 
 
 def test_the_tutorial_is_among_the_pages_and_runs_every_verb_it_teaches() -> None:
