@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.fields import with_values
 from truing.errors import UsageError
-from truing.evaluate import evaluate_rows
+from truing.evaluate import Rows, evaluate_rows
 from truing.setup import Setup
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from truing.measurements import RowsFile
 
 
 @dataclass(frozen=True)
@@ -32,37 +34,102 @@ def one_machine(setup: Setup) -> Setup:
     return replace(setup, inputs=with_values(setup.inputs, calibrated))
 
 
-def shown_by_gauge(setup: Setup, columns: Mapping[str, Any], rows: int) -> Shown:
-    """Evaluate every row; columns (SI) replace inputs and conditions, and place results along an axis.
+def shown_by_gauge(setup: Setup, rows: RowsFile) -> Shown:
+    """Evaluate every row of a file: its columns replace inputs and conditions, readings act.
 
-    A result along an axis is read at the row's value of that axis (linear between points); without such a column
-    it is left out.
+    A result along an axis is read at the row's place on it (linear between points); without such a column it is left
+    out. Where inputs run along an axis, the rows of one run are one record and one evaluation.
     """
     from truing.units import from_si
 
     machine = one_machine(setup)
-    fields = machine.model.own_result_fields
-    known = {name: values for name, values in columns.items() if name not in fields}
-    found = evaluate_rows(machine, known, rows, reading=True)
-    values: dict[str, Any] = {}
-    for name, answers in found.results.items():
-        if name in columns:
-            continue
-        along = fields[name].along
-        if not along:
-            values[name] = answers
-        elif along in columns and along != name:
-            values[name] = _along(answers, found.results[along], columns[along])
-    if not values:
-        axes = sorted({item.along for item in fields.values() if item.along})
+    evaluated = _by_records(machine, rows) if rows.series else _row_by_row(machine, rows)
+    if not evaluated.results:
+        axes = sorted({item.along for item in machine.model.own_result_fields.values() if item.along})
         raise UsageError(f"every result of {machine.model.name} runs along {' or '.join(axes)}: give that column")
-    units = {name: machine.print_unit(name) for name in values}
-    return Shown({name: from_si(value, units[name]) for name, value in values.items()}, units, found.reasons)
+    units = {name: machine.print_unit(name) for name in evaluated.results}
+    values = {name: from_si(value, units[name]) for name, value in evaluated.results.items()}
+    return Shown(values, units, evaluated.reasons)
 
 
-def _along(answers: NDArray[np.float64], axis: NDArray[np.float64], places: Any) -> NDArray[np.float64]:
-    """Read each row's result at that row's place on the axis."""
+def _row_by_row(machine: Setup, rows: RowsFile) -> Rows:
+    found = evaluate_rows(machine, rows.columns, len(rows), reading=True)
+    places = range(len(rows))
+    values = {name: _placed(name, found, machine, rows, places) for name in _readable(machine, rows)}
+    return replace(found, results=values)
+
+
+def _by_records(machine: Setup, rows: RowsFile) -> Rows:
+    """Evaluate each run once, with its columns as series; every row reads the record at its own place."""
     import numpy as np
 
-    axis = np.broadcast_to(axis, answers.shape)
-    return np.array([np.interp(place, x, y) for place, x, y in zip(places, axis, answers, strict=True)])
+    names = list(_readable(machine, rows))
+    values = {name: np.full(len(rows), np.nan) for name in names}
+    reasons: dict[int, str] = {}
+    for places in _records(rows):
+        columns = {name: _one_value(name, column, places, rows) for name, column in rows.columns.items()}
+        columns |= {name: column[places] for name, column in rows.series.items()}
+        found = evaluate_rows(machine, columns, 1, reading=True)
+        for name in names:
+            values[name][places] = _placed(name, found, machine, rows, places)
+        if found.failed[0]:
+            reasons |= dict.fromkeys(places, found.reasons[0])
+    return Rows(values, np.isin(np.arange(len(rows)), list(reasons)), reasons)
+
+
+def _records(rows: RowsFile) -> Iterator[list[int]]:
+    """Give the rows of each run; without a column "run" the file is one."""
+    names = rows.runs or ("",) * len(rows)
+    for name in dict.fromkeys(names):
+        yield [place for place, other in enumerate(names) if other == name]
+
+
+def _one_value(name: str, column: Any, places: Sequence[int], rows: RowsFile) -> Any:
+    """Return the one value that a column has within a record."""
+    for place in places:
+        if column[place] != column[places[0]]:
+            line = rows.lines[place]
+            raise UsageError(f"{rows.file}:{line}: {name} changes within a run, but a record is one calculation")
+    return column[places[0]] if isinstance(column[places[0]], (str, bool, int)) else float(column[places[0]])
+
+
+def _readable(machine: Setup, rows: RowsFile) -> Iterator[str]:
+    """Give the results that have one value per row, or are read at the row's place on their axis."""
+    for name in machine.model.own_result_fields:
+        axis = _axis_of(name, machine)
+        if not axis or (axis in rows.axes and axis != name):
+            yield name
+
+
+def _axis_of(name: str, machine: Setup) -> str:
+    """Return the flat name of the axis that a result runs along: its own part's where that has one."""
+    fields = machine.model.own_result_fields
+    item = fields[name]
+    own = f"{item.along}_{item.scope}"
+    return own if own in fields else item.along
+
+
+def _placed(name: str, found: Rows, machine: Setup, rows: RowsFile, places: Sequence[int]) -> NDArray[np.float64]:
+    """Return one value per row, read along the axis where the result has one; NaN beyond the ends of the axis."""
+    import numpy as np
+
+    values = found.results[name]
+    along = _axis_of(name, machine)
+    if not along:
+        return values
+    wanted = rows.axes[along][list(places)]
+    shape = (len(wanted), values.shape[1])
+    curves = zip(wanted, np.broadcast_to(found.results[along], shape), np.broadcast_to(values, shape), strict=True)
+    return np.array([_read_at(place, axis, curve) for place, axis, curve in curves])
+
+
+def _read_at(place: float, axis: NDArray[np.float64], curve: NDArray[np.float64]) -> float:
+    """Read a curve at one place of its axis; the ends may be missed by rounding."""
+    import numpy as np
+
+    order = np.argsort(axis)
+    low, high = axis[order[0]], axis[order[-1]]
+    rounding = 1e-9 * max(abs(low), abs(high))
+    if not low - rounding <= place <= high + rounding:
+        return float("nan")
+    return float(np.interp(place, axis[order], curve[order]))

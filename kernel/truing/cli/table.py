@@ -40,7 +40,7 @@ def table(
     read = read_rows(rows, offer, setup)
     _say_unused(read, setup, settings)
     with told_by_line(setup):
-        shown = shown_by_gauge(setup, read.columns, len(read))
+        shown = shown_by_gauge(setup, read)
     kept = {text: cells for text, cells in read.cells.items() if text.partition("[")[0].strip() not in shown.values}
     headers = [*kept, *(f"{name} [{shown.units[name] or '1'}]" for name in shown.values)]
     write_table(output or sys.stdout, headers, [*kept.values(), *shown.values.values()])

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from truing.declare.fields import InputField
+from truing.declare.fields import Axis, InputField
 from truing.declare.near_miss import near_miss
 from truing.inputs_file.values import Reading, broken_bound, read_input
 from truing.kernel import Offer
@@ -41,8 +41,9 @@ class RowsFile:
     """Rows to calculate: ``columns`` that override inputs and conditions, in SI, and everything as it was written.
 
     Inputs that may vary and conditions are arrays (n,), every other input a list of n values. Where a cell is empty
-    the value of the inputs file stands. ``series`` holds columns of inputs that run along an axis. ``cells`` are all
-    columns verbatim, by the header as written; ``others`` names the columns that override nothing.
+    the value of the inputs file stands. ``series`` holds columns of inputs that run along an axis, ``axes`` where each
+    row lies on an axis of the results. ``cells`` are all columns verbatim, by the header as written; ``others`` names
+    the columns that override nothing. ``runs`` names the run of each row; nothing where there is no such column.
     """
 
     file: str
@@ -51,6 +52,8 @@ class RowsFile:
     cells: Mapping[str, tuple[str, ...]]
     lines: tuple[int, ...]
     others: tuple[str, ...] = ()
+    axes: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    runs: tuple[str, ...] = ()
 
     @property
     def headers(self) -> tuple[str, ...]:
@@ -115,7 +118,14 @@ def read_rows(path: Path, offer: Offer, setup: Setup) -> RowsFile:
         texts = _read_texts(table)
     columns: dict[str, Any] = {}
     series: dict[str, Any] = {}
+    axes: dict[str, Any] = {}
+    runs: tuple[str, ...] = ()
     for header, cells in zip(table.headers, texts.cells, strict=True):
+        if _is_axis(header.name, setup):
+            found = _values(header, cells, texts, setup)
+            axes[header.name] = np.array([math.nan if value is None else value for value in found], dtype=float)
+        elif header.name == "run":
+            runs = tuple(cell.strip() for cell in cells)
         if not _is_known(header.name, setup):
             continue
         item = setup.model.input_fields.get(header.name)
@@ -128,12 +138,18 @@ def read_rows(path: Path, offer: Offer, setup: Setup) -> RowsFile:
         columns[header.name] = filled if item is not None and not item.varies else np.array(filled, dtype=float)
     table.faults.raise_any()
     written = {header.text: tuple(cells) for header, cells in zip(table.headers, texts.cells, strict=True)}
-    others = tuple(header.name for header in table.headers if not _is_known(header.name, setup))
-    return RowsFile(str(path), columns, series, written, tuple(texts.lines), others)
+    used = {*columns, *series, *axes, *(["run"] if series else [])}
+    others = tuple(header.name for header in table.headers if header.name not in used)
+    return RowsFile(str(path), columns, series, written, tuple(texts.lines), others, axes, runs)
 
 
 def _is_known(name: str, setup: Setup) -> bool:
     return name in setup.model.input_fields or name in setup.model.conditions
+
+
+def _is_axis(name: str, setup: Setup) -> bool:
+    item = setup.model.own_result_fields.get(name)
+    return item is not None and isinstance(item.spec, Axis) and not item.spec.is_table
 
 
 def _unknown(header: Header, setup: Setup, offer: Offer) -> str:
@@ -152,7 +168,7 @@ def _values(header: Header, cells: list[str], texts: _Texts, setup: Setup) -> li
         faults.add(f"{header.name} cannot change from row to row; state it in the inputs file", table.header_line)
         return [None] * len(cells)
     is_word = item is not None and item.kind in {"switch", "integer", "choice", "text"}
-    fault = _word_header_fault(header) if is_word else header_fault(header, setup.unit_of(header.name))
+    fault = _word_header_fault(header) if is_word else header_fault(header, _unit_of(header.name, setup))
     if fault:
         faults.add(fault, table.header_line)
         return [None] * len(cells)
@@ -165,6 +181,11 @@ def _values(header: Header, cells: list[str], texts: _Texts, setup: Setup) -> li
             sentence = str(error)
             faults.add(sentence if sentence.startswith(header.name) else f"{header.name}: {sentence}", line)
     return found
+
+
+def _unit_of(name: str, setup: Setup) -> str:
+    item = setup.model.own_result_fields.get(name)
+    return setup.unit_of(name) if item is None else item.unit
 
 
 def _word_header_fault(header: Header) -> str:
