@@ -16,7 +16,7 @@ from truing.kernel import Kernel
 from truing.published import compare_published
 from truing.report.pdf import find_browser, sandbox_arguments
 from truing.report.render import sheet_html
-from truing.run_documents import provenance_of
+from truing.runs.provenance import provenance_of
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Page

@@ -221,7 +221,7 @@ def test_the_json_of_the_studies_is_json() -> None:
 
 
 def test_every_field_of_results_json_is_explained() -> None:
-    from truing.run_documents import results_document
+    from truing.runs.documents import results_document
 
     named = set(re.findall(r'^ +"(\w+)": ', inspect.getsource(results_document), re.MULTILINE))
     explained = set(re.findall(r"^\| `(\w+)` \|", page("run_folder.md"), re.MULTILINE))

@@ -18,11 +18,10 @@ from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Kernel, Offer
 from truing.measurements import read_cases
 from truing.published import compare_published
-from truing.report.context import Provenance
 from truing.report.render import css_text, html_of, markdown_of, sheet_html, sheet_markdown
 from truing.report.sheet import make_sheet
 from truing.report.templates import template_folder
-from truing.run_documents import provenance_of
+from truing.runs.provenance import Provenance, provenance_of
 from truing.setup import Setup
 
 DATA = Path(__file__).parents[1] / "data"

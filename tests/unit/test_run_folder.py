@@ -14,14 +14,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from truing import run_folder
 from truing.calculation import Calculation, calculate
 from truing.errors import OutputError, UnknownPluginError
 from truing.inputs_file import read_setup, setup_from_text
-from truing.inputs_written import complete_inputs, exact, input_hash
 from truing.kernel import Kernel, Offer
-from truing.run_documents import clean, provenance_of, results_document
-from truing.run_folder import demand_place, is_run, json_text, load_run, npz_bytes, write_folder, write_run
+from truing.runs import folder as run_folder
+from truing.runs.documents import clean, results_document
+from truing.runs.folder import demand_place, is_run, json_text, load_run, npz_bytes, write_folder, write_run
+from truing.runs.inputs_written import complete_inputs, exact, input_hash
+from truing.runs.provenance import provenance_of
 from truing.units import read_quantity, to_si
 
 DATA = Path(__file__).parents[1] / "data"

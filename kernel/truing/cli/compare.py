@@ -20,8 +20,8 @@ def compare(
     as_json: AsJson = False,
 ) -> int:
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""
-    from truing.compare_runs import changes
-    from truing.run_folder import load_run
+    from truing.runs.comparison import changes
+    from truing.runs.folder import load_run
 
     found = changes(load_run(first), load_run(second))
     if as_json:

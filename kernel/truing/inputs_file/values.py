@@ -24,7 +24,7 @@ class SentenceError(ValueError):
 
 @dataclass
 class Reading:
-    """What was read so far: values in SI by section and name, data files with their hashes, where they are looked for."""
+    """What was read so far: values in SI by section and name, data files with their hashes and their folder."""
 
     folder: Path
     values: dict[tuple[str, ...], Any] = field(default_factory=dict)

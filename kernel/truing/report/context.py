@@ -5,37 +5,19 @@ Texts in here are raw: they come from users and plugins, and only the renderers 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from truing.declare.blocks import Words
 from truing.declare.published import Finding
 from truing.published import ComparedRow
-from truing.setup import DEFAULT_SEED
+from truing.runs.provenance import Provenance
 
 if TYPE_CHECKING:
     from truing.formulas import Formula
 
-__all__ = ["ComparedRow", "Provenance", "Sheet"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Provenance:
-    """Where the numbers come from: enough to get them again."""
-
-    kernel: str
-    plugin: str
-    plugin_version: str
-    python: str
-    packages: Mapping[str, str] = field(default_factory=dict)
-    input_hash: str = ""
-    seed: int = DEFAULT_SEED
-    date: str = ""
-    added: Sequence[tuple[str, str, str]] = ()
-    """What guests added: what, plugin, version."""
-    files: Mapping[str, str] = field(default_factory=dict)
-    """Data files that were read, with the hash of their content."""
+__all__ = ["ComparedRow", "Sheet"]
 
 
 @dataclass(frozen=True)

@@ -13,10 +13,11 @@ from truing.formulas.write_latex import LatexWriter
 from truing.formulas.write_mathml import MathMLWriter
 from truing.numbers import pretty, with_unit
 from truing.report import equations
-from truing.report.context import ComparedRow, Entry, Equation, FigureView, Provenance, Sheet, TableView, Value
+from truing.report.context import ComparedRow, Entry, Equation, FigureView, Sheet, TableView, Value
 from truing.report.markdown import Raw, escaped
 from truing.report.sheet import make_sheet
 from truing.report.templates import template_folder
+from truing.runs.provenance import Provenance
 
 if TYPE_CHECKING:
     from jinja2 import Environment

@@ -19,8 +19,8 @@ from truing.published import compare_published
 from truing.report.pdf import pdf_bytes
 from truing.report.render import html_of, markdown_of
 from truing.report.sheet import make_sheet
-from truing.run_documents import provenance_of
-from truing.run_folder import demand_place, write_run
+from truing.runs.folder import demand_place, write_run
+from truing.runs.provenance import provenance_of
 from truing.setup import Setup
 from truing.studies.bench import Progress
 

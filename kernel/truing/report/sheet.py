@@ -13,7 +13,8 @@ from truing.numbers import STATED_DIGITS, format_number, format_value
 from truing.published import ComparedRow, in_order
 from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
 from truing.report.content import changed_inputs, check_rows, condition_rows, effect_rows, input_rows, tolerance_rows
-from truing.report.context import Chapter, Head, InputRow, Provenance, Sheet, TableView
+from truing.report.context import Chapter, Head, InputRow, Sheet, TableView
+from truing.runs.provenance import Provenance
 
 if TYPE_CHECKING:
     from truing.cases import CaseResult, CasesTable

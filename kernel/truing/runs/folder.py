@@ -14,14 +14,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from truing.errors import OutputError, UnknownPluginError
-from truing.inputs_written import complete_inputs, input_hash
-from truing.run_documents import SCHEMA, large_arrays, results_document
+from truing.runs.inputs_written import complete_inputs, input_hash
+from truing.runs.documents import SCHEMA, large_arrays, results_document
 
 if TYPE_CHECKING:
     from truing.calculation import Calculation
     from truing.cases import CasesTable
     from truing.kernel import Offer
-    from truing.report.context import Provenance
+    from truing.runs.provenance import Provenance
 
 __all__ = [
     "complete_inputs", "demand_place", "input_hash", "is_run", "json_text", "load_run", "results_document",

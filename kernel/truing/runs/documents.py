@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from truing.calculation import Calculation
 from truing.declare.spreads import ByChoice
-from truing.inputs_written import PURE, input_hash
-from truing.report.context import Provenance
+from truing.runs.inputs_written import PURE
+from truing.runs.provenance import Provenance
 from truing.setup import Setup, SwitchedOn
 
 if TYPE_CHECKING:
@@ -20,35 +20,6 @@ if TYPE_CHECKING:
 SCHEMA = "truing.results/1"
 LARGE = 1000
 """Results with more numbers than this stand in arrays.npz instead of results.json."""
-
-PACKAGES = ("numpy", "scipy", "pint", "pluggy", "pydantic", "matplotlib", "jinja2")
-
-
-def provenance_of(setup: Setup, *, date: str = "") -> Provenance:
-    """Say where the numbers of a run come from: versions, hash of the inputs, seed, guests, data files."""
-    import platform
-
-    return Provenance(
-        kernel=_version("truing"),
-        plugin=setup.origin.name,
-        plugin_version=setup.origin.version,
-        python=platform.python_version(),
-        packages={name: version for name in PACKAGES if (version := _version(name))},
-        input_hash=input_hash(setup),
-        seed=setup.seed,
-        date=date,
-        added=tuple((item.what, item.plugin, item.version) for item in setup.added),
-        files=dict(setup.files),
-    )
-
-
-def _version(name: str) -> str:
-    from importlib import metadata
-
-    try:
-        return metadata.version(name)
-    except metadata.PackageNotFoundError:
-        return ""
 
 
 def results_document(
