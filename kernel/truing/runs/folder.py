@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from truing.errors import OutputError, UnknownPluginError
-from truing.runs.inputs_written import complete_inputs, input_hash
 from truing.runs.documents import SCHEMA, large_arrays, results_document
+from truing.runs.inputs_written import complete_inputs, input_hash
 
 if TYPE_CHECKING:
     from truing.calculation import Calculation
