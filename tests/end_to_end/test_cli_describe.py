@@ -1,0 +1,115 @@
+"""calc plugins, describe and init: what there is, what it takes, and a file to begin with."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from conftest import Calc
+
+PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
+
+
+def test_plugins(calc: Calc) -> None:
+    answer = calc("plugins")
+    assert (answer.code, answer.err) == (0, "")
+    head, row = answer.out.rstrip("\n").split("\n")
+    assert head.split() == ["model", "version", "from", "title"]
+    assert row.split()[:3] == ["press_linkage", version("truing"), "truing"]
+    assert calc("plugins", "--names").out == "press_linkage\n"
+
+
+def test_plugins_as_json(calc: Calc) -> None:
+    found = json.loads(calc("plugins", "--json").out)
+    assert found["broken"] == []
+    (model,) = found["models"]
+    assert model["name"] == model["plugin"] == "press_linkage"
+    assert model["distribution"] == "truing"
+    assert Path(model["file"]).is_file()
+
+
+def test_describe_names_everything_that_is_declared(calc: Calc) -> None:
+    answer = calc("describe", PIN)
+    assert (answer.code, answer.err) == (0, "")
+    for words in (
+        "pin_wear (a file): Sliding wear of a pin",
+        "load         F    120.0  N     normal load on the pin; above 0",
+        "rate         k    3e-08  -     wear coefficient; test 14",
+        "pressure    p  MPa  contact pressure",
+        "load      sd 3 %            on load      friction in the guide of the dead weight",
+        "running_in  on inputs   extra 0..50 µm, length 10..5000 m",
+        "warm_probe  on reading  slope -2..2 µm/K",
+        "needs probe_temperature",
+        "probe_temperature  reference 20  °C",
+        "vary load         50 N .. 200 N",
+        "require pressure  at most 80 MPa with reliability 0.99",
+        "Studies: sensitivity, reliability",
+    ):
+        assert " ".join(words.split()) in " ".join(answer.out.split()), words
+
+
+def test_describe_as_json(calc: Calc) -> None:
+    found = json.loads(calc("describe", "press_linkage", "--json").out)
+    assert found["name"] == "press_linkage"
+    names = [item["name"] for item in found["inputs"]]
+    assert len([name for name in names if "_deviation" in name]) == 29
+    by_name = {item["name"]: item for item in found["inputs"]}
+    assert by_name["crank_radius"]["default"] == 0.36
+    assert by_name["crank_radius"]["unit"] == "m"
+    assert by_name["reading"]["choices"] == ["complete", "printed"]
+    assert by_name["reading"]["default"] == "complete"
+    assert by_name["ground_pivot_angle"]["default"] == 0.367
+    assert {item["name"] for item in found["effects"]} >= {"link_heating"}
+    assert set(found["studies"]) >= {"sweep", "sensitivity", "reliability", "allocation"}
+    results = {item["name"]: item for item in found["results"]}
+    assert {"slider_position", "slider_tilt", "stroke", "bdc_position", "adjustments"} <= set(results)
+
+
+@pytest.mark.parametrize("plugin", ["press_linkage", str(PIN)])
+def test_the_example_keeps_the_schema(calc: Calc, plugin: str) -> None:
+    schema = json.loads(calc("describe", plugin, "--json-schema").out)
+    Draft202012Validator.check_schema(schema)
+    example = calc("init", plugin)
+    assert (example.code, example.err) == (0, "")
+    judge = Draft202012Validator(schema)
+    document = tomllib.loads(example.out)
+    assert list(judge.iter_errors(document)) == []
+    wrong = {**document, "inputs": {**document.get("inputs", {}), "lod": "3 N"}}
+    assert [error.validator for error in judge.iter_errors(wrong)] == ["additionalProperties"]
+    assert [*judge.iter_errors({"shet": {}})]
+
+
+def test_init_writes_once(calc: Calc, tmp_path: Path) -> None:
+    answer = calc("init", "press_linkage", "-o", "press.toml")
+    assert (answer.code, answer.out) == (0, "")
+    assert answer.err == "wrote press.toml; now: calc run press_linkage --inputs press.toml\n"
+    written = (tmp_path / "press.toml").read_text(encoding="utf-8")
+    assert tomllib.loads(written)["inputs"]["reading"] == "printed"
+    assert any(line.startswith("#") and '"printed" repeats the paper' in line for line in written.split("\n"))
+    (tmp_path / "press.toml").write_text("mine")
+    answer = calc("init", "press_linkage", "-o", "press.toml")
+    assert (answer.code, answer.out) == (2, "")
+    assert answer.err == "calc: press.toml exists already; choose another name or say --force\n"
+    assert (tmp_path / "press.toml").read_text() == "mine"
+    answer = calc("init", "press_linkage", "-o", "press.toml", "--force", "-q")
+    assert (answer.code, answer.out, answer.err) == (0, "", "")
+    assert (tmp_path / "press.toml").read_text(encoding="utf-8") == written
+    assert [path.name for path in tmp_path.iterdir()] == ["press.toml"]
+
+
+def test_init_into_a_folder_that_is_not_there(calc: Calc, tmp_path: Path) -> None:
+    answer = calc("init", PIN, "-o", "nowhere/pin.toml")
+    assert (answer.code, answer.out) == (2, "")
+    assert answer.err == f"calc: {Path('nowhere/pin.toml')} cannot be written: No such file or directory\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_init_writes_runs(calc: Calc, tmp_path: Path) -> None:
+    calc("init", PIN, "-o", "wear.toml")
+    answer = calc("run", PIN, "--inputs", "wear.toml", "-q")
+    assert answer.code == 0, answer.err

@@ -1,0 +1,228 @@
+"""calc run, and what holds for every verb: exit codes, stdout and stderr, words that may stand anywhere."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from block import write_block
+
+from conftest import Answer, Calc, process
+
+PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
+FILES = ["inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md"]
+QUICK = ("--set", "studies.run=[]")
+
+
+def test_a_run_writes_its_folder_and_says_where(calc: Calc, tmp_path: Path) -> None:
+    (tmp_path / "wear.toml").write_text('[inputs]\nload = "84 N"\n')
+    answer = calc("run", PIN, "--inputs", "wear.toml")
+    assert (answer.code, answer.err) == (0, "")
+    lines = answer.out.split("\n")
+    assert lines[0] == "pin_wear: Sliding wear of a pin"
+    assert [line.split()[:3] for line in lines if line.startswith("pressure")] == [
+        ["pressure", "3", "MPa"],  # 84 N on 28 mm^2
+        ["pressure", "1", "0.99"],
+    ]
+    assert lines[-2] == f"sheet: {Path('runs/wear/sheet.html')}"
+    assert sorted(path.name for path in (tmp_path / "runs/wear").iterdir()) == FILES
+
+
+def test_results_stand_under_the_titles_of_the_sheet(calc: Calc) -> None:
+    loud, quiet = calc("run", PIN, *QUICK), calc("run", PIN, *QUICK, "-q")
+    order = [line for line in loud.out.split("\n") if line in {"Contact", "Wear"} or line.startswith(("pres", "dis"))]
+    assert [line.split()[0] for line in order][:4] == ["Contact", "pressure", "Wear", "distance"]
+    assert "Contact" not in quiet.out
+    assert len(quiet.out) < len(loud.out)
+    assert " ".join(quiet.out.split()).startswith("pin_wear: Sliding wear of a pin pressure 4.2857 MPa")
+    assert "distance 360 km" in " ".join(quiet.out.split())
+
+
+def test_json_is_one_document_and_the_same_as_in_the_folder(calc: Calc, tmp_path: Path) -> None:
+    answer = calc("run", PIN, "--json")
+    assert answer.code == 0
+    assert json.loads(answer.out) == json.loads((tmp_path / "runs/pin_wear/results.json").read_text("utf-8"))
+
+
+def test_a_failing_check_is_named_and_exits_with_1(calc: Calc, tmp_path: Path) -> None:
+    answer = calc("run", PIN, "--set", "load=2300 N")
+    assert answer.code == 1
+    assert "1 of 1 checks FAIL: pressure (exit code 1; the sheet shows why)" in answer.out
+    assert (tmp_path / "runs/pin_wear/sheet.html").is_file()
+
+
+@pytest.mark.parametrize(
+    ("body", "code", "words"),
+    [
+        ("raise ConvergenceError('the iteration stood still after 50 steps')", 4, "calc: the iteration stood still"),
+        ("raise ValueError('a mistake')", 3, "block.py:34: block failed: ValueError: a mistake"),
+        ("return np.zeros(3)", 3, "calc: block returned array([0., 0., 0.]), which is no Slide"),
+        ("raise KeyboardInterrupt", 130, "calc: interrupted; nothing was written"),
+    ],
+)
+def test_exit_codes_of_a_plugin_that_does_not_answer(
+    calc: Calc, tmp_path: Path, body: str, code: int, words: str
+) -> None:
+    write_block(tmp_path, body=body)
+    answer = calc("run", "./block.py", "-q")
+    assert answer.code == code
+    assert answer.out == ""
+    assert words in answer.err
+    assert answer.err.count("\n") == 1
+    assert not (tmp_path / "runs").exists()
+
+
+def test_traceback_shows_where_and_keeps_sentence_and_code(calc: Calc, tmp_path: Path) -> None:
+    write_block(tmp_path, body="raise ValueError('a mistake')")
+    for arguments in (("--traceback", "run", "./block.py"), ("run", "./block.py", "--traceback")):
+        answer = calc(*arguments)
+        assert (answer.code, answer.out) == (3, "")
+        assert "Traceback (most recent call last)" in answer.err
+        assert "in block\n    raise ValueError('a mistake')" in answer.err
+        assert "block failed: ValueError: a mistake" in answer.err.split("\n")[-2]
+    assert "Traceback" not in calc("run", "./block.py").err
+
+
+@pytest.mark.parametrize("place", [0, 1, 2, 4])
+def test_quiet_and_verbose_may_stand_anywhere(calc: Calc, place: int) -> None:
+    words = ["run", str(PIN), *QUICK]
+    loud = calc(*words)
+    assert loud.err == "no --inputs: running the shipped example (calc init pin_wear writes it to a file)\n"
+    quiet = calc(*words[:place], "-q", *words[place:])
+    assert (quiet.code, quiet.err) == (0, "")
+    verbose = calc(*words[:place], "--verbose", *words[place:])
+    assert verbose.out == loud.out
+    assert "plugin pin_wear" in verbose.err
+    assert "input hash " in verbose.err
+    assert "Traceback" not in verbose.err
+
+
+def test_quiet_does_not_silence_errors(calc: Calc) -> None:
+    answer = calc("run", PIN, "-q", "--set", "load=3 kg")
+    assert (answer.code, answer.out) == (2, "")
+    assert answer.err == "--set load=3 kg: load: '3 kg' is a mass (kg), expected a force (N)\n"
+
+
+def test_what_is_said_goes_to_stderr_and_what_is_found_to_stdout(calc_process: Calc) -> None:
+    answer = calc_process("run", PIN, "--json", "--set", "conditions.probe_temperature=25 degC")
+    assert answer.code == 0
+    assert json.loads(answer.out)["conditions"] == {"probe_temperature": {"value": 25.0, "unit": "degC"}}
+    assert answer.err.startswith("no --inputs")
+
+
+def test_python_m_truing_and_a_reader_that_goes_away(tmp_path: Path) -> None:
+    assert process([sys.executable, "-m", "truing", "--version"], tmp_path).out.startswith("truing 0.")
+    command = [sys.executable, "-m", "truing", "describe", "press_linkage"]
+    writer = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert writer.stdout is not None
+    assert writer.stderr is not None
+    writer.stdout.close()
+    assert writer.stderr.read() == b""
+    assert writer.wait(60) == 0
+
+
+def test_without_a_verb_the_help_is_shown(calc: Calc) -> None:
+    answer = calc()
+    assert "Usage: calc" in answer.out + answer.err
+    for verb in ("plugins", "describe", "init", "run", "table", "verify", "compare"):
+        assert f"  {verb} " in answer.out + answer.err
+
+
+def test_set_replaces_what_the_file_says(calc: Calc, tmp_path: Path) -> None:
+    (tmp_path / "wear.toml").write_text('[inputs]\nload = "84 N"\n')
+    words = ("load=168 N", "tolerances.load=off", "units.pressure=bar", "seed=7", "effects.running_in.extra=3 um")
+    settings = [word for text in (*words, "effects.running_in.length=100 m") for word in ("--set", text)]
+    answer = calc("run", PIN, "--inputs", "wear.toml", "--json", *settings)
+    assert answer.code == 0, answer.err
+    found = json.loads(answer.out)
+    assert found["inputs"]["load"] == {"value": 168.0, "unit": "N"}
+    assert found["results"]["pressure"] == {"value": pytest.approx(60.0), "unit": "bar"}
+    assert found["tolerances"]["load"]["spread"] == "off"
+    assert found["seed"] == 7
+    assert found["effects"]["running_in"]["extra"] == {"value": pytest.approx(3.0), "unit": "um"}
+    assert "168" in (tmp_path / "runs/wear/inputs.toml").read_text(encoding="utf-8")
+
+
+def test_a_run_can_be_repeated_from_its_own_inputs(calc: Calc, tmp_path: Path) -> None:
+    calc("run", PIN, "--set", "load=84 N", "--set", "time=100 h", "-o", "first")
+    calc("run", PIN, "--inputs", "first/inputs.toml", "-o", "second")
+    assert (tmp_path / "first/results.json").read_bytes() == (tmp_path / "second/results.json").read_bytes()
+
+
+def test_an_earlier_run_is_replaced_whole(calc: Calc, tmp_path: Path) -> None:
+    calc("run", PIN, "-q")
+    (tmp_path / "runs/pin_wear/stale.txt").write_text("old")
+    assert calc("run", PIN, "-q", *QUICK).code == 0
+    assert sorted(path.name for path in (tmp_path / "runs/pin_wear").iterdir()) == FILES
+    assert [path.name for path in (tmp_path / "runs").iterdir()] == ["pin_wear"]
+
+
+@pytest.mark.parametrize("name", ["Prüfstand 7", "a b c", "日本", "it's [x] (1)"])
+def test_paths_with_spaces_and_umlauts(calc_process: Calc, tmp_path: Path, name: str) -> None:
+    folder = tmp_path / name
+    folder.mkdir()
+    shutil.copy(PIN, folder / "pin_wear.py")
+    (folder / f"{name}.toml").write_bytes(
+        '\ufeff[sheet]\r\nproject = "Größe µ"\r\n[inputs]\r\nload = "84 N"\r\n'.encode()
+    )
+    answer = calc_process("run", f"{name}/pin_wear.py", "-i", f"{name}/{name}.toml", "-o", f"{name}/out", *QUICK)
+    assert answer.code == 0, answer.err
+    assert sorted(path.name for path in (folder / "out").iterdir()) == FILES
+    assert "Größe µ" in (folder / "out/sheet.md").read_text(encoding="utf-8")
+    answer = calc_process("run", f"{name}/pin_wear.py", "-i", f"{name}/{name}.toml", "--set", "lod=3", cwd=tmp_path)
+    assert answer.code == 2
+    (folder / f"{name}.toml").write_text('[inputs]\n\nload = "84 kg"\n', encoding="utf-8")
+    answer = calc_process("run", f"{name}/pin_wear.py", "-i", f"{name}/{name}.toml")
+    assert answer.code == 2
+    assert answer.err.startswith(f"{Path(name) / (name + '.toml')}:3: load: '84 kg' is a mass")
+
+
+def test_detail_changes_the_sheet(calc: Calc, tmp_path: Path) -> None:
+    sizes = {}
+    for detail in ("short", "normal", "full"):
+        answer = calc("run", PIN, "-o", detail, "--set", f"detail={detail}", "-q")
+        assert answer.code == 0, answer.err
+        sizes[detail] = len((tmp_path / detail / "sheet.md").read_text(encoding="utf-8"))
+        results = (tmp_path / detail / "results.json").read_bytes()
+        assert results == (tmp_path / "short" / "results.json").read_bytes()
+    assert sizes["short"] < sizes["normal"] <= sizes["full"]
+    answer = calc("run", PIN, "--set", "detail=ful")
+    assert answer.code == 2
+    assert "--set detail=ful: " in answer.err
+    assert "short" in answer.err
+
+
+def test_two_workers_answer_as_one(calc_process: Calc, tmp_path: Path) -> None:
+    for workers in ("1", "2"):
+        answer = calc_process("run", PIN, "-o", workers, "--workers", workers, "-q")
+        assert answer.code == 0, answer.err
+    assert (tmp_path / "1/results.json").read_bytes() == (tmp_path / "2/results.json").read_bytes()
+    assert json.loads((tmp_path / "2/run.json").read_text("utf-8"))["workers"]["count"] == 2
+
+
+def test_a_printed_sheet_or_a_word_why_not(calc: Calc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from truing.report import pdf
+
+    monkeypatch.setattr(pdf, "find_browser", lambda: None)
+    answer: Answer = calc("run", PIN, "--pdf", *QUICK)
+    assert answer.code == 0
+    assert "no PDF: " in answer.err
+    assert "print" in answer.err
+    assert not (tmp_path / "runs/pin_wear/sheet.pdf").exists()
+    assert (tmp_path / "runs/pin_wear/sheet.html").exists()
+
+
+@pytest.mark.browser
+def test_a_printed_sheet(calc: Calc, tmp_path: Path) -> None:
+    from truing.report import pdf
+
+    if pdf.find_browser() is None:
+        pytest.skip("no Chromium, Chrome or Edge on this machine")
+    answer = calc("run", PIN, "--pdf", *QUICK)
+    assert answer.code == 0
+    assert "printed: " in answer.err
+    assert (tmp_path / "runs/pin_wear/sheet.pdf").read_bytes().startswith(b"%PDF-")

@@ -1,0 +1,113 @@
+"""calc table: what the gauge would show, row by row; numbers that read back exactly."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from conftest import Answer, Calc
+
+PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
+Table = Callable[..., Answer]
+
+
+@pytest.fixture
+def table(calc: Calc, tmp_path: Path) -> Table:
+    """Write inputs and rows and run ``calc table`` on them."""
+
+    def run(rows: str, inputs: str = "[inputs]\n", *more: str | Path, plugin: str | Path = PIN) -> Answer:
+        (tmp_path / "given.toml").write_text(inputs, encoding="utf-8")
+        (tmp_path / "rows.csv").write_text(rows, encoding="utf-8")
+        return calc("table", plugin, "--inputs", "given.toml", "--rows", "rows.csv", *more)
+
+    return run
+
+
+def columns(text: str) -> dict[str, list[str]]:
+    """Return a table by its header."""
+    head, *rows = csv.reader(io.StringIO(text))
+    return {name: [row[place] for row in rows] for place, name in enumerate(head)}
+
+
+def test_the_columns_of_the_file_come_first_and_units_stand_in_the_header(table: Table) -> None:
+    answer = table("load [kN],batch\n0.14,A\n0.28,B\n")
+    assert answer.code == 0
+    assert answer.err == "column 'batch' changes nothing and is kept as it stands.\n"
+    found = columns(answer.out)
+    assert list(found) == ["load [kN]", "batch", "pressure [MPa]", "distance [km]", "depth [um]"]
+    assert found["load [kN]"] == ["0.14", "0.28"]
+    assert found["batch"] == ["A", "B"]
+    assert [float(cell) for cell in found["pressure [MPa]"]] == pytest.approx([5.0, 10.0], rel=1e-15)
+
+
+def test_numbers_read_back_exactly(table: Table, tmp_path: Path) -> None:
+    """0.1 N and its neighbours differ in the seventeenth digit; every one of them comes through."""
+    import math
+
+    loads = [0.1, math.nextafter(0.1, 1), 1 / 3, 2 / 3 * 1e-7, 123456.78901234567]
+    rows = "load [N]\n" + "".join(f"{value!r}\n" for value in loads)
+    text = '[inputs]\narea = "1 m^2"\n[units]\npressure = "Pa"\n'
+    answer = table(rows, text, "-o", "out.csv")
+    assert (answer.code, answer.out) == (0, "")
+    found = columns((tmp_path / "out.csv").read_text(encoding="utf-8"))
+    assert [float(cell) for cell in found["pressure [Pa]"]] == loads  # on one square metre
+    again = table((tmp_path / "out.csv").read_text(encoding="utf-8"), text)
+    assert columns(again.out) == found  # results that stand in the file are calculated again
+
+
+def test_readings_act_and_conditions_are_columns(table: Table) -> None:
+    rows = "probe_temperature [degC],load [N]\n20,120\n30,120\n30,240\n"
+    effect = '[effects.warm_probe]\nslope = "1.5 um/K"\n'
+    plain, warm = (columns(table(rows, text).out)["depth [um]"] for text in ("[inputs]\n", effect))
+    added = [float(one) - float(other) for one, other in zip(warm, plain, strict=True)]
+    assert added == pytest.approx([0, 15, 15], abs=1e-9)
+
+
+def test_an_effect_on_the_inputs_is_seen_by_the_gauge_too(table: Table) -> None:
+    """Running-in adds its whole depth after many lengths: 360 km against 100 m."""
+    effect = '[effects.running_in]\nextra = "7 um"\nlength = "100 m"\n'
+    plain, worn = (columns(table("load [N]\n120\n", text).out)["depth [um]"] for text in ("[inputs]\n", effect))
+    assert float(worn[0]) - float(plain[0]) == pytest.approx(7, abs=1e-9)
+
+
+def test_the_calibrated_machine_is_shown(table: Table) -> None:
+    text = '[calibrated]\nload = "140 N"\n'
+    assert float(columns(table("time [h]\n1\n", text).out)["pressure [MPa]"][0]) == pytest.approx(5.0)
+
+
+def test_a_row_that_is_impossible_is_empty_and_said_with_its_line(table: Table) -> None:
+    answer = table("load [kN]\n0.14\n\n500\n0.28\n")
+    assert answer.code == 0
+    assert answer.err == "rows.csv:4: the contact flows: load exceeds hardness times area\n"
+    assert columns(answer.out)["depth [um]"][1] == ""
+    assert columns(answer.out)["load [kN]"] == ["0.14", "500", "0.28"]
+
+
+def test_units_and_set_hold_for_the_table(table: Table) -> None:
+    answer = table("load [N]\n140\n", '[units]\npressure = "bar"\n', "--set", "area=14 mm^2")
+    assert float(columns(answer.out)["pressure [bar]"][0]) == pytest.approx(100.0)
+
+
+def test_words_and_empty_cells(table: Table) -> None:
+    """The reading decides a limit; an empty cell leaves what the inputs file says."""
+    rows = "reading,crank_angle [deg]\nprinted,0\n,0\ncomplete,0\n"
+    answer = table(rows, '[inputs]\nreading = "printed"\n', plugin="press_linkage")
+    limits = [float(cell) for cell in columns(answer.out)["permitted_tilt [deg]"]]
+    assert limits == pytest.approx([0.001324, 0.001324, 0.0013])
+    answer = table("reading\nprintd\n", plugin="press_linkage")
+    assert answer.code == 2
+    assert answer.err.startswith("rows.csv:2: reading = 'printd' is not offered; choose 'complete' or 'printed'.")
+
+
+def test_many_rows_are_one_call(table: Table) -> None:
+    import time
+
+    rows = "load [N]\n" + "".join(f"{100 + k / 1000}\n" for k in range(50_000))
+    begin = time.perf_counter()
+    answer = table(rows)
+    assert time.perf_counter() - begin < 20
+    assert answer.out.count("\n") == 50_001
