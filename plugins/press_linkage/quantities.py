@@ -67,7 +67,7 @@ class Press:
     )  # fmt: skip
     crank_angle: Float = given(
         0.0, "deg", symbol="phi", note="crank from the bottom dead centre, growing with theta_11",
-        source="the paper works at the bottom dead centre", at_least=-360, at_most=360,
+        source="the paper works at the bottom dead centre",
     )  # fmt: skip
     position_limit: Float = given(
         0.02, "mm", symbol="L_S", note="permitted error of the slider position", source="the paper, text after Table 3",
@@ -136,12 +136,9 @@ class Cycle:
         formula="-acos((crank_pivot_radius - platform_half_width) / (rod_length - crank_radius)) - bdc_direction",
     )  # fmt: skip
     bdc_position: Float = found(
-        "mm",
-        digits=7,
-        symbol="z_2,B",
-        note="slider at the bottom dead centre",
+        "mm", digits=7, symbol="z_2,B", note="slider at the bottom dead centre",
         method="exact position at crank angle 0",
-    )
+    )  # fmt: skip
     tdc_position: Float = found(
         "mm", digits=7, symbol="z_2,T", note="slider at the top dead centre", method="exact position at the angle above"
     )

@@ -26,6 +26,7 @@ from press_linkage.quantities import Press
 from truing import Drawing, Kernel
 from truing.calculation import Calculation, calculate
 from truing.errors import InfeasibleError
+from truing.evaluate import evaluate_rows
 from truing.inputs_file import setup_from_text
 from truing.published import compare_published
 from truing.report.figures import draw
@@ -382,3 +383,9 @@ def test_heat_counts_against_the_limit() -> None:
     assert warm.analytic["slider_position"] == pytest.approx(expected, abs=2e-3)
     assert warm.probability["slider_position"] == pytest.approx(expected, abs=6e-3)
     assert warm.analytic["slider_tilt"] == pytest.approx(cold.analytic["slider_tilt"], abs=1e-4)
+
+
+def test_crank_angles_may_be_unwrapped() -> None:
+    """A record of many turns counts on: the same place after each."""
+    rows = evaluate_rows(default_setup(PRESS_LINKAGE), {"crank_angle": np.radians([-40.0, 320.0, 3560.0])}, 3)
+    assert rows.results["slider_position"] == pytest.approx(3.53002, abs=5e-6)  # reference value at -40 degree, m
