@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 
 import pytest
-from truing.runs.comparison import Change, changes
 
 from conftest import Calc
+from truing.runs.comparison import Change, changes
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 

@@ -14,22 +14,11 @@ import pytest
 
 from conftest import Answer, Calc, process
 
-DEVIATIONS = [
-    "crank_radius",
-    "rod_length",
-    "knee_drive_length",
-    "upper_knee_length",
-    "lower_knee_length",
-    "slider_half_width",
-    "slider_joint_angle",
-    "crank_pivot_radius",
-    "crank_pivot_angle",
-    "platform_half_width",
-    "platform_joint_angle",
-    "ground_pivot_radius",
-    "ground_pivot_angle",
-    "crank_angle",
-]
+DEVIATIONS = (
+    "crank_radius", "rod_length", "knee_drive_length", "upper_knee_length", "lower_knee_length", "slider_half_width",
+    "slider_joint_angle", "crank_pivot_radius", "crank_pivot_angle", "platform_half_width", "platform_joint_angle",
+    "ground_pivot_radius", "ground_pivot_angle", "crank_angle",
+)  # fmt: skip
 SOURCES = [f"{name}_deviation_{side}" for name in DEVIATIONS for side in (1, 2)] + ["platform_arm_deviation"]
 ANOTHER = {
     "crank_radius": "0.40 m",
@@ -129,9 +118,8 @@ def test_the_slider_at_the_crank_angles_of_the_dossier(calc: Calc, tmp_path: Pat
     expected = {-40: 3.53002, -10: 3.55649, 0: 3.55760, 10: 3.55656, 40: 3.53760, 90: 3.40544, 150: 2.99361}
     (tmp_path / "press.toml").write_text("[inputs]\n")
     (tmp_path / "rows.csv").write_text("crank_angle [deg]\n" + "".join(f"{angle}\n" for angle in expected))
-    answer = calc(
-        "table", "press_linkage", "--inputs", "press.toml", "--rows", "rows.csv", "--set", "units.slider_position=m"
-    )
+    metres = ("--set", "units.slider_position=m")
+    answer = calc("table", "press_linkage", "--inputs", "press.toml", "--rows", "rows.csv", *metres)
     assert answer.code == 0, answer.err
     assert table(answer.out)["slider_position"] == pytest.approx(list(expected.values()), abs=6e-6)
     for angle in (-40, 40):
@@ -176,9 +164,8 @@ def steps_table() -> str:
     """Return four rows for each of the 29 sources: two steps down, one down, one up, two up."""
     unit = {name: "mrad" if "angle" in name else "mm" for name in SOURCES}
     lines = [",".join(f"{name} [{unit[name]}]" for name in SOURCES)]
-    for source in SOURCES:
-        for step in (-2 * STEP, -STEP, STEP, 2 * STEP):
-            lines.append(",".join(repr(step) if name == source else "0" for name in SOURCES))
+    steps = [(source, step) for source in SOURCES for step in (-2 * STEP, -STEP, STEP, 2 * STEP)]
+    lines += [",".join(repr(step) if name == source else "0" for name in SOURCES) for source, step in steps]
     return "\n".join(lines) + "\n"
 
 
@@ -195,10 +182,8 @@ def test_a_warm_press_changes_every_study(run: Callable[..., Found]) -> None:
     assert warm["conditions"]["link_temperature"] == {"value": pytest.approx(35.0), "unit": "degC"}
     for study in ("sweep", "sensitivity", "reliability", "allocation"):
         assert warm["studies"][study] != cold["studies"][study], study
-    position = {
-        name: found["studies"]["reliability"]["slider_position"] for name, found in (("cold", cold), ("warm", warm))
-    }
-    assert position["warm"]["probability"] < position["cold"]["probability"]
+    chances = [found["studies"]["reliability"]["slider_position"]["probability"] for found in (cold, warm)]
+    assert chances[1] < chances[0]
 
 
 def test_heat_is_the_growth_of_every_link(run: Callable[..., Found]) -> None:
