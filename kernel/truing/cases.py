@@ -9,7 +9,8 @@ from typing import Any
 
 from truing.calculation import Calculation, calculate
 from truing.declare.fields import with_values
-from truing.errors import Fault, InfeasibleError, InputError
+from truing.declare.goals import Require
+from truing.errors import Fault, InputError, UsageError
 from truing.evaluate import evaluate_rows
 from truing.measurements import Case
 from truing.setup import Setup
@@ -38,7 +39,7 @@ class CaseResult:
 
     @property
     def values(self) -> Mapping[str, Any]:
-        """The inputs and conditions it changes, in SI."""
+        """The inputs and conditions that any case changes, with its own values in SI."""
         return self.case.values
 
     @property
@@ -62,7 +63,7 @@ class CasesTable:
     @property
     def varied(self) -> tuple[str, ...]:
         """The inputs and conditions that any case changes."""
-        return tuple(dict.fromkeys(name for case in self.cases for name in case.values))
+        return tuple(self.cases[0].values)
 
     @property
     def failed(self) -> tuple[tuple[int, str], ...]:
@@ -93,16 +94,17 @@ def run_cases(
 ) -> tuple[Calculation, CasesTable]:
     """Calculate every case and, in full with its studies, the governing one.
 
-    Limits on a chance need the studies of each case; without such limits all cases are one array call. Raises
+    Limits that studies decide need the studies of each case; without such limits all cases are one array call. Raises
     InputError with every reason and its line when no case can be calculated.
     """
-    by_studies = bool(setup.studies) and any(_asks_a_chance(setup))
-    done = _one_by_one(setup, cases, executor, progress) if by_studies else _all_at_once(setup, cases)
+    cases = _completed(setup, cases)
+    one_by_one = _studies_decide(setup)
+    done = _one_by_one(setup, cases, executor, progress) if one_by_one else _all_at_once(setup, cases)
     while alive := [place for place, case in enumerate(done) if case.reason is None]:
         governing = min(alive, key=lambda place: done[place].margin)
         try:
             full = calculate(case_setup(setup, cases[governing]), executor=executor, progress=progress)
-        except InfeasibleError as error:  # a study asks more than the calculation alone, a full turn for example
+        except UsageError as error:  # a study asks more than the calculation alone, a full turn for example
             done[governing] = CaseResult(cases[governing], {}, reason=str(error))
             continue
         table = CasesTable(tuple(done), governing)
@@ -110,8 +112,19 @@ def run_cases(
     raise InputError([case.fault for case in done])
 
 
-def _asks_a_chance(setup: Setup) -> list[bool]:
-    return [getattr(item, "reliability", None) is not None for item in setup.model.objectives]
+def _completed(setup: Setup, cases: Sequence[Case]) -> list[Case]:
+    """Give every case a value of everything that any case changes; where its own cell is empty, the setup's."""
+    varied = dict.fromkeys(name for case in cases for name in case.values)
+    kept = {name: setup.nominal(name) for name in varied}
+    return [replace(case, values={**kept, **case.values}) for case in cases]
+
+
+def _studies_decide(setup: Setup) -> bool:
+    """Tell whether a limit is one on a chance, or on a result that a study gives."""
+    running = {study.name for study in setup.studies}
+    given = {name for study, names in setup.model.study_result_fields.items() if study in running for name in names}
+    limits_ = [item for item in setup.model.objectives if isinstance(item, Require)]
+    return bool(running) and any(item.reliability is not None or item.result in given for item in limits_)
 
 
 def _one_by_one(setup: Setup, cases: Sequence[Case], executor: Executor, progress: Progress) -> list[CaseResult]:
@@ -120,7 +133,7 @@ def _one_by_one(setup: Setup, cases: Sequence[Case], executor: Executor, progres
         progress("cases", count, len(cases))
         try:
             found = calculate(case_setup(setup, case), executor=executor)
-        except InfeasibleError as error:
+        except UsageError as error:  # impossible, or a tolerance that its size outgrows
             done.append(CaseResult(case, {}, reason=str(error)))
             continue
         done.append(CaseResult(case, found.answers, found.checks))
@@ -129,8 +142,7 @@ def _one_by_one(setup: Setup, cases: Sequence[Case], executor: Executor, progres
 
 
 def _all_at_once(setup: Setup, cases: Sequence[Case]) -> list[CaseResult]:
-    names = dict.fromkeys(name for case in cases for name in case.values)
-    columns = {name: [case.values.get(name, setup.nominal(name)) for case in cases] for name in names}
+    columns = {name: [case.values[name] for case in cases] for name in cases[0].values}
     rows = evaluate_rows(setup, columns, len(cases))
     done = []
     for place, case in enumerate(cases):

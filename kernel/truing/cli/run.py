@@ -97,7 +97,7 @@ def _cases_lines(cases: CasesTable, calculation: Calculation) -> Iterator[str]:
     heads = [f"{name} [{unit}]" if (unit := setup.print_unit(name)) else name for name in cases.varied]
     rows = [("row", "case", *heads, "margin", "")]
     for place, case in enumerate(cases.cases):
-        said = [case.values.get(name, setup.nominal(name)) for name in cases.varied]
+        said = [case.values[name] for name in cases.varied]
         values = [
             one_line(value) if isinstance(value, (str, bool)) else format_value(value, setup.print_unit(name))[0]
             for name, value in zip(cases.varied, said, strict=True)

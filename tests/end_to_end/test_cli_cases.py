@@ -1,0 +1,77 @@
+"""calc run --cases: every row is a case, one governs, all of them stand on the sheet and in results.json."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from conftest import Calc
+
+PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
+CASES = "case;load [kN];probe_temperature [degC];note\nlight;0,14;20;\nheavy;2,296;;keep\nnormal;;30;\n"
+QUICK = ("--set", "studies.reliability.draws=2000")
+
+
+def test_cases_on_stdout_in_results_and_on_the_sheet(calc: Calc, tmp_path: Path) -> None:
+    (tmp_path / "cases.csv").write_text(CASES, encoding="utf-8")
+    (tmp_path / "wear.toml").write_text('[inputs]\nload = "84 N"\n')
+    answer = calc("run", PIN, "--inputs", "wear.toml", "--cases", "cases.csv", *QUICK)
+    assert (answer.code, answer.err) == (1, "")
+    lines = [" ".join(line.split()) for line in answer.out.split("\n")]
+    assert lines[2] == "row case load [N] probe_temperature [degC] margin"
+    assert lines[3].startswith("1 light 140 20 ")
+    assert lines[4].startswith("2 heavy 2296 20 -")
+    assert lines[4].endswith(" FAILS, governing")
+    assert lines[5].startswith("3 normal 84 30 ")
+    assert lines[5].endswith(" pass")
+    found = json.loads((tmp_path / "runs/wear/results.json").read_text(encoding="utf-8"))
+    assert [case["name"] for case in found["cases"]] == ["light", "heavy", "normal"]
+    assert [case["governing"] for case in found["cases"]] == [False, True, False]
+    pressures = [case["results"]["pressure"]["value"] for case in found["cases"]]
+    assert pressures == pytest.approx([5, 82, 3])
+    assert found["results"]["pressure"]["value"] == pytest.approx(82)
+    for sheet in ("sheet.html", "sheet.md"):
+        text = (tmp_path / "runs/wear" / sheet).read_text(encoding="utf-8")
+        for name in ("light", "heavy", "normal"):
+            assert name in text
+
+
+def test_a_case_that_fails_is_said_with_its_line(calc: Calc, tmp_path: Path) -> None:
+    (tmp_path / "cases.csv").write_text("load [kN]\n0.14\n\n500\n")
+    answer = calc("run", PIN, "--cases", "cases.csv", "-q", *QUICK)
+    assert answer.code == 1
+    assert answer.err == "cases.csv:4: the contact flows: load exceeds hardness times area\n"
+    found = json.loads((tmp_path / "runs/pin_wear/results.json").read_text(encoding="utf-8"))
+    assert found["failed"] == [{"row": 2, "reason": "the contact flows: load exceeds hardness times area"}]
+    assert " failed" in answer.out
+
+
+def test_no_case_is_possible(calc: Calc, tmp_path: Path) -> None:
+    (tmp_path / "cases.csv").write_text("load [kN]\n500\n600\n")
+    answer = calc("run", PIN, "--cases", "cases.csv", "-q", *QUICK)
+    assert (answer.code, answer.out) == (2, "")
+    sentence = "the contact flows: load exceeds hardness times area"
+    assert answer.err == f"cases.csv:2: {sentence}\ncases.csv:3: {sentence}\n"
+    assert not (tmp_path / "runs").exists()
+
+
+def test_all_cases_pass(calc: Calc, tmp_path: Path) -> None:
+    (tmp_path / "cases.csv").write_text("load [N]\n140\n150\n")
+    answer = calc("run", PIN, "--cases", "cases.csv", "-q", *QUICK)
+    assert answer.code == 0
+    assert "FAILS" not in answer.out
+
+
+def test_the_press_in_both_readings_as_cases(calc: Calc, tmp_path: Path) -> None:
+    """The complete reading governs: it misses both goals by more than the printed one keeps them."""
+    (tmp_path / "readings.csv").write_text("case,reading\na,printed\nb,complete\n")
+    quick = ("--set", 'studies.run=["sensitivity","reliability","allocation"]', *QUICK)
+    answer = calc("run", "press_linkage", "--cases", "readings.csv", "--json", *quick)
+    assert answer.code == 1
+    found = json.loads(answer.out)
+    assert [case["governing"] for case in found["cases"]] == [False, True]
+    finals = [case["results"]["position_reliability_final"]["value"] for case in found["cases"]]
+    assert finals == pytest.approx([0.887, 0.669], abs=5e-4)
+    assert found["inputs"]["reading"]["value"] == "complete"

@@ -1,0 +1,126 @@
+"""Many cases: each row changes the setup, the smallest margin governs, one that fails does not take the others away."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from pin_wear import PIN_WEAR, Pin
+
+from truing import Float, Model, Reliability, Require, Sensitivities, Sensitivity, found, results
+from truing.cases import CasesTable, case_setup, run_cases
+from truing.errors import InputError
+from truing.executors import open_executor
+from truing.measurements import Case
+from truing.setup import Setup, default_setup
+
+
+@results
+class Steep:
+    """What a study gives."""
+
+    slope: Float = found("um/N", symbol="s", note="depth per load")
+
+
+def steep(given: Sensitivities) -> Steep:
+    """Depth per load."""
+    return Steep(slope=given.derivatives["depth"]["load"])
+
+
+PLAIN = replace(PIN_WEAR, objectives=[Require("pressure", at_most="80 MPa")], studies=[], sheet=[])
+CHANCE = replace(
+    PIN_WEAR,
+    objectives=[Require("pressure", at_most="80 MPa", reliability=0.99)],
+    studies=[Reliability(draws=2000)],
+    sheet=[],
+)
+GIVEN = replace(
+    PIN_WEAR,
+    objectives=[Require("slope", at_most="0.2 um/N")],
+    studies=[Sensitivity(of="depth", gives=steep)],
+    sheet=[],
+)
+
+
+def run(model: Model[Any, Any], *cases: dict[str, Any], setup: Setup | None = None) -> CasesTable:
+    """Run cases given in SI."""
+    rows = [Case(place, place + 1, f"case {place}", values, "cases.csv") for place, values in enumerate(cases, start=1)]
+    with open_executor("serial") as executor:
+        calculation, table = run_cases(setup or default_setup(model), rows, executor=executor)
+    governing = table.cases[table.governing]
+    shown = calculation.setup.model.read_inputs(calculation.setup.inputs)
+    assert all(shown[name] == value for name, value in governing.values.items() if name in shown)
+    return table
+
+
+def test_a_case_changes_inputs_and_conditions() -> None:
+    setup = default_setup(PIN_WEAR)
+    changed = case_setup(setup, Case(1, 2, "a", {"load": 84.0, "probe_temperature": 300.0}))
+    assert changed.inputs == replace(setup.inputs, load=84.0)
+    assert isinstance(changed.inputs, Pin)
+    assert changed.conditions == {"probe_temperature": 300.0}
+    assert {"load", "probe_temperature"} <= changed.stated
+    assert setup.inputs.load == 120
+
+
+@pytest.mark.parametrize("model", [PLAIN, CHANCE], ids=["one call", "one by one"])
+def test_the_smallest_margin_governs(model: Model[Any, Any]) -> None:
+    """Pressures are 5, 82 and 10 MPa against 80 MPa."""
+    table = run(model, {"load": 140.0}, {"load": 2296.0}, {"load": 280.0})
+    assert table.governing == 1
+    assert [case.answers["pressure"] / 1e6 for case in table.cases] == pytest.approx([5, 82, 10])
+    assert [all(check.passed for check in case.checks) for case in table.cases] == [True, False, True]
+    assert not table.passed
+    assert table.failed == ()
+    assert table.varied == ("load",)
+
+
+@pytest.mark.parametrize("model", [PLAIN, CHANCE], ids=["one call", "one by one"])
+def test_a_case_that_is_impossible_keeps_its_reason(model: Model[Any, Any]) -> None:
+    table = run(model, {"load": 5e5}, {"load": 140.0}, {"speed": 1.0})
+    reason = "the contact flows: load exceeds hardness times area"
+    assert table.failed == ((1, reason),)
+    assert table.cases[0].answers == {}
+    assert str(table.cases[0].fault) == f"cases.csv:2: {reason}"
+    assert not table.passed
+    assert table.governing == 1
+    assert table.varied == ("load", "speed")
+
+
+@pytest.mark.parametrize("model", [PLAIN, CHANCE], ids=["one call", "one by one"])
+def test_no_case_that_can_be_calculated(model: Model[Any, Any]) -> None:
+    with pytest.raises(InputError) as caught:
+        run(model, {"load": 5e5}, {"load": 6e5})
+    assert [str(fault) for fault in caught.value.faults] == [
+        f"cases.csv:{line}: the contact flows: load exceeds hardness times area" for line in (2, 3)
+    ]
+
+
+def test_a_limit_on_what_a_study_gives_is_asked_in_every_case() -> None:
+    """Depth over load is k v t / (A H): at twice the speed it is twice as steep."""
+    table = run(GIVEN, {"speed": 0.5}, {"speed": 1.0})
+    slopes = [case.answers["slope"] for case in table.cases]
+    assert slopes[0] == pytest.approx(3e-8 * 0.5 * 720e3 / (28e-6 * 2.1e9), rel=1e-9)
+    assert slopes[1] == pytest.approx(2 * slopes[0], rel=1e-9)
+    assert [[check.passed for check in case.checks] for case in table.cases] == [[True], [False]]
+    assert table.governing == 1
+
+
+def test_cases_without_limits_are_governed_by_the_first() -> None:
+    table = run(replace(PLAIN, objectives=[]), {"load": 280.0}, {"load": 140.0})
+    assert table.governing == 0
+    assert table.passed
+    assert [case.margin for case in table.cases] == [float("inf")] * 2
+
+
+def test_an_effect_that_is_on_acts_in_every_case() -> None:
+    from truing.setup import SwitchedOn
+
+    worn = replace(
+        default_setup(PLAIN), effects=(SwitchedOn(PLAIN.effects["running_in"], {"extra": 7e-6, "length": 10.0}),)
+    )
+    cases = ({"load": 140.0}, {"load": 280.0})
+    plain, with_effect = run(PLAIN, *cases), run(PLAIN, *cases, setup=worn)
+    added = [b.answers["depth"] - a.answers["depth"] for a, b in zip(plain.cases, with_effect.cases, strict=True)]
+    assert added == pytest.approx([7e-6, 7e-6])
