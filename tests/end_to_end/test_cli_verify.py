@@ -19,7 +19,7 @@ def test_a_row_that_matches(calc: Calc, tmp_path: Path) -> None:
     answer = calc("verify", "./block.py")
     assert (answer.code, answer.err) == (0, "")
     assert "1.0000  matches" in answer.out
-    assert answer.out.endswith("\nprinted numbers: 1, of which 1 match and 0 differ; every verdict is as stated\n")
+    assert answer.out.endswith("\n1 printed number: 1 match, 0 differ; every verdict is as stated\n")
 
 
 def test_a_difference_that_is_stated_is_a_finding(calc: Calc, tmp_path: Path) -> None:

@@ -11,6 +11,8 @@ import typer
 from truing.cli.console import columns, one_line, out, out_json, verb
 from truing.cli.words import AsJson
 
+LONGEST = 60
+
 
 @verb
 def compare(
@@ -49,4 +51,4 @@ def _words(value: Any) -> str:
         said = f"{text} {value.get('unit') or ''}".strip()
         return said if value.get("passed", True) else said + " (fails)"
     text = one_line(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+    return text if len(text) <= LONGEST else "(see results.json)"

@@ -165,7 +165,7 @@ def aligned(rows: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> list
 def broken(line: str, indent: int) -> list[str]:
     """Break a line that is wider than the terminal behind its indent; elsewhere than on a terminal leave it whole."""
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else sys.maxsize
-    if len(line) <= width or width - indent < NARROWEST // 2 or width < NARROWEST:
+    if len(line) <= width or width - indent < NARROWEST // 3 or width < NARROWEST:
         return [line]
     parts = textwrap.wrap(line[indent:], width - indent) or [""]
     return [line[:indent] + parts[0], *(" " * indent + part for part in parts[1:])]

@@ -94,7 +94,8 @@ def _cells(row: ComparedRow, numbers: Mapping[str, str]) -> tuple[str, ...]:
 def _summary(rows: Sequence[ComparedRow]) -> str:
     matching = sum(row.matches for row in rows)
     wrong = [one_line(row.published.name) for row in rows if not row.as_stated]
-    said = f"printed numbers: {len(rows)}, of which {matching} match and {len(rows) - matching} differ"
+    numbers = "printed number" if len(rows) == 1 else "printed numbers"
+    said = f"{len(rows)} {numbers}: {matching} match, {len(rows) - matching} differ"
     if not wrong:
         return f"{said}; every verdict is as stated"
     return f"{said}; NOT as stated: {', '.join(wrong)} (exit code 1)"
