@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import time
@@ -288,6 +289,16 @@ def test_a_place_without_inputs(refused: Refused, tmp_path: Path, path: str) -> 
     (found,) = refused("run", "press_linkage", "--inputs", path)
     words = "no such file. Did you mean 'nowhere2.toml'?" if path != "." else "is a folder; name a file"
     assert found == f"{path}: {words}"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes with a name")
+def test_a_pipe_is_refused_before_it_is_read(refused: Refused, tmp_path: Path) -> None:
+    """It could be read only once, or never; half of it would be a calculation with defaults."""
+    os.mkfifo(tmp_path / "pipe")
+    sentence = "pipe: is no ordinary file but a pipe or a device; save it in a file first"
+    assert refused("run", "press_linkage", "--inputs", "pipe") == [sentence]
+    (tmp_path / "press.toml").write_text("[inputs]\n")
+    assert refused("run", "press_linkage", "--inputs", "press.toml", "--cases", "pipe") == [sentence]
 
 
 @pytest.mark.parametrize(

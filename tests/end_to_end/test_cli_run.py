@@ -125,6 +125,18 @@ def test_python_m_truing_and_a_reader_that_goes_away(tmp_path: Path) -> None:
     assert writer.wait(60) == 0
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a disk that is always full")
+@pytest.mark.parametrize("words", ["describe press_linkage", "table press_linkage -i press.toml --rows rows.csv"])
+def test_an_output_that_takes_nothing(tmp_path: Path, words: str) -> None:
+    (tmp_path / "press.toml").write_text("[inputs]\n")
+    (tmp_path / "rows.csv").write_text("crank_angle [deg]\n1\n")
+    command = [sys.executable, "-m", "truing", *words.split()]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(command, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr == "calc: the results cannot be written to the output: No space left on device\n"
+
+
 def test_without_a_verb_the_help_is_shown(calc: Calc) -> None:
     answer = calc()
     assert "Usage: calc" in answer.out + answer.err

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec
 
 import typer
 
-from truing.errors import InputError, TruingError
+from truing.errors import InputError, OutputError, TruingError
 
 if TYPE_CHECKING:
     from truing.studies.bench import Progress
@@ -55,8 +55,14 @@ def utf8_streams() -> None:
 
 
 def out(text: str) -> None:
-    """Print a result."""
-    print(text)  # noqa: T201  # this is where printing is done
+    """Print a result. Raises OutputError where it cannot be written, BrokenPipeError where nobody reads any more."""
+    try:
+        print(text, flush=True)  # noqa: T201  # this is where printing is done
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        close_output()
+        raise OutputError(f"the results cannot be written to the output: {error.strerror or error}") from None
 
 
 def out_json(document: Any) -> None:
@@ -83,9 +89,8 @@ def verb(function: Callable[P, int]) -> Callable[P, None]:
         settings = settings_of(kwargs.get("context"))
         try:
             code = function(*args, **kwargs)
-            sys.stdout.flush()
         except BrokenPipeError:
-            _close_output()
+            close_output()
             code = 0
         except KeyboardInterrupt:
             say(INTERRUPTED)
@@ -114,8 +119,8 @@ def sentence_of(error: Exception) -> str:
     return str(error) if has_place else f"calc: {error}"
 
 
-def _close_output() -> None:
-    """Stop writing to a reader that has gone, so that nothing is said of it at the end."""
+def close_output() -> None:
+    """Write nothing more to an output that takes nothing, so that nothing is said of it at the end."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sys
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from truing.cli.console import Settings, say, settings_of, verb
+from truing.cli.console import Settings, out, say, settings_of, verb
 from truing.cli.load import find_offer
 from truing.cli.words import Changed, OutputFile, Plugin
 from truing.errors import OutputError
@@ -43,7 +43,10 @@ def table(
         shown = shown_by_gauge(setup, read)
     kept = {text: cells for text, cells in read.cells.items() if text.partition("[")[0].strip() not in shown.values}
     headers = [*kept, *(f"{name} [{shown.units[name] or '1'}]" for name in shown.values)]
-    write_table(output or sys.stdout, headers, [*kept.values(), *shown.values.values()])
+    text = StringIO()
+    write_table(output or text, headers, [*kept.values(), *shown.values.values()])
+    if output is None:
+        out(text.getvalue().removesuffix("\n"))
     for row, reason in shown.reasons.items():
         say(f"{rows}:{read.lines[row]}: {reason}")
     if output is not None:

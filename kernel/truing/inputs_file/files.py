@@ -36,6 +36,8 @@ def _refusal(path: Path, largest: int, instead: str, is_table: bool) -> str:
             return "is a folder; name a file"
         if not path.exists():
             return "no such file" + _nearby(path)
+        if not path.is_file():
+            return "is no ordinary file but a pipe or a device; save it in a file first"
         size = path.stat().st_size
         if size > largest:
             return f"is too large: {size / 1e6:.1f} MB, at most {largest / 1e6:g} MB are read"
