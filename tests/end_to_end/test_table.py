@@ -111,3 +111,14 @@ def test_many_rows_are_one_call(table: Table) -> None:
     answer = table(rows)
     assert time.perf_counter() - begin < 20
     assert answer.out.count("\n") == 50_001
+
+
+def test_decimal_commas_come_back_as_points(table: Table, tmp_path: Path) -> None:
+    """What is written is separated by commas, so it must read back: 100,5 N over 28 mm^2."""
+    first = table("load [N];batch\n100,5;A\n1e2;B\n")
+    found = columns(first.out)
+    assert found["load [N]"] == ["100.5", "1e2"]
+    assert found["batch"] == ["A", "B"]
+    assert [float(cell) for cell in found["pressure [MPa]"]] == pytest.approx([100.5 / 28, 100 / 28], rel=1e-15)
+    kept = [",".join(row[:2]) for row in csv.reader(io.StringIO(first.out))]
+    assert columns(table("\n".join(kept)).out) == found

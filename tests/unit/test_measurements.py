@@ -292,7 +292,7 @@ def test_rows_keep_what_is_written(table: Write) -> None:
     assert set(found.columns) == {"load", "probe_temperature"}
     assert found.others == ("depth", "batch")
     assert found.headers == ("load [kN]", "probe_temperature [degC]", "depth [um]", "batch")
-    assert found.cells["load [kN]"] == ("0,1", "")
+    assert found.cells["load [kN]"] == ("0.1", "")
     assert found.cells["batch"] == ("A", "B")
     assert len(found) == 2
 

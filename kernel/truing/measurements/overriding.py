@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 NAMES = ("case", "name")
 REMARKS = ("note", "remark", "comment")
+DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d+(?:[eE][+-]?\d+)?\s*", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -42,8 +44,9 @@ class RowsFile:
 
     Inputs that may vary and conditions are arrays (n,), every other input a list of n values. Where a cell is empty
     the value of the inputs file stands. ``series`` holds columns of inputs that run along an axis, ``axes`` where each
-    row lies on an axis of the results. ``cells`` are all columns verbatim, by the header as written; ``others`` names
-    the columns that override nothing. ``runs`` names the run of each row; nothing where there is no such column.
+    row lies on an axis of the results. ``cells`` are all columns as written (a decimal comma becomes a point), by the
+    header as written; ``others`` names the columns that override nothing. ``runs`` names the run of each row; nothing
+    where there is no such column.
     """
 
     file: str
@@ -137,10 +140,17 @@ def read_rows(path: Path, offer: Offer, setup: Setup) -> RowsFile:
         filled = [otherwise if value is None else value for value in found]
         columns[header.name] = filled if item is not None and not item.varies else np.array(filled, dtype=float)
     table.faults.raise_any()
-    written = {header.text: tuple(cells) for header, cells in zip(table.headers, texts.cells, strict=True)}
+    written = {header.text: _written(cells, table) for header, cells in zip(table.headers, texts.cells, strict=True)}
     used = {*columns, *series, *axes, *(["run"] if series else [])}
     others = tuple(header.name for header in table.headers if header.name not in used)
     return RowsFile(str(path), columns, series, written, tuple(texts.lines), others, axes, runs)
+
+
+def _written(cells: list[str], table: CsvFile) -> tuple[str, ...]:
+    """Return the cells as written, numbers with a decimal point: what is written back is separated by commas."""
+    if not table.decimal_comma:
+        return tuple(cells)
+    return tuple(cell.replace(",", ".") if DECIMAL_COMMA.fullmatch(cell) else cell for cell in cells)
 
 
 def _is_known(name: str, setup: Setup) -> bool:
