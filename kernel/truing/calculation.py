@@ -11,6 +11,7 @@ from truing.declare.fields import read
 from truing.declare.model import Record
 from truing.evaluate import evaluate
 from truing.executors import open_executor
+from truing.prices import price_answers
 from truing.setup import Setup
 from truing.studies.bench import Bench, Check, Outcome, Progress, silent
 from truing.studies.checks import plain_checks
@@ -45,7 +46,7 @@ def calculate(setup: Setup, *, executor: Executor | None = None, progress: Progr
     Raises InfeasibleError where the inputs describe something impossible, PluginError where the plugin's code fails.
     """
     results = evaluate(setup)
-    answers = setup.model.read_results(results)
+    answers = {**setup.model.read_results(results), **price_answers(setup)}
     outcomes: dict[str, Outcome] = {}
     given_by = setup.model.study_result_fields
     own = executor is None

@@ -13,6 +13,7 @@ from truing.declare.goals import Require
 from truing.errors import Fault, InputError, UsageError
 from truing.evaluate import evaluate_rows
 from truing.measurements import Case
+from truing.prices import price_answers
 from truing.setup import Setup
 from truing.studies.bench import Check, Progress, silent
 from truing.studies.checks import limits, plain_checks
@@ -151,11 +152,18 @@ def _all_at_once(setup: Setup, cases: Sequence[Case]) -> list[CaseResult]:
             done.append(CaseResult(case, {}, reason=reason))
             continue
         answers = {name: _plain(values[place]) for name, values in rows.results.items()}
-        own = case_setup(setup, case)
-        has_limits = bool(limits(own, answers))
-        checks = tuple(plain_checks(own, answers)) if has_limits else ()
-        done.append(CaseResult(case, answers, checks))
+        done.append(_checked(case, case_setup(setup, case), answers))
     return done
+
+
+def _checked(case: Case, setup: Setup, answers: Mapping[str, Any]) -> CaseResult:
+    """Add what the tolerances cost in this case, and its checks."""
+    try:
+        known = {**answers, **price_answers(setup)}
+    except UsageError as error:  # a tolerance that its size outgrows
+        return CaseResult(case, {}, reason=str(error))
+    checks = tuple(plain_checks(setup, known)) if limits(setup, known) else ()
+    return CaseResult(case, known, checks)
 
 
 def _plain(value: Any) -> Any:

@@ -550,7 +550,8 @@ def test_require_takes_one_limit() -> None:
 
 
 def test_goals_may_name_inputs_and_results() -> None:
-    model = bar_model(objectives=[Minimise("stress"), Maximise("force"), Minimise("tolerance_price")])
+    goals = [Minimise("stress"), Maximise("force"), Minimise("tolerance_price")]
+    model = bar_model(objectives=goals, errors=[PAID])
     assert len(model.objectives) == 3
 
 
@@ -561,7 +562,16 @@ def elsewhere(stage: Stage, *, extra: Float) -> Stage:
     return stage
 
 
+PAID = Tolerance("width", plus_minus("1 mm"), price=Price("1 / width", width="mm", unit="EUR"))
+PAID_ELSEWHERE = Tolerance("force", plus_minus("1 N"), price=Price("1 / width", width="N", unit="CNY"))
 WRONG_MODELS: list[tuple[dict[str, Any], str]] = [
+    ({"errors": [PAID, PAID_ELSEWHERE]}, "the prices are in CNY and EUR; give all of them in one unit"),
+    ({"objectives": [Minimise("tolerance_price")]}, "neither input nor result. No tolerance has a price."),
+    ({"objectives": [Require("tolerance_price", at_most="9 EUR")]}, "is no result. No tolerance has a price."),
+    (
+        {"errors": [PAID], "objectives": [Require("tolerance_price", at_most="9 EUR", reliability=0.9)]},
+        "a price does not scatter",
+    ),
     ({"errors": [Tolerance("widht", off())]}, "is on 'widht', which is no input. Did you mean 'width'?"),
     ({"errors": [Tolerance("reading", off())]}, "is on 'reading', which cannot scatter"),
     ({"errors": [Tolerance("force", off()), Tolerance("force", off())]}, "two error sources are called 'force'"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import is_dataclass
 from inspect import signature
@@ -42,7 +43,8 @@ def _of_names(model: Model[Any, Any]) -> Iterator[str]:
     for name in model.input_fields:
         if name in model.result_fields:
             yield f"'{name}' is an input and a result; one of them needs another name"
-    if TOTAL_PRICE in {*model.input_fields, *model.result_fields}:
+    given = [name for fields in model.study_result_fields.values() for name in fields]
+    if TOTAL_PRICE in {*model.input_fields, *model.own_result_fields, *given}:
         yield f"the name '{TOTAL_PRICE}' is kept for the sum of the prices"
     for name in _twice(getattr(source, "name", repr(source)) for source in model.errors):
         yield f"two error sources are called '{name}'"
@@ -51,8 +53,7 @@ def _of_names(model: Model[Any, Any]) -> Iterator[str]:
 
 
 def _twice(names: Iterable[str]) -> list[str]:
-    seen: set[str] = set()
-    return [name for name in names if name in seen or seen.add(name)]  # type: ignore[func-returns-value]
+    return [name for name, times in Counter(names).items() if times > 1]
 
 
 def _of_axes(model: Model[Any, Any]) -> Iterator[str]:
@@ -82,6 +83,9 @@ def _of_errors(model: Model[Any, Any]) -> Iterator[str]:
                     yield f"the condition '{condition.name}' is declared in two ways"
         else:
             yield f"{source!r} is neither a Tolerance nor an Effect"
+    units = sorted({item.price.unit for item in model.tolerances.values() if item.price is not None})
+    if len(units) > 1:
+        yield f"the prices are in {' and '.join(units)}; give all of them in one unit, so that they can be added"
 
 
 def of_effect(source: Effect[Any, Any], model: Model[Any, Any]) -> Iterator[str]:
@@ -159,9 +163,9 @@ def of_objective(objective: Any, inputs: Mapping[str, InputField], results: Mapp
         yield from _of_vary(objective, inputs)
     elif isinstance(objective, (Minimise, Maximise)):
         known = {**inputs, **results}
-        if objective.result not in known and objective.result != TOTAL_PRICE:
+        if objective.result not in known:
             what = f"{type(objective).__name__} names '{objective.result}'"
-            yield f"{what}, which is neither input nor result.{near_miss(objective.result, known)}"
+            yield f"{what}, which is neither input nor result.{_unknown_result(objective.result, known)}"
     elif isinstance(objective, Require):
         yield from _of_require(objective, inputs, results)
     else:
@@ -183,18 +187,21 @@ def _of_vary(objective: Vary, inputs: Mapping[str, InputField]) -> Iterator[str]
 def _of_require(
     objective: Require, inputs: Mapping[str, InputField], results: Mapping[str, ResultField]
 ) -> Iterator[str]:
-    if objective.result not in results and objective.result != TOTAL_PRICE:
-        yield f"Require names '{objective.result}', which is no result.{near_miss(objective.result, results)}"
+    if objective.result not in results:
+        yield f"Require names '{objective.result}', which is no result.{_unknown_result(objective.result, results)}"
+    if objective.result == TOTAL_PRICE and objective.reliability is not None:
+        yield f"Require('{TOTAL_PRICE}') asks for a reliability, but a price does not scatter"
     limit, known = objective.limit, {**inputs, **results}
     if not any(sign.isdigit() for sign in limit) and limit not in known:
         what = f"Require('{objective.result}') has the limit '{limit}'"
         yield f"{what}, which is neither a quantity nor an input or result.{near_miss(limit, known)}"
-    if (
-        isinstance(objective, Require)
-        and isinstance(objective.reliability, str)
-        and objective.reliability not in inputs
-    ):
+    if isinstance(objective.reliability, str) and objective.reliability not in inputs:
         yield f"Require('{objective.result}') takes its reliability from '{objective.reliability}', which is no input"
+
+
+def _unknown_result(name: str, known: Iterable[str]) -> str:
+    """Return what was probably meant by a name that is no result."""
+    return " No tolerance has a price." if name == TOTAL_PRICE else near_miss(name, known)
 
 
 def _of_sheet(model: Model[Any, Any]) -> Iterator[str]:

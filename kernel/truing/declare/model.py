@@ -8,12 +8,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Literal, Protocol, TypeVar
 
-from truing.declare.checks import check_model
+from truing.declare.checks import TOTAL_PRICE, check_model
 from truing.declare.fields import InputField, ResultField, hints_of, in_si, input_fields, make, read, result_fields
 from truing.declare.goals import Objective
 from truing.declare.near_miss import near_miss
 from truing.declare.published import Finding, Published
 from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance
+from truing.declare.specs import Found
 from truing.errors import DeclarationError, UsageError
 
 if TYPE_CHECKING:
@@ -150,14 +151,25 @@ class Model(Generic[I, R]):
 
     @cached_property
     def result_fields(self) -> dict[str, ResultField]:
-        """Every result, the function's and the studies'."""
+        """Every result: the function's, the studies', and where tolerances have prices the sum of these."""
         fields = dict(self.own_result_fields)
         for of_study in self.study_result_fields.values():
             for name, item in of_study.items():
                 if name in fields:
                     raise DeclarationError(f"{self.name}: the result '{name}' occurs twice")
                 fields[name] = item
+        for name, item in self._price_field().items():
+            fields.setdefault(name, item)
         return fields
+
+    def _price_field(self) -> dict[str, ResultField]:
+        """Return the sum of the prices as a result, where any tolerance has one."""
+        units = [item.price.unit for item in self.tolerances.values() if item.price is not None]
+        if not units:
+            return {}
+        note, method = "price of all tolerances in force", "sum of their prices, each at its full width"
+        spec = Found(unit=units[0], note=note, method=method)
+        return {TOTAL_PRICE: ResultField(name=TOTAL_PRICE, path=(TOTAL_PRICE,), spec=spec, symbol="")}
 
     @property
     def tolerances(self) -> dict[str, Tolerance]:

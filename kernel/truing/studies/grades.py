@@ -11,10 +11,11 @@ from truing.declare.sources import Tolerance
 from truing.declare.spreads import Grade
 from truing.errors import TruingError, UsageError
 from truing.fits import GRADES
+from truing.prices import price_at
 from truing.setup import Setup
 from truing.studies.chances import Straight
 from truing.studies.demands import Demand, normal_chance
-from truing.studies.scatter import scatter_of, spread_in_force
+from truing.studies.scatter import spread_in_force
 
 RECIPROCAL = "1/mm"
 
@@ -144,22 +145,13 @@ def cost_of(price: Price | None, width: float) -> float:
 
     Source of the law: K. W. Chase, A. R. Parkinson, survey of cost-tolerance models, Res. Eng. Des. 3 (1991) 23.
     """
-    if price is None:
-        return 1e-3 / width
-    from truing.formulas import evaluate, parse
-    from truing.units import from_si
-
-    return float(evaluate(parse(price.formula), {"width": float(from_si(width, price.width))}))
+    return 1e-3 / width if price is None else price_at(price, width)
 
 
 def _price_unit(graded: Sequence[Tolerance]) -> str | None:
-    """Return the currency when every part has a price in it; None: the reciprocal law."""
-    units = {tolerance.price.unit for tolerance in graded if tolerance.price is not None}
-    if not units or any(tolerance.price is None for tolerance in graded):
-        return None
-    if len(units) > 1:
-        raise UsageError(f"prices in {' and '.join(sorted(units))} cannot be added; give all of them in one currency")
-    return units.pop()
+    """Return the unit of the prices when every part has one (a model has them all in one); None: the reciprocal law."""
+    units = [tolerance.price.unit for tolerance in graded if tolerance.price is not None]
+    return units[0] if units and len(units) == len(graded) else None
 
 
 def with_grades(setup: Setup, grades: Mapping[str, str]) -> Setup:
@@ -170,8 +162,3 @@ def with_grades(setup: Setup, grades: Mapping[str, str]) -> Setup:
         assert isinstance(spread, Grade)  # a part of the shop
         changed[name] = replace(spread, grade=grade)
     return replace(setup, spreads={**setup.spreads, **changed})
-
-
-def fixed_scatter(setup: Setup) -> bool:
-    """Say whether anything scatters besides the grades."""
-    return any(not isinstance(spread_in_force(setup, cause.name), Grade) for cause in scatter_of(setup).causes)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
@@ -12,6 +13,7 @@ from truing.declare.sources import Effect, Unknown
 from truing.errors import InfeasibleError, TruingError
 from truing.evaluate import evaluate
 from truing.formulas import parse
+from truing.prices import price_at
 from truing.setup import Setup, SwitchedOn
 from truing.testing.subject import Subject, fail
 
@@ -39,13 +41,8 @@ def spreads_resolve(subject: Subject) -> None:
 
 
 def _priced(subject: Subject, tolerance: str, price: Any, width: float) -> None:
-    import numpy as np
-
-    from truing.formulas import evaluate as value_of_formula
-    from truing.units import from_si
-
-    paid = value_of_formula(parse(price.formula), {"width": from_si(width, price.width)})
-    if not np.isfinite(paid) or paid < 0:
+    paid = price_at(price, width)
+    if not math.isfinite(paid) or paid < 0:
         fail(f"{subject.model.name}: the price of tolerance '{tolerance}' is {paid:g} at its declared width")
 
 
