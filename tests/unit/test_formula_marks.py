@@ -166,7 +166,7 @@ def check_hostile(text: str) -> None:
             assert set(element.attrib) <= ATTRIBUTES
         assert not re.search(r"&(?!(?:lt|gt|amp|quot|#x27);)", markup)
     for words in in_latex:
-        bare = re.sub(r"\\[$#%&_]", "", words.replace(" & ", " "))
+        bare = re.sub(r"\\[$#%&_]", "x", words.replace(" & ", " "))  # a printed mark is as good as a letter
         assert not re.search(r"[$#%&|<>`~*\n\x00\x1b\u202e\[]", bare.replace(r"\sqrt[3]", ""))
         assert set(re.findall(r"\\(?![A-Za-z ])", bare)) == set()
         depth = 0
