@@ -369,9 +369,12 @@ def test_bom_decimal_comma_semicolon_and_crlf_are_read(calc: Calc, tmp_path: Pat
     plain = calc("table", "press_linkage", "--inputs", "press.toml", "--rows", "plain.csv")
     excel = calc("table", "press_linkage", "--inputs", "press.toml", "--rows", "excel.csv")
     assert (plain.code, excel.code) == (0, 0), excel.err
-    rows = [[line.split(",")[2:] for line in answer.out.split("\n")] for answer in (plain, excel)]
-    assert len(rows[0][1]) >= 5
-    assert rows[0][1:3] == [rows[1][1][1:], rows[1][2][1:]]  # a quoted "-40,5" holds one comma more
+    assert (plain.err, excel.err) == ("", "")
+    tables = [[line.split(",") for line in answer.out.rstrip("\n").split("\n")] for answer in (plain, excel)]
+    assert [row[1:] for row in tables[0]] == [row[1:] for row in tables[1]]
+    assert [float(row[0]) for row in tables[1][1:]] == [-40.5, 40.0]
+    assert len(tables[0]) == 3
+    assert len(tables[0][0]) >= 7
 
 
 def test_an_output_below_an_ordinary_file(refused: Refused, tmp_path: Path) -> None:

@@ -64,10 +64,11 @@ def _demand_new(output: Path | None, *read: Path) -> None:
 def _say_unused(read: RowsFile, setup: Setup, settings: Settings) -> None:
     """Say which columns change nothing, and which of them may be misspelt."""
     from truing.declare.near_miss import near_miss
+    from truing.measurements.overriding import NAMES, REMARKS
 
     known = [*setup.model.input_fields, *setup.model.conditions]
     for name in read.others:
         if name in setup.model.result_fields:
             settings.say(f"column '{name}' is a result: it is calculated here")
-        else:
+        elif name not in {*NAMES, *REMARKS}:
             settings.say(f"column '{name}' changes nothing and is kept as it stands.{near_miss(name[:80], known)}")
