@@ -33,7 +33,7 @@ class Readings:
             press = replace(bench.setup.inputs, reading=reading)
             answers = {**bench.answers, "permitted_tilt": permitted_tilt(press)}
             found[reading] = study.run(replace(bench, setup=replace(bench.setup, inputs=press), answers=answers))
-        return Compared(found)
+        return Compared(found, self.finest)
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,7 @@ class Compared:
     """What each reading comes to."""
 
     by_reading: Mapping[str, Allotted]
+    finest: str = "IT5"
 
     def as_json(self) -> dict[str, Any]:
         """Return reliabilities before and after, adjustments, and whether the goals are reached."""
@@ -66,7 +67,7 @@ class Compared:
             ("reading", *columns, "adjustments", "goals reached"),
             rows,
             ("", "%", "%", "%", "%", "", ""),
-            "First order. Tolerances that the inputs file states hold for both.",
+            f"First order, links down to {self.finest}. Tolerances that the inputs file states hold for both.",
         )
 
     def blocks(self) -> Sequence[Block]:

@@ -72,7 +72,9 @@ def variances(record: "Run") -> Sequence[Block]:
             for result, square in (("slider_position", MICROMETRE_2), ("slider_tilt", MICRORADIAN_2))
         ]
         place = "link" if kind in LINKS else "joint, across" if kind in POLAR_ANGLES else "joint, along"
-        rows.append((kind.replace("_", " "), "drive" if kind == "crank_angle" else place, *parts))
+        place = "drive" if kind == "crank_angle" else place
+        still = found.still >= set(sources_of((kind,)))
+        rows.append((kind.replace("_", " "), f"{place} (off)" if still else place, *parts))
     rows.sort(key=lambda row: -float(row[2]))
     rows.append(("all together", "", *(sum(float(row[column]) for row in rows) for column in (2, 3))))
     table = Table(
@@ -80,7 +82,7 @@ def variances(record: "Run") -> Sequence[Block]:
         ("error, both sides together", "kind", "variance of position", "variance of tilt"),
         rows,
         ("", "", "µm²", "µrad²"),
-        "Tightening links changes the rows 'link' only.",
+        "Tightening links changes the rows 'link' only. Off: this kind has no tolerance in this run.",
     )
     return [table]
 

@@ -7,13 +7,14 @@ from dataclasses import replace
 import pytest
 from press_stand_in import PRESS
 from scipy.stats import norm
-from study_models import CHAIN, PRICED, STACK, setup_of
+from study_models import CHAIN, PRICED, STACK, Graded, Stack, setup_of, stack
 
-from truing import Allocation, Reliability
+from truing import Allocation, Reliability, feasible
 from truing.calculation import calculate
 from truing.declare.spreads import Off
 from truing.errors import UsageError
 from truing.fits import GRADES, tolerance
+from truing.report.content import check_rows
 from truing.setup import default_setup
 from truing.studies.demands import Demand, normal_chance
 from truing.studies.synthesis import largest_variance
@@ -105,6 +106,37 @@ def test_allocation_has_the_last_word_on_a_check():
     assert checks["goal reached"].value == min(ratios)
     assert checks["position"].value == pytest.approx(0.8869, abs=6e-5)
     assert checks["position"].limit == 0.88
+    assert checks["position"].method == "first order"
+    assert checks["position"].note == "with the grades after the allocation"
+
+
+def test_the_sheet_says_whose_word_a_check_is():
+    """The tolerances in force give 0.567; a check that passes with 0.887 must say that it is another design."""
+    setup = replace(default_setup(PRESS), studies=(Reliability(draws=1000), Allocation(draws=1000)))
+    alone = replace(setup, studies=(Reliability(draws=1000),))
+    later, first = (next(iter(check_rows(calculate(one)))) for one in (setup, alone))
+    assert "with the grades after the allocation" in later.chance
+    assert later.method == "first order"
+    assert "allocation" not in first.chance
+    assert first.method == "Monte Carlo, 1000 machines"
+
+
+def brittle(parts: Graded) -> Stack:
+    """The stack, lost where its large part is too large."""
+    feasible(parts.large < 0.1 + 87e-6 / 6, "the large part bursts the frame")
+    return stack(parts)
+
+
+def test_machines_without_an_answer_are_said():
+    """A stack that is lost where the large part (100 mm) grows by more than a standard deviation of IT9, 87 um/6."""
+    found = allotted(replace(STACK, function=brittle), Allocation(draws=20_000))
+    tally = found.sampled["start"]
+    assert tally.failed == pytest.approx(20_000 * norm.sf(1.0), abs=4 * (20_000 * 0.16 * 0.84) ** 0.5)
+    written = found.as_json()["start"]["monte_carlo"]["height"]
+    assert written["failed"] == tally.failed
+    assert written["probability"] <= 1 - tally.failed / 20_000
+    lost = replace(found, sampled={"rule": tally})
+    assert any(f"{tally.failed} of 20000 machines have no answer" in text for text in lost.warnings())
 
 
 @pytest.mark.parametrize(("model", "shift"), [(STACK, 3e-6), (PRICED, 0.0)])

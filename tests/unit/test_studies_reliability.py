@@ -19,6 +19,8 @@ from study_models import (
     UNIFORMS,
     WARMTH,
     WEAR,
+    Sum,
+    Two,
     setup_of,
 )  # fmt: skip
 
@@ -122,6 +124,21 @@ def test_a_limit_that_scatters_moves_with_the_machine():
     assert odds.analytic["total"] == pytest.approx(norm.cdf(2), rel=1e-9)
     assert odds.form["total"].sides["high"].beta == pytest.approx(2, rel=1e-6)
     assert within_sampling_error(odds.probability["total"], norm.cdf(2), odds.draws)
+
+
+def test_a_limit_that_moves_the_result_too():
+    """The result x + y/2 against its own limit y: the distance x - y/2 has the spread sqrt(9 + 4), not sqrt(9 + 36)."""
+    model = replace(STRENGTH, function=half_of_the_limit)
+    odds = odds_of(setup_of(model, y=10.0))
+    expected = norm.cdf(5 / sqrt(13))
+    assert odds.analytic["total"] == pytest.approx(expected, rel=1e-9)
+    assert odds.form["total"].probability == pytest.approx(expected, rel=1e-6)
+    assert within_sampling_error(odds.probability["total"], expected, odds.draws)
+
+
+def half_of_the_limit(two: Two) -> Sum:
+    """The load takes half of the strength with it."""
+    return Sum(total=two.x + 0.5 * two.y)
 
 
 def test_inputs_that_scatter_together():
@@ -332,6 +349,24 @@ def test_checks_compare_the_sampling_with_the_goal():
     assert (check.value, check.limit, check.passed) == (odds.probability["gap"], 0.85, True)
     assert check.margin == pytest.approx((check.value - 0.85) / 0.85)
     assert "take the Monte Carlo" in odds.blocks()[0].note
+
+
+def test_a_check_says_how_its_probability_was_found():
+    assert odds_of(setup_of(CHAIN)).checks()[0].method == "Monte Carlo, 40000 machines"
+    assert odds_of(setup_of(CHAIN), Reliability(method=("first_order",))).checks()[0].method == "first order"
+
+
+def test_the_sheet_tells_mean_and_extremes_from_the_nominal_result():
+    """gap = 10 mm, sd 0.13 mm: in five digits the mean itself would say nothing."""
+    odds = odds_of(setup_of(CHAIN))
+    table = next(block for block in odds.blocks() if block.title == "Scatter of the results")
+    name, unit, mean, spread, first, smallest, largest = table.rows[0]
+    assert (name, unit) == ("gap", "mm")
+    assert abs(mean) < 4 * 0.13 / sqrt(odds.draws)
+    assert (spread, first) == (pytest.approx(0.13, rel=0.01), pytest.approx(0.13, rel=1e-9))
+    assert 3.5 * 0.13 < -smallest < 6 * 0.13
+    assert 3.5 * 0.13 < largest < 6 * 0.13
+    assert "differences from the nominal" in table.note
 
 
 def test_a_goal_within_the_sampling_error_is_said():

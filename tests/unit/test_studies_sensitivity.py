@@ -101,6 +101,15 @@ def test_a_tolerance_that_is_off_has_a_derivative_and_no_share():
     assert found.sd["gap"] == pytest.approx(0.05e-3, rel=1e-12)
 
 
+def test_the_sheet_does_not_call_a_source_harmless_that_is_off():
+    setup = setup_of(CHAIN)
+    table = found_in(replace(setup, spreads={**setup.spreads, "third": Off()}), Sensitivity(of="gap")).blocks()[0]
+    shares = {row[0]: row[3] for row in table.rows}
+    assert shares == {"first": pytest.approx(36), "second": pytest.approx(64), "third": None}
+    assert "the tolerance is off" in table.note
+    assert "off" not in found_in(setup, Sensitivity(of="gap")).blocks()[0].note
+
+
 def test_unknowns_of_effects_that_are_on_are_sources():
     grow = SwitchedOn(CHAIN.effects["grow"], {"strain": 1e-5}, {"strain": 2e-6})
     read = SwitchedOn(CHAIN.effects["misread"], {"offset": 1e-4}, {"offset": 1e-4})

@@ -176,7 +176,8 @@ def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
             limit=Value(format_number(check.limit, STATED_DIGITS), unit),
             margin=_margin(check, number),
             passed=bool(check.passed),
-            chance=_chance_words(chance, calculation) if chance is not None else "",
+            chance=_chance_words(chance, check.note, calculation) if chance is not None else "",
+            method=check.method,
         )
 
 
@@ -188,14 +189,14 @@ def _is_chance(require: Require) -> bool:
     return require.reliability is not None
 
 
-def _chance_words(require: Require, calculation: Calculation) -> str:
+def _chance_words(require: Require, note: str, calculation: Calculation) -> str:
     """Say what a probability is one of: the limit in numbers where it is an input or a result."""
     setup = calculation.setup
     limit = require.limit
     if limit in setup.model.input_fields or limit in calculation.answers:
         limit = _named_limit(calculation, limit)
     words = {"at_most": "at or below {}", "at_least": "at or above {}", "within": "within {} of its nominal"}
-    return f"probability of staying {words[require.kind].format(limit)}"
+    return f"probability of staying {words[require.kind].format(limit)}" + (f", {note}" if note else "")
 
 
 def _named_limit(calculation: Calculation, name: str) -> str:

@@ -109,6 +109,8 @@ class CheckRow:
     passed: bool
     chance: str = ""
     """What the value is the probability of, where it is one."""
+    method: str = ""
+    """How it was found."""
 
 
 @dataclass(frozen=True)

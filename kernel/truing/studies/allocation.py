@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from truing.declare.blocks import Block
@@ -22,6 +22,7 @@ from truing.studies.sampling import Budget, Machines, Tally, sample
 from truing.studies.scatter import scatter_of
 from truing.studies.synthesis import Plan, Step, by_rule, coefficients, least_cost
 
+ALLOTTED = "with the grades after the allocation"
 GOAL_REACHED = "probability after the allocation over its goal, the smallest of all"
 
 
@@ -207,9 +208,12 @@ class Allotted:
     def checks(self) -> Sequence[Check]:
         """Compare the probability after the synthesis, first order, with each goal; and say whether all are reached."""
         goals = {demand.name: demand.goal for demand in self.shop.demands if demand.goal is not None}
-        each = [chance_check(name, self.final[name], goal) for name, goal in goals.items()]
+        each = [
+            chance_check(name, self.final[name], goal, method="first order", note=ALLOTTED)
+            for name, goal in goals.items()
+        ]
         worst = min(self.final[name] / goal if goal else 1.0 for name, goal in goals.items())
-        return [*each, replace(chance_check("goal reached", worst, 1.0), note=GOAL_REACHED)]
+        return [*each, chance_check("goal reached", worst, 1.0, method="first order", note=GOAL_REACHED)]
 
     def warnings(self) -> Sequence[str]:
         """Say what cannot be reached, and where the exact model contradicts first order."""
@@ -220,19 +224,32 @@ class Allotted:
             words.append(f"study '{self.name}': the goal is {self.rule.status}; {far}")
         for key, plan in (("rule", self.rule), ("least", self.least)):
             tally = self.sampled.get(key)
+            if tally is not None and tally.failed:
+                words.append(f"study '{self.name}': {_without_answer(tally, key)}")
             if tally is not None and plan.reached:
                 words += [f"study '{self.name}': {text}" for text in _contradicted(tally, self.shop.demands, key)]
         return words
 
 
+SPOKEN = {"rule": "the rule's grades", "least": "the least-cost grades"}
+
+
+def _without_answer(tally: Tally, design: str) -> str:
+    """Say how many machines of a design failed."""
+    reason = next(iter(tally.reasons), "no reason was given")
+    return (
+        f"with {SPOKEN[design]} {tally.failed} of {tally.draws} machines have no answer and count as missed ({reason})"
+    )
+
+
 def _contradicted(tally: Tally, wanted: Sequence[Demand], design: str) -> list[str]:
     """Name the goals that first order reaches and the exact model misses beyond its sampling error."""
-    spoken = {"rule": "the rule's grades", "least": "the least-cost grades"}[design]
     words = []
     for demand in wanted:
         low, high = wilson(tally.hits[demand.name], tally.draws)
         if demand.goal is not None and high < demand.goal:
             words.append(
-                f"with {spoken} the exact model gives '{demand.name}' only {low:.4f} to {high:.4f} of {demand.goal:g}"
+                f"with {SPOKEN[design]} the exact model gives '{demand.name}' only {low:.4f} to {high:.4f} "
+                f"of {demand.goal:g}"
             )
     return words

@@ -64,6 +64,7 @@ def _sampled(tally: Tally) -> dict[str, Any]:
             "probability": float(hits / tally.draws),
             "interval95": list(wilson(hits, tally.draws)),
             "draws": tally.draws,
+            "failed": tally.failed,
         }
         for name, hits in tally.hits.items()
     }
@@ -118,12 +119,24 @@ def _comparison(allotted: Allotted) -> Table:
     pairs = [column for name in names for column in (name, "Monte Carlo")]
     unit = shop.unit
     note = (
-        "Cost: the sum of the prices."
+        "Cost: the sum of the prices of the tolerances, each paid once however many inputs it is on."
         if shop.priced
-        else "Cost: the sum of 1/width, the reciprocal law; none is priced."
+        else "Cost: the sum of 1/width over the tolerances, the reciprocal law; not every one has a price."
     )
+    note += f" First order beside {_drawn_words(allotted)}" if allotted.sampled else ""
     units = ("", "", unit, *("%" for _ in pairs), "")
     return Table("Rule against least cost", ("design", "grades", "cost", *pairs, "reached"), rows, units, note)
+
+
+def _drawn_words(allotted: Allotted) -> str:
+    """Say how many machines of each design were drawn, and how far their shares may be off."""
+    half = max(
+        (high - low) / 2
+        for tally in allotted.sampled.values()
+        for low, high in (wilson(hits, tally.draws) for hits in tally.hits.values())
+    )
+    draws = max(tally.draws for tally in allotted.sampled.values())
+    return f"{draws} machines of each design on the exact model, 95 % interval at most ±{100 * half:.2g} %."
 
 
 def _percent(value: float | None) -> float | None:

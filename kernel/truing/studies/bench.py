@@ -21,7 +21,7 @@ def silent(task: str, done: int, total: int) -> None:
 class Check:
     """A limit and how far it is kept: margin > 0 is safe, everywhere. Values are in ``unit``.
 
-    ``note`` says what is compared, where the name is not that of a result.
+    ``note`` says what is compared, where the name of a result does not say it; ``method`` how a probability was found.
     """
 
     name: str
@@ -31,6 +31,7 @@ class Check:
     margin: float
     passed: bool
     note: str = ""
+    method: str = ""
 
 
 @dataclass(frozen=True)

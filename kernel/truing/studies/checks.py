@@ -101,7 +101,7 @@ def _plain(limit: Limit, setup: Setup, answers: dict[str, Any]) -> Check:
     return Check(limit.name, value, bound, unit, margin, margin >= 0)
 
 
-def chance_check(name: str, probability: float, goal: float) -> Check:
-    """Return the check of a probability against its goal."""
+def chance_check(name: str, probability: float, goal: float, *, method: str = "", note: str = "") -> Check:
+    """Return the check of a probability, found by a method, against its goal."""
     margin = margin_of(probability, goal, at_least=True)
-    return Check(name, probability, goal, "", margin, margin >= 0)
+    return Check(name, probability, goal, "", margin, margin >= 0, note, method)

@@ -90,7 +90,8 @@ def _chances(odds: Odds) -> Table:
 def _note(odds: Odds) -> str:
     if not odds.sampled:
         return "First order: the model as a straight line about its nominal point."
-    words = f"{odds.draws} machines drawn on the exact model; the checks take the Monte Carlo."
+    words = f"{odds.draws} machines drawn on the exact model; the checks take the Monte Carlo unless a later "
+    words += "study, as an allocation, decides them with other tolerances."
     if odds.failed:
         words += f" {odds.failed} of them have no answer and count as missed."
     if any(getattr(value, "ndim", 0) for value in odds.probability.values()):
@@ -99,7 +100,10 @@ def _note(odds: Odds) -> str:
 
 
 def _spreads(odds: Odds) -> Table:
-    """Show mean and spread of every required result that is one number, each in its own unit."""
+    """Show mean and spread of every required result that is one number, each in its own unit.
+
+    Mean and extremes are told from the nominal result, where their digits matter.
+    """
     from truing.units import difference_unit, unit_text
 
     rows: list[list[Any]] = []
@@ -108,11 +112,15 @@ def _spreads(odds: Odds) -> Table:
         if getattr(moments.mean, "ndim", 0) or not moments.count:
             continue
         first = next(odds.first_sd[demand.name] for demand in odds.demands if demand.result == result)
-        ends = [printed(end, unit) for end in (moments.smallest, moments.largest)]
+        mean, *ends = (
+            printed_step(value - odds.nominal[result], unit)
+            for value in (moments.mean, moments.smallest, moments.largest)
+        )
         spread = [printed_step(moments.sd, unit), printed_step(first, unit)]
-        rows.append([result, unit_text(difference_unit(unit)), printed(moments.mean, unit), *spread, *ends])
+        rows.append([result, unit_text(difference_unit(unit)), mean, *spread, *ends])
     columns = ("result", "unit", "mean", "standard deviation", "first order", "smallest", "largest")
-    return Table("Scatter of the results", columns, rows)
+    note = "Mean, smallest and largest are differences from the nominal result."
+    return Table("Scatter of the results", columns, rows, note=note)
 
 
 def _drawn(odds: Odds, curve: Curve) -> Drawing:

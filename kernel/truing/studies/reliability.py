@@ -78,6 +78,7 @@ class Reliability:
             tally=tally,
             remarks=(*found.warnings, *_still(machines)),
             inputs=acting_inputs(setup),
+            nominal={demand.result: answers[demand.result] for demand in wanted},
         )
 
     def _sampled(
@@ -185,7 +186,7 @@ class Odds:
 
     ``probability`` is that of the Monte Carlo (first order where none was drawn); ``at_least`` the lower end of its
     95 % interval; ``analytic`` first order; ``form`` the tangent planes; ``mean`` and ``sd`` of each result in SI;
-    ``inputs`` those of the run, as effects leave them.
+    ``inputs`` those of the run, as effects leave them, ``nominal`` the results without scatter in SI.
     """
 
     name: str = "reliability"
@@ -198,6 +199,7 @@ class Odds:
     curve: Curve | None = None
     remarks: tuple[str, ...] = ()
     inputs: Any = None
+    nominal: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def draws(self) -> int:
@@ -274,8 +276,9 @@ class Odds:
     def checks(self) -> Sequence[Check]:
         """Compare each probability with its goal; along an axis the worst one."""
         chances = self.probability
+        method = f"Monte Carlo, {self.draws} machines" if self.sampled else "first order"
         return [
-            chance_check(demand.name, worst(chances[demand.name]), demand.goal)
+            chance_check(demand.name, worst(chances[demand.name]), demand.goal, method=method)
             for demand in self.demands
             if demand.goal is not None
         ]

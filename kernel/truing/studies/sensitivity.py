@@ -64,6 +64,7 @@ class Sensitivity:
             units={name: setup.print_unit(name) for name in results} | {name: _unit(setup, name) for name in sources},
             remarks=(*found.warnings, *remarks),
             inputs=acting_inputs(setup),
+            still=frozenset(source for source in sources if not scatter.sd_of(source)),
         )
 
     def _results(self, setup: Setup) -> tuple[str, ...]:
@@ -156,7 +157,7 @@ class Sensitivities:
     ``derivatives[result][source]``, ``share[result][source]``, ``sd[result]``, ``sobol_first[result][source]``,
     ``sobol_total[result][source]``. ``agreement[result]``, where the model states derivatives: the largest difference
     from the numeric ones, over the largest derivative of that result. ``inputs`` are those of the run, as
-    effects leave them. Sources that scatter together may have a negative share.
+    effects leave them. Sources that scatter together may have a negative share; those in ``still`` do not scatter.
     """
 
     name: str = "sensitivity"
@@ -169,6 +170,7 @@ class Sensitivities:
     units: Mapping[str, str] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     inputs: Any = None
+    still: frozenset[str] = frozenset()
 
     def as_json(self) -> dict[str, Any]:
         """Return derivative, unit and share by result and source; what has no derivative is left out."""
@@ -235,7 +237,8 @@ class Sensitivities:
             entry = self._entry(result, source)
             if entry is None:
                 continue
-            row = [source, entry["derivative"], unit_text(entry["unit"]), 100 * entry["share"]]
+            share = None if source in self.still else 100 * entry["share"]
+            row = [source, entry["derivative"], unit_text(entry["unit"]), share]
             if with_indices:
                 row += [entry.get("sobol_first"), entry.get("sobol_total")]
             rows.append(row)
@@ -254,6 +257,8 @@ class Sensitivities:
         if self.sd[result] > 0:
             size = f"{self.sd[result] / unit_factor(unit):.4g} {unit_text(unit)}".strip()
             words.append(f"First-order standard deviation of all sources together: {size}.")
+            if self.still & set(self.derivatives[result]):
+                words.append("No share: the tolerance is off, the source does not scatter.")
         if result in self.agreement:
             words.append(
                 f"Stated and numeric derivatives differ by at most {self.agreement[result]:.1e} of the largest."

@@ -146,15 +146,16 @@ class Swept:
     def _extremes(self) -> Table:
         import numpy as np
 
-        from truing.units import from_si
+        from truing.units import from_si, unit_text
 
         unit = self.units[self.over]
         rows: list[list[Any]] = []
         for name in self._plain():
             values = self.results[name]
-            row: list[Any] = [name, self.units[name]]
+            row: list[Any] = [name, unit_text(self.units[name])]
             for place in (int(np.nanargmin(values)), int(np.nanargmax(values))):
                 row += [float(from_si(values[place], self.units[name])), float(from_si(self.axis[place], unit))]
             rows.append(row)
         columns = ("result", "unit", "smallest", "at", "largest", "at")
-        return Table(f"Extremes along the {spoken(self.over)}", columns, rows, ("", "", "", unit, "", unit))
+        note = f"Of {len(self.axis)} points; nothing is sought between them."
+        return Table(f"Extremes along the {spoken(self.over)}", columns, rows, ("", "", "", unit, "", unit), note)
