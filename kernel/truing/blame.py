@@ -10,7 +10,7 @@ from typing import Any
 
 Place = tuple[str, int | None]
 _HOUSE = Path(__file__).parent
-_MACHINERY = {"pluggy", "importlib"}
+_MACHINERY = {"pluggy", "importlib", "matplotlib", "numpy", "scipy"}
 
 
 def place_of(error: BaseException, homes: Iterable[Path] = ()) -> Place:
@@ -24,6 +24,12 @@ def place_of(error: BaseException, homes: Iterable[Path] = ()) -> Place:
     own = [frame for frame in frames if any(_inside(frame.filename, home) for home in homes)]
     chosen = own or frames
     return (chosen[-1].filename, chosen[-1].lineno) if chosen else ("", None)
+
+
+def spoken_place(error: BaseException) -> str:
+    """Return "file:line: " of the frame that is neither ours nor a library's, or nothing where there is none."""
+    file, line = place_of(error)
+    return f"{file}:{line}: " if file else ""
 
 
 def home_of(function: Callable[..., Any]) -> Path | None:

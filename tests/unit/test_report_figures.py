@@ -71,3 +71,32 @@ def test_a_figure_that_fails_is_named_with_its_place() -> None:
 
     with pytest.raises(PluginError, match=r"test_report_figures\.py:\d+: the figure 'Wear' failed: ZeroDivisionError"):
         draw(broken, title="Wear", ident="f1")
+
+
+@pytest.mark.parametrize(
+    "text", ["cost $5", r"\frac{1}{2}", r"$\frac$", "$x^$ and $y_1$", "$$", "a $ b $ c $", "\x1b[31m", "\u65e5"]
+)
+def test_no_text_breaks_a_figure(text: str) -> None:
+    def drawn() -> Any:
+        figure = line()
+        figure.axes[0].set_title(text)
+        figure.axes[0].set_xlabel(r"$\alpha_1$")
+        return figure
+
+    tree = ElementTree.fromstring(draw(drawn, title=text, ident="f1"))
+    assert tree.get("role") == "img"
+
+
+def test_a_formula_beside_a_broken_one_is_still_set() -> None:
+    def drawn(broken: str) -> str:
+        def make() -> Any:
+            figure = line()
+            figure.axes[0].set_title(broken)
+            figure.axes[0].set_xlabel(r"$\alpha_1$")
+            return figure
+
+        return draw(make, title="a", ident="f1")
+
+    assert "Oblique" in drawn(r"$\frac$")  # the slanted letter of a formula
+    assert "Oblique" in drawn("a title")
+    assert "Oblique" not in draw(line, title="a", ident="f1")

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
+from truing.blame import spoken_place
 from truing.calculation import Calculation
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.declare.fields import Axis, Found, ResultField
@@ -216,9 +216,7 @@ def _guarded(writing: Writing, title: str, make: Callable[[], list[BlockView]]) 
     try:
         return make()
     except Exception as error:
-        frame = traceback.extract_tb(error.__traceback__)[-1]
-        place = f"{frame.filename}:{frame.lineno}"
-        writing.figures.failures.append(f"{place}: '{title}' failed: {type(error).__name__}: {error}")
+        writing.figures.failures.append(f"{spoken_place(error)}'{title}' failed: {type(error).__name__}: {error}")
         return [Words(f"What '{title}' says could not be written.", kind="warning")]
 
 

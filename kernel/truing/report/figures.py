@@ -7,13 +7,15 @@ prefix, because all figures of a sheet share one page.
 from __future__ import annotations
 
 import re
-import traceback
+import warnings
 from collections.abc import Callable
 from html import escape
 from io import StringIO
 from typing import Any
 
+from truing.blame import spoken_place
 from truing.errors import PluginError
+from truing.formulas.symbols import printable
 
 STYLE = {
     "svg.fonttype": "path",
@@ -66,14 +68,48 @@ def draw(what: Callable[[], Any], *, title: str, ident: str) -> str:
     look.update(STYLE)
     with mpl.rc_context(look):
         try:
-            figure = what()
-            stream = StringIO()
-            figure.savefig(stream, format="svg", metadata={"Date": None}, bbox_inches="tight", pad_inches=0.06)
+            svg = _saved(what())
         except Exception as error:
-            frame = traceback.extract_tb(error.__traceback__)[-1]
-            place = f"{frame.filename}:{frame.lineno}"
-            raise PluginError(f"{place}: the figure '{title}' failed: {type(error).__name__}: {error}") from error
-    return inlined(stream.getvalue(), title=title, ident=ident)
+            place, words = spoken_place(error), " ".join(f"{type(error).__name__}: {error}".split())
+            raise PluginError(f"{place}the figure '{title}' failed: {words}") from error
+    return inlined(svg, title=title, ident=ident)
+
+
+def _saved(figure: Any) -> str:
+    """Return a figure as an SVG document; a text between dollars that is no formula is printed as it stands."""
+    try:
+        return _svg(figure)
+    except ValueError:
+        broken = _broken_formulas(figure)
+        if not broken:
+            raise
+    for text in broken:
+        text.set_parse_math(False)
+    return _svg(figure)
+
+
+def _svg(figure: Any) -> str:
+    stream = StringIO()
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing")  # a box stands in its place
+        figure.savefig(stream, format="svg", metadata={"Date": None}, bbox_inches="tight", pad_inches=0.06)
+    return stream.getvalue()
+
+
+def _broken_formulas(figure: Any) -> list[Any]:
+    """Return the texts of a figure that matplotlib takes for formulas and cannot read."""
+    from matplotlib.mathtext import MathTextParser
+    from matplotlib.text import Text
+
+    parser: Any = MathTextParser("path")
+    broken = []
+    for text in figure.findobj(Text):
+        try:
+            if text.get_parse_math() and "$" in text.get_text():
+                parser.parse(text.get_text())
+        except ValueError:
+            broken.append(text)
+    return broken
 
 
 def inlined(svg: str, *, title: str, ident: str) -> str:
@@ -92,6 +128,6 @@ def inlined(svg: str, *, title: str, ident: str) -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
         f'viewBox="{box.group(1)}" width="{width}pt" height="{height}pt" role="img" aria-labelledby="{ident}-title" '
         f'style="stroke-linejoin: round; stroke-linecap: butt">'
-        f'<title id="{ident}-title">{escape(title)}</title>'
+        f'<title id="{ident}-title">{escape(printable(title))}</title>'
     )
     return root + re.sub(r"\n\s*", "\n", body[opening.end() :]).strip()
