@@ -8,7 +8,7 @@ from typing import Any
 
 from truing.declare.fields import InputField
 from truing.declare.model import Model, Study
-from truing.declare.sources import Effect, Tolerance, Unknown
+from truing.declare.sources import Tolerance, Unknown
 from truing.errors import PluginError
 from truing.inputs_file.defaults import default_of, spread_text, toml_key, toml_value
 from truing.inputs_file.values import PURE, plain
@@ -122,10 +122,10 @@ def _effects(model: Model[Any, Any]) -> Iterator[str]:
         for unknown in effect.unknowns:
             bounds = f"from {plain(unknown.low)} to {plain(unknown.high)} {unknown.unit}".strip()
             yield from _comment("; ".join(part for part in (unknown.note, bounds) if part), "#   ")
-            yield f"# {unknown.name} = {toml_value(_middle(unknown, effect))}"
+            yield f"# {unknown.name} = {toml_value(_middle(unknown))}"
 
 
-def _middle(unknown: Unknown, effect: Effect[Any, Any]) -> str:
+def _middle(unknown: Unknown) -> str:
     """Return nothing for an amplitude, the middle (on a logarithmic scale where positive) for a shape."""
     value = 0.0
     if not unknown.is_amplitude:

@@ -123,7 +123,7 @@ def _close(one: float, other: float) -> bool:
     return math.isclose(one, other, rel_tol=1e-9)
 
 
-def in_order(setup: Setup, rows: Sequence[ComparedRow]) -> tuple[list[ComparedRow], list[ComparedRow]]:
+def parted(setup: Setup, rows: Sequence[ComparedRow]) -> tuple[list[ComparedRow], list[ComparedRow]]:
     """Part the rows into those that this run reproduces and those that hold for other settings."""
     own = [row for row in rows if holds_for(setup, row.published)]
     return own, [row for row in rows if row not in own]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from conftest import Calc
-from truing.runs.comparison import Change, changes
+from truing.runs.comparison import Change, changes, differing
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 
@@ -78,3 +78,25 @@ def test_versions_and_seeds_are_settings() -> None:
     before, after = {"kernel": "0.1.0", "seed": 1}, {"kernel": "0.2.0", "seed": 2}
     assert [(item.kind, item.name) for item in changes(before, after)] == [("settings", "kernel"), ("settings", "seed")]
     assert changes(before, before) == []
+
+
+def test_rounding_is_no_change_and_a_change_beyond_it_is() -> None:
+    before = {"results": {"a": {"value": 1.0, "unit": "mm"}}, "studies": {"s": {"x": [1.0, 2.0], "y": None}}}
+    rounded = {"results": {"a": {"value": 1.0 + 4e-16, "unit": "mm"}}, "studies": {"s": {"x": [1.0, 2.0], "y": None}}}
+    assert changes(before, rounded) == []
+    changed = {"results": {"a": {"value": 1.0 + 1e-11, "unit": "mm"}}, "studies": {"s": {"x": [1.0, 2.1], "y": 3.0}}}
+    assert [(item.kind, item.name) for item in changes(before, changed)] == [("results", "a"), ("studies", "s")]
+    assert differing(before["studies"], changed["studies"]) == 2
+
+
+def test_tolerances_effects_and_studies_in_words(calc: Calc) -> None:
+    warm = '[effects.warm_probe]\nslope = "1 um/K"\n[tolerances]\nload = "sd 1 %"\n'
+    Path("warm.toml").write_text(warm, encoding="utf-8")
+    calc("run", PIN, "-q", "-o", "cold")
+    calc("run", PIN, "-q", "-o", "warm", "--inputs", "warm.toml")
+    lines = [" ".join(line.split()) for line in calc("compare", "cold", "warm").out.split("\n")]
+    assert "tolerances load sd 3 % sd 1 %" in lines
+    assert "effects warm_probe - slope = 1 um/K" in lines
+    assert any(
+        line.startswith("studies reliability ") and line.endswith("values differ (see results.json)") for line in lines
+    )

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from truing.cli.console import columns, one_line, out, out_json, verb
 from truing.cli.words import AsJson
+
+if TYPE_CHECKING:
+    from truing.runs.comparison import Change
 
 LONGEST = 60
 
@@ -32,8 +35,18 @@ def compare(
         out("equal")
     else:
         rows = [("what", "name", str(first), str(second))]
-        out(columns([*rows, *((c.kind, c.name, _words(c.before), _words(c.after)) for c in found)]))
+        out(columns([*rows, *((change.kind, change.name, *_both(change)) for change in found)]))
     return 1 if found else 0
+
+
+def _both(change: Change) -> tuple[str, str]:
+    """Say what stood before and after; of a study that both have, how much of it differs."""
+    from truing.runs.comparison import differing
+
+    if change.kind == "studies" and change.before is not None and change.after is not None:
+        count = differing(change.before, change.after)
+        return "", f"{count} {'value differs' if count == 1 else 'values differ'} (see results.json)"
+    return _words(change.before), _words(change.after)
 
 
 def _words(value: Any) -> str:
@@ -41,14 +54,14 @@ def _words(value: Any) -> str:
 
     if value is None:
         return "-"
+    if isinstance(value, dict) and "spread" in value:
+        return one_line(value["spread"])
     if isinstance(value, dict) and "value" in value:
         number = value["value"]
-        text = (
-            format_number(number, 8)
-            if isinstance(number, (int, float)) and not isinstance(number, bool)
-            else str(number)
-        )
-        said = f"{text} {value.get('unit') or ''}".strip()
+        is_number = isinstance(number, (int, float)) and not isinstance(number, bool)
+        said = f"{format_number(number, 8) if is_number else number} {value.get('unit') or ''}".strip()
         return said if value.get("passed", True) else said + " (fails)"
+    if isinstance(value, dict) and all(isinstance(item, dict) for item in value.values()):
+        return ", ".join(f"{one_line(name)} = {_words(item)}" for name, item in value.items())
     text = one_line(value)
     return text if len(text) <= LONGEST else "(see results.json)"

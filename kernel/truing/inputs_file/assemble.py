@@ -9,7 +9,6 @@ from typing import Any
 
 from truing.declare.fields import InputField
 from truing.declare.model import Model, Study
-from truing.declare.sources import Tolerance
 from truing.declare.spreads import Off, Spread, Target
 from truing.errors import Fault, TruingError
 from truing.inputs_file.checks import renamed
@@ -59,7 +58,7 @@ def spread_faults(model: Model[Any, Any], document: Document, values: Values) ->
         spread = spreads_of(model, values)[tolerance.name]
         for name in tolerance.on:
             try:
-                sentence = _unresolved(tolerance, spread, name, model, nominals, stated=stated)
+                sentence = _unresolved(spread, name, model, nominals, stated=stated)
             except (TruingError, ValueError, KeyError) as error:
                 sentence = str(error)
             if sentence:
@@ -69,15 +68,7 @@ def spread_faults(model: Model[Any, Any], document: Document, values: Values) ->
                 break
 
 
-def _unresolved(
-    tolerance: Tolerance,
-    spread: Spread,
-    name: str,
-    model: Model[Any, Any],
-    nominals: Mapping[str, Any],
-    *,
-    stated: bool,
-) -> str:
+def _unresolved(spread: Spread, name: str, model: Model[Any, Any], nominals: Mapping[str, Any], *, stated: bool) -> str:
     """Return why a spread does not resolve for one of its inputs, or nothing."""
     if name not in nominals:
         return ""

@@ -54,7 +54,7 @@ def seed(raw: Any) -> int:
     return raw
 
 
-def one_of(name: str, choices: Sequence[str]) -> Callable[[Any], str]:
+def one_of(choices: Sequence[str]) -> Callable[[Any], str]:
     """Make a reader of one word out of several."""
 
     def read(raw: Any) -> str:

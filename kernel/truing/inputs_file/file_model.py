@@ -107,7 +107,7 @@ def _sheet() -> dict[str, Entry]:
         name: Entry(checks.stored(("sheet", name), checks.head_text), {"type": ["string", "number"]}) for name in HEAD
     }
     schema = {"enum": list(DETAILS), "default": "normal", "description": "How much the sheet shows."}
-    check = checks.one_of("detail", DETAILS)
+    check = checks.one_of(DETAILS)
     return {**entries, "detail": Entry(checks.stored(("sheet", "detail"), check), schema)}
 
 

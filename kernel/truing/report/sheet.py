@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from truing.calculation import Calculation
 from truing.numbers import STATED_DIGITS, format_number, format_value
-from truing.published import ComparedRow, in_order
+from truing.published import ComparedRow, parted
 from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
 from truing.report.content import changed_inputs, check_rows, condition_rows, effect_rows, input_rows, tolerance_rows
 from truing.report.context import Chapter, Head, InputRow, Sheet, TableView
@@ -49,7 +49,7 @@ def make_sheet(
     detail = setup.detail if setup.detail in LONGEST_TABLE else "normal"
     figures = Figures()
     results = list(result_chapters(Writing(calculation, detail, figures)))
-    own, elsewhere = in_order(setup, verified)
+    own, elsewhere = parted(setup, verified)
     inputs, idle = _inputs(setup, detail)
     sheet = Sheet(
         head=head_of(setup, provenance),
@@ -124,7 +124,7 @@ def logo_of(setup: Setup) -> tuple[str, str]:
 def verdict(sheet: Sheet, cases: CasesTable | None) -> str:
     """Say in one sentence whether the limits are kept, and which are not."""
     if cases is not None:
-        return _verdict_of_cases(sheet, cases)
+        return _verdict_of_cases(cases)
     if not sheet.checks:
         return "This calculation states no limits: there is nothing to pass or fail."
     broken = [check for check in sheet.checks if not check.passed]
@@ -135,7 +135,7 @@ def verdict(sheet: Sheet, cases: CasesTable | None) -> str:
     return f"{len(broken)} of {count} checks {'fails' if len(broken) == 1 else 'fail'}: {names}."
 
 
-def _verdict_of_cases(sheet: Sheet, cases: CasesTable) -> str:
+def _verdict_of_cases(cases: CasesTable) -> str:
     broken = [case for case in cases.cases if case.reason is not None or not all(check.passed for check in case.checks)]
     governing = case_name(cases.cases[cases.governing])
     if broken:

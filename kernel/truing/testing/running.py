@@ -155,7 +155,7 @@ def _compare_slope(subject: Subject, setup: Setup, pair: tuple[str, str], stated
         fail(f"{subject.model.name}: derivatives() names '{result}' by '{name}', which is no result by an input")
     value = float(setup.nominal(name))
     reach = 0.1 * abs(value) or unit_factor(subject.model.input_fields[name].unit)
-    found = [_difference(subject, setup, pair, reach * share) for share in (1.0, 0.1, 1e-2, 1e-3)]
+    found = [_difference(setup, pair, reach * share) for share in (1.0, 0.1, 1e-2, 1e-3)]
     known = [slope for slope in found if slope is not None]
     if len(known) < 2:
         return
@@ -169,7 +169,7 @@ def _compare_slope(subject: Subject, setup: Setup, pair: tuple[str, str], stated
         )
 
 
-def _difference(subject: Subject, setup: Setup, pair: tuple[str, str], step: float) -> float | None:
+def _difference(setup: Setup, pair: tuple[str, str], step: float) -> float | None:
     """Return the central difference of fourth order, or None where a step is impossible."""
     import numpy as np
 
