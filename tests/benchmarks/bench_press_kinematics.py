@@ -1,8 +1,8 @@
 """How much does the exact kinematics of the press linkage cost beside drawing its 29 random numbers?
 
-Run it: ``python -m pytest tests/benchmarks --benchmark-enable -s``, or as a script with a number of draws. It prints the
-ratio of drawing (with numpy's default generator) and solving to drawing alone, both measured in this run, alternately, and
-the peak of the memory used.
+Run it: ``python -m pytest tests/benchmarks --benchmark-enable -s``, or as a script with a number of draws. It prints
+the ratio of drawing (with numpy's default generator) and solving to drawing alone, both measured in this run,
+alternately, and the peak of the memory used.
 """
 
 import sys
@@ -75,7 +75,9 @@ def peak_memory(draws: int) -> int:
     return peak
 
 
-BATCHES = pytest.mark.benchmark(group="one batch of 2^14 machines; in brackets the ratio to drawing alone")
+BATCHES = pytest.mark.benchmark(
+    group="one batch of 2^14 machines; in brackets the ratio to the faster of drawing and solving"
+)
 
 
 @BATCHES
