@@ -10,7 +10,7 @@ from typing import Any
 from truing.declare.model import Model, Study
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Effect
-from truing.declare.spreads import Distribution, Off, Spread, Target
+from truing.declare.spreads import ByChoice, Distribution, Off, Spread, Target
 from truing.errors import UsageError
 from truing.kernel import Added, Origin
 
@@ -89,11 +89,21 @@ class Setup:
         """Return what a spread needs to know of the input it acts on."""
         return Target(name, float(self.nominal(name)), self.unit_of(name), self.nominal)
 
+    def settled(self, spread: Spread) -> Spread:
+        """Return a spread itself, or of one that follows a choice the branch that is chosen."""
+        while isinstance(spread, ByChoice):
+            spread = spread.chosen(str(self.nominal(spread.chooser)))
+        return spread
+
+    def spread_of(self, tolerance: str) -> Spread:
+        """Return the spread of a tolerance in force, settled where it follows a choice."""
+        return self.settled(self.spreads.get(tolerance, self.model.tolerances[tolerance].spread))
+
     def distributions(self) -> dict[str, dict[str, Distribution]]:
         """Return, by tolerance and input, every scatter that is not off; an input left open does not scatter."""
         found: dict[str, dict[str, Distribution]] = {}
         for tolerance in self.model.tolerances.values():
-            spread = self.spreads.get(tolerance.name, tolerance.spread)
+            spread = self.spread_of(tolerance.name)
             if isinstance(spread, Off):
                 continue
             targets = [self.target(name) for name in tolerance.on]

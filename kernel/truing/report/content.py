@@ -8,8 +8,7 @@ from typing import Any
 from truing.calculation import Calculation
 from truing.declare.fields import Given, InputField
 from truing.declare.goals import Require
-from truing.declare.sources import Tolerance
-from truing.declare.spreads import ByChoice, Distribution, Spread
+from truing.declare.spreads import Distribution
 from truing.evaluate import acting_inputs
 from truing.numbers import (
     ABSENT,
@@ -89,7 +88,7 @@ def tolerance_rows(setup: Setup) -> Iterator[ToleranceRow]:
         yield ToleranceRow(
             name=name,
             on=tuple((on, _symbol(setup, on)) for on in distributions),
-            spread=spread_text(setup, tolerance, setup.spreads.get(name, tolerance.spread)),
+            spread=setup.spread_of(name).text,
             sds=tuple(sds),
             shift=tuple(dict.fromkeys(_shifts(setup, distributions))),
             why=tolerance.why,
@@ -109,13 +108,6 @@ def _shifts(setup: Setup, distributions: Mapping[str, Distribution]) -> Iterator
         if abs(item.mean - nominal) > 1e-12 * max(abs(nominal), item.sd):
             number, unit = format_difference(item.mean - nominal, setup.print_unit(name), 4)
             yield Value(number if number.startswith("-") else f"+{number}", unit)
-
-
-def spread_text(setup: Setup, tolerance: Tolerance, spread: Spread) -> str:
-    """Write a spread as the inputs file would; of one that a choice decides, the chosen one."""
-    if isinstance(spread, ByChoice):
-        return spread_text(setup, tolerance, spread.chosen(str(setup.nominal(spread.chooser))))
-    return spread.text
 
 
 def condition_rows(setup: Setup) -> Iterator[ConditionRow]:

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from truing.calculation import Calculation
-from truing.declare.spreads import ByChoice
 from truing.runs.inputs_written import PURE
 from truing.runs.provenance import Provenance
 from truing.setup import Setup, SwitchedOn
@@ -155,13 +154,8 @@ def _tolerances(setup: Setup) -> dict[str, Any]:
             unit = setup.print_unit(target)
             sd = item.sd / unit_factor(difference_unit(unit))
             on[target] = {"mean": _number(from_si(item.mean, unit)), "sd": _number(sd), "unit": unit}
-        said[name] = {"spread": _spread_words(setup, name) if on else "off", "on": on}
+        said[name] = {"spread": setup.spread_of(name).text if on else "off", "on": on}
     return said
-
-
-def _spread_words(setup: Setup, name: str) -> str:
-    spread = setup.spreads.get(name, setup.model.tolerances[name].spread)
-    return spread.chosen(str(setup.nominal(spread.chooser))).text if isinstance(spread, ByChoice) else spread.text
 
 
 def _effect_values(item: SwitchedOn) -> dict[str, Any]:

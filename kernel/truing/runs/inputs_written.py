@@ -185,7 +185,6 @@ def _left_open(setup: Setup, section: str) -> Iterator[str]:
     if section == "tolerances":
         for name, spread in setup.spreads.items():
             if isinstance(spread, ByChoice):
-                chosen = spread.chosen(str(setup.nominal(spread.chooser))).text
-                yield f"{name} follows {spread.chooser}: {chosen}"
+                yield f"{name} follows {spread.chooser}: {setup.settled(spread).text}"
             elif isinstance(spread, Drawn):
                 yield f"{name} is {spread.text}"

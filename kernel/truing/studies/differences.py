@@ -13,7 +13,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from truing.declare.spreads import ByChoice, Distribution, Spread
 from truing.errors import TruingError
 from truing.evaluate import effect_column, evaluate_rows
 from truing.setup import Setup
@@ -106,11 +105,8 @@ def _sd_when_on(setup: Setup, column: str) -> float:
     """Return the scatter that is declared for a column whose tolerance is off."""
     for tolerance in setup.model.tolerances.values():
         if column in tolerance.on:
-            spread: Spread = tolerance.spread
-            while isinstance(spread, ByChoice):
-                spread = spread.chosen(str(setup.nominal(spread.chooser)))
             try:
-                resolved: Distribution | None = spread.resolve(setup.target(column))
+                resolved = setup.settled(tolerance.spread).resolve(setup.target(column))
             except TruingError:
                 return 0.0
             return resolved.sd if resolved is not None else 0.0

@@ -15,7 +15,6 @@ from truing.prices import price_at
 from truing.setup import Setup
 from truing.studies.chances import Straight
 from truing.studies.demands import Demand, normal_chance
-from truing.studies.scatter import spread_in_force
 
 RECIPROCAL = "1/mm"
 
@@ -87,7 +86,7 @@ def open_shop(
     setup: Setup, wanted: Sequence[Demand], straight: Mapping[str, Straight], finest: str, *, loosen: bool
 ) -> Shop:
     """Collect parts, grades and costs. Raises UsageError where no tolerance in force is a grade."""
-    graded = [item for item in setup.model.tolerances.values() if isinstance(spread_in_force(setup, item.name), Grade)]
+    graded = [item for item in setup.model.tolerances.values() if isinstance(setup.spread_of(item.name), Grade)]
     if not graded:
         raise UsageError(
             f'{setup.model.name} has no tolerance that is a grade, such as grade("IT7"): nothing to allocate'
@@ -109,7 +108,7 @@ def open_shop(
 def _part(
     setup: Setup, tolerance: Tolerance, straight: Mapping[str, Straight], allowed: tuple[str, bool], priced: bool
 ) -> Part:
-    spread = spread_in_force(setup, tolerance.name)
+    spread = setup.spread_of(tolerance.name)
     assert isinstance(spread, Grade)  # open_shop has chosen these
     start = GRADES.index(spread.grade)
     finest, loosen = GRADES.index(allowed[0]), allowed[1]
@@ -130,7 +129,7 @@ def _choice(
         width = spread.width(setup.target(tolerance.on[0]))
         sds = {column: spread.resolve(setup.target(column)).sd for column in tolerance.on}
     except TruingError:
-        if spread == spread_in_force(setup, tolerance.name):
+        if spread == setup.spread_of(tolerance.name):
             raise
         return None
     variances = {
@@ -158,7 +157,7 @@ def with_grades(setup: Setup, grades: Mapping[str, str]) -> Setup:
     """Return the setup with these tolerances at these grades."""
     changed: dict[str, Any] = {}
     for name, grade in grades.items():
-        spread = spread_in_force(setup, name)
+        spread = setup.spread_of(name)
         assert isinstance(spread, Grade)  # a part of the shop
         changed[name] = replace(spread, grade=grade)
     return replace(setup, spreads={**setup.spreads, **changed})

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from truing.declare.spreads import ByChoice, Distribution, Drawn, Spread
+from truing.declare.spreads import Distribution, Drawn
 from truing.errors import UsageError
 from truing.evaluate import effect_column
 from truing.setup import Setup, SwitchedOn
@@ -162,14 +162,6 @@ def scatter_of(setup: Setup) -> Scatter:
     return Scatter(tuple(causes))
 
 
-def spread_in_force(setup: Setup, tolerance: str) -> Spread:
-    """Return the spread of a tolerance, settled where it hangs on a choice."""
-    spread = setup.spreads.get(tolerance, setup.model.tolerances[tolerance].spread)
-    while isinstance(spread, ByChoice):
-        spread = spread.chosen(str(setup.nominal(spread.chooser)))
-    return spread
-
-
 def _of_tolerance(setup: Setup, name: str, inner: Mapping[str, Distribution]) -> Cause:
     columns = tuple(inner)
     nominals = tuple(float(setup.nominal(column)) for column in columns)
@@ -178,7 +170,7 @@ def _of_tolerance(setup: Setup, name: str, inner: Mapping[str, Distribution]) ->
         raise UsageError(
             f"tolerance '{name}' scatters '{missing[0]}', which is not given; give it, or write {name} = \"off\""
         )
-    spread = spread_in_force(setup, name)
+    spread = setup.spread_of(name)
     if not isinstance(spread, Drawn):
         return Cause(name, columns, nominals, tuple(inner.values()))
     return Cause(name, columns, nominals, tuple(inner.values()), _stand_in(spread, columns), spread.function)
