@@ -89,9 +89,9 @@ def test_rounding_is_no_change_and_a_change_beyond_it_is() -> None:
     assert differing(before["studies"], changed["studies"]) == 2
 
 
-def test_tolerances_effects_and_studies_in_words(calc: Calc) -> None:
+def test_tolerances_effects_and_studies_in_words(calc: Calc, tmp_path: Path) -> None:
     warm = '[effects.warm_probe]\nslope = "1 um/K"\n[tolerances]\nload = "sd 1 %"\n'
-    Path("warm.toml").write_text(warm, encoding="utf-8")
+    (tmp_path / "warm.toml").write_text(warm, encoding="utf-8")
     calc("run", PIN, "-q", "-o", "cold")
     calc("run", PIN, "-q", "-o", "warm", "--inputs", "warm.toml")
     lines = [" ".join(line.split()) for line in calc("compare", "cold", "warm").out.split("\n")]
