@@ -25,7 +25,7 @@ from press_linkage.model import PRESS_LINKAGE
 from press_linkage.quantities import Press
 from truing import Drawing, Kernel
 from truing.calculation import Calculation, calculate
-from truing.errors import InfeasibleError
+from truing.errors import InfeasibleError, InputError
 from truing.evaluate import evaluate_rows
 from truing.inputs_file import setup_from_text
 from truing.published import compare_published
@@ -285,6 +285,16 @@ BAD = [
 def test_impossible_mechanisms_are_named(inputs: dict[str, str], words: str) -> None:
     with pytest.raises(InfeasibleError, match=re.escape(words)):
         calculate(default_setup(PRESS_LINKAGE, **inputs))
+
+
+@pytest.mark.parametrize("text", ["rod_length_deviation_1 = '10.1 mm'", "crank_angle_deviation_2 = '-11 mrad'"])
+def test_a_deviation_that_is_no_deviation_is_refused(text: str) -> None:
+    """Ten millimetres or milliradians off is another part, or a unit mistaken by a thousand."""
+    offer = Kernel([press_linkage], strict=True).offers["press_linkage"]
+    with pytest.raises(InputError, match=text.partition(" ")[0]):
+        setup_from_text(f"[inputs]\n{text}", offer, file="press.toml", folder=Path())
+    half = text.replace("10.1", "5").replace("11", "5")
+    assert setup_from_text(f"[inputs]\n{half}", offer, file="press.toml", folder=Path())
 
 
 def test_crank_that_only_swings_is_calculated_without_the_sweep() -> None:

@@ -139,6 +139,21 @@ def test_machines_without_an_answer_are_said():
     assert any(f"{tally.failed} of 20000 machines have no answer" in text for text in lost.warnings())
 
 
+def twins(parts: Graded) -> Stack:
+    """Two parts that nothing tells apart, and a third."""
+    return Stack(height=parts.large + parts.middle + parts.small)
+
+
+def test_of_parts_that_are_alike_the_one_declared_first_is_tightened_first():
+    sizes = {"large": "40 mm", "middle": "40 mm", "small": "40 mm"}
+    model = replace(STACK, function=twins)
+    for names in itertools.permutations(sizes):
+        errors = [model.tolerances[name] for name in (*names, "shift")]
+        found = allotted(replace(model, errors=errors), setup=default_setup(replace(model, errors=errors), **sizes))
+        assert found.adjustments >= 3
+        assert tuple(step.tolerance for step in found.steps[:3]) == names
+
+
 @pytest.mark.parametrize(("model", "shift"), [(STACK, 3e-6), (PRICED, 0.0)])
 @pytest.mark.parametrize("loosen", [False, True])
 @pytest.mark.parametrize("goal_um", [15, 30, 80])

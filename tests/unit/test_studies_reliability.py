@@ -2,10 +2,11 @@
 
 import json
 from dataclasses import replace
-from math import log, sqrt
+from math import hypot, log, sqrt
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from scipy.stats import norm
 from study_models import (
     CHAIN,
@@ -251,6 +252,20 @@ def test_form_of_a_quadratic_limit():
 
 def test_form_of_a_parabola():
     assert odds_of(setup_of(PARABOLA)).form["total"].sides["low"].beta == pytest.approx(3, rel=1e-9)
+
+
+def cubic(two: Two) -> Sum:
+    """A limit that bends ever more."""
+    return Sum(total=3.0 - 0.6 * two.x - 0.6 * two.y - 0.1 * two.y**3)
+
+
+def test_form_of_a_cubic_limit():
+    """The nearest point of the curve x = 5 - y - y^3/6, where x dx/dy + y vanishes: by bisection."""
+    y = brentq(lambda y: y - (5 - y - y**3 / 6) * (1 + y**2 / 2), 0.0, 2.5, xtol=1e-14)
+    x = 5 - y - y**3 / 6
+    side = odds_of(setup_of(replace(SADDLE, function=cubic))).form["total"].sides["low"]
+    assert side.beta == pytest.approx(hypot(x, y), rel=1e-9)
+    assert side.point == pytest.approx({"x": x, "y": y}, abs=1e-4 * side.beta)  # where the search ends
 
 
 def test_form_when_the_nominal_machine_misses():

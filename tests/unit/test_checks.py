@@ -1,0 +1,57 @@
+"""Limits that need no probability: which place decides, and what happens on the limit itself."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from study_models import CHAIN, UNIFORMS, WEAR, setup_of
+
+from truing import Require
+from truing.calculation import calculate
+from truing.studies.checks import margin_of
+
+
+def check_of(model, require, **values):
+    (check,) = calculate(setup_of(replace(model, objectives=[require]), **values)).checks
+    return check
+
+
+@pytest.mark.parametrize(
+    ("value", "limit", "at_least", "margin"),
+    [(60.0, 80.0, False, 0.25), (100.0, 80.0, False, -0.25), (100.0, 80.0, True, 0.25), (60.0, 80.0, True, -0.25),
+     (-6.0, -4.0, False, 0.5), (-6.0, -4.0, True, -0.5), (0.3, 0.0, False, -0.3), (0.3, 0.0, True, 0.3)],
+)  # fmt: skip
+def test_margin_is_positive_where_it_is_safe(value: float, limit: float, at_least: bool, margin: float) -> None:
+    assert margin_of(value, limit, at_least=at_least) == pytest.approx(margin)
+
+
+@pytest.mark.parametrize("kind", ["at_most", "at_least"])
+def test_a_value_on_its_limit_keeps_it(kind: str) -> None:
+    check = check_of(UNIFORMS, Require("total", **{kind: "0.5"}), x=0.25, y=0.25)
+    assert (check.value, check.limit, check.margin, check.passed) == (0.5, 0.5, 0.0, True)
+
+
+@pytest.mark.parametrize(
+    ("limit", "worst", "passed"),
+    [({"at_most": "40 um"}, 36.0, True), ({"at_most": "30 um"}, 36.0, False),
+     ({"at_least": "3 um"}, 4.0, True), ({"at_least": "5 um"}, 4.0, False)],
+)  # fmt: skip
+def test_along_an_axis_the_worst_place_decides(limit: dict[str, str], worst: float, passed: bool) -> None:
+    """2 um/h after 1, 4 and 9 h in two stages: 4, 16 and 36 um."""
+    check = check_of(WEAR, Require("course", **limit))
+    assert (check.value, check.unit, check.passed) == (pytest.approx(worst), "um", passed)
+    assert (check.margin > 0) == passed
+
+
+def test_along_an_axis_within_is_measured_at_every_place() -> None:
+    check = check_of(WEAR, Require("course", within="1 um"))
+    assert (check.value, check.limit, check.passed) == (0.0, pytest.approx(1.0), True)
+
+
+def test_a_limit_is_printed_in_the_unit_of_its_result() -> None:
+    check = check_of(CHAIN, Require("gap", at_most="0.011 m"))
+    assert (check.value, check.limit, check.unit) == (pytest.approx(10.0), pytest.approx(11.0), "mm")
+    setup = setup_of(replace(CHAIN, objectives=[Require("gap", at_most="0.011 m")]))
+    (check,) = calculate(replace(setup, units={"gap": "um"})).checks
+    assert (check.value, check.limit, check.unit) == (pytest.approx(10e3), pytest.approx(11e3), "um")
+    assert np.isclose(check.margin, 1 / 11)
