@@ -256,7 +256,7 @@ def _apply(setup: Setup, columns: Mapping[str, Any], *, reading: bool) -> Any:
                     results = item.effect.function(inputs, results, **keywords)
     except TruingError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         functions = [model.function, *(item.effect.function for item in setup.effects)]
         file, line = place_of(error, [home for function in functions if (home := home_of(function))])
         where = f"{file}:{line}: " if file else ""

@@ -174,7 +174,7 @@ class Kernel:
                 if isinstance(answer, str) or not isinstance(answer, Iterable):
                     raise DeclarationError(f"{hook} returned {answer!r:.60}; it returns a list")
                 items = list(answer)
-            except Exception as error:
+            except (Exception, SystemExit) as error:
                 place = place_of(error, _homes(origin))
                 self._note(self._left_out, origin, error, place if place[0] else line_of(implementation.function))
                 continue

@@ -359,6 +359,11 @@ def inside_numpy(lever: Lever) -> Balance:
     return Balance(hold=float(np.linalg.inv(np.zeros((2, 2)))[0, 0]), torque=0.0)
 
 
+def leaving(lever: Lever) -> Balance:
+    """End the program."""
+    raise SystemExit(0)
+
+
 def forgetting(lever: Lever) -> Balance:
     """Return nothing."""
 
@@ -376,6 +381,7 @@ def a_text(lever: Lever) -> Balance:
 WRONG_FUNCTIONS = [
     (dividing, r"test_evaluate\.py:\d+: lever failed: ZeroDivisionError: no arm"),
     (inside_numpy, r"test_evaluate\.py:\d+: lever failed: LinAlgError: Singular matrix"),
+    (leaving, r"test_evaluate\.py:\d+: lever failed: SystemExit: 0"),
     (forgetting, "lever returned None, which is no Balance"),
     (wrong_shape, r"lever: the result 'hold' has the shape \(3,\) in a call of"),
     (a_text, "lever: the result 'hold' is 'plenty' in a call of"),

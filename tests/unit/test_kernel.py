@@ -335,6 +335,13 @@ def test_a_guest_whose_hook_raises_is_left_out(write: Write) -> None:
     ]
 
 
+def test_a_guest_that_ends_the_program_is_left_out(write: Write) -> None:
+    text = guest("truing_reports", "exit(7)")
+    kernel = Kernel([write("pin_one", GOOD.format(name="pin_one")), write("zebra", text)])
+    assert kernel.offer("pin_one").added == ()
+    assert [(item.plugin, item.line, item.reason) for item in kernel.broken] == [("zebra", 8, "SystemExit: 7")]
+
+
 def test_guests_come_in_the_order_of_their_names(write: Write) -> None:
     def adding(name: str) -> str:
         return guest("truing_error_sources", f"[Tolerance('{name}', off(), on=['load'])]")

@@ -247,7 +247,7 @@ def _loaded(item: InputField, raw: Any, reading: Reading) -> Any:
         return spec.reader(path, **options)
     except SentenceError:
         raise
-    except Exception as error:  # whatever a reader says of a file is the user's to mend
+    except (Exception, SystemExit) as error:  # whatever a reader says of a file is the user's to mend
         kind = "" if isinstance(error, (TruingError, ValueError, OSError)) else f"{type(error).__name__}: "
         words = getattr(error, "strerror", None) or str(error) or type(error).__name__
         raise SentenceError(f"{item.name}: {shown(table['file'])} cannot be read: {kind}{words}") from error
