@@ -49,7 +49,22 @@ def shown_by_gauge(setup: Setup, rows: RowsFile) -> Shown:
         raise UsageError(f"every result of {machine.model.name} runs along {' or '.join(axes)}: give that column")
     units = {name: machine.print_unit(name) for name in evaluated.results}
     values = {name: from_si(value, units[name]) for name, value in evaluated.results.items()}
-    return Shown(values, units, evaluated.reasons)
+    reasons = {**_without_place(evaluated, machine, rows), **evaluated.reasons}
+    return Shown(values, units, dict(sorted(reasons.items())))
+
+
+def _without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int, str]:
+    """Say which rows lie nowhere on the axis of a result, so that nothing can be read there."""
+    import numpy as np
+
+    reasons: dict[int, str] = {}
+    for name, values in evaluated.results.items():
+        axis = _axis_of(name, machine)
+        for place in np.flatnonzero(np.isnan(values)) if axis else ():
+            is_empty = np.isnan(rows.axes[axis][place])
+            words = f"'{axis}' is not given" if is_empty else f"it lies beyond the axis '{axis}'"
+            reasons.setdefault(int(place), f"'{name}' cannot be read at this row: {words}")
+    return reasons
 
 
 def _row_by_row(machine: Setup, rows: RowsFile) -> Rows:

@@ -134,6 +134,13 @@ def test_results_along_an_axis_are_read_at_the_place_of_the_row(gauge: Gauge) ->
     np.testing.assert_allclose(shown.values["temperature"], [20, 20.5, 21.5, 21, np.nan])
     np.testing.assert_allclose(shown.values["inside"], [21, 21, 23, 21, 21])
     assert "depth" not in shown.values
+    assert shown.reasons == {4: "'temperature' cannot be read at this row: it lies beyond the axis 'depth'"}
+
+
+def test_a_row_without_its_place_says_so(gauge: Gauge) -> None:
+    shown = gauge(WALL, "depth [mm],flux [W/m^2]\n,10\n50,10\n", '[inputs]\npressing = ["1 N", "1 N", "1 N"]\n')
+    np.testing.assert_allclose(shown.values["temperature"], [np.nan, 20.5])
+    assert shown.reasons == {0: "'temperature' cannot be read at this row: 'depth' is not given"}
 
 
 def test_without_a_place_results_along_an_axis_are_left_out(gauge: Gauge) -> None:
