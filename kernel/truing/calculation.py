@@ -86,11 +86,13 @@ def _warnings(setup: Setup, outcomes: Mapping[str, Outcome]) -> list[str]:
 
 
 def _idle_effects(setup: Setup) -> list[str]:
-    """Name effects that are on while every condition they need stays at its reference."""
+    """Name effects that are on while every condition they need stays at its reference and does not scatter about it."""
+    scattering = {name for inner in setup.distributions().values() for name in inner} if setup.effects else set()
     idle = []
     for item in setup.effects:
         needs = item.effect.needs
-        if needs and all(setup.conditions[need.name] == need.zero for need in needs):
+        still = all(setup.conditions[need.name] == need.zero and need.name not in scattering for need in needs)
+        if needs and still:
             names = " and ".join(f"'{need.name}'" for need in needs)
             idle.append(f"effect '{item.effect.name}' is on, but {names} stays at its reference: it does nothing")
     return idle
