@@ -358,3 +358,13 @@ def test_the_title_block_leaves_room_for_what_is_not_stated(
     sheet = make_sheet(calculate(replace(setup, head=head)), provenance=provenance)
     assert list(sheet.head.fields) == expected
     assert sheet.head.signatures == (("Prepared", ""), ("Checked", ""), ("Approved", ""))
+
+
+def test_a_data_file_is_named_on_the_sheet(tmp_path: Path) -> None:
+    (tmp_path / "flank <1>.txt").write_text("1\n2\n")
+    kernel = Kernel()
+    kernel.add_file(DATA / "worn_surface.py")
+    inputs = '[inputs]\nsurface = "flank <1>.txt"\n'
+    setup = setup_from_text(inputs, kernel.offer("worn_surface"), file="inputs.toml", folder=tmp_path)
+    page = sheet_html(calculate(setup), provenance=provenance_of(setup))
+    assert "flank &lt;1&gt;.txt" in page.replace("\u00a0", " ")

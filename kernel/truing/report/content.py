@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import PurePath
 from typing import Any
 
 from truing.calculation import Calculation
@@ -57,7 +58,7 @@ def input_rows(setup: Setup) -> Iterator[InputRow]:
 def input_value(setup: Setup, item: InputField, value: Any) -> Value:
     """Write one input: a number in its printed unit, a choice, a switch, a file."""
     if item.kind == "file":
-        return Value(next((file for file in setup.files if file), "from a file"))
+        return Value(PurePath(setup.tables[item.name]["file"]).name if item.name in setup.tables else "default")
     if isinstance(value, bool):
         return Value("yes" if value else "no")
     if isinstance(value, str) or (isinstance(item.spec, Given) and item.spec.unit is None):
