@@ -41,13 +41,13 @@ def take_old_names(offer: Offer, reading: Reading) -> Iterator[tuple[tuple[str, 
         if ("inputs", new) in reading.values:
             yield ("inputs", old), f"'{old}' is the old name of '{new}', which is given too; leave '{old}' out"
         reading.values.setdefault(("inputs", new), value)
-        until = f"{offer.origin.name} {_next_major(offer.origin.version)}"
+        until = _next_major(offer.origin.name, offer.origin.version)
         reading.values["warnings", old] = f"'{old}' is now called '{new}'; the old name goes with {until}"
 
 
-def _next_major(version: str) -> str:
+def _next_major(plugin: str, version: str) -> str:
     major = version.split(".")[0]
-    return f"{int(major) + 1}.0" if major.isdigit() else "in its next major release"
+    return f"{plugin} {int(major) + 1}.0" if major.isdigit() else f"the next major release of {plugin}"
 
 
 def spread_faults(model: Model[Any, Any], document: Document, values: Values) -> Iterator[Fault]:
