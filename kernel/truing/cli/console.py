@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 P = ParamSpec("P")
 NARROWEST = 60
 GAP = "  "
+_ORDERS = re.compile("[\\x00-\\x08\\x0b-\\x1f\\x7f-\\x9f\\u202a-\\u202e\\u2066-\\u2069]")
 _PLACE = re.compile(r"[^\n]+?:\d+: ")
 
 
@@ -57,7 +58,7 @@ def utf8_streams() -> None:
 def out(text: str) -> None:
     """Print a result. Raises OutputError where it cannot be written, BrokenPipeError where nobody reads any more."""
     try:
-        print(text, flush=True)  # noqa: T201  # this is where printing is done
+        print(harmless(text), flush=True)  # noqa: T201  # this is where printing is done
     except BrokenPipeError:
         raise
     except OSError as error:
@@ -66,13 +67,19 @@ def out(text: str) -> None:
 
 
 def out_json(document: Any) -> None:
-    """Print one JSON document."""
-    out(json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False))
+    """Print one JSON document; characters that a terminal obeys are written as escapes, so that it reads back alike."""
+    text = json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False)
+    out(_ORDERS.sub(lambda found: f"\\u{ord(found[0]):04x}", text))
 
 
 def say(text: str) -> None:
     """Say something that is no result."""
-    print(text, file=sys.stderr)  # noqa: T201
+    print(harmless(text), file=sys.stderr)  # noqa: T201
+
+
+def harmless(text: str) -> str:
+    """Return a text without the characters that a terminal obeys: escapes, bells, turned writing; lines stay."""
+    return _ORDERS.sub("?", text)
 
 
 def settings_of(context: Any) -> Settings:
