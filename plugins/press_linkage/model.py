@@ -43,7 +43,7 @@ LINKS = {
     "upper_knee_length": "l_m",
     "lower_knee_length": "l_h",
 }
-COST = Price("1 / width", width="mm", unit="")
+COST = Price("1 / width", width="mm", unit="1/mm")
 
 
 def on_both(kind: str) -> list[str]:

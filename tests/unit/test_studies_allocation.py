@@ -9,7 +9,7 @@ from press_stand_in import PRESS
 from scipy.stats import norm
 from study_models import CHAIN, PRICED, STACK, Graded, Stack, setup_of, stack
 
-from truing import Allocation, Reliability, feasible
+from truing import Allocation, Reliability, Tolerance, feasible
 from truing.calculation import calculate
 from truing.declare.spreads import Off
 from truing.errors import UsageError
@@ -137,6 +137,17 @@ def test_machines_without_an_answer_are_said():
     assert written["probability"] <= 1 - tally.failed / 20_000
     lost = replace(found, sampled={"rule": tally})
     assert any(f"{tally.failed} of 20000 machines have no answer" in text for text in lost.warnings())
+
+
+def test_costs_are_in_the_unit_of_the_prices_and_in_1_per_mm_without_them():
+    bare = [replace_price(item, "") for item in PRICED.errors]
+    for model, unit in ((PRICED, "EUR"), (replace(PRICED, errors=bare), ""), (STACK, "1/mm")):
+        assert allotted(model, Allocation(draws=100)).as_json()["cost"]["unit"] == unit
+
+
+def replace_price(item: Tolerance, unit: str) -> Tolerance:
+    """The same tolerance with its price in another unit."""
+    return Tolerance(item.name, item.spread, price=replace(item.price, unit=unit))
 
 
 def twins(parts: Graded) -> Stack:

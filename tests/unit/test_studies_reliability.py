@@ -381,7 +381,7 @@ def test_the_sheet_tells_mean_and_extremes_from_the_nominal_result():
     assert (spread, first) == (pytest.approx(0.13, rel=0.01), pytest.approx(0.13, rel=1e-9))
     assert 3.5 * 0.13 < -smallest < 6 * 0.13
     assert 3.5 * 0.13 < largest < 6 * 0.13
-    assert "differences from the nominal" in table.note
+    assert "differences from the result without scatter" in table.note
 
 
 def test_a_goal_within_the_sampling_error_is_said():

@@ -102,7 +102,9 @@ def open_shop(
         for name, variance in whole.items()
     }
     means = {demand.name: float(straight[demand.name].mean) for demand in wanted}
-    return Shop(parts, tuple(wanted), means, fixed, price_unit or RECIPROCAL, price_unit is not None)
+    return Shop(
+        parts, tuple(wanted), means, fixed, RECIPROCAL if price_unit is None else price_unit, price_unit is not None
+    )
 
 
 def _part(

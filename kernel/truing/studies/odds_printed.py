@@ -102,7 +102,7 @@ def _note(odds: Odds) -> str:
 def _spreads(odds: Odds) -> Table:
     """Show mean and spread of every required result that is one number, each in its own unit.
 
-    Mean and extremes are told from the nominal result, where their digits matter.
+    Mean and extremes are told from the result without scatter, where their digits matter.
     """
     from truing.units import difference_unit, unit_text
 
@@ -119,7 +119,7 @@ def _spreads(odds: Odds) -> Table:
         spread = [printed_step(moments.sd, unit), printed_step(first, unit)]
         rows.append([result, unit_text(difference_unit(unit)), mean, *spread, *ends])
     columns = ("result", "unit", "mean", "standard deviation", "first order", "smallest", "largest")
-    note = "Mean, smallest and largest are differences from the nominal result."
+    note = "Mean, smallest and largest are differences from the result without scatter."
     return Table("Scatter of the results", columns, rows, note=note)
 
 
