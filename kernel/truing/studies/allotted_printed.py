@@ -136,7 +136,8 @@ def _drawn_words(allotted: Allotted) -> str:
         for low, high in (wilson(hits, tally.draws) for hits in tally.hits.values())
     )
     draws = max(tally.draws for tally in allotted.sampled.values())
-    return f"{draws} machines of each design on the exact model, 95 % intervals within ±{100 * half:.2g} percentage points."
+    within = f"95 % intervals within ±{100 * half:.2g} percentage points"
+    return f"{draws} machines of each design on the exact model, {within}."
 
 
 def _percent(value: float | None) -> float | None:
