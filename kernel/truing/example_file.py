@@ -11,9 +11,10 @@ from truing.declare.model import Model, Study
 from truing.declare.sources import Tolerance, Unknown
 from truing.errors import PluginError
 from truing.inputs_file.defaults import default_of, spread_text, toml_key, toml_value
-from truing.inputs_file.values import PURE, plain
+from truing.inputs_file.values import plain
 from truing.kernel import Offer
 from truing.setup import DEFAULT_SEED
+from truing.units.names import PURE
 
 WIDTH = 100
 HEAD = {"project": "", "drawing": "", "revision": "", "prepared_by": "", "checked_by": "", "approved_by": ""}

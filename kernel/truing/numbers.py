@@ -6,6 +6,8 @@ import math
 import re
 from typing import Any
 
+from truing.units.names import PURE
+
 ABSENT = "–"
 """What stands where there is no number: an input that was not given, a search that did not arrive."""
 
@@ -78,7 +80,7 @@ def _plain(value: Any) -> Any:
 
 def _is_bare(unit: str, value: Any) -> bool:
     """Tell whether a whole number stays one: counts have no unit."""
-    return unit in {"", "1", "-"} and _is_whole_type(value)
+    return unit in PURE and _is_whole_type(value)
 
 
 def pretty(text: str) -> str:

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
+from truing.units.names import PURE
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -106,7 +108,7 @@ def in_si(value: Any, unit: str | None, is_series: bool = False) -> Any:
         from truing.units import read_quantity
 
         return read_quantity(value, unit)
-    if isinstance(value, int) and unit in {"", "1", "-"}:
+    if isinstance(value, int) and unit in PURE:
         return value
     from truing.units import to_si
 

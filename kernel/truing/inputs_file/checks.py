@@ -12,8 +12,9 @@ from truing.declare.model import Model, Study
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Condition, Effect, Tolerance, Unknown
 from truing.errors import UnitError
-from truing.inputs_file.values import PURE, Reading, SentenceError, plain, read_input, read_number
+from truing.inputs_file.values import Reading, SentenceError, plain, read_input, read_number
 from truing.units.grammar import shown
+from truing.units.names import PURE
 
 Check = Callable[[Any, Reading], Any]
 

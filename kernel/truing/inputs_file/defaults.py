@@ -8,7 +8,8 @@ from typing import Any
 from truing.declare.fields import InputField
 from truing.declare.specs import Given
 from truing.declare.spreads import ByChoice, Drawn, Spread
-from truing.inputs_file.values import PURE, plain
+from truing.inputs_file.values import plain
+from truing.units.names import PURE
 
 
 def default_of(item: InputField) -> Any:

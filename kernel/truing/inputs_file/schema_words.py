@@ -8,7 +8,8 @@ from truing.declare.fields import InputField
 from truing.declare.model import Study
 from truing.declare.sources import Condition, Effect, Tolerance, Unknown
 from truing.inputs_file.defaults import default_of, spread_text
-from truing.inputs_file.values import PURE, bounds_in_words, plain
+from truing.inputs_file.values import bounds_in_words, plain
+from truing.units.names import PURE
 
 
 def described(item: InputField) -> str:

@@ -14,8 +14,7 @@ from truing.declare.fields import InputField
 from truing.declare.specs import Given, Loaded
 from truing.errors import TruingError, UnitError
 from truing.units.grammar import shown
-
-PURE = {"", "1", "-"}
+from truing.units.names import PURE
 
 
 class SentenceError(ValueError):

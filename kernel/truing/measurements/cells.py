@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 from truing.errors import UnitError
 from truing.measurements.csv_text import Faults, Header
 from truing.units.grammar import shown
+from truing.units.names import PURE
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-PURE = {"", "1", "-"}
 _NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
 _COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?|(?=[eE]|$))(?:[eE][+-]?\d+)?")
 _MISSING_WORDS = {"nan", "na", "n/a", "#n/a", "null", "none", "-"}

@@ -13,10 +13,11 @@ from truing.declare.fields import Axis, InputField
 from truing.declare.near_miss import near_miss
 from truing.inputs_file.values import Reading, broken_bound, read_input
 from truing.kernel import Offer
-from truing.measurements.cells import PURE, header_fault, read_cell
+from truing.measurements.cells import header_fault, read_cell
 from truing.measurements.csv_text import CsvFile, Header, opened
 from truing.setup import Setup
 from truing.units.grammar import shown
+from truing.units.names import PURE
 
 if TYPE_CHECKING:
     import numpy as np

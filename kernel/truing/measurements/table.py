@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from truing.errors import UnitError
-from truing.measurements.cells import PURE, header_fault, read_cell, read_cells
+from truing.measurements.cells import header_fault, read_cell, read_cells
 from truing.measurements.csv_text import Chunk, CsvFile, Header, opened
+from truing.units.names import PURE
 
 if TYPE_CHECKING:
     import numpy as np

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from truing.calculation import Calculation
-from truing.runs.inputs_written import PURE
 from truing.runs.provenance import Provenance
 from truing.setup import Setup, SwitchedOn
+from truing.units.names import PURE
 
 if TYPE_CHECKING:
     from truing.cases import CasesTable

@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from truing.declare.spreads import ByChoice, Drawn
 from truing.setup import Setup, SwitchedOn
+from truing.units.names import PURE
 
 if TYPE_CHECKING:
     from truing.declare.fields import InputField
     from truing.declare.model import Study
-
-PURE = {"", "1", "-"}
 
 
 def input_hash(setup: Setup) -> str:

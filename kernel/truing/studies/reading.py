@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from truing.declare.near_miss import near_miss
 from truing.errors import UnitError, UsageError
 from truing.setup import Setup
+from truing.units.names import PURE
 
 if TYPE_CHECKING:
     import numpy as np
@@ -74,7 +75,7 @@ def per(unit: str, source: str) -> str:
     from truing.units import difference_unit
 
     above, below = difference_unit(unit), difference_unit(source)
-    if below in {"", "1", "-"}:
+    if below in PURE:
         return above
     if any(sign in below for sign in "*/·- "):
         below = f"({below})"

@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from truing.errors import UnitError
-from truing.units.names import SPELLINGS
+from truing.units.names import PURE, SPELLINGS
 
 LONGEST = 200
 LARGEST_EXPONENT = 12
@@ -147,7 +147,7 @@ def parse(unit: str) -> Product:
     plain = normalised(unit)
     if plain[:1] == "[" and plain[-1:] == "]":
         plain = plain[1:-1].strip()
-    if plain in ("", "-", "1"):
+    if plain in PURE:
         return Product()
     if plain[:1] == "/":
         plain = "1" + plain

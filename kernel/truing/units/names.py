@@ -7,6 +7,9 @@ light) must not slip through.
 
 from __future__ import annotations
 
+PURE = frozenset({"", "1", "-"})
+"""How a declaration or a header writes that a number is a pure one."""
+
 # symbol: (definition, prefixes that may stand before it). A definition is the full name of a unit in pint or, if it
 # holds an operator or a digit, a unit text of our own. The order is the order of suggestions for a misspelt name.
 SYMBOLS: dict[str, tuple[str, str]] = {
