@@ -8,6 +8,7 @@ from typing import Any
 
 from truing.declare.fields import Axis, Found, Given, InputField, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary
+from truing.inputs_file.values import bounds_in_words
 from truing.kernel import Offer
 
 
@@ -43,13 +44,6 @@ def description(offer: Offer) -> dict[str, Any]:
     }
 
 
-def bounds_text(spec: Any) -> str:
-    """Return the bounds of an input in words: "above 0, at most 3"."""
-    words = {"above": "above", "below": "below", "at_least": "at least", "at_most": "at most"}
-    said = [f"{word} {getattr(spec, key):g}" for key, word in words.items() if getattr(spec, key, None) is not None]
-    return ", ".join([*said, *(["whole number"] if getattr(spec, "whole", False) else [])])
-
-
 def _input(item: InputField) -> dict[str, Any]:
     spec = item.spec
     default = spec.default if isinstance(spec, Given) else None
@@ -61,7 +55,7 @@ def _input(item: InputField) -> dict[str, Any]:
         "default": list(default) if isinstance(default, tuple) else default,
         "optional": item.is_optional,
         "choices": list(item.choices),
-        "bounds": bounds_text(spec),
+        "bounds": bounds_in_words(item, with_unit=False),
         "note": spec.note,
         "source": spec.source,
     }

@@ -102,8 +102,9 @@ def effects_of(model: Model[Any, Any], values: Values) -> tuple[SwitchedOn, ...]
     """Return the effects that are on, in the order of their declaration."""
     on = []
     for name, effect in model.effects.items():
-        stated = {unknown.name: values.get(("effects", name, unknown.name)) for unknown in effect.unknowns}
-        if any(value is None for value in stated.values()):
+        keys = {unknown.name: ("effects", name, unknown.name) for unknown in effect.unknowns}
+        stated = {unknown: float(values[key]) for unknown, key in keys.items() if key in values}
+        if len(stated) < len(keys):
             continue
         covariance = values.get(("effects", name, "covariance"), ())
         sds = {
@@ -113,7 +114,7 @@ def effects_of(model: Model[Any, Any], values: Values) -> tuple[SwitchedOn, ...]
         }
         if covariance:
             sds = {unknown: math.sqrt(covariance[place][place]) for place, unknown in enumerate(stated)} | sds
-        on.append(SwitchedOn(effect, {key: float(value) for key, value in stated.items()}, sds, covariance))  # type: ignore[arg-type]
+        on.append(SwitchedOn(effect, stated, sds, covariance))
     return tuple(on)
 
 

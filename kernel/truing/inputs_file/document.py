@@ -228,12 +228,13 @@ class _Repair:
 
     def inner(self, path: Path) -> dict[str, Any] | None:
         """Return the table at a path, made where it is missing, or None where a value stands."""
-        inner: Any = self.document.data
+        table = self.document.data
         for name in path:
-            inner = inner.setdefault(name, {})
+            inner = table.setdefault(name, {})
             if not isinstance(inner, dict):
                 return None
-        return inner  # type: ignore[no-any-return]  # a dict at every level
+            table = inner
+        return table
 
     def keep(self, path: Path, value: Any, statement: Statement) -> None:
         """Put a value in its place; a name that is taken is a fault."""

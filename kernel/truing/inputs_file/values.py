@@ -138,14 +138,15 @@ def _quantity(value: float, unit: str) -> str:
     return short if unit in PURE else f"{short} {unit}"
 
 
-def bounds_in_words(item: InputField) -> str:
+def bounds_in_words(item: InputField, *, with_unit: bool = True) -> str:
     """Return the bounds of an input as a phrase, such as "above 0 m, at most 2 m"; nothing where there are none."""
     spec = item.spec
     if not isinstance(spec, Given):
         return ""
     named = (("above", spec.above), ("below", spec.below), ("at least", spec.at_least), ("at most", spec.at_most))
-    words = [f"{word} {_quantity(bound, item.unit)}" for word, bound in named if bound is not None]
-    return ", ".join([*words, "whole"] if spec.whole else words)
+    unit = item.unit if with_unit else ""
+    words = [f"{word} {_quantity(bound, unit)}" for word, bound in named if bound is not None]
+    return ", ".join([*words, "whole number"] if spec.whole else words)
 
 
 def _switch(item: InputField, raw: Any) -> bool:

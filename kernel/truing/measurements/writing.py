@@ -57,7 +57,8 @@ def _write(stream: TextIO, headers: Sequence[str], columns: Sequence[Iterable[An
 
 def _plain(column: Any) -> Iterable[Any]:
     """Return plain Python values, which are written much faster than numpy's."""
-    return column.tolist() if hasattr(column, "tolist") else column  # type: ignore[no-any-return]
+    plain: Iterable[Any] = column.tolist() if hasattr(column, "tolist") else column
+    return plain
 
 
 def _cell(value: Any) -> str:

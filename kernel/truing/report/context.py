@@ -17,8 +17,6 @@ from truing.runs.provenance import Provenance
 if TYPE_CHECKING:
     from truing.formulas import Formula
 
-__all__ = ["ComparedRow", "Sheet"]
-
 
 @dataclass(frozen=True)
 class Value:

@@ -12,8 +12,9 @@ from truing.formulas.symbols import printable
 from truing.formulas.write_latex import LatexWriter
 from truing.formulas.write_mathml import MathMLWriter
 from truing.numbers import pretty, with_unit
+from truing.published import ComparedRow
 from truing.report import equations
-from truing.report.context import ComparedRow, Entry, Equation, FigureView, Sheet, TableView, Value
+from truing.report.context import Entry, Equation, FigureView, Sheet, TableView, Value
 from truing.report.markdown import Raw, escaped
 from truing.report.sheet import make_sheet
 from truing.report.templates import template_folder
@@ -256,6 +257,3 @@ def _table_markdown(table: TableView) -> Raw:
 def _cell(text: str, is_marked: bool) -> str:
     inner = escaped(pretty(text))
     return f"**{inner}**" if is_marked and inner else inner
-
-
-__all__: list[str] = ["html_of", "markdown_of", "sheet_html", "sheet_markdown"]

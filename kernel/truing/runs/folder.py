@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from truing.errors import OutputError, UnknownPluginError
 from truing.runs.documents import SCHEMA, large_arrays, results_document
-from truing.runs.inputs_written import complete_inputs, input_hash
+from truing.runs.inputs_written import complete_inputs
 
 if TYPE_CHECKING:
     from truing.calculation import Calculation
@@ -23,10 +23,6 @@ if TYPE_CHECKING:
     from truing.kernel import Offer
     from truing.runs.provenance import Provenance
 
-__all__ = [
-    "complete_inputs", "demand_place", "input_hash", "is_run", "json_text", "load_run", "results_document",
-    "write_folder", "write_run",
-]  # fmt: skip
 RUN_SCHEMA = "truing.run/1"
 
 

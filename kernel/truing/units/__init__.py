@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
-    "Quantity", "check_unit", "demand_dimension", "from_si", "human_dimension", "pint_quantity", "read_quantity",
-    "registry", "same_dimension", "split_quantity", "to_si", "unit_factor", "unit_latex", "unit_text",
+    "Quantity", "check_unit", "demand_dimension", "difference_unit", "from_si", "human_dimension", "pint_quantity",
+    "read_quantity", "registry", "same_dimension", "split_quantity", "to_si", "unit_factor", "unit_latex", "unit_text",
 ]  # fmt: skip
 
 _DIMENSIONS = {
