@@ -117,8 +117,13 @@ def _variances(found: Sensitivities) -> dict[str, float]:
 
 
 def chances(odds: Odds) -> Chances:
-    """Both reliabilities to first order."""
+    """Both reliabilities to first order, and how far effects move the press out of the middle of its limits."""
+    offset = {
+        demand.name: float(odds.nominal[demand.result] - 0.5 * (demand.low + demand.high)) for demand in odds.demands
+    }
     return Chances(
+        position_offset=offset.get("slider_position", nan),
+        tilt_offset=offset.get("slider_tilt", nan),
         position_reliability=odds.analytic.get("slider_position", nan),
         tilt_reliability=odds.analytic.get("slider_tilt", nan),
     )

@@ -155,13 +155,22 @@ class Cycle:
 class Chances:
     """Both reliabilities with the tolerances as they are, first order as in the paper."""
 
+    position_offset: Float = found(
+        "um", symbol="c_S", note="slider out of the middle of its limits, by effects",
+        method="position of this press less its position without effects",
+    )  # fmt: skip
+    tilt_offset: Float = found(
+        "urad", symbol="c_theta", note="tilt out of the middle of its limits, by effects",
+        method="tilt of this press less its tilt without effects",
+    )  # fmt: skip
     position_reliability: Float = found(
         "", symbol="R_S", note="chance that the position error stays within its limit",
-        formula="2 * Phi(position_limit / position_sd) - 1",
+        formula="Phi((position_limit - position_offset) / position_sd) - "
+        "Phi((-position_limit - position_offset) / position_sd)",
     )  # fmt: skip
     tilt_reliability: Float = found(
         "", symbol="R_theta", note="chance that the tilt stays within its limit",
-        formula="2 * Phi(permitted_tilt / tilt_sd) - 1",
+        formula="Phi((permitted_tilt - tilt_offset) / tilt_sd) - Phi((-permitted_tilt - tilt_offset) / tilt_sd)",
     )  # fmt: skip
 
 

@@ -255,6 +255,16 @@ def test_link_heating_changes_every_study() -> None:
     assert (second - first) * 1e6 == pytest.approx(40 * 49.9, rel=2e-3)
 
 
+def test_heat_moves_the_press_out_of_the_middle_of_its_limits() -> None:
+    """0.3 K of 49.9 um/K; the chance that the paper's 25.48 um of scatter stays within 20 um of the cold press."""
+    warm = heated(0.3, reading="printed").answers
+    assert warm["position_offset"] * 1e6 == pytest.approx(0.3 * 49.9, abs=0.02)
+    assert warm["tilt_offset"] == pytest.approx(0.0, abs=1e-15)
+    normal = NormalDist(0.3 * 49.9, 25.48)
+    assert warm["position_reliability"] == pytest.approx(normal.cdf(20) - normal.cdf(-20), abs=5e-4)
+    assert ran(reading="printed").answers["position_offset"] == 0.0
+
+
 def test_link_heating_does_nothing_where_it_vanishes() -> None:
     cold = ran(reading="printed").answers
     for run in (heated(0.0, reading="printed"), heated(40.0, expansion=0.0, reading="printed")):
