@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,7 +20,7 @@ from truing.kernel import Kernel, Offer
 from truing.measurements import read_cases
 from truing.published import compare_published
 from truing.report.render import css_text, html_of, markdown_of, sheet_html, sheet_markdown
-from truing.report.sheet import make_sheet
+from truing.report.sheet import logo_of, make_sheet
 from truing.report.templates import template_folder
 from truing.runs.provenance import Provenance, provenance_of
 from truing.setup import Setup
@@ -368,3 +369,10 @@ def test_a_data_file_is_named_on_the_sheet(tmp_path: Path) -> None:
     setup = setup_from_text(inputs, kernel.offer("worn_surface"), file="inputs.toml", folder=tmp_path)
     page = sheet_html(calculate(setup), provenance=provenance_of(setup))
     assert "flank &lt;1&gt;.txt" in page.replace("\u00a0", " ")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
+def test_a_logo_that_is_a_pipe_does_not_keep_the_sheet_waiting(setup: Setup, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "sign.png")
+    piped = replace(setup, head={"logo": "sign.png"}, file=str(tmp_path / "in.toml"))
+    assert logo_of(piped) == ("", "the logo 'sign.png' is left out: it is no ordinary file")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -196,6 +197,13 @@ def test_a_place_below_a_file_is_refused_in_one_sentence(tmp_path: Path) -> None
         demand_place(tmp_path / "file" / "runs" / "one")
     with pytest.raises(OutputError, match=r"is a file; a run is a folder"):
         demand_place(tmp_path / "file")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need a privilege there")
+def test_a_link_that_leads_nowhere_is_no_place(tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    with pytest.raises(OutputError, match=r"link: is a link that leads nowhere; name another place"):
+        demand_place(tmp_path / "link")
 
 
 def test_a_place_that_is_free_is_not_touched_by_asking(tmp_path: Path) -> None:

@@ -111,8 +111,11 @@ def logo_of(setup: Setup) -> tuple[str, str]:
     kind = PICTURES.get(Path(name).suffix.lower())
     if kind is None:
         return "", f"the logo '{name}' is left out: it must be a {', '.join(PICTURES)} file"
+    path = Path(setup.file).parent / name
     try:
-        with (Path(setup.file).parent / name).open("rb") as stream:
+        if path.exists() and not path.is_file():  # a pipe would keep the sheet waiting
+            return "", f"the logo '{name}' is left out: it is no ordinary file"
+        with path.open("rb") as stream:
             content = stream.read(LARGEST_LOGO + 1)
     except (OSError, ValueError) as error:
         return "", f"the logo '{name}' is left out: {getattr(error, 'strerror', None) or error}"

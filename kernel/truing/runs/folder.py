@@ -107,7 +107,9 @@ def _demand_place(folder: Path) -> None:
         if not is_run(folder):
             kind = "an existing folder but no run of ours" if any(folder.iterdir()) else "an existing empty folder"
             raise OutputError(f"{folder}: is {kind}, so it is left alone; name another folder or remove this one")
-    elif folder.exists() or folder.is_symlink():
+    elif folder.is_symlink() and not folder.exists():
+        raise OutputError(f"{folder}: is a link that leads nowhere; name another place or remove this one")
+    elif folder.exists():
         raise OutputError(f"{folder}: is a file; a run is a folder, name another place")
     for parent in folder.absolute().parents:
         if parent.is_dir():
