@@ -180,6 +180,13 @@ def test_a_reading_never_fails_a_machine():
     assert odds_of(replace(setup_of(CHAIN), effects=(on,))).probability == odds_of(setup_of(CHAIN)).probability
 
 
+def test_one_calibrated_machine_is_not_the_design():
+    setup = setup_of(CHAIN)
+    one = replace(setup, calibrated={"first": 31e-3})
+    assert calculate(replace(one, studies=())).answers == calculate(replace(setup, studies=())).answers
+    assert odds_of(one).as_json() == odds_of(setup).as_json()
+
+
 def test_where_nothing_scatters_chance_is_certain():
     quiet = replace(setup_of(CHAIN), spreads={name: Off() for name in CHAIN.tolerances})
     odds = odds_of(quiet)
