@@ -9,11 +9,11 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from truing.blame import home_of, place_of
 from truing.declare.batch import watching
 from truing.declare.fields import Axis, Kind, read, with_values
 from truing.declare.near_miss import near_miss
 from truing.errors import InfeasibleError, PluginError, TruingError, UsageError
+from truing.kernel.blame import home_of, place_of
 from truing.setup import Setup, SwitchedOn
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ import truing
 from truing import Allocation, Kernel, Record, Reliability, Sensitivity, Sweep, Table, errors, hookspecs
 from truing.errors import TruingError, UnitError
 from truing.evaluate import evaluate
-from truing.loading import load_file
+from truing.kernel.loading import load_file
 from truing.setup import SwitchedOn, default_setup
 from truing.studies.allocation import Allotted
 from truing.studies.checks import plain_checks

@@ -31,7 +31,7 @@ def run(
     as_json: AsJson = False,
 ) -> int:
     """Run the calculation and its studies and write the calculation sheet."""
-    from truing.culprit import told_by_line
+    from truing.inputs_file.culprit import told_by_line
     from truing.report.run import RunOrder, perform
 
     settings = settings_of(context)

@@ -28,9 +28,9 @@ def table(
     changed: Changed = None,
 ) -> int:
     """Print what the gauge would show at every row: the file's columns, then the results, units in the header."""
-    from truing.culprit import told_by_line
     from truing.gauge import shown_by_gauge
     from truing.inputs_file import read_setup
+    from truing.inputs_file.culprit import told_by_line
     from truing.measurements import read_rows, write_table
 
     settings = settings_of(context)

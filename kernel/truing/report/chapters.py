@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from truing.blame import spoken_place
 from truing.calculation import Calculation
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.declare.fields import Axis, Found, ResultField
 from truing.declare.model import Section
 from truing.errors import PluginError
+from truing.kernel.blame import spoken_place
 from truing.numbers import format_value
 from truing.report.context import BlockView, Chapter, Entry, FigureView, TableView, Value
 from truing.report.equations import equation_of, value_text

@@ -13,9 +13,9 @@ from html import escape
 from io import StringIO
 from typing import Any
 
-from truing.blame import spoken_place
 from truing.errors import PluginError
 from truing.formulas.symbols import printable
+from truing.kernel.blame import spoken_place
 
 STYLE = {
     "svg.fonttype": "path",

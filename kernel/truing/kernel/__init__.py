@@ -9,12 +9,12 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from truing.blame import Place, line_of, place_of
 from truing.declare.model import Model, Section
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Effect, Tolerance
 from truing.errors import DeclarationError, PluginError, UnknownPluginError
-from truing.loading import check_hooks, load_file
+from truing.kernel.blame import Place, line_of, place_of
+from truing.kernel.loading import check_hooks, load_file
 
 if TYPE_CHECKING:
     from pluggy import HookImpl

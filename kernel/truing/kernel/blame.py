@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 Place = tuple[str, int | None]
-_HOUSE = Path(__file__).parent
+_HOUSE = Path(__file__).parents[1]
 _MACHINERY = {"pluggy", "importlib", "matplotlib", "numpy", "scipy"}
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from truing.blame import line_of
 from truing.declare.near_miss import near_miss
 from truing.errors import DeclarationError, UnknownPluginError
+from truing.kernel.blame import line_of
 
 if TYPE_CHECKING:
     from pluggy import PluginManager
