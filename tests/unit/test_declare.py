@@ -688,3 +688,17 @@ def test_a_table_is_an_axis_too() -> None:
     fields = result_fields(Groups)
     assert fields["group"].spec.is_table  # type: ignore[union-attr]
     assert fields["size"].along == "group"
+
+
+def test_a_mean_that_is_chance_is_no_shift() -> None:
+    """Draws about zero leave the nominal where it is; a real shift of a tenth of a standard deviation stays."""
+
+    def about_zero(rng: np.random.Generator, count: int) -> dict[str, Any]:
+        return {"height": 1e-6 * rng.standard_normal(count)}
+
+    def shifted(rng: np.random.Generator, count: int) -> dict[str, Any]:
+        return {"height": 1e-6 * (0.1 + rng.standard_normal(count))}
+
+    target = Target("height", 0.01, "mm", {}.__getitem__)
+    assert drawn(about_zero).resolve(target).mean == 0.01
+    assert drawn(shifted).resolve(target).mean - 0.01 == pytest.approx(1e-7, rel=0.2)

@@ -125,9 +125,8 @@ def test_unknowns_of_effects_that_are_on_are_sources():
 
 
 def test_sources_that_scatter_together_have_the_variance_of_their_sum():
-    assert found_in(setup_of(JOINT)).sd["total"] == pytest.approx(
-        0.5, rel=0.03
-    )  # 4096 draws stand for the joint spread
+    # 65536 draws stand for the joint spread: a standard error of 0.3 %
+    assert found_in(setup_of(JOINT)).sd["total"] == pytest.approx(0.5, rel=0.01)
 
 
 def test_without_tolerances_every_number_is_a_source():

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 Shape = Literal["normal", "uniform", "lognormal"]
 SIGMAS_IN_BAND = 6.0
+FIXED_DRAWS = 2**16
+"""How often a spread that is drawn by a function is drawn to know its mean and standard deviation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,14 +227,19 @@ class Drawn:
         return f"drawn by {self.function.__name__}"
 
     def resolve(self, target: Target) -> Distribution:
-        """Return a normal stand-in with the mean and standard deviation of 4096 fixed draws."""
+        """Return a normal stand-in with the standard deviation of fixed draws, and their mean where it is not chance.
+
+        A mean within four standard errors of the nominal is the nominal.
+        """
         import numpy as np
 
-        drawn = self.function(np.random.default_rng(0), 4096)
+        drawn = self.function(np.random.default_rng(0), FIXED_DRAWS)
         if target.name not in drawn:
             raise DeclarationError(f"{self.function.__name__} draws {', '.join(drawn)}, but not '{target.name}'")
         deviations = np.asarray(drawn[target.name], dtype=float)
-        return Distribution(target.nominal + float(deviations.mean()), float(deviations.std(ddof=1)))
+        shift, sd = float(deviations.mean()), float(deviations.std(ddof=1))
+        is_chance = abs(shift) <= 4 * sd / FIXED_DRAWS**0.5
+        return Distribution(target.nominal + (0.0 if is_chance else shift), sd)
 
 
 def normal(*, sd: str = "", band: str = "", at_radius: str = "") -> Band:

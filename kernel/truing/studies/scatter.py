@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from truing.declare.spreads import Distribution, Drawn
+from truing.declare.spreads import FIXED_DRAWS, Distribution, Drawn
 from truing.errors import UsageError
 from truing.evaluate import effect_column
 from truing.setup import Setup, SwitchedOn
@@ -21,8 +21,6 @@ from truing.setup import Setup, SwitchedOn
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
-
-FIXED_DRAWS = 4096
 
 
 @dataclass(frozen=True, eq=False)
