@@ -373,6 +373,19 @@ def test_checks_compare_the_sampling_with_the_goal():
     assert "take the Monte Carlo" in odds.blocks()[0].note
 
 
+def test_the_table_of_the_sheet_is_in_percent():
+    odds = odds_of(setup_of(CHAIN))
+    table = odds.blocks()[0]
+    assert table.columns == ("limit kept", "goal", "Monte Carlo", "95 % from", "to", "first order", "FORM")
+    assert table.units == ("", "%", "%", "%", "%", "%", "%")
+    gap = 2 * norm.cdf(0.2 / 0.13) - 1
+    noise = 1.96 * sqrt(gap * (1 - gap) / odds.draws)
+    _, goal, sampled, low, high, first, tangent = table.rows[0]
+    assert (goal, first, tangent) == (pytest.approx(85), pytest.approx(100 * gap), pytest.approx(100 * gap))
+    assert sampled == pytest.approx(100 * gap, abs=200 * noise)
+    assert (high - sampled, sampled - low) == pytest.approx((100 * noise, 100 * noise), rel=0.05)
+
+
 def test_a_check_says_how_its_probability_was_found():
     assert odds_of(setup_of(CHAIN)).checks()[0].method == "Monte Carlo, 40000 machines"
     assert odds_of(setup_of(CHAIN), Reliability(method=("first_order",))).checks()[0].method == "first order"
