@@ -101,11 +101,25 @@ def test_reliabilities_synthesis_and_least_cost(reading: str, calc: Any, tmp_pat
         assert [ours["probabilities"][name] for name in CHECKS] == pytest.approx(list(theirs[2]), abs=1e-9)
     assert results["position_reliability_final"]["value"] == pytest.approx(steps[-1][2][0], abs=1e-9)
     assert results["tilt_reliability_final"]["value"] == pytest.approx(steps[-1][2][1], abs=1e-9)
+    _scatter_is_written_in_its_units(found, slopes, reading)
     best, least = by_hand.cheapest(slopes, reading), allocation["least_cost"]
     assert least["reached"] == allocation["reached"] == (best is not None)
     if best is not None:
         assert least["cost"] == {"value": pytest.approx(best[0], rel=1e-12), "unit": "1/mm"}
         assert least["tolerances"] == best[1]
+
+
+def _scatter_is_written_in_its_units(found: dict[str, Any], slopes: Any, reading: str) -> None:
+    """Standard deviations of the sources, as results.json states them, and of both results to first order."""
+    scatter = by_hand.deviations(reading, dict.fromkeys(by_hand.LINKS, "IT7"))
+    stated = {name: entry for item in found["tolerances"].values() for name, entry in item["on"].items()}
+    assert {name: entry["sd"] * SI[entry["unit"]] for name, entry in stated.items()} == pytest.approx(
+        scatter, rel=1e-12
+    )
+    for place, name in enumerate(CHECKS):
+        entry = found["studies"]["reliability"][name]
+        sd = sqrt(sum((slopes[source][place] * size) ** 2 for source, size in scatter.items()))
+        assert entry["first_order_sd"] * SI[entry["unit"]] == pytest.approx(sd, rel=1e-8)
 
 
 @READINGS

@@ -59,6 +59,16 @@ def test_the_coefficients_of_table_4():
     assert allotted(PRESS).coefficients == pytest.approx(COEFFICIENTS, rel=6e-4)
 
 
+@pytest.mark.parametrize("weights", [(1.0, 1.0), (3.0, 1.0), (0.0, 2.0)])
+def test_coefficients_weigh_sensitivity_and_cost(weights):
+    """Sensitivities 1, 1.5 and -0.5, whose sign does not count; IT9 is 87, 62 and 36 um (ISO 286-1)."""
+    first, second = weights
+    parts = {"large": (1.5 / 1.0, 62 / 87), "middle": (1.0, 1.0), "small": (1.5 / 0.5, 62 / 36)}
+    expected = {name: (first * x + second * c) / (first + second) for name, (x, c) in parts.items()}
+    found = allotted(STACK, Allocation(draws=100, weights=weights))
+    assert found.coefficients == pytest.approx(expected, rel=1e-9)
+
+
 def test_the_least_cost_skips_what_hardly_matters():
     """Section 5: six steps on three links reach 0.881 and 0.997."""
     least = allotted(PRESS).least_cost
