@@ -8,7 +8,7 @@ from study_models import CHAIN, UNIFORMS, WEAR, setup_of
 
 from truing import Require
 from truing.calculation import calculate
-from truing.studies.checks import margin_of
+from truing.studies.checks import chance_check, margin_of
 
 
 def check_of(model, require, **values):
@@ -23,6 +23,12 @@ def check_of(model, require, **values):
 )  # fmt: skip
 def test_margin_is_positive_where_it_is_safe(value: float, limit: float, at_least: bool, margin: float) -> None:
     assert margin_of(value, limit, at_least=at_least) == pytest.approx(margin)
+
+
+@pytest.mark.parametrize(("chance", "passed"), [(0.9, True), (0.8999, False), (0.9001, True)])
+def test_a_chance_below_its_goal_fails_by_however_little(chance: float, passed: bool) -> None:
+    check = chance_check("gap", chance, 0.9)
+    assert (check.passed, check.margin >= 0) == (passed, passed)
 
 
 @pytest.mark.parametrize("kind", ["at_most", "at_least"])

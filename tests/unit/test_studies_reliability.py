@@ -95,6 +95,19 @@ def test_the_interval_is_wilsons(hits, draws, low, high):
     assert wilson(draws - hits, draws) == pytest.approx((1 - high, 1 - low), abs=5e-5)
 
 
+def test_the_standard_error_is_that_of_a_share():
+    odds = odds_of(setup_of(CHAIN))
+    share = odds.probability["gap"]
+    assert odds.as_json()["gap"]["standard_error"] == pytest.approx(sqrt(share * (1 - share) / 40_000), rel=1e-12)
+
+
+@pytest.mark.parametrize(("low", "high"), [(8.0, 9.0), (-9.0, -8.0)])
+def test_both_tails_keep_their_digits(low, high):
+    """Phi(-8) - Phi(-9): 6.2209605742718e-16 - 1.1285884059538e-19 (tables of the normal distribution)."""
+    expected = 6.2209605742718e-16 - 1.1285884059538e-19
+    assert normal_chance(0.0, 1.0, low, high) == pytest.approx(expected, rel=1e-10)
+
+
 # ---- Monte Carlo --------------------------------------------------------------------------------------------------
 
 
