@@ -119,7 +119,7 @@ def _scatter_is_written_in_its_units(found: dict[str, Any], slopes: Any, reading
     for place, name in enumerate(CHECKS):
         entry = found["studies"]["reliability"][name]
         sd = sqrt(sum((slopes[source][place] * size) ** 2 for source, size in scatter.items()))
-        assert entry["first_order_sd"] * SI[entry["unit"]] == pytest.approx(sd, rel=1e-8)
+        assert entry["first_order_sd"] * SI[entry["unit"]] == pytest.approx(sd, rel=1e-8, abs=0.0)
 
 
 @READINGS

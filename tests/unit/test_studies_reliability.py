@@ -105,7 +105,7 @@ def test_the_standard_error_is_that_of_a_share():
 def test_both_tails_keep_their_digits(low, high):
     """Phi(-8) - Phi(-9): 6.2209605742718e-16 - 1.1285884059538e-19 (tables of the normal distribution)."""
     expected = 6.2209605742718e-16 - 1.1285884059538e-19
-    assert normal_chance(0.0, 1.0, low, high) == pytest.approx(expected, rel=1e-10)
+    assert normal_chance(0.0, 1.0, low, high) == pytest.approx(expected, rel=1e-10, abs=0.0)
 
 
 # ---- Monte Carlo --------------------------------------------------------------------------------------------------
