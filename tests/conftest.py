@@ -1,33 +1,14 @@
 """What tests share: the command line, here or as a process of its own, and the strangers' plugins."""
 
-import os
-import shutil
-import subprocess
 import sys
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
-TESTS = Path(__file__).parent
-ROOT = TESTS.parent
-GUESTS = ("screw_joint", "broken_guest")
+from shared import GUESTS, TESTS, Answer, Calc, copied_guest, process
 
 collect_ignore = ["third_party", "data"]
 sys.path += [str(TESTS / "data"), str(TESTS / "data" / "gear_record")]
-
-
-@dataclass(frozen=True)
-class Answer:
-    """What a command answered: exit code, results, and everything else that was said."""
-
-    code: int
-    out: str
-    err: str
-
-
-Calc = Callable[..., Answer]
 
 
 @pytest.fixture
@@ -55,29 +36,6 @@ def calc_process(tmp_path: Path) -> Calc:
         return process([sys.executable, "-m", "truing", *map(str, arguments)], cwd, more)
 
     return run
-
-
-def process(command: list[str], cwd: Path, more: Mapping[str, str] | None = None) -> Answer:
-    """Run a command, speaking UTF-8, outside of the project's folder."""
-    environment = {name: value for name, value in os.environ.items() if name not in {"PYTHONPATH", "COLUMNS"}}
-    done = subprocess.run(
-        command,
-        cwd=cwd,
-        env={**environment, "PYTHONUTF8": "1", **(more or {})},
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        timeout=900,
-        check=False,
-    )
-    return Answer(done.returncode, done.stdout, done.stderr)
-
-
-def copied_guest(name: str, folder: Path) -> Path:
-    """Copy a stranger's project, so that building it leaves nothing behind."""
-    target = folder / name
-    shutil.copytree(TESTS / "third_party" / name, target, ignore=shutil.ignore_patterns("__pycache__"))
-    return target
 
 
 @pytest.fixture(scope="session")

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from block import write_block
 
-from conftest import Answer, Calc
+from shared import Answer, Calc
 
 DATA = Path(__file__).parents[1] / "data"
 PIN = DATA / "pin_wear.py"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from conftest import Calc
+from shared import Calc
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 CASES = "case;load [kN];probe_temperature [degC];note\nlight;0,14;20;\nheavy;2,296;;keep\nnormal;;30;\n"

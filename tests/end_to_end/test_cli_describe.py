@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
-from conftest import Calc
+from shared import Calc
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 

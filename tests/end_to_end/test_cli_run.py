@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from block import write_block
 
-from conftest import Answer, Calc, process
+from shared import Answer, Calc, process
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 FILES = ["inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md"]

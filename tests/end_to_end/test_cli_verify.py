@@ -7,7 +7,7 @@ from pathlib import Path
 
 from block import write_block
 
-from conftest import Calc
+from shared import Calc
 
 RIGHT = 'published=[Published(name="drag", result="drag", value=20.0, unit="N", where="p. 3")]'
 STATED = 'published=[Published(name="drag", result="drag", value=25.0, unit="N", verdict="differs", why="a misprint")]'

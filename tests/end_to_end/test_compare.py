@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from conftest import Calc
+from shared import Calc
 from truing.runs.comparison import Change, changes, differing
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"

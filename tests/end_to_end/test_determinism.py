@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from conftest import Calc
+from shared import Calc
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 

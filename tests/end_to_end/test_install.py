@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from conftest import GUESTS, ROOT, Answer, copied_guest, process
+from shared import GUESTS, ROOT, Answer, copied_guest, process
 
 pytestmark = pytest.mark.install
 OURS = {path.name for path in (ROOT / "plugins").iterdir() if (path / "__init__.py").is_file()}

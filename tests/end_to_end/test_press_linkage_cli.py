@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from conftest import Answer, Calc, process
+from shared import Answer, Calc, process
 
 DEVIATIONS = (
     "crank_radius", "rod_length", "knee_drive_length", "upper_knee_length", "lower_knee_length", "slider_half_width",

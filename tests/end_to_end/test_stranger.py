@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from conftest import ROOT, TESTS, Answer, Calc, copied_guest, process
+from shared import ROOT, TESTS, Answer, Calc, copied_guest, process
 
 BROKEN = "plugin 'broken_guest' 0.0.7: IndexError: list index out of range"
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from conftest import Answer, Calc
+from shared import Answer, Calc
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 Table = Callable[..., Answer]

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import truing
-from conftest import ROOT, Answer, process
+from shared import ROOT, Answer, process
 
 CODE = [*sorted((ROOT / "kernel").rglob("*.py")), *sorted((ROOT / "plugins").rglob("*.py"))]
 PACKAGES = sorted(path.parent.name for path in (ROOT / "plugins").glob("*/__init__.py"))
