@@ -117,7 +117,7 @@ def _variances(found: Sensitivities) -> dict[str, float]:
 
 
 def chances(odds: Odds) -> Chances:
-    """Both reliabilities to first order, and how far effects move the press out of the middle of its limits."""
+    """Both reliabilities to first order, and how far the press is out of the middle of its limits."""
     offset = {
         demand.name: float(odds.nominal[demand.result] - 0.5 * (demand.low + demand.high)) for demand in odds.demands
     }

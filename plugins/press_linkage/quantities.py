@@ -156,12 +156,12 @@ class Chances:
     """Both reliabilities with the tolerances as they are, first order as in the paper."""
 
     position_offset: Float = found(
-        "um", symbol="c_S", note="slider out of the middle of its limits, by effects",
-        method="position of this press less its position without effects",
+        "um", symbol="c_S", note="slider out of the middle of its limits",
+        method="position of this press less that of the nominal mechanism; by stated deviations and effects",
     )  # fmt: skip
     tilt_offset: Float = found(
-        "urad", symbol="c_theta", note="tilt out of the middle of its limits, by effects",
-        method="tilt of this press less its tilt without effects",
+        "urad", symbol="c_theta", note="tilt out of the middle of its limits",
+        method="tilt of this press; by stated deviations and effects",
     )  # fmt: skip
     position_reliability: Float = found(
         "", symbol="R_S", note="chance that the position error stays within its limit",

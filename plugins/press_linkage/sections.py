@@ -155,9 +155,8 @@ SECTIONS = [
         "variance_links", "variance_joints_along", "variance_joints_across", "variance_other", "position_sd", "tilt_sd",
         "position_offset", "tilt_offset", "position_reliability", "tilt_reliability",
         text="First order, as in the paper; the study 'reliability' below draws machines on the exact kinematics. The "
-        "limits are measured from the position and the tilt of the press as the inputs state it: a deviation that is "
-        "stated there moves their middle and does not count against them (the results slider_shift and slider_tilt "
-        "show it), an effect that is on does.",
+        "limits are measured from the nominal mechanism: a deviation that the inputs state and an effect that is on "
+        "move the press out of their middle.",
         blocks=variances,
     ),
     Section(

@@ -409,3 +409,15 @@ def test_crank_angles_may_be_unwrapped() -> None:
     """A record of many turns counts on: the same place after each."""
     rows = evaluate_rows(default_setup(PRESS_LINKAGE), {"crank_angle": np.radians([-40.0, 320.0, 3560.0])}, 3)
     assert rows.results["slider_position"] == pytest.approx(3.53002, abs=5e-6)  # reference value at -40 degree, m
+
+
+def test_a_stated_deviation_counts_against_the_limits() -> None:
+    """A lower knee link 0.1 mm long on one side tilts the slider by 1.1294 * 0.1 mm / 3.2 m, the limit is 23 urad."""
+    bent = ran(reading="printed", lower_knee_length_deviation_1="0.1 mm")
+    tilt = 1.129368 * 0.1e-3 / 3.2
+    assert bent.answers["tilt_offset"] == pytest.approx(tilt, rel=1e-4)
+    assert bent.answers["position_offset"] == pytest.approx(1.129368 * 0.1e-3 / 2, rel=1e-4)
+    law = NormalDist(tilt, ran(reading="printed").answers["tilt_sd"])
+    limit = bent.answers["permitted_tilt"]
+    assert bent.answers["tilt_reliability"] == pytest.approx(law.cdf(limit) - law.cdf(-limit), abs=1e-4)
+    assert not bent.passed

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from truing.declare.fields import in_si
+from truing.declare.fields import in_si, with_values
 from truing.declare.goals import Require
 from truing.evaluate import evaluate
 from truing.setup import Setup
@@ -56,11 +56,25 @@ def _limit(require: Require, others: list[Require], setup: Setup, answers: dict[
 
 
 def of_design(setup: Setup, result: str, answers: dict[str, Any]) -> Any:
-    """Return a result of the design itself, from which ``within`` is measured: effects are no part of it."""
+    """Return a result of the design itself, from which ``within`` is measured.
+
+    No part of the design are effects that are on, and deviations that the inputs state: inputs with a tolerance whose
+    declared default is 0.
+    """
     acts = any(item.effect.place != "reading" for item in setup.effects)
-    if not acts or result not in setup.model.own_result_fields:
+    deviating = dict.fromkeys(_deviations(setup), 0.0)
+    if not (acts or deviating) or result not in setup.model.own_result_fields:
         return answers[result]
-    return setup.model.read_results(evaluate(replace(setup, effects=())))[result]
+    design = replace(setup, effects=(), inputs=with_values(setup.inputs, deviating))
+    return setup.model.read_results(evaluate(design))[result]
+
+
+def _deviations(setup: Setup) -> list[tuple[str, ...]]:
+    """Return the paths of the deviations that are not 0."""
+    fields = setup.model.input_fields
+    names = {name for tolerance in setup.model.tolerances.values() for name in tolerance.on if name in fields}
+    sockets = [fields[name] for name in sorted(names) if getattr(fields[name].spec, "default", None) == 0]
+    return [item.path for item in sockets if setup.nominal(item.name) != 0]
 
 
 def limit_amount(require: Require, setup: Setup, answers: dict[str, Any]) -> Any:
