@@ -113,7 +113,7 @@ def test_the_chance_is_counted_on_the_exact_kinematics(run: Callable[..., Found]
             assert low < item["probability"] < high
 
 
-def test_the_slider_at_the_crank_angles_of_the_dossier(calc: Calc, tmp_path: Path) -> None:
+def test_the_slider_at_the_crank_angles_of_the_reference_table(calc: Calc, tmp_path: Path) -> None:
     """z2 at -40, -10, 0, 10, 40, 90 and 150 degree from the bottom dead centre, m."""
     expected = {-40: 3.53002, -10: 3.55649, 0: 3.55760, 10: 3.55656, 40: 3.53760, 90: 3.40544, 150: 2.99361}
     (tmp_path / "press.toml").write_text("[inputs]\n")
