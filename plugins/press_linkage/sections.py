@@ -117,9 +117,9 @@ SECTIONS = [
     Section(
         "Mechanism and slider",
         "slider_position", "slider_tilt", "face_height_1", "face_height_2", "permitted_tilt",
-        text="Two cranks A-B lower the platform O1 through the rods B-E. Its arm ends at B5; from there the knee "
-        "drives B5-G push the knees M-G-H outward, and the slider O2 goes down. z counts downward from O, side 1 lies "
-        "at y > 0.",
+        text="Two cranks AB lower the platform O1 through the rods BE. Its arm ends at B5; from there the knee drives "
+        "push the knees MGH outward, and the slider O2 goes down. z counts downward from O; side 1 is that of "
+        "positive y.",
         figure=mechanism,
         caption="To scale. Orange: crank and rod. Blue: knee drive and knee. Dotted: the ways of crank pin and knee.",
     ),

@@ -91,7 +91,7 @@ def test_traceback_shows_where_and_keeps_sentence_and_code(calc: Calc, tmp_path:
 def test_quiet_and_verbose_may_stand_anywhere(calc: Calc, place: int) -> None:
     words = ["run", str(PIN), *QUICK]
     loud = calc(*words)
-    assert loud.err == "no --inputs: running the shipped example (calc init pin_wear writes it to a file)\n"
+    assert loud.err == f"no --inputs: running the shipped example (calc init {PIN} writes it to a file)\n"
     quiet = calc(*words[:place], "-q", *words[place:])
     assert (quiet.code, quiet.err) == (0, "")
     verbose = calc(*words[:place], "--verbose", *words[place:])

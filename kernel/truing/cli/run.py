@@ -36,7 +36,7 @@ def run(
 
     settings = settings_of(context)
     offer = find_offer(plugin, settings)
-    setup = read_or_example(offer, inputs, changed or (), settings)
+    setup = read_or_example(offer, inputs, changed or (), word=plugin, settings=settings)
     folder = output or Path("runs") / (inputs.stem if inputs else offer.name)
     order = RunOrder(folder=folder, cases=cases, workers=workers, pdf=pdf)
     with progress_bar(settings) as progress, told_by_line(setup):
