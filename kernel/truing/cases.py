@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from truing.calculation import Calculation, calculate
-from truing.declare.fields import with_values
 from truing.declare.goals import Require
 from truing.errors import Fault, InputError, UsageError
 from truing.evaluate import evaluate_rows
@@ -16,7 +15,7 @@ from truing.measurements import Case
 from truing.prices import price_answers
 from truing.setup import Setup
 from truing.studies.bench import Check, Progress, silent
-from truing.studies.checks import limits, plain_checks
+from truing.studies.checks import plain_checks
 
 
 @dataclass(frozen=True)
@@ -79,15 +78,7 @@ class CasesTable:
 
 def case_setup(setup: Setup, case: Case) -> Setup:
     """Return the setup of one case."""
-    fields = setup.model.input_fields
-    changed = {fields[name].path: value for name, value in case.values.items() if name in fields}
-    conditions = {name: value for name, value in case.values.items() if name not in fields}
-    return replace(
-        setup,
-        inputs=with_values(setup.inputs, changed),
-        conditions={**setup.conditions, **conditions},
-        stated=setup.stated | set(case.values),
-    )
+    return replace(setup.changed(case.values), stated=setup.stated | set(case.values))
 
 
 def run_cases(
@@ -162,8 +153,7 @@ def _checked(case: Case, setup: Setup, answers: Mapping[str, Any]) -> CaseResult
         known = {**answers, **price_answers(setup)}
     except UsageError as error:  # a tolerance that its size outgrows
         return CaseResult(case, {}, reason=str(error))
-    checks = tuple(plain_checks(setup, known)) if limits(setup, known) else ()
-    return CaseResult(case, known, checks)
+    return CaseResult(case, known, tuple(plain_checks(setup, known)))
 
 
 def _plain(value: Any) -> Any:

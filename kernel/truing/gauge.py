@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from truing.declare.fields import with_values
 from truing.errors import UsageError
 from truing.evaluate import Rows, evaluate_rows
 from truing.setup import Setup
@@ -29,9 +28,7 @@ class Shown:
 
 def one_machine(setup: Setup) -> Setup:
     """Return the setup of this one machine: its calibrated inputs in place, nothing drawn."""
-    fields = setup.model.input_fields
-    calibrated = {fields[name].path: value for name, value in setup.calibrated.items()}
-    return replace(setup, inputs=with_values(setup.inputs, calibrated))
+    return setup.changed(setup.calibrated)
 
 
 def shown_by_gauge(setup: Setup, rows: RowsFile) -> Shown:

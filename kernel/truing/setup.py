@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isnan
 from typing import Any
 
+from truing.declare.fields import with_values
 from truing.declare.model import Model, Study
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Effect
@@ -66,6 +67,13 @@ class Setup:
                 raise UsageError(f"the effect '{name}' is switched on twice")
         ordered = sorted(self.effects, key=lambda item: order.index(item.effect.name))
         object.__setattr__(self, "effects", tuple(ordered))
+
+    def changed(self, values: Mapping[str, Any]) -> Setup:
+        """Return the setup with these inputs and conditions, by name and in SI, in place of its own."""
+        fields = self.model.input_fields
+        inputs = {fields[name].path: value for name, value in values.items() if name in fields}
+        conditions = {name: value for name, value in values.items() if name not in fields}
+        return replace(self, inputs=with_values(self.inputs, inputs), conditions={**self.conditions, **conditions})
 
     def nominal(self, name: str) -> Any:
         """Return the nominal value in SI of an input or condition."""

@@ -238,12 +238,3 @@ def salience(sensitivity: Mapping[str, Float]) -> dict[str, Float]:
     sizes = {name: np.abs(value) for name, value in sensitivity.items()}
     total = sum(sizes.values())
     return {name: size / total for name, size in sizes.items()}
-
-
-def polar_errors(across: Float, down: Float, *, radius: Float, angle: Float) -> tuple[Float, Float]:
-    """Installation errors of a joint along y and z as errors of its polar radius (m) and polar angle (rad).
-
-    First order; *angle* is the polar angle in the frame, so pi minus that of side 1 on side 2.
-    """
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return across * cosine + down * sine, (down * cosine - across * sine) / radius

@@ -15,7 +15,8 @@ from truing.inputs_file import read_setup
 from truing.kernel import Kernel
 from truing.published import compare_published
 from truing.report.pdf import find_browser, sandbox_arguments
-from truing.report.render import sheet_html
+from truing.report.render import html_of
+from truing.report.sheet import make_sheet
 from truing.runs.provenance import provenance_of
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ def sheet(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     setup = replace(setup, detail="full") if request.param == "hostile-full" else setup
     calculation = calculate(setup)
     rows = compare_published(offer, known=calculation)
-    text = sheet_html(calculation, provenance=provenance_of(setup, date="2026-11-21"), verified=rows)
+    text = html_of(make_sheet(calculation, provenance=provenance_of(setup, date="2026-11-21"), verified=rows))
     file = tmp_path_factory.mktemp("Größe ü") / f"{request.param} sheet.html"
     file.write_text(text, encoding="utf-8")
     return file

@@ -17,6 +17,15 @@ from press_linkage.increments import ARM, DRIVEN, KINDS, PASSIVE, POLAR_ANGLES, 
 from press_linkage.kinematics import Deviations, Geometry, solve
 
 
+def polar_errors(across: float, down: float, *, radius: float, angle: float) -> tuple[float, float]:
+    """Installation errors of a joint along y and z as errors of its polar radius (m) and polar angle (rad).
+
+    First order; *angle* is the polar angle in the frame, so pi minus that of side 1 on side 2.
+    """
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return across * cosine + down * sine, (down * cosine - across * sine) / radius
+
+
 def test_the_sources_are_29() -> None:
     assert len(SOURCES) == len(set(SOURCES)) == 29
     assert (len(KINDS), len(DRIVEN), len(PASSIVE)) == (14, 7, 7)
@@ -137,7 +146,7 @@ def test_lowering_the_whole_frame_lowers_the_slider(geometry: Geometry) -> None:
             ("crank_pivot", geometry.crank_pivot_radius, 0.0),
             ("ground_pivot", geometry.ground_pivot_radius, geometry.ground_pivot_angle),
         ]:
-            polar = increments.polar_errors(0.0, 1.0, radius=radius, angle=angle if side == 1 else np.pi - angle)
+            polar = polar_errors(0.0, 1.0, radius=radius, angle=angle if side == 1 else np.pi - angle)
             for suffix, error in zip(("radius", "angle"), polar, strict=True):
                 position += error * found.position[source(f"{place}_{suffix}", side)]
                 tilt += error * found.tilt[source(f"{place}_{suffix}", side)]

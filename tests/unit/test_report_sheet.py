@@ -19,7 +19,7 @@ from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Kernel, Offer
 from truing.measurements import read_cases
 from truing.published import compare_published
-from truing.report.render import css_text, html_of, markdown_of, sheet_html, sheet_markdown
+from truing.report.render import css_text, html_of, markdown_of
 from truing.report.sheet import logo_of, make_sheet
 from truing.report.templates import template_folder
 from truing.runs.provenance import Provenance, provenance_of
@@ -54,12 +54,12 @@ def provenance(setup: Setup) -> Provenance:
 
 @pytest.fixture(scope="module")
 def html(calculation: Calculation, provenance: Provenance, offer: Offer) -> str:
-    return sheet_html(calculation, provenance=provenance, verified=compare_published(offer))
+    return html_of(make_sheet(calculation, provenance=provenance, verified=compare_published(offer)))
 
 
 @pytest.fixture(scope="module")
 def markdown(calculation: Calculation, provenance: Provenance, offer: Offer) -> str:
-    return sheet_markdown(calculation, provenance=provenance, verified=compare_published(offer))
+    return markdown_of(make_sheet(calculation, provenance=provenance, verified=compare_published(offer)))
 
 
 class Page(HTMLParser):
@@ -303,7 +303,7 @@ def test_a_logo_stands_in_the_file_itself(setup: Setup, provenance: Provenance, 
     stated = replace(setup, head={"logo": "sign.svg"}, file=str(tmp_path / "in.toml"))
     images = [
         attributes
-        for tag, attributes in Page(sheet_html(calculate(stated), provenance=provenance)).tags
+        for tag, attributes in Page(html_of(make_sheet(calculate(stated), provenance=provenance))).tags
         if tag == "img"
     ]
     assert [(image["src"] or "")[:26] for image in images] == ["data:image/svg+xml;base64,"]
@@ -338,7 +338,8 @@ def test_the_title_in_the_margin_cannot_leave_its_string(text: str) -> None:
 
 
 def test_the_same_run_gives_the_same_sheet(calculation: Calculation, provenance: Provenance) -> None:
-    assert sheet_html(calculation, provenance=provenance) == sheet_html(calculation, provenance=provenance)
+    first, again = (html_of(make_sheet(calculation, provenance=provenance)) for _ in range(2))
+    assert first == again
 
 
 def test_the_templates_are_found() -> None:
@@ -367,7 +368,7 @@ def test_a_data_file_is_named_on_the_sheet(tmp_path: Path) -> None:
     kernel.add_file(DATA / "worn_surface.py")
     inputs = '[inputs]\nsurface = "flank <1>.txt"\n'
     setup = setup_from_text(inputs, kernel.offer("worn_surface"), file="inputs.toml", folder=tmp_path)
-    page = sheet_html(calculate(setup), provenance=provenance_of(setup))
+    page = html_of(make_sheet(calculate(setup), provenance=provenance_of(setup)))
     assert "flank &lt;1&gt;.txt" in page.replace("\u00a0", " ")
 
 

@@ -30,7 +30,7 @@ def write_table(target: Path | TextIO, headers: Sequence[str], columns: Sequence
     try:
         with os.fdopen(handle, "w", encoding="utf-8", newline="") as stream:
             _write(stream, headers, columns)
-        Path(name).chmod(0o666 & ~_mask())
+        Path(name).chmod(0o666 & ~umask())
         Path(name).replace(target)
     except OSError as error:
         Path(name).unlink(missing_ok=True)
@@ -40,8 +40,9 @@ def write_table(target: Path | TextIO, headers: Sequence[str], columns: Sequence
         raise
 
 
-def _mask() -> int:
-    mask = os.umask(0)
+def umask() -> int:
+    """Return what this process takes from the permissions of new files; temporary ones are made without them."""
+    mask = os.umask(0o022)
     os.umask(mask)
     return mask
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
 from functools import lru_cache
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -16,15 +15,11 @@ from truing.published import ComparedRow
 from truing.report import equations
 from truing.report.context import Entry, Equation, FigureView, Sheet, TableView, Value
 from truing.report.markdown import Raw, escaped
-from truing.report.sheet import make_sheet
 from truing.report.templates import template_folder
-from truing.runs.provenance import Provenance
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-    from truing.calculation import Calculation
-    from truing.cases import CasesTable
 
 COLUMN = equations.LINE
 """How wide a formula may be, in em, beside the words of its result; a wider one stands below them."""
@@ -32,28 +27,6 @@ PAGE = 45.0
 """How wide a formula may be on A4; a wider one is set smaller there."""
 LONG = 7
 """A sheet with more chapters than this has a table of contents."""
-
-
-def sheet_html(
-    calculation: Calculation,
-    *,
-    provenance: Provenance,
-    verified: Sequence[ComparedRow] = (),
-    cases: CasesTable | None = None,
-) -> str:
-    """Write the calculation sheet as one HTML file: no script, nothing fetched, formulas in MathML, figures in SVG."""
-    return html_of(make_sheet(calculation, provenance=provenance, verified=verified, cases=cases))
-
-
-def sheet_markdown(
-    calculation: Calculation,
-    *,
-    provenance: Provenance,
-    verified: Sequence[ComparedRow] = (),
-    cases: CasesTable | None = None,
-) -> str:
-    """Write the calculation sheet as GitHub-flavoured Markdown: formulas in LaTeX, figures inside the file."""
-    return markdown_of(make_sheet(calculation, provenance=provenance, verified=verified, cases=cases))
 
 
 def html_of(sheet: Sheet) -> str:

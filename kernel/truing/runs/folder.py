@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from truing.errors import OutputError, UnknownPluginError
+from truing.measurements.writing import umask
 from truing.runs.documents import SCHEMA, large_arrays, results_document
 from truing.runs.inputs_written import complete_inputs
 
@@ -152,17 +153,11 @@ def _beside(target: Path) -> Iterator[Path]:
     """Give a temporary folder beside the target, which is gone afterwards whatever happens."""
     part = Path(tempfile.mkdtemp(prefix=f".{target.name[:40]}.", suffix=".part", dir=target.parent))
     try:
-        part.chmod(0o777 & ~_umask())
+        part.chmod(0o777 & ~umask())
         yield part
     finally:
         if part.exists():
             shutil.rmtree(part, ignore_errors=True)
-
-
-def _umask() -> int:
-    mask = os.umask(0o022)
-    os.umask(mask)
-    return mask
 
 
 def _put_in_place(part: Path, target: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from truing.declare.fields import in_si, with_values
+from truing.declare.fields import in_si
 from truing.declare.goals import Require
 from truing.evaluate import evaluate
 from truing.setup import Setup
@@ -65,16 +65,16 @@ def of_design(setup: Setup, result: str, answers: dict[str, Any]) -> Any:
     deviating = dict.fromkeys(_deviations(setup), 0.0)
     if not (acts or deviating) or result not in setup.model.own_result_fields:
         return answers[result]
-    design = replace(setup, effects=(), inputs=with_values(setup.inputs, deviating))
+    design = replace(setup.changed(deviating), effects=())
     return setup.model.read_results(evaluate(design))[result]
 
 
-def _deviations(setup: Setup) -> list[tuple[str, ...]]:
-    """Return the paths of the deviations that are not 0."""
+def _deviations(setup: Setup) -> list[str]:
+    """Return the names of the deviations that are not 0."""
     fields = setup.model.input_fields
     names = {name for tolerance in setup.model.tolerances.values() for name in tolerance.on if name in fields}
-    sockets = [fields[name] for name in sorted(names) if getattr(fields[name].spec, "default", None) == 0]
-    return [item.path for item in sockets if setup.nominal(item.name) != 0]
+    sockets = [name for name in sorted(names) if getattr(fields[name].spec, "default", None) == 0]
+    return [name for name in sockets if setup.nominal(name) != 0]
 
 
 def limit_amount(require: Require, setup: Setup, answers: dict[str, Any]) -> Any:

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.blocks import Block
-from truing.declare.fields import with_values
 from truing.errors import InfeasibleError, UsageError
 from truing.evaluate import acting_inputs, evaluate
 from truing.setup import Setup
@@ -111,11 +110,7 @@ class Reliability:
         """Answer at one point, or say why there is no answer."""
         setup = bench.setup
         item = setup.model.input_fields.get(over)
-        if item is None:
-            setup = replace(setup, conditions={**setup.conditions, over: value})
-        else:
-            number: float | int = int(value) if item.kind == "integer" else value
-            setup = replace(setup, inputs=with_values(setup.inputs, {item.path: number}))
+        setup = setup.changed({over: int(value) if item is not None and item.kind == "integer" else value})
         try:
             answers = setup.model.read_results(evaluate(setup))
         except InfeasibleError as error:
