@@ -62,6 +62,8 @@ class Unknown:
     """A number that only measurement can tell; bounds in ``unit``.
 
     Bounds that contain 0 make it an amplitude, any others a shape (positive ones are searched on a logarithmic grid).
+    A shape may be a ``whole`` number, which is tried one by one, or a place ``along`` a condition (when does the step
+    come?), which is tried at places of the record; such an unknown is no amplitude whatever its bounds.
     """
 
     name: str
@@ -69,6 +71,8 @@ class Unknown:
     high: float
     unit: str = ""
     note: str = ""
+    whole: bool = False
+    along: str = ""
 
     def __post_init__(self) -> None:
         if not (self.low < self.high and math.isfinite(self.low) and math.isfinite(self.high)):
@@ -79,18 +83,25 @@ class Unknown:
     @property
     def is_amplitude(self) -> bool:
         """Whether the effect vanishes with it."""
-        return self.low <= 0 <= self.high
+        return self.low <= 0 <= self.high and not self.whole and not self.along
 
 
 @dataclass(frozen=True)
 class Condition:
-    """Something measured that is no input of the model; at its ``reference`` (in ``unit``) its effects vanish."""
+    """Something measured that is no input of the model; at its ``reference`` (in ``unit``) its effects vanish.
+
+    ``derived`` makes it, once, from whole runs in time order: "since_start" (what its own column has gained since the
+    first row of the file), or "running_maximum of load", "cumulative of load", "direction of travel", "last_reversal of
+    travel". ``low`` and ``high`` (in ``unit``) are the range in which it can be set, for the next measurement.
+    """
 
     name: str
     unit: str
     reference: float = 0.0
     note: str = ""
     derived: str = ""
+    low: float | None = None
+    high: float | None = None
 
     @cached_property
     def zero(self) -> float:

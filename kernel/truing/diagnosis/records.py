@@ -1,0 +1,75 @@
+"""Measured rows ready to be explained: in SI, sorted by time inside each run, every oddity counted and said."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from truing.measurements import RowsFile
+
+Role = Literal["input", "condition", "time", "other", "order"]
+
+
+@dataclass(frozen=True)
+class Covariate:
+    """Something the error may depend on: one value per row, in SI, NaN where missing.
+
+    ``role`` is "order" for the place in the record where no time was measured. ``unit`` is the one to print it in.
+    """
+
+    name: str
+    values: NDArray[np.float64]
+    unit: str
+    role: Role
+    is_angle: bool = False
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether it never changed on this data, so that nothing can be seen of what depends on it."""
+        import numpy as np
+
+        finite = self.values[np.isfinite(self.values)]
+        return len(finite) == 0 or bool(np.ptp(finite) <= 1e-9 * np.abs(finite).max())
+
+
+@dataclass(frozen=True)
+class Slip:
+    """A unit that was probably written wrong: the column, the factor that would set it right, in words."""
+
+    column: str
+    factor: float
+    text: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Records:
+    """Rows of one or several files, n of them, runs one after another and sorted by time inside each.
+
+    ``rows`` is what the model is evaluated with (inputs, conditions as effects see them, series, axes; its ``runs``
+    are unique over all files). ``file_of`` and ``run_of`` number the file and run of each row from 0; ``lines`` is
+    where it stands in its file. ``measured`` and ``sigma`` hold results by name, SI, shape (n,), NaN where missing.
+    ``covariates`` holds everything an error may depend on, by name. ``held_out`` marks rows that only judge.
+    ``notes`` says, one sentence each, what was kept, merged, sorted, unwrapped or left out, with counts.
+    """
+
+    files: tuple[str, ...]
+    rows: RowsFile
+    file_of: NDArray[np.intp]
+    run_of: NDArray[np.intp]
+    lines: NDArray[np.intp]
+    measured: Mapping[str, NDArray[np.float64]]
+    sigma: Mapping[str, NDArray[np.float64]]
+    covariates: Mapping[str, Covariate]
+    held_out: NDArray[np.bool_]
+    notes: tuple[str, ...] = ()
+    slips: tuple[Slip, ...] = ()
+    absent: frozenset[str] = field(default_factory=frozenset)
+    """Conditions of effects that no column gives: not measured."""
+
+    def __len__(self) -> int:
+        return len(self.run_of)

@@ -1,0 +1,222 @@
+"""What a diagnosis answers, as data: SI numbers with the unit each is printed in. Sheet, JSON and terminal read this."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from truing.diagnosis.records import Records
+    from truing.setup import Setup
+
+Verdict = Literal["none", "named", "unknown"]
+Kind = Literal["bias", "trend", "order", "step", "spread", "autocorrelation", "outlier"]
+Sight = Literal["visible", "hidden in the tolerances", "not excited"]
+
+
+@dataclass(frozen=True)
+class Amount:
+    """A number in SI and the unit to print it in; differences (a residual, a slope) have a difference unit."""
+
+    value: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something that is wrong with the residuals of the calibrated model; ``p_value`` has paid for the search."""
+
+    kind: Kind
+    covariate: str
+    p_value: float | None
+    text: str
+
+
+@dataclass(frozen=True)
+class Noise:
+    """What the noise of one result is like, once everything found is taken out.
+
+    ``autocorrelation`` is that of neighbouring rows (0 is none); ``tails`` and ``spread`` are words ("normal", "heavy,
+    t with 4 degrees of freedom"; "constant", "grows with forming_force"). ``outliers`` are (file, line) of rows beyond
+    four standard deviations.
+    """
+
+    sd: Amount
+    autocorrelation: float
+    tails: str
+    spread: str
+    outliers: tuple[tuple[str, int], ...] = ()
+
+
+@dataclass(frozen=True)
+class Wrong:
+    """How far one result is off, and how: root mean squares of the model calibrated inside its tolerances."""
+
+    result: str
+    rows: int
+    rmse: Amount
+    noise_floor: Amount
+    reducible_share: float
+    noise: Noise
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True)
+class FittedUnknown:
+    """An unknown of an effect as fitted, SI, with its 95 % interval; an open end is None.
+
+    ``per_file`` holds value and interval by file name where the unknown was fitted for each file alone.
+    """
+
+    name: str
+    value: float
+    low: float | None
+    high: float | None
+    unit: str
+    per_file: Mapping[str, tuple[float, float | None, float | None]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Cause:
+    """A named cause: an effect, or "input:NAME" for an input that lies outside its band.
+
+    ``covariance`` (SI) follows the order of ``unknowns``. ``same_as`` are effects that are the same curve on this data.
+    """
+
+    effect: str
+    unknowns: tuple[FittedUnknown, ...]
+    covariance: tuple[tuple[float, ...], ...] = ()
+    same_as: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """Another explanation that this data does not exclude: ``behind`` in score units, ``separation`` as lambda.
+
+    ``causes`` names effects, and "unknown" for a shape nobody registered; ``unknowns`` holds its own fit by effect.
+    """
+
+    causes: tuple[str, ...]
+    behind: float
+    separation: float
+    depends_on: tuple[str, ...] = ()
+    unknowns: Mapping[str, tuple[FittedUnknown, ...]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class ShapeTerm:
+    """One term of a fitted shape, ``coefficient * product of factors``, as Python over covariates in SI.
+
+    ``expression`` uses covariate names and ``np``, e.g. "np.cos(7 * crank_angle)"; the coefficient is SI.
+    """
+
+    expression: str
+    coefficient: float
+
+
+@dataclass(frozen=True)
+class Remainder:
+    """Structure that nothing registered explains: what it depends on and its shape in words, for these results."""
+
+    depends_on: tuple[str, ...]
+    shape: str
+    results: tuple[str, ...]
+    p_value: float | None
+    terms: Mapping[str, tuple[ShapeTerm, ...]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Calibrated:
+    """An input as fitted to this machine within its tolerance, SI; ``of_its_sd`` is how far it moved in units of it."""
+
+    name: str
+    value: float
+    unit: str
+    of_its_sd: float
+
+
+@dataclass(frozen=True)
+class Gain:
+    """What the extension is worth on rows it was not fitted to, for one result (nested blocked cross-validation)."""
+
+    result: str
+    rmse_before: Amount
+    rmse_after: Amount
+    noise_floor: Amount
+    reducible_removed: float
+    log_score_gain: float
+    p_value: float
+    coverage90: float
+    held_out: tuple[float, float] | None = None
+    """Root mean squares (SI) before and after on rows held out on request."""
+
+
+@dataclass(frozen=True)
+class NextPoint:
+    """A setting worth measuring next: what it separates, why, and lambda once all points up to it are measured."""
+
+    settings: Mapping[str, Amount]
+    separates: tuple[str, str]
+    why: str
+    separation: float
+
+
+@dataclass(frozen=True)
+class Seen:
+    """How small an effect may be and still be seen on this data (90 % power, search paid for)."""
+
+    name: str
+    smallest: Amount | None
+    sight: Sight
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class Curves:
+    """What the figures show of one result, SI, shape (n,), NaN where missing: measured, and the model before and after.
+
+    ``before`` is the model calibrated within its tolerances, ``after`` the extended one.
+    """
+
+    result: str
+    measured: NDArray[np.float64]
+    before: NDArray[np.float64]
+    after: NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Diagnosis:
+    """Everything one diagnosis found. ``p_any`` and ``p_second`` are the significance of a first and second cause.
+
+    ``not_measured`` holds, by effect, the conditions that no column gives; ``inseparable`` are sentences about pairs
+    that this design of the experiment cannot separate whatever their size; ``warnings`` all else that must be said.
+    """
+
+    setup: Setup
+    records: Records
+    measured: tuple[str, ...]
+    units: Mapping[str, str]
+    wrong: tuple[Wrong, ...]
+    verdict: Verdict
+    causes: tuple[Cause, ...]
+    unique: bool
+    alternatives: tuple[Alternative, ...]
+    remainder: Remainder | None
+    seen: tuple[Seen, ...]
+    not_measured: Mapping[str, tuple[str, ...]]
+    calibrated: tuple[Calibrated, ...]
+    gain: tuple[Gain, ...]
+    stability: float
+    next: tuple[NextPoint, ...]
+    curves: tuple[Curves, ...]
+    p_any: float | None = None
+    p_second: float | None = None
+    ranking: tuple[Alternative, ...] = ()
+    inseparable: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    extended: Setup | None = None
+    """The setup with the causes on, conditions as measured and inputs calibrated; None where nothing was named."""
