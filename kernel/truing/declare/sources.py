@@ -125,12 +125,15 @@ class Effect(Generic[I, R]):
     ``on_inputs(inputs, **unknowns, **conditions) -> inputs``: the model runs again and everything follows;
     ``on_results(inputs, results, ...) -> results``: a last term on a last result;
     ``on_reading(inputs, results, ...) -> results``: the gauge errs, not the machine.
+    ``parts`` are groups of unknowns that a diagnosis looks for one by one (an offset of this gauge, of that gauge);
+    without them all unknowns are one cause.
     """
 
     name: str
     actions: _Actions[I, R]
     unknowns: tuple[Unknown, ...]
     needs: tuple[Condition, ...]
+    parts: tuple[tuple[str, ...], ...]
     looks_like: str
     why: str
     source: str
@@ -144,6 +147,7 @@ class Effect(Generic[I, R]):
         on_results: Callable[Concatenate[I, R, ...], R] | None = None,
         on_reading: Callable[Concatenate[I, R, ...], R] | None = None,
         needs: Sequence[Condition] = (),
+        parts: Sequence[Sequence[str]] = (),
         looks_like: str = "",
         why: str = "",
         source: str = "",
@@ -151,7 +155,7 @@ class Effect(Generic[I, R]):
         actions = _Actions(on_inputs=on_inputs, on_results=on_results, on_reading=on_reading)
         values = {
             "name": name, "actions": actions, "unknowns": tuple(unknowns), "needs": tuple(needs),
-            "looks_like": looks_like, "why": why, "source": source,
+            "parts": tuple(tuple(part) for part in parts), "looks_like": looks_like, "why": why, "source": source,
         }  # fmt: skip
         for key, value in values.items():
             object.__setattr__(self, key, value)

@@ -1,4 +1,4 @@
-"""What a diagnosis answers, as data: SI numbers with the unit each is printed in. Sheet, JSON and terminal read this."""
+"""What a diagnosis answers, as data: SI numbers with their printed unit. Sheet, JSON and terminal read this."""
 
 from __future__ import annotations
 
