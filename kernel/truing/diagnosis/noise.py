@@ -1,0 +1,225 @@
+"""Noise of a test rig: a slow wander beside white noise, heavy tails, a spread that depends on something.
+
+Inside a run the noise is eta_i = rho * eta_{i-1} + u_i - theta * u_{i-1}, divided by a weight per row; theta = 0 is
+AR(1), theta > 0 a slow wander plus white noise. The filter starts anew at every run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, log
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+TAILS = {3.0: 1.9, 4.0: 2.1, 6.0: 2.5, 10.0: 3.0, 30.0: 4.5, inf: 4.5}
+"""Degrees of freedom of Student's t, and where innovations are clipped, in standard deviations."""
+SMALL = 0.05
+LARGEST_EXPONENT = 2.5
+SPREAD_LEVEL = 0.002
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One noise filter: ``rho`` carries over from row to row, ``theta`` is the white share on top of the wander."""
+
+    rho: float = 0.0
+    theta: float = 0.0
+
+    @property
+    def variance_ratio(self) -> float:
+        """Variance of the noise over that of its innovations."""
+        return (1 + self.theta**2 - 2 * self.rho * self.theta) / (1 - self.rho**2)
+
+    @property
+    def independent_share(self) -> float:
+        """Independent rows per row, for the mean of a long record: 75 of 300 rows at rho = 0.6."""
+        return min(1.0, self.variance_ratio * (1 - self.rho) ** 2 / (1 - self.theta) ** 2)
+
+    @property
+    def neighbours(self) -> float:
+        """Autocorrelation of neighbouring rows."""
+        covariance = (1 - self.rho * self.theta) * (self.rho - self.theta) / (1 - self.rho**2)
+        return covariance / self.variance_ratio
+
+
+SETTINGS = (
+    *(Setting(rho) for rho in (0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.87, 0.95)),
+    Setting(0.8, 0.4), Setting(0.9, 0.5), Setting(0.9, 0.7), Setting(0.96, 0.6), Setting(0.96, 0.8),
+)  # fmt: skip
+
+
+def segments(starts: NDArray[np.bool_]) -> list[slice]:
+    """Return the rows of each run as slices; ``starts`` marks the first row of each."""
+    import numpy as np
+
+    first = np.flatnonzero(starts)
+    return [slice(int(a), int(b)) for a, b in zip(first, [*first[1:], len(starts)], strict=True)]
+
+
+def whiten(values: NDArray[np.float64], starts: NDArray[np.bool_], setting: Setting) -> NDArray[np.float64]:
+    """Turn noise of this filter into independent innovations, shape (n,) or (n, c), run by run."""
+    import numpy as np
+    from scipy.signal import lfilter
+
+    ratio = setting.variance_ratio
+    white = np.array(values, dtype=float)
+    if setting.rho == 0 and setting.theta == 0:
+        return white
+    white[1:] -= setting.rho * values[:-1]
+    if setting.theta == 0:
+        white[starts] = values[starts] / np.sqrt(ratio)
+        return white
+    white[starts] = values[starts] / ratio
+    for rows in segments(starts):
+        white[rows] = lfilter([1.0], [1.0, -setting.theta], white[rows], axis=0)
+    white[starts] = values[starts] / np.sqrt(ratio)
+    return white
+
+
+def colour(white: NDArray[np.float64], starts: NDArray[np.bool_], setting: Setting) -> NDArray[np.float64]:
+    """Undo ``whiten``: make noise of this filter from independent innovations."""
+    import numpy as np
+    from scipy.signal import lfilter
+
+    ratio = setting.variance_ratio
+    if setting.rho == 0 and setting.theta == 0:
+        return np.array(white, dtype=float)
+    noise = np.empty_like(white, dtype=float)
+    for rows in segments(starts):
+        part = np.array(white[rows], dtype=float)
+        begin = part[0] * np.sqrt(ratio)
+        driven = part.copy()
+        driven[1:] -= setting.theta * part[:-1]
+        if setting.theta and len(part) > 1:
+            driven[1] += setting.theta * (part[0] - begin / ratio)
+        driven[0] = begin
+        noise[rows] = lfilter([1.0], [1.0, -setting.rho], driven, axis=0)
+    return noise
+
+
+def log_likelihood(values: NDArray[np.float64], starts: NDArray[np.bool_], setting: Setting, sd: float) -> float:
+    """Return the Gaussian log-likelihood of noise with innovations of this sd; exact for theta = 0."""
+    import numpy as np
+
+    white = whiten(values, starts, setting)
+    half = 0.5 * float(np.sum(white**2)) / sd**2
+    n = len(values)
+    return -half - n * (log(sd) + 0.5 * log(2 * np.pi)) - 0.5 * int(starts.sum()) * log(setting.variance_ratio)
+
+
+@dataclass(frozen=True)
+class Tails:
+    """How the innovations scatter beyond the normal law: degrees of freedom, clipping point, share that is clipped."""
+
+    freedom: float
+    limit: float
+    clipped: float
+
+    @property
+    def words(self) -> str:
+        """What an engineer reads."""
+        return "normal" if self.freedom >= 30 else f"heavy (t with {self.freedom:g} degrees of freedom)"
+
+
+def robust_sd(innovations: NDArray[np.float64]) -> float:
+    """Return the standard deviation from the median absolute deviation."""
+    import numpy as np
+
+    return 1.4826 * float(np.median(np.abs(innovations - np.median(innovations))))
+
+
+def tails_of(innovations: NDArray[np.float64]) -> Tails:
+    """Choose the degrees of freedom of Student's t that fit innovations best (profile over its scale)."""
+    import numpy as np
+    from scipy.special import gammaln
+
+    scale = robust_sd(innovations) or float(np.std(innovations)) or 1.0
+    u = innovations / scale
+    factors = np.exp(np.linspace(-0.6, 0.6, 25))[:, None]
+    best, chosen = -inf, inf
+    for freedom in TAILS:
+        z2 = (u / factors) ** 2
+        if freedom == inf:
+            logs = -0.5 * z2 - 0.5 * np.log(2 * np.pi)
+        else:
+            norm = gammaln((freedom + 1) / 2) - gammaln(freedom / 2) - 0.5 * np.log(freedom * np.pi)
+            logs = norm - (freedom + 1) / 2 * np.log1p(z2 / freedom)
+        total = float(np.max(logs.sum(axis=1) - len(u) * np.log(factors[:, 0])))
+        if total > best + 1e-9:
+            best, chosen = total, freedom
+    limit = TAILS[chosen]
+    return Tails(chosen, limit, float(np.mean(np.abs(u) > limit)))
+
+
+def clipped(innovations: NDArray[np.float64], tails: Tails) -> NDArray[np.float64]:
+    """Clip innovations at the limit of their tails: least squares on the rest is a one-step robust estimate."""
+    import numpy as np
+
+    scale = robust_sd(innovations) or float(np.std(innovations))
+    return np.clip(innovations, -tails.limit * scale, tails.limit * scale)
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How the standard deviation of the noise depends on one driver: exp(slope * z), z standardised."""
+
+    driver: str = ""
+    slope: float = 0.0
+    p_value: float = 1.0
+
+    @property
+    def words(self) -> str:
+        """What an engineer reads."""
+        if not self.driver:
+            return "constant"
+        return f"{'grows' if self.slope > 0 else 'falls'} with {self.driver}"
+
+
+def standardised(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a driver with mean 0 and standard deviation 1, missing values at the mean."""
+    import numpy as np
+
+    filled = np.where(np.isfinite(values), values, np.nanmean(values))
+    sd = float(np.std(filled))
+    return (filled - filled.mean()) / sd if sd > 0 else np.zeros_like(filled)
+
+
+def spread_of(innovations: NDArray[np.float64], drivers: dict[str, NDArray[np.float64]]) -> Spread:
+    """Find what the spread of the innovations depends on, if on anything (Bonferroni over the drivers)."""
+    import numpy as np
+    from scipy.optimize import minimize_scalar
+    from scipy.stats import linregress
+
+    u = innovations / (robust_sd(innovations) or 1.0)
+    tried = {name: standardised(values) for name, values in drivers.items()}
+    tried = {name: z for name, z in tried.items() if np.ptp(z) > 0}
+    if not tried or len(u) < 20:
+        return Spread()
+    logs = np.log(u**2 + SMALL)
+    p_values = {name: float(linregress(z, logs).pvalue) for name, z in tried.items()}
+    name = min(p_values, key=lambda key: p_values[key])
+    p_value = min(1.0, p_values[name] * len(tried))
+    if p_value >= SPREAD_LEVEL:
+        return Spread()
+    z = tried[name]
+
+    def cost(slope: float) -> float:
+        exponent = np.clip(slope * z, -LARGEST_EXPONENT, LARGEST_EXPONENT)
+        return 0.5 * len(u) * float(np.log(np.mean(u**2 * np.exp(-2 * exponent)))) + float(exponent.sum())
+
+    slope = float(minimize_scalar(cost, bounds=(-2.0, 2.0), method="bounded").x)
+    return Spread(name, slope, p_value)
+
+
+def weights_of(spread: Spread, driver: NDArray[np.float64] | None, rows: int) -> NDArray[np.float64]:
+    """Return the weight of each row: one over the relative standard deviation of its noise."""
+    import numpy as np
+
+    if driver is None or not spread.driver:
+        return np.ones(rows)
+    exponent = np.clip(spread.slope * standardised(driver), -LARGEST_EXPONENT, LARGEST_EXPONENT)
+    weights: Any = np.exp(-exponent)
+    return np.asarray(weights, dtype=float)
