@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from truing.errors import UsageError
@@ -32,25 +32,39 @@ def one_machine(setup: Setup) -> Setup:
 
 
 def shown_by_gauge(setup: Setup, rows: RowsFile) -> Shown:
-    """Evaluate every row of a file: its columns replace inputs and conditions, readings act.
+    """Evaluate every row of a file and return the results in the units they are printed in.
 
-    A result along an axis is read at the row's place on it (linear between points); without such a column it is left
-    out. Where inputs run along an axis, the rows of one run are one record and one evaluation.
+    The machine is calibrated; its readings act. What lies nowhere on the axis of a result keeps the reason.
     """
     from truing.units import from_si
 
     machine = one_machine(setup)
-    evaluated = _by_records(machine, rows) if rows.series else _row_by_row(machine, rows)
+    evaluated = read_by_gauge(machine, rows)
     if not evaluated.results:
         axes = sorted({item.along for item in machine.model.own_result_fields.values() if item.along})
         raise UsageError(f"every result of {machine.model.name} runs along {' or '.join(axes)}: give that column")
     units = {name: machine.print_unit(name) for name in evaluated.results}
     values = {name: from_si(value, units[name]) for name, value in evaluated.results.items()}
-    reasons = {**_without_place(evaluated, machine, rows), **evaluated.reasons}
+    reasons = {**without_place(evaluated, machine, rows), **evaluated.reasons}
     return Shown(values, units, dict(sorted(reasons.items())))
 
 
-def _without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int, str]:
+def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None = None) -> Rows:
+    """Evaluate every row: its columns replace inputs and conditions, readings act; one value (n,) per result, SI.
+
+    A result along an axis is read at the row's place on it (linear between points, NaN beyond its ends); without such a
+    column it is left out. Where inputs run along an axis, the rows of one run are one record and one evaluation; else
+    all rows are. Only ``wanted`` results are returned (all by default). Conditions that no effect needs are not looked
+    at. ``machine`` is taken as it is: see ``one_machine``.
+    """
+    seen = {need.name for item in machine.effects for need in item.effect.needs}
+    fields = machine.model.input_fields
+    columns = {name: values for name, values in rows.columns.items() if name in fields or name in seen}
+    names = [name for name in _readable(machine, rows) if wanted is None or name in wanted]
+    return (_by_records if rows.series else _row_by_row)(machine, rows, columns, names)
+
+
+def without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int, str]:
     """Say which rows lie nowhere on the axis of a result, so that nothing can be read there."""
     import numpy as np
 
@@ -64,36 +78,51 @@ def _without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int,
     return reasons
 
 
-def _row_by_row(machine: Setup, rows: RowsFile) -> Rows:
-    found = evaluate_rows(machine, rows.columns, len(rows), reading=True)
+def _row_by_row(machine: Setup, rows: RowsFile, columns: Mapping[str, Any], names: Sequence[str]) -> Rows:
+    found = evaluate_rows(machine, columns, len(rows), reading=True, wanted=_asked(names, machine))
     places = range(len(rows))
-    values = {name: _placed(name, found, machine, rows, places) for name in _readable(machine, rows)}
-    return replace(found, results=values)
+    return Rows({name: _placed(name, found, machine, rows, places) for name in names}, found.failed, found.reasons)
 
 
-def _by_records(machine: Setup, rows: RowsFile) -> Rows:
-    """Evaluate each run once, with its columns as series; every row reads the record at its own place."""
+def _by_records(machine: Setup, rows: RowsFile, columns: Mapping[str, Any], names: Sequence[str]) -> Rows:
+    """Evaluate each run once, with its columns as series; every row reads the record at its own place.
+
+    Where a condition changes within a run, the record is evaluated under the condition of each of its rows.
+    """
     import numpy as np
 
-    names = list(_readable(machine, rows))
     values = {name: np.full(len(rows), np.nan) for name in names}
+    asked = _asked(names, machine)
     reasons: dict[int, str] = {}
-    for places in _records(rows):
-        columns = {name: _one_value(name, column, places, rows) for name, column in rows.columns.items()}
-        columns |= {name: column[places] for name, column in rows.series.items()}
-        found = evaluate_rows(machine, columns, 1, reading=True)
-        for name in names:
-            values[name][places] = _placed(name, found, machine, rows, places)
-        if found.failed[0]:
-            reasons |= dict.fromkeys(places, found.reasons[0])
-    return Rows(values, np.isin(np.arange(len(rows)), list(reasons)), reasons)
+    for record in _records(rows):
+        for places in _alike(record, machine, columns, rows):
+            one = {name: _one_value(name, column, places, rows) for name, column in columns.items()}
+            one |= {name: column[record] for name, column in rows.series.items()}
+            found = evaluate_rows(machine, one, 1, reading=True, wanted=asked)
+            for name in names:
+                values[name][places] = _placed(name, found, machine, rows, places)
+            if found.failed[0]:
+                reasons |= dict.fromkeys(places, found.reasons[0])
+    failed = np.zeros(len(rows), dtype=bool)
+    failed[list(reasons)] = True
+    return Rows(values, failed, dict(sorted(reasons.items())))
 
 
 def _records(rows: RowsFile) -> Iterator[list[int]]:
     """Give the rows of each run; without a column "run" the file is one."""
-    names = rows.runs or ("",) * len(rows)
-    for name in dict.fromkeys(names):
-        yield [place for place, other in enumerate(names) if other == name]
+    found: dict[str, list[int]] = {}
+    for place, name in enumerate(rows.runs or ("",) * len(rows)):
+        found.setdefault(name, []).append(place)
+    yield from found.values()
+
+
+def _alike(record: list[int], machine: Setup, columns: Mapping[str, Any], rows: RowsFile) -> Iterator[list[int]]:
+    """Give the rows of a record that share their conditions."""
+    conditions = [columns[name] for name in columns if name not in machine.model.input_fields]
+    found: dict[tuple[float, ...], list[int]] = {}
+    for place in record:
+        found.setdefault(tuple(float(column[place]) for column in conditions), []).append(place)
+    yield from found.values()
 
 
 def _one_value(name: str, column: Any, places: Sequence[int], rows: RowsFile) -> Any:
@@ -111,6 +140,11 @@ def _readable(machine: Setup, rows: RowsFile) -> Iterator[str]:
         axis = _axis_of(name, machine)
         if not axis or (axis in rows.axes and axis != name):
             yield name
+
+
+def _asked(names: Sequence[str], machine: Setup) -> set[str]:
+    """Return the results that must be calculated to read these: themselves and their axes."""
+    return {*names, *(axis for name in names if (axis := _axis_of(name, machine)))}
 
 
 def _axis_of(name: str, machine: Setup) -> str:
