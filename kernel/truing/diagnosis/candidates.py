@@ -1,0 +1,327 @@
+"""Candidate causes: every effect, the model's own and the kernel's, as columns that the residual is explained with.
+
+An effect is linear in its amplitudes near zero; its shapes are put on a grid, one term per value. Coefficients are
+dimensionless: a column has root mean square 1 in units of the noise, and ``per`` is the amplitude it stands for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+from truing.declare.sources import Effect, Unknown
+from truing.diagnosis.machine import Machine, predict
+from truing.setup import SwitchedOn
+from truing.units import to_si
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+STEP = 1e-3
+GRID = 9
+WIDEST_ANGLE = 0.97
+DENSEST = 17
+PLACES = 50
+KINK = 0.01
+FLAT = 1e-12
+
+Curve = Mapping[str, "NDArray[np.float64]"]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One cause that is looked for: an effect, or the part of it that acts alone. ``order`` is that of declaration."""
+
+    name: str
+    effect: Effect[Any, Any]
+    amplitudes: tuple[Unknown, ...]
+    shapes: tuple[Unknown, ...]
+    is_kernel: bool
+    order: int
+
+    @property
+    def weakest_first(self) -> tuple[int, bool, int]:
+        """Which of several names for one curve is taken: fewest unknowns, the kernel's, the first declared."""
+        return len(self.amplitudes) + len(self.shapes), not self.is_kernel, self.order
+
+
+@dataclass(frozen=True)
+class Term:
+    """One variant of a candidate: its columns, with the amplitude each stands for per unit of coefficient (SI).
+
+    ``unknowns`` and ``files`` say which amplitude of which file (-1: of all) a column belongs to; ``low`` and ``high``
+    bound its coefficient. ``size`` counts the parameters, gridded shapes too.
+    """
+
+    candidate: int
+    curves: tuple[Curve, ...]
+    unknowns: tuple[str, ...]
+    files: tuple[int, ...]
+    per: tuple[float, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    shape: Mapping[str, float]
+
+    @property
+    def size(self) -> int:
+        """Number of free parameters."""
+        return len(self.curves) + len(self.shape)
+
+
+def si_bounds(unknown: Unknown) -> tuple[float, float]:
+    """Return the bounds of an unknown in SI."""
+    return float(to_si(unknown.low, unknown.unit)), float(to_si(unknown.high, unknown.unit))
+
+
+def candidates_of(machine: Machine) -> list[Candidate]:
+    """Return everything that could be looked for: effects in the order of declaration, the kernel's last.
+
+    Effects that are on already are part of the model; an effect whose conditions nobody measured is left out.
+    """
+    model, on = machine.start.model, {item.effect.name for item in machine.start.effects}
+    found: list[Candidate] = []
+    for order, effect in enumerate(model.known_effects.values()):
+        if effect.name in on or any(need.name in machine.records.absent for need in effect.needs):
+            continue
+        for part in effect.parts or (tuple(unknown.name for unknown in effect.unknowns),):
+            unknowns = [unknown for unknown in effect.unknowns if unknown.name in part]
+            amplitudes = tuple(unknown for unknown in unknowns if unknown.is_amplitude)
+            shapes = tuple(unknown for unknown in unknowns if not unknown.is_amplitude)
+            own = effect.name in model.effects
+            found.append(Candidate(effect.name, effect, amplitudes, shapes, is_kernel=not own, order=order))
+    return [item for item in found if not item.is_kernel or gauged(item, machine.records.measured)]
+
+
+def gauged(candidate: Candidate, measured: Iterable[str]) -> str:
+    """Return the measured result whose reading a part of a built-in effect changes, or nothing."""
+    names = {unknown.name for unknown in candidate.amplitudes}
+    return next((result for result in measured if names in ({result}, {f"{result}_sine", f"{result}_cosine"})), "")
+
+
+def grid_of(unknown: Unknown, machine: Machine, count: int = GRID) -> list[float]:
+    """Return the values of a shape that are tried: whole numbers, places of the record, or a grid inside its bounds."""
+    import numpy as np
+
+    low, high = si_bounds(unknown)
+    if unknown.whole:
+        return [float(value) for value in range(round(low), round(high) + 1)]
+    if unknown.along:
+        values = machine.records.rows.columns[unknown.along]
+        places = np.quantile(np.asarray(values, dtype=float), np.linspace(0.02, 0.98, PLACES), method="lower")
+        return sorted({float(value) for value in places} - {float(np.min(np.asarray(values, dtype=float)))})
+    if low > 0:
+        return [float(value) for value in np.geomspace(low, high, count)]
+    return [float(value) for value in np.linspace(low, high, count)]
+
+
+def shapes_of(candidate: Candidate, machine: Machine) -> Iterator[dict[str, float]]:
+    """Return every combination of shape values that is tried."""
+    count = GRID if len(candidate.shapes) < 2 else 5
+    grids = [grid_of(unknown, machine, count) for unknown in candidate.shapes]
+    for values in product(*grids):
+        yield dict(zip((unknown.name for unknown in candidate.shapes), values, strict=True))
+
+
+def curve_at(
+    machine: Machine, candidate: Candidate, amplitudes: Mapping[str, float], shape: Mapping[str, float]
+) -> Curve:
+    """Return the exact change of every measured result by an effect with these unknowns, SI, shape (n,)."""
+    values = {unknown.name: _rest(unknown) for unknown in candidate.effect.unknowns}
+    values |= {**shape, **amplitudes}
+    on = SwitchedOn(candidate.effect, values)
+    changed = predict(replace(machine.start, effects=(*machine.start.effects, on)), machine.records)
+    return {name: changed[name] - machine.base[name] for name in machine.records.measured}
+
+
+def _rest(unknown: Unknown) -> float:
+    """Return the value of an unknown that is not looked at: no amplitude, any shape."""
+    return 0.0 if unknown.is_amplitude else si_bounds(unknown)[0]
+
+
+def terms_of(place: int, candidate: Candidate, machine: Machine, scales: Mapping[str, float]) -> list[Term]:
+    """Return the variants of a candidate that the data excites; none where it excites nothing.
+
+    ``scales`` holds the size of the noise by result. A candidate whose every condition stood still is not excited.
+    """
+    if _stands_still(candidate, machine):
+        return []
+    found: list[Term] = []
+    for shape in shapes_of(candidate, machine):
+        found += _variants(place, candidate, machine, shape, scales)
+    return _refined(found, candidate, machine, scales)
+
+
+def _stands_still(candidate: Candidate, machine: Machine) -> bool:
+    covariates = machine.records.covariates
+    known = [covariates[need.name] for need in candidate.effect.needs if need.name in covariates]
+    return bool(known) and all(item.is_constant for item in known)
+
+
+def _refined(terms: list[Term], candidate: Candidate, machine: Machine, scales: Mapping[str, float]) -> list[Term]:
+    """Put further values between neighbours of a grid whose curves differ too much, and drop those that differ little.
+
+    A grid that is too coarse leaves a residual that a second effect would then explain.
+    """
+    if len(candidate.shapes) != 1 or candidate.shapes[0].whole or candidate.shapes[0].along or len(terms) < 2:
+        return terms
+    name = candidate.shapes[0].name
+    positive = si_bounds(candidate.shapes[0])[0] > 0
+    place = 0
+    while place + 1 < len(terms) and len(terms) < DENSEST:
+        if _cosine(terms[place], terms[place + 1], scales) >= WIDEST_ANGLE:
+            place += 1
+            continue
+        a, b = terms[place].shape[name], terms[place + 1].shape[name]
+        between = (a * b) ** 0.5 if positive else (a + b) / 2
+        new = _variants(terms[place].candidate, candidate, machine, {name: between}, scales)
+        if not new:
+            place += 1
+        terms = [*terms[: place + 1], *new[:1], *terms[place + 1 :]]
+    return terms
+
+
+def stacked(curve: Curve, scales: Mapping[str, float]) -> NDArray[np.float64]:
+    """Return a curve of all results one below the other, in units of the noise."""
+    import numpy as np
+
+    return np.concatenate([np.nan_to_num(curve[name]) / scales[name] for name in scales])
+
+
+def _cosine(first: Term, second: Term, scales: Mapping[str, float]) -> float:
+    import numpy as np
+
+    a = np.column_stack([stacked(curve, scales) for curve in first.curves])
+    b = np.column_stack([stacked(curve, scales) for curve in second.curves])
+    return float(np.linalg.svd(np.linalg.qr(a)[0].T @ np.linalg.qr(b)[0], compute_uv=False).min())
+
+
+def _variants(
+    place: int, candidate: Candidate, machine: Machine, shape: Mapping[str, float], scales: Mapping[str, float]
+) -> list[Term]:
+    """Return the terms of one shape: one, or two where an amplitude acts otherwise upward than downward."""
+    sided = [_sides(machine, candidate, unknown, shape) for unknown in candidate.amplitudes]
+    bounds = [si_bounds(unknown) for unknown in candidate.amplitudes]
+    names = [unknown.name for unknown in candidate.amplitudes]
+    if len(sided) == 1 and len(sided[0]) == 2:
+        up, down = sided[0]
+        halves = [([up], [(0.0, bounds[0][1])]), ([down], [(bounds[0][0], 0.0)])]
+    else:
+        halves = [([curves[0] for curves in sided], bounds)]
+    splits = [_files(machine, candidate, name) for name in names]
+    found: list[Term] = []
+    for curves, limits in halves:
+        columns = [
+            _Column(_of_file(curve, file, machine), name, file, low, high)
+            for curve, name, (low, high), files in zip(curves, names, limits, splits, strict=True)
+            for file in files
+        ]
+        found += _term(place, columns, shape, scales)
+    return found
+
+
+def _files(machine: Machine, candidate: Candidate, unknown: str) -> Sequence[int]:
+    """Return the numbers of the files that an unknown is fitted for one by one; -1 stands for all of them."""
+    per_file = set(machine.start.diagnose.per_file)
+    is_split = bool(per_file & {candidate.name, f"{candidate.name}.{unknown}"})
+    return range(len(machine.records.files)) if is_split and len(machine.records.files) > 1 else (-1,)
+
+
+def _sides(machine: Machine, candidate: Candidate, unknown: Unknown, shape: Mapping[str, float]) -> list[Curve]:
+    """Return the derivative by an amplitude at zero; upward and downward where there is a kink."""
+    from truing.diagnosis.readings import reading_curve
+
+    known = reading_curve(machine, candidate, unknown, shape)
+    if known is not None:
+        return [known]
+    low, high = si_bounds(unknown)
+    step = STEP * max(-low, high)
+    up = _slope(machine, candidate, unknown, shape, step) if high > 0 else None
+    down = _slope(machine, candidate, unknown, shape, -step) if low < 0 else None
+    if up is None or down is None:
+        return [up or down or {}]
+    if not _differ(up, down):
+        return [{name: (up[name] + down[name]) / 2 for name in up}]
+    nearer = [_slope(machine, candidate, unknown, shape, sign * step / 10) for sign in (1, -1)]
+    if not _differ(nearer[0], nearer[1]):
+        return [{name: (nearer[0][name] + nearer[1][name]) / 2 for name in up}]
+    return [up, down]
+
+
+def _slope(
+    machine: Machine, candidate: Candidate, unknown: Unknown, shape: Mapping[str, float], step: float
+) -> dict[str, NDArray[np.float64]]:
+    change = curve_at(machine, candidate, {unknown.name: step}, shape)
+    return {name: values / step for name, values in change.items()}
+
+
+def _differ(up: Curve, down: Curve) -> bool:
+    """Tell whether the two one-sided derivatives are not the same."""
+    import numpy as np
+
+    for name in up:
+        size = max(np.nanmax(np.abs(up[name]), initial=0.0), np.nanmax(np.abs(down[name]), initial=0.0))
+        if size > 0 and np.nanmax(np.abs(up[name] - down[name])) > KINK * size:
+            return True
+    return False
+
+
+@dataclass(frozen=True)
+class _Column:
+    curve: Curve
+    unknown: str
+    file: int
+    low: float
+    high: float
+
+
+def _of_file(curve: Curve, file: int, machine: Machine) -> Curve:
+    import numpy as np
+
+    if file < 0:
+        return curve
+    return {name: np.where(machine.records.file_of == file, values, 0.0) for name, values in curve.items()}
+
+
+def _term(
+    place: int, columns: Sequence[_Column], shape: Mapping[str, float], scales: Mapping[str, float]
+) -> list[Term]:
+    """Make a term of the columns that are excited and not one another's multiple; none where there are none."""
+    import numpy as np
+
+    kept: list[tuple[_Column, float]] = []
+    seen: list[NDArray[np.float64]] = []
+    for column in columns:
+        values = stacked(column.curve, scales)
+        size = float(np.sqrt(np.mean(values**2)))
+        if np.isfinite(size) and size * max(-column.low, column.high) > FLAT and not _depends(values, seen):
+            kept.append((column, size))
+            seen.append(values / size)
+    if not kept:
+        return []
+    return [
+        Term(
+            candidate=place,
+            curves=tuple(column.curve for column, _ in kept),
+            unknowns=tuple(column.unknown for column, _ in kept),
+            files=tuple(column.file for column, _ in kept),
+            per=tuple(1 / size for _, size in kept),
+            low=tuple(column.low * size for column, size in kept),
+            high=tuple(column.high * size for column, size in kept),
+            shape=dict(shape),
+        )
+    ]
+
+
+def _depends(values: NDArray[np.float64], kept: Iterable[NDArray[np.float64]]) -> bool:
+    """Tell whether a column is, on this data, a combination of the others (less than 1 % of it is its own)."""
+    import numpy as np
+
+    others = list(kept)
+    if not others:
+        return False
+    basis = np.linalg.qr(np.column_stack(others))[0]
+    rest = values - basis @ (basis.T @ values)
+    return float(rest @ rest) < 1e-4 * float(values @ values)

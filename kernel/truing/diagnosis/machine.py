@@ -1,0 +1,128 @@
+"""The machine as measured: what the model says at every row, and what each tolerated input would change.
+
+All rows of a file are one machine. Its inputs lie within their tolerances: a prior of mean and standard deviation each.
+Collinear inputs are carried as few directions, each with unit prior.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from truing.diagnosis.records import Records
+from truing.gauge import one_machine, read_by_gauge
+from truing.setup import Setup
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+Predicted = Mapping[str, "NDArray[np.float64]"]
+STEP = 0.5
+FAINTEST = 0.01
+
+
+@dataclass(frozen=True)
+class Tolerated:
+    """One input that may be off its nominal: where the prior has its mean (from the start) and its sd, SI.
+
+    ``file`` is the number of the file it belongs to where every file has its own machine in this respect, else -1.
+    """
+
+    name: str
+    mean: float
+    sd: float
+    file: int = -1
+
+
+@dataclass(frozen=True)
+class Machine:
+    """The start of a calibration: prediction at the start, and one column per tolerated input and measured result.
+
+    ``start`` is the setup at its calibrated inputs. ``slopes[result]`` has shape (n, inputs): the change of the result
+    by one standard deviation of the input.
+    """
+
+    start: Setup
+    records: Records
+    base: Predicted
+    inputs: tuple[Tolerated, ...]
+    slopes: Predicted
+    """By result, shape (n, len(inputs))."""
+
+
+def predict(setup: Setup, records: Records) -> Predicted:
+    """Return what the gauge would show of every measured result, SI, shape (n,)."""
+    return read_by_gauge(setup, records.rows, wanted=tuple(records.measured)).results
+
+
+def tolerated_inputs(setup: Setup, records: Records) -> list[Tolerated]:
+    """Return every input or condition that scatters and is not itself measured."""
+    start = one_machine(setup)
+    per_file = set(setup.diagnose.per_file) if len(records.files) > 1 else set()
+    found: list[Tolerated] = []
+    for name, (mean, sd) in _priors(setup).items():
+        if name in records.rows.columns or name in records.rows.series or sd <= 0:
+            continue
+        offset = float(setup.nominal(name)) + mean - float(start.nominal(name))
+        files = range(len(records.files)) if name in per_file else (-1,)
+        found += [Tolerated(name, offset, sd, file) for file in files]
+    return found
+
+
+def _priors(setup: Setup) -> dict[str, tuple[float, float]]:
+    """Return mean (from the nominal) and standard deviation of everything that scatters; two on one input add up."""
+    found: dict[str, tuple[float, float]] = {}
+    for by_input in setup.distributions().values():
+        for name, distribution in by_input.items():
+            mean, sd = found.get(name, (0.0, 0.0))
+            found[name] = (mean + distribution.mean, float((sd**2 + distribution.sd**2) ** 0.5))
+    return found
+
+
+def machine_of(setup: Setup, records: Records) -> Machine:
+    """Evaluate the model at the start and around it, twice per tolerated input."""
+    import numpy as np
+
+    start = one_machine(setup)
+    base = predict(start, records)
+    inputs = tolerated_inputs(setup, records)
+    slopes = {name: np.zeros((len(records), len(inputs))) for name in records.measured}
+    by_name: dict[str, Predicted] = {}
+    for place, item in enumerate(inputs):
+        if item.name not in by_name:
+            by_name[item.name] = _slope(start, records, item)
+        for name, slope in by_name[item.name].items():
+            here = slice(None) if item.file < 0 else records.file_of == item.file
+            slopes[name][here, place] = slope[here]
+    return Machine(start, records, base, tuple(inputs), slopes)
+
+
+def _slope(start: Setup, records: Records, item: Tolerated) -> dict[str, NDArray[np.float64]]:
+    """Central difference over one standard deviation; one-sided where a side fails."""
+    import numpy as np
+
+    nominal = float(start.nominal(item.name))
+    up = predict(start.changed({item.name: nominal + STEP * item.sd}), records)
+    down = predict(start.changed({item.name: nominal - STEP * item.sd}), records)
+    found = {}
+    for name in records.measured:
+        slope = (up[name] - down[name]) / (2 * STEP)
+        found[name] = np.where(np.isfinite(slope), slope, 0.0)
+    return found
+
+
+def directions_of(slopes: NDArray[np.float64], faintest: float = FAINTEST) -> NDArray[np.float64]:
+    """Return the combinations of inputs that the data can see, shape (inputs, K), columns of unit length.
+
+    ``slopes`` has shape (n, inputs), in units of the noise. Kept are singular values above a hundredth of the noise
+    per row; with a prior of one standard deviation on every input, each direction has the same prior.
+    """
+    import numpy as np
+
+    if slopes.shape[1] == 0:
+        return np.zeros((0, 0))
+    values, vectors = np.linalg.eigh(slopes.T @ slopes)
+    kept = np.sqrt(np.maximum(values, 0) / max(len(slopes), 1)) > faintest
+    return np.ascontiguousarray(vectors[:, kept][:, ::-1])
