@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from truing.errors import OutputError, UnknownPluginError
 from truing.measurements.writing import umask
@@ -25,6 +25,12 @@ if TYPE_CHECKING:
     from truing.runs.provenance import Provenance
 
 RUN_SCHEMA = "truing.run/1"
+Kind = Literal["run", "diagnosis"]
+DOCUMENTS: dict[Kind, tuple[str, str]] = {
+    "run": ("results.json", SCHEMA),
+    "diagnosis": ("diagnosis.json", "truing.diagnosis/1"),
+}
+"""The document that makes a folder one of ours, and its schema."""
 
 
 def json_text(document: Any) -> str:
@@ -83,35 +89,41 @@ def npz_bytes(arrays: Mapping[str, Any]) -> bytes:
     return stream.getvalue()
 
 
-def is_run(folder: Path) -> bool:
-    """Tell whether a folder is a run of ours: results.json of our schema, and run.json."""
+def is_ours(folder: Path, kind: Kind) -> bool:
+    """Tell whether a folder is a run, or a diagnosis, of ours: its document of our schema, and run.json."""
+    name, schema = DOCUMENTS[kind]
     try:
-        document = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+        document = json.loads((folder / name).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return False
-    return isinstance(document, dict) and document.get("schema") == SCHEMA and (folder / "run.json").is_file()
+    return isinstance(document, dict) and document.get("schema") == schema and (folder / "run.json").is_file()
 
 
-def demand_place(folder: Path) -> None:
-    """Raise OutputError, with one sentence, unless a run can be put at ``folder``; nothing is written.
+def is_run(folder: Path) -> bool:
+    """Tell whether a folder is a run of ours: results.json of our schema, and run.json."""
+    return is_ours(folder, "run")
+
+
+def demand_place(folder: Path, kind: Kind = "run") -> None:
+    """Raise OutputError, with one sentence, unless a run (a diagnosis) can be put at ``folder``; nothing is written.
 
     To be asked before a long calculation begins.
     """
     try:
-        _demand_place(folder)
+        _demand_place(folder, kind)
     except OSError as error:
-        raise OutputError(f"{folder}: cannot be used for the run: {error.strerror or error}") from None
+        raise OutputError(f"{folder}: cannot be used for the {kind}: {error.strerror or error}") from None
 
 
-def _demand_place(folder: Path) -> None:
+def _demand_place(folder: Path, kind: Kind) -> None:
     if folder.is_dir():
-        if not is_run(folder):
-            kind = "an existing folder but no run of ours" if any(folder.iterdir()) else "an existing empty folder"
-            raise OutputError(f"{folder}: is {kind}, so it is left alone; name another folder or remove this one")
+        if not is_ours(folder, kind):
+            what = _what_is_there(folder, kind)
+            raise OutputError(f"{folder}: is {what}, so it is left alone; name another folder or remove this one")
     elif folder.is_symlink() and not folder.exists():
         raise OutputError(f"{folder}: is a link that leads nowhere; name another place or remove this one")
     elif folder.exists():
-        raise OutputError(f"{folder}: is a file; a run is a folder, name another place")
+        raise OutputError(f"{folder}: is a file; a {kind} is a folder, name another place")
     for parent in folder.absolute().parents:
         if parent.is_dir():
             if not os.access(parent, os.W_OK):
@@ -121,9 +133,16 @@ def _demand_place(folder: Path) -> None:
             raise OutputError(f"{folder}: {parent} is a file, so there can be no folder below it; name another place")
 
 
-def write_folder(folder: Path, files: Mapping[str, str | bytes]) -> None:
-    """Write files into a folder that appears complete or not at all; an earlier run there is replaced whole."""
-    demand_place(folder)
+def _what_is_there(folder: Path, kind: Kind) -> str:
+    other: Kind = "diagnosis" if kind == "run" else "run"
+    if is_ours(folder, other):
+        return f"an existing {other} of ours but no {kind}"
+    return f"an existing folder but no {kind} of ours" if any(folder.iterdir()) else "an existing empty folder"
+
+
+def write_folder(folder: Path, files: Mapping[str, str | bytes], kind: Kind = "run") -> None:
+    """Write files into a folder that appears complete or not at all; an earlier one of its kind is replaced whole."""
+    demand_place(folder, kind)
     target = folder.resolve() if folder.is_symlink() else folder.absolute()
     try:
         with _made_parents(target.parent), _beside(target) as part:
@@ -131,7 +150,7 @@ def write_folder(folder: Path, files: Mapping[str, str | bytes]) -> None:
                 (part / name).write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
             _put_in_place(part, target)
     except OSError as error:
-        raise OutputError(f"{folder}: the run cannot be written: {error.strerror or error}") from error
+        raise OutputError(f"{folder}: the {kind} cannot be written: {error.strerror or error}") from error
 
 
 @contextmanager

@@ -66,7 +66,18 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
     declared = {study.name: study for study in setup.model.studies}
     for study in setup.studies:
         yield f"studies.{study.name}", _options(study, declared.get(study.name))
+    diagnose = _of_diagnosis(setup)
+    if diagnose:
+        yield "studies.diagnose", diagnose
     yield "units", dict(setup.units)
+
+
+def _of_diagnosis(setup: Setup) -> dict[str, Any]:
+    """Return what is asked of a diagnosis, without what is as by default."""
+    options = setup.diagnose
+    box = {name: "..".join(str(exact(end, setup.unit_of(name))) for end in ends) for name, ends in options.box.items()}
+    said = {"per_file": list(options.per_file), "hold_out": options.hold_out, "box": box}
+    return {name: value for name, value in said.items() if value}
 
 
 def exact(value: Any, unit: str) -> Any:

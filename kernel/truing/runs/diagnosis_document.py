@@ -1,0 +1,227 @@
+"""diagnosis.json: what a diagnosis found, as data. It names no date and no machine, so that equal ones are equal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any
+
+from truing.runs.documents import clean
+from truing.runs.provenance import provenance_of
+
+if TYPE_CHECKING:
+    from truing.diagnosis.result import (
+        Alternative,
+        Amount,
+        Cause,
+        Diagnosis,
+        FittedUnknown,
+        Gain,
+        NextPoint,
+        Remainder,
+        Wrong,
+    )
+
+SCHEMA = "truing.diagnosis/1"
+
+
+def diagnosis_document(diagnosis: Diagnosis) -> dict[str, Any]:
+    """Return diagnosis.json as data: the same inputs, records, seed and versions give the same document.
+
+    Numbers are in the unit that stands beside them; one that is not finite, and an open end of an interval, is null.
+    Coefficients of a remainder's terms are SI, as their expressions are.
+    """
+    provenance = provenance_of(diagnosis.setup)
+    return {
+        "schema": SCHEMA,
+        "plugin": {
+            "name": provenance.plugin,
+            "version": provenance.plugin_version,
+            "model": diagnosis.setup.model.name,
+        },
+        "kernel": provenance.kernel,
+        "input_hash": provenance.input_hash,
+        "seed": provenance.seed,
+        **_data(diagnosis),
+        "wrong": {item.result: _wrong(item, _labels(diagnosis)) for item in diagnosis.wrong},
+        "verdict": diagnosis.verdict,
+        "p_any": clean(diagnosis.p_any),
+        "p_second": clean(diagnosis.p_second),
+        "causes": [_cause(cause, _labels(diagnosis)) for cause in diagnosis.causes],
+        "unique": bool(diagnosis.unique),
+        "alternatives": [_alternative(item) for item in diagnosis.alternatives],
+        "ranking": [_alternative(item) for item in diagnosis.ranking],
+        "inseparable": list(diagnosis.inseparable),
+        "remainder": None if diagnosis.remainder is None else _remainder(diagnosis.remainder),
+        **_sight(diagnosis),
+        "calibrated": {
+            item.name: {**_value(item.value, item.unit), "of_its_sd": clean(item.of_its_sd)}
+            for item in diagnosis.calibrated
+        },
+        "gain": {**{item.result: _gain(item) for item in diagnosis.gain}, "stability": clean(diagnosis.stability)},
+        "next": [_next(point) for point in diagnosis.next],
+        "notes": list(diagnosis.records.notes),
+        "unit_slips": [
+            {"column": slip.column, "factor": clean(slip.factor), "text": slip.text} for slip in diagnosis.records.slips
+        ],
+        "warnings": list(diagnosis.warnings),
+    }
+
+
+def file_labels(files: Sequence[str]) -> list[str]:
+    """Return how data files are named: without their folders where that tells them apart."""
+    names = [PurePath(file.replace("\\", "/")).name for file in files]
+    return names if len(set(names)) == len(names) else list(files)
+
+
+def _labels(diagnosis: Diagnosis) -> Mapping[str, str]:
+    return dict(zip(diagnosis.records.files, file_labels(diagnosis.records.files), strict=True))
+
+
+def _data(diagnosis: Diagnosis) -> dict[str, Any]:
+    """Say what was measured: results, files with their rows and runs, rows that only judge."""
+    records = diagnosis.records
+    files = []
+    for place, label in enumerate(file_labels(records.files)):
+        of_file = records.file_of == place
+        files.append({"file": label, "rows": int(of_file.sum()), "runs": len(set(records.run_of[of_file].tolist()))})
+    return {
+        "measured": list(diagnosis.measured),
+        "rows": len(records),
+        "runs": len(set(records.run_of.tolist())),
+        "files": files,
+        "held_out": int(records.held_out.sum()),
+        "covariates": {
+            item.name: {"unit": item.unit, "role": item.role, "constant": item.is_constant}
+            for item in records.covariates.values()
+        },
+    }
+
+
+def _value(value: float | None, unit: str) -> dict[str, Any]:
+    return {"value": _in(value, unit), "unit": unit}
+
+
+def _in(value: float | None, unit: str) -> float | None:
+    """Bring an SI number to a unit; what is no finite number is None."""
+    from truing.units import from_si
+
+    number: float | None = None if value is None else clean(float(from_si(float(value), unit)))
+    return number
+
+
+def _amount(amount: Amount) -> dict[str, Any]:
+    return _value(amount.value, amount.unit)
+
+
+def _wrong(item: Wrong, labels: Mapping[str, str]) -> dict[str, Any]:
+    noise = item.noise
+    return {
+        "rows": item.rows,
+        "rmse": _amount(item.rmse),
+        "noise_floor": _amount(item.noise_floor),
+        "reducible_share": clean(item.reducible_share),
+        "noise": {
+            "sd": _amount(noise.sd),
+            "autocorrelation": clean(noise.autocorrelation),
+            "tails": noise.tails,
+            "spread": noise.spread,
+            "outliers": [{"file": labels.get(file, file), "line": int(line)} for file, line in noise.outliers],
+        },
+        "findings": [
+            {"kind": one.kind, "covariate": one.covariate, "p_value": clean(one.p_value), "text": one.text}
+            for one in item.findings
+        ],
+    }
+
+
+def _cause(cause: Cause, labels: Mapping[str, str]) -> dict[str, Any]:
+    return {
+        "effect": cause.effect,
+        "unknowns": {unknown.name: _unknown(unknown, labels) for unknown in cause.unknowns},
+        "same_as": list(cause.same_as),
+    }
+
+
+def _unknown(unknown: FittedUnknown, labels: Mapping[str, str] | None = None) -> dict[str, Any]:
+    said = _fitted((unknown.value, unknown.low, unknown.high), unknown.unit)
+    if unknown.per_file:
+        names = labels or {}
+        said["per_file"] = {
+            names.get(file, file): _fitted(fitted, unknown.unit) for file, fitted in unknown.per_file.items()
+        }
+    return said
+
+
+def _fitted(fitted: tuple[float, float | None, float | None], unit: str) -> dict[str, Any]:
+    value, low, high = fitted
+    return {**_value(value, unit), "interval95": [_in(low, unit), _in(high, unit)]}
+
+
+def _alternative(item: Alternative) -> dict[str, Any]:
+    return {
+        "causes": list(item.causes),
+        "behind": clean(item.behind),
+        "separation": clean(item.separation),
+        "depends_on": list(item.depends_on),
+        "unknowns": {
+            effect: {unknown.name: _unknown(unknown) for unknown in unknowns}
+            for effect, unknowns in item.unknowns.items()
+        },
+    }
+
+
+def _remainder(remainder: Remainder) -> dict[str, Any]:
+    return {
+        "depends_on": list(remainder.depends_on),
+        "shape": remainder.shape,
+        "results": list(remainder.results),
+        "p_value": clean(remainder.p_value),
+        "terms": {
+            result: [{"expression": term.expression, "coefficient": clean(float(term.coefficient))} for term in terms]
+            for result, terms in remainder.terms.items()
+        },
+    }
+
+
+def _sight(diagnosis: Diagnosis) -> dict[str, Any]:
+    """Say what this data could show, and what it could not."""
+    seen = diagnosis.seen
+    return {
+        "not_excited": [item.name for item in seen if item.sight == "not excited"],
+        "not_measured": {effect: list(conditions) for effect, conditions in diagnosis.not_measured.items()},
+        "hidden_in_tolerances": [item.name for item in seen if item.sight == "hidden in the tolerances"],
+        "smallest_visible": dict(_smallest(diagnosis)),
+    }
+
+
+def _smallest(diagnosis: Diagnosis) -> Iterator[tuple[str, dict[str, Any]]]:
+    for item in diagnosis.seen:
+        if item.smallest is not None:
+            yield item.name, {**_amount(item.smallest), "sight": item.sight}
+
+
+def _gain(item: Gain) -> dict[str, Any]:
+    said = {
+        "rmse_before": _amount(item.rmse_before),
+        "rmse_after": _amount(item.rmse_after),
+        "noise_floor": _amount(item.noise_floor),
+        "reducible_removed": clean(item.reducible_removed),
+        "log_score_gain": clean(item.log_score_gain),
+        "p_value": clean(item.p_value),
+        "coverage90": clean(item.coverage90),
+    }
+    if item.held_out is not None:
+        before, after = item.held_out
+        unit = item.rmse_before.unit
+        said["held_out"] = {"rmse_before": _value(before, unit), "rmse_after": _value(after, unit)}
+    return said
+
+
+def _next(point: NextPoint) -> dict[str, Any]:
+    return {
+        "settings": {name: _amount(amount) for name, amount in point.settings.items()},
+        "separates": list(point.separates),
+        "why": point.why,
+        "separation": clean(point.separation),
+    }

@@ -1,0 +1,80 @@
+"""The folder of a diagnosis: its document, its sheets, and the extended model, complete or absent."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from hashlib import file_digest
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from truing.runs.diagnosis_document import diagnosis_document, file_labels
+from truing.runs.extension import extended_text
+from truing.runs.folder import RUN_SCHEMA, json_text, npz_bytes, write_folder
+from truing.runs.inputs_written import complete_inputs
+from truing.runs.new_effect import new_effect_source
+
+if TYPE_CHECKING:
+    from truing.diagnosis.result import Diagnosis
+    from truing.runs.provenance import Provenance
+
+
+def write_diagnosis(
+    folder: Path,
+    diagnosis: Diagnosis,
+    *,
+    provenance: Provenance,
+    run_info: Mapping[str, Any],
+    sheets: Mapping[str, str | bytes],
+) -> dict[str, Any]:
+    """Write the folder of a diagnosis and return diagnosis.json as data.
+
+    ``sheets`` holds files by name, ``run_info`` what run.json says of this one run. A folder that is there already is
+    replaced whole if it is a diagnosis of ours. Raises OutputError where it is not, or where nothing can be written.
+    """
+    document = diagnosis_document(diagnosis)
+    origin = diagnosis.setup.origin
+    run = {
+        "schema": RUN_SCHEMA,
+        **run_info,
+        "plugin": {"name": origin.name, "version": origin.version, "distribution": origin.distribution},
+        "versions": {"truing": provenance.kernel, "python": provenance.python, **provenance.packages},
+        "data": {file: digest_of(file) for file in diagnosis.records.files},
+    }
+    files: dict[str, str | bytes] = {
+        "inputs.toml": complete_inputs(diagnosis.setup, folder),
+        "diagnosis.json": json_text(document),
+        "run.json": json_text(run),
+        "arrays.npz": npz_bytes(curve_arrays(diagnosis)),
+        **sheets,
+    }
+    extension = {"extended.toml": extended_text(diagnosis, folder), "new_effect.py": new_effect_source(diagnosis)}
+    write_folder(folder, {**files, **{name: text for name, text in extension.items() if text}}, "diagnosis")
+    return document
+
+
+def digest_of(file: str) -> str:
+    """Return the SHA-256 of a file; nothing where it cannot be read."""
+    try:
+        with Path(file).open("rb") as stream:
+            return file_digest(stream, "sha256").hexdigest()
+    except OSError:
+        return ""
+
+
+def data_digests(diagnosis: Diagnosis) -> dict[str, str]:
+    """Return the SHA-256 of every data file by the name it is given on the sheet."""
+    files = diagnosis.records.files
+    return {label: digest_of(file) for label, file in zip(file_labels(files), files, strict=True)}
+
+
+def curve_arrays(diagnosis: Diagnosis) -> dict[str, Any]:
+    """Return what arrays.npz holds: per result measured, before and after in its printed unit; file, line and run."""
+    from truing.units import from_si
+
+    records = diagnosis.records
+    arrays: dict[str, Any] = {"file": records.file_of, "line": records.lines, "run": records.run_of}
+    for item in diagnosis.curves:
+        unit = diagnosis.setup.print_unit(item.result)
+        for name in ("measured", "before", "after"):
+            arrays[f"{item.result}.{name}"] = from_si(getattr(item, name), unit)
+    return arrays

@@ -1,0 +1,103 @@
+"""extended.toml: the model that is now true, as an inputs file that every verb accepts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from truing.formulas.symbols import printable
+from truing.runs.diagnosis_document import file_labels
+from truing.runs.inputs_written import complete_inputs
+
+if TYPE_CHECKING:
+    from truing.diagnosis.result import Calibrated, Cause, Diagnosis
+    from truing.setup import Setup
+
+WIDTH = 116
+
+
+def extended_setup(diagnosis: Diagnosis) -> Setup | None:
+    """Return the setup that the diagnosis leaves: causes on, inputs calibrated; None where neither is."""
+    if diagnosis.extended is not None:
+        return diagnosis.extended
+    if not diagnosis.calibrated:
+        return None
+    fitted = {item.name: item.value for item in diagnosis.calibrated}
+    return replace(diagnosis.setup, calibrated={**diagnosis.setup.calibrated, **fitted})
+
+
+def extended_text(diagnosis: Diagnosis, folder: Path | None = None) -> str:
+    """Write the extended model as an inputs file; nothing where nothing was named or calibrated.
+
+    ``folder`` is where the text will stand: data files are named as seen from there.
+    """
+    setup = extended_setup(diagnosis)
+    if setup is None:
+        return ""
+    lines = [*_comment(_head(diagnosis))]
+    for line in complete_inputs(setup, folder).splitlines():
+        if line.startswith("["):
+            lines += _comment(_of_section(line.strip("[]"), diagnosis))
+        lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+def _comment(sentences: Iterator[str]) -> Iterator[str]:
+    """Write sentences as comments, each beginning a line of its own."""
+    import textwrap
+
+    for sentence in sentences:
+        yield from (f"# {line}" for line in textwrap.wrap(printable(sentence), WIDTH))
+
+
+def _head(diagnosis: Diagnosis) -> Iterator[str]:
+    model = diagnosis.setup.model.name
+    files = ", ".join(file_labels(diagnosis.records.files))
+    yield f"{model} as measured: what calc diagnose made of {files} ({len(diagnosis.records)} rows)."
+    if diagnosis.causes:
+        names = " and ".join(cause.effect for cause in diagnosis.causes)
+        yield f"Named: {names}." if diagnosis.unique else f"Named: {names}; this data does not exclude other causes."
+    for item in diagnosis.alternatives[:4]:
+        yield f"Not excluded: {' and '.join(item.causes)}, {item.behind:.1f} score units behind."
+    if diagnosis.remainder is not None:
+        where = ", ".join(diagnosis.remainder.depends_on)
+        yield f"Not in this file: an unregistered remainder over {where}; new_effect.py holds its shape."
+    yield "Standard deviations stand beside the values; a covariance is over the unknowns in their declared order."
+    yield f"Run it: calc run {model} --inputs THIS_FILE"
+
+
+def _of_section(name: str, diagnosis: Diagnosis) -> Iterator[str]:
+    """Say of a section what the diagnosis put there."""
+    if name == "calibrated":
+        yield (
+            "Inputs as fitted to this one machine, within their tolerances. table and diagnose use them; run and its "
+            "studies draw machines from the tolerances and do not."
+        )
+        yield from map(_moved, diagnosis.calibrated)
+    if name == "conditions":
+        yield "Conditions as they were measured; what is drawn or changed is your choice."
+    for cause in diagnosis.causes:
+        if name == f"effects.{cause.effect}":
+            yield from _of_cause(cause, diagnosis)
+
+
+def _moved(item: Calibrated) -> str:
+    return f"{item.name}: moved by {item.of_its_sd:+.2f} of its standard deviation."
+
+
+def _of_cause(cause: Cause, diagnosis: Diagnosis) -> Iterator[str]:
+    from truing.numbers import format_number
+    from truing.units import from_si
+
+    effect = diagnosis.setup.model.effects.get(cause.effect)
+    about = "" if effect is None else effect.why or effect.looks_like
+    yield f"Found by diagnosis{': ' + about if about else ''}."
+    for unknown in cause.unknowns:
+        low, high = (
+            "open" if end is None else format_number(from_si(end, unknown.unit)) for end in (unknown.low, unknown.high)
+        )
+        yield f"{unknown.name}: 95 % interval from {low} to {high} {unknown.unit}".rstrip() + "."
+    if cause.same_as:
+        yield f"The same curve on this data: {', '.join(cause.same_as)}."
