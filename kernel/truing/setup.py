@@ -29,6 +29,26 @@ class SwitchedOn:
 
 
 @dataclass(frozen=True, kw_only=True)
+class DiagnoseOptions:
+    """What is asked of a diagnosis.
+
+    ``per_file`` names effects, single unknowns ("effect.unknown") and inputs that every file has for itself.
+    ``hold_out`` marks rows that only judge, "column = word". ``box`` holds the range (SI) in which an input or
+    condition can be set for the next measurement, where it is not the declared one.
+    """
+
+    per_file: tuple[str, ...] = ()
+    hold_out: str = ""
+    box: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    @property
+    def held_out(self) -> tuple[str, str]:
+        """The column and the word in it that hold a row out."""
+        column, _, word = self.hold_out.partition("=")
+        return column.strip(), word.strip()
+
+
+@dataclass(frozen=True, kw_only=True)
 class Setup:
     """What one inputs file says, checked, in SI. ``spreads`` holds the tolerances in force, by name.
 
@@ -55,6 +75,7 @@ class Setup:
     tables: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     places: Mapping[str, tuple[str, int | None]] = field(default_factory=dict, compare=False)
+    diagnose: DiagnoseOptions = DiagnoseOptions()
 
     def __post_init__(self) -> None:
         """Put the effects in the order in which the model declares them: they act in this order."""

@@ -12,6 +12,7 @@ from truing.declare.model import Model, Study
 from truing.declare.spreads import Off, Spread, Target
 from truing.errors import Fault, TruingError
 from truing.inputs_file.checks import renamed
+from truing.inputs_file.diagnose_options import diagnose_options
 from truing.inputs_file.document import Document
 from truing.inputs_file.values import Reading
 from truing.kernel import Offer
@@ -177,6 +178,7 @@ def make_setup(offer: Offer, reading: Reading, studies: tuple[Study, ...], docum
         tables=dict(reading.tables),
         places=places_of(model, document),
         warnings=tuple(of("warnings").values()),
+        diagnose=diagnose_options(model, values),
     )
 
 

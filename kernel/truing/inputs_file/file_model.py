@@ -16,6 +16,7 @@ from truing.declare.model import Model
 from truing.declare.sources import Effect
 from truing.declare.specs import Given, Loaded
 from truing.inputs_file import checks
+from truing.inputs_file.diagnose_options import NAME, diagnose_schema, of_diagnose
 from truing.inputs_file.schema_words import (
     condition_schema,
     effect_schema,
@@ -177,6 +178,7 @@ def _studies(model: Model[Any, Any]) -> dict[str, Entry]:
     }
     for study in model.studies:
         entries[study.name] = Entry(checks.of_study(study), study_schema(study))
+    entries.setdefault(NAME, Entry(of_diagnose(model), diagnose_schema(model)))
     return entries
 
 

@@ -82,7 +82,7 @@ class _Words:
     def known(self, section: str) -> tuple[str, Sequence[str]]:
         """Return what the entries of a section are called and which there are."""
         model = self.model
-        studies = ["run", "seed", *(study.name for study in model.studies)]
+        studies = ["run", "seed", *(study.name for study in model.studies), "diagnose"]
         from truing.inputs_file.file_model import HEAD
 
         return {
