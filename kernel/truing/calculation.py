@@ -91,8 +91,10 @@ def _idle_effects(setup: Setup) -> list[str]:
     idle = []
     for item in setup.effects:
         needs = item.effect.needs
-        still = all(setup.conditions[need.name] == need.zero and need.name not in scattering for need in needs)
+        still = all(setup.nominal(need.name) == need.zero and need.name not in scattering for need in needs)
         if needs and still:
             names = " and ".join(f"'{need.name}'" for need in needs)
-            idle.append(f"effect '{item.effect.name}' is on, but {names} stays at its reference: it does nothing")
+            # of a wave over an angle a constant is left there
+            left = "it does nothing" if item.effect.name in setup.model.effects else "it reads the same everywhere"
+            idle.append(f"effect '{item.effect.name}' is on, but {names} stays at its reference: {left}")
     return idle

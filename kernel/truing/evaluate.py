@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from truing.declare.batch import watching
 from truing.declare.fields import Axis, Kind, read, with_values
 from truing.declare.near_miss import near_miss
+from truing.declare.sources import Unknown
 from truing.errors import InfeasibleError, PluginError, TruingError, UsageError
 from truing.kernel.blame import home_of, place_of
 from truing.setup import Setup, SwitchedOn
@@ -166,8 +167,8 @@ def _sorted_columns(setup: Setup, columns: Mapping[str, Any], rows: int) -> tupl
         if name in fields and not fields[name].varies:
             fixed[name] = values
             continue
-        if name not in fields and name not in setup.model.conditions and name not in unknowns:
-            near = near_miss(name, [*fields, *setup.model.conditions, *unknowns])
+        if name not in fields and name not in setup.model.known_conditions and name not in unknowns:
+            near = near_miss(name, [*fields, *setup.model.known_conditions, *unknowns])
             raise UsageError(f"the column '{name}' is no input, condition or effect that is on.{near}")
         numbers = np.asarray(values, dtype=float)
         if numbers.shape not in {(), (rows,)}:
@@ -291,9 +292,27 @@ def acting_inputs(setup: Setup) -> Any:
 
 
 def _keywords(item: SwitchedOn, setup: Setup, columns: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what an effect is called with: unknowns and conditions, from the columns, else as they are held."""
     import numpy as np
 
-    name = item.effect.name
-    values = {unknown.name: (effect_column(name, unknown.name), item.values) for unknown in item.effect.unknowns}
-    values |= {need.name: (need.name, setup.conditions) for need in item.effect.needs}
-    return {key: columns.get(column, np.float64(held[key])) for key, (column, held) in values.items()}
+    held: dict[str, Any] = {}
+    for unknown in item.effect.unknowns:
+        column = effect_column(item.effect.name, unknown.name)
+        if column in columns:
+            held[unknown.name] = columns[column]
+        elif unknown.name in item.values or not (item.effect.parts and item.effect.takes_any):
+            held[unknown.name] = np.float64(_held(item, unknown))
+    for need in item.effect.needs:
+        held[need.name] = columns.get(need.name, np.float64(setup.conditions.get(need.name, need.zero)))
+    return held
+
+
+def _held(item: SwitchedOn, unknown: Unknown) -> float:
+    """Return the value of an unknown; in a part that is off 0, or the lower bound of a shape. Raises UsageError."""
+    if unknown.name in item.values:
+        return item.values[unknown.name]
+    if not item.effect.parts:
+        raise UsageError(f"effect '{item.effect.name}' is on, so its unknown '{unknown.name}' must be given")
+    from truing.units import to_si
+
+    return 0.0 if unknown.is_amplitude else to_si(unknown.low, unknown.unit)

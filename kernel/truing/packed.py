@@ -52,7 +52,7 @@ def unpack(packed: Packed) -> Setup:
         spreads={**spreads, **content["spreads"]},
         conditions=content["conditions"],
         effects=tuple(
-            SwitchedOn(model.effects[name], values, sds, covariance)
+            SwitchedOn(model.known_effects[name], values, sds, covariance)
             for name, values, sds, covariance in content["effects"]
         ),
         calibrated=content["calibrated"],

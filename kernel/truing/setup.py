@@ -10,7 +10,7 @@ from typing import Any
 from truing.declare.fields import with_values
 from truing.declare.model import Model, Study
 from truing.declare.near_miss import near_miss
-from truing.declare.sources import Effect
+from truing.declare.sources import Effect, Unknown
 from truing.declare.spreads import ByChoice, Distribution, Off, Spread, Target
 from truing.errors import UsageError
 from truing.kernel import Added, Origin
@@ -20,12 +20,20 @@ DEFAULT_SEED = 0
 
 @dataclass(frozen=True)
 class SwitchedOn:
-    """An effect that is on: its unknowns in SI, and their standard deviations and covariance where diagnosed."""
+    """An effect that is on: its unknowns in SI, and their standard deviations and covariance where diagnosed.
+
+    Of an effect with parts, ``values`` may hold those of some parts alone.
+    """
 
     effect: Effect[Any, Any]
     values: Mapping[str, float]
     sds: Mapping[str, float] = field(default_factory=dict)
     covariance: tuple[tuple[float, ...], ...] = ()
+
+    @property
+    def unknowns(self) -> tuple[Unknown, ...]:
+        """The unknowns that are stated, in the order declared, which is that of the covariance; other parts are off."""
+        return tuple(unknown for unknown in self.effect.unknowns if unknown.name in self.values)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,9 +86,10 @@ class Setup:
     diagnose: DiagnoseOptions = DiagnoseOptions()
 
     def __post_init__(self) -> None:
-        """Put the effects in the order in which the model declares them: they act in this order."""
-        order = list(self.model.effects)
+        """Put the effects in the order in which they act: the model's own as declared, then the kernel's."""
         names = [item.effect.name for item in self.effects]
+        own = set(names) <= set(self.model.effects)
+        order = list(self.model.effects if own else self.model.known_effects)
         for name in names:
             if name not in order:
                 raise UsageError(f"{self.model.name} has no effect '{name}'.{near_miss(name, order)}")
@@ -100,12 +109,12 @@ class Setup:
         """Return the nominal value in SI of an input or condition."""
         if name in self.model.input_fields:
             return self.model.read_inputs(self.inputs)[name]
-        return self.conditions[name]
+        return self.conditions[name] if name in self.conditions else self.model.known_conditions[name].zero
 
     def unit_of(self, name: str) -> str:
         """Return the declared unit of an input or condition."""
         item = self.model.input_fields.get(name)
-        return item.unit if item is not None else self.model.conditions[name].unit
+        return item.unit if item is not None else self.model.known_conditions[name].unit
 
     def print_unit(self, name: str) -> str:
         """Return the unit in which a result or input is printed."""

@@ -94,6 +94,11 @@ def of_effect(source: Effect[Any, Any], model: Model[Any, Any]) -> Iterator[str]
         for known, kind in ((model.input_fields, "an input"), (model.result_fields, "a result")):
             if condition.name in known:
                 yield f"the condition '{condition.name}' has the name of {kind}"
+    axes = {name for name, item in model.own_result_fields.items() if isinstance(item.spec, Axis)}
+    readable = {*model.input_fields, *axes}
+    for name in source.reads:
+        if name not in readable:
+            yield f"effect '{source.name}' reads '{name}', which is neither input nor axis.{near_miss(name, readable)}"
     expected = [model.input_type, model.result_type][: 1 if source.place == "inputs" else 2]
     for parameter, wanted in zip(signature(source.function).parameters.values(), expected, strict=False):
         try:

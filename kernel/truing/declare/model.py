@@ -186,6 +186,22 @@ class Model(Generic[I, R]):
         """The conditions of all effects by name."""
         return {condition.name: condition for effect in self.effects.values() for condition in effect.needs}
 
+    @cached_property
+    def known_effects(self) -> dict[str, Effect[I, R]]:
+        """Every effect that can be switched on or diagnosed, by name: the model's own, then the kernel's.
+
+        They act in this order. The kernel's are those on every reading (``declare.builtin``).
+        """
+        from truing.declare.builtin import builtin_effects
+
+        return {**self.effects, **builtin_effects(self)}
+
+    @cached_property
+    def known_conditions(self) -> dict[str, Condition]:
+        """Every condition that an effect may need, by name: the model's own, then the kernel's."""
+        needed = {need.name: need for effect in self.known_effects.values() for need in effect.needs}
+        return {**self.conditions, **{name: need for name, need in needed.items() if name not in self.conditions}}
+
     def inputs(self, **values: Any) -> I:
         """Make inputs by flat name; texts carry units (``load="3 kN"``), numbers are SI, the rest is default."""
         changed = {}

@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Concatenate, Generic, Literal, TypeAlias, TypeVar
 
 from truing.declare.goals import Price
+from truing.declare.near_miss import near_miss
 from truing.declare.spreads import Spread
 from truing.errors import DeclarationError
 
@@ -22,6 +23,10 @@ else:
     I = TypeVar("I")  # noqa: E741
     R = TypeVar("R")
 Place = Literal["inputs", "results", "reading"]
+SINCE_START = "since_start"
+HISTORIES = ("running_maximum", "cumulative", "direction", "last_reversal")
+"""What a condition may be derived by: "since_start" from its own column, these from another one."""
+MOST_UNKNOWNS = 3
 
 
 @dataclass(frozen=True, init=False)
@@ -79,6 +84,14 @@ class Unknown:
             raise DeclarationError(
                 f"unknown '{self.name}': its bounds are {self.low} and {self.high}; two finite numbers, lower first"
             )
+        if self.whole and not (float(self.low).is_integer() and float(self.high).is_integer()):
+            raise DeclarationError(
+                f"unknown '{self.name}': it is a whole number, so its bounds are; they are {self.low} and {self.high}"
+            )
+        if self.whole and self.along:
+            raise DeclarationError(
+                f"unknown '{self.name}': a place along '{self.along}' is no whole number; drop whole or along"
+            )
 
     @property
     def is_amplitude(self) -> bool:
@@ -93,6 +106,7 @@ class Condition:
     ``derived`` makes it, once, from whole runs in time order: "since_start" (what its own column has gained since the
     first row of the file), or "running_maximum of load", "cumulative of load", "direction of travel", "last_reversal of
     travel". ``low`` and ``high`` (in ``unit``) are the range in which it can be set, for the next measurement.
+    Raises DeclarationError for another text, for a range upside down, and for a temperature level that is gained.
     """
 
     name: str
@@ -103,12 +117,49 @@ class Condition:
     low: float | None = None
     high: float | None = None
 
+    def __post_init__(self) -> None:
+        _check_condition(self)
+
+    @property
+    def history(self) -> str:
+        """The word of what it is derived by ("since_start", "direction" ...), or nothing."""
+        return self.derived.partition(" of ")[0]
+
+    @property
+    def made_from(self) -> str:
+        """The column it is derived from: its own for "since_start", else the one behind "of"; nothing without."""
+        return (self.derived.partition(" of ")[2] or self.name) if self.derived else ""
+
     @cached_property
     def zero(self) -> float:
         """The reference in SI, as effects see the condition itself."""
         from truing.units import to_si
 
         return float(to_si(self.reference, self.unit))
+
+
+def _check_condition(condition: Condition) -> None:
+    """Refuse a history that nobody knows how to derive, and a range that is none."""
+    from truing.units.names import LEVELS
+
+    low, high = condition.low, condition.high
+    if low is not None and high is not None and not low < high:
+        raise DeclarationError(f"condition '{condition.name}': its range goes from {low} to {high}; lower first")
+    if not condition.derived:
+        return
+    word, of, column = condition.derived.partition(" of ")
+    fits = word in HISTORIES and column.isidentifier() if of else condition.derived == SINCE_START
+    if not fits or column == condition.name:
+        words = ", ".join(f"'{known} of COLUMN'" for known in HISTORIES)
+        raise DeclarationError(
+            f"condition '{condition.name}' is derived by '{condition.derived}'; write '{SINCE_START}', {words}, "
+            "each of another column"
+        )
+    if word in {SINCE_START, "cumulative"} and condition.unit in LEVELS:
+        raise DeclarationError(
+            f"condition '{condition.name}' is in {condition.unit}, a temperature level, but what is gained is a "
+            "difference: declare it in K"
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,7 +177,9 @@ class Effect(Generic[I, R]):
     ``on_results(inputs, results, ...) -> results``: a last term on a last result;
     ``on_reading(inputs, results, ...) -> results``: the gauge errs, not the machine.
     ``parts`` are groups of unknowns that a diagnosis looks for one by one (an offset of this gauge, of that gauge);
-    without them all unknowns are one cause.
+    without them all unknowns are one cause. The limit of three and the need of an amplitude hold for each part; a part
+    of which nothing is stated is off: a function with ``**unknowns`` is called without it, any other with 0.
+    ``reads`` names inputs or axes of results, beside the conditions, that a place ``along`` may lie on.
     """
 
     name: str
@@ -134,6 +187,7 @@ class Effect(Generic[I, R]):
     unknowns: tuple[Unknown, ...]
     needs: tuple[Condition, ...]
     parts: tuple[tuple[str, ...], ...]
+    reads: tuple[str, ...]
     looks_like: str
     why: str
     source: str
@@ -148,6 +202,7 @@ class Effect(Generic[I, R]):
         on_reading: Callable[Concatenate[I, R, ...], R] | None = None,
         needs: Sequence[Condition] = (),
         parts: Sequence[Sequence[str]] = (),
+        reads: Sequence[str] = (),
         looks_like: str = "",
         why: str = "",
         source: str = "",
@@ -155,7 +210,8 @@ class Effect(Generic[I, R]):
         actions = _Actions(on_inputs=on_inputs, on_results=on_results, on_reading=on_reading)
         values = {
             "name": name, "actions": actions, "unknowns": tuple(unknowns), "needs": tuple(needs),
-            "parts": tuple(tuple(part) for part in parts), "looks_like": looks_like, "why": why, "source": source,
+            "parts": tuple(tuple(part) for part in parts), "reads": tuple(reads),
+            "looks_like": looks_like, "why": why, "source": source,
         }  # fmt: skip
         for key, value in values.items():
             object.__setattr__(self, key, value)
@@ -174,28 +230,65 @@ class Effect(Generic[I, R]):
         given = (self.actions.on_inputs, self.actions.on_results, self.actions.on_reading)
         return next(function for function in given if function is not None)
 
+    @cached_property
+    def takes_any(self) -> bool:
+        """Whether the function takes whatever unknowns are stated (``**unknowns``)."""
+        parameters = inspect.signature(self.function).parameters.values()
+        return any(item.kind is inspect.Parameter.VAR_KEYWORD for item in parameters)
+
+    def groups(self) -> tuple[tuple[Unknown, ...], ...]:
+        """Return the unknowns by part, in the order declared; without parts all of them are one."""
+        named = {unknown.name: unknown for unknown in self.unknowns}
+        return tuple(tuple(named[name] for name in part) for part in self.parts) or (self.unknowns,)
+
 
 def _check_effect(effect: Effect[Any, Any]) -> None:
     """Refuse an effect whose function does not fit its unknowns and conditions."""
     actions = effect.actions
     if sum(function is not None for function in (actions.on_inputs, actions.on_results, actions.on_reading)) != 1:
         raise DeclarationError(f"effect '{effect.name}' acts at one place: give on_inputs, on_results or on_reading")
-    if not 1 <= len(effect.unknowns) <= 3:
-        raise DeclarationError(f"effect '{effect.name}' has {len(effect.unknowns)} unknowns; one to three can be found")
-    if not any(unknown.is_amplitude for unknown in effect.unknowns):
-        raise DeclarationError(f"effect '{effect.name}' has no amplitude: one unknown's bounds must contain 0")
+    _check_parts(effect)
+    for part in effect.groups():
+        what = f"the part {', '.join(unknown.name for unknown in part)} of effect" if effect.parts else "effect"
+        if not 1 <= len(part) <= MOST_UNKNOWNS:
+            raise DeclarationError(f"{what} '{effect.name}' has {len(part)} unknowns; one to three can be found")
+        if not any(unknown.is_amplitude for unknown in part):
+            raise DeclarationError(f"{what} '{effect.name}' has no amplitude: one unknown's bounds must contain 0")
+    seen = {*effect.reads, *(need.name for need in effect.needs)}
+    for unknown in effect.unknowns:
+        if unknown.along and unknown.along not in seen:
+            raise DeclarationError(
+                f"effect '{effect.name}': its unknown '{unknown.name}' lies along '{unknown.along}', which it does not "
+                f"see; name it in needs (or, an input, in reads).{near_miss(unknown.along, seen)}"
+            )
     wanted = {unknown.name for unknown in effect.unknowns} | {need.name for need in effect.needs}
     if len(wanted) != len(effect.unknowns) + len(effect.needs):
         raise DeclarationError(f"effect '{effect.name}' names an unknown or condition twice")
     _check_keywords(effect, wanted)
 
 
+def _check_parts(effect: Effect[Any, Any]) -> None:
+    """Refuse parts that are no division of the unknowns."""
+    if not effect.parts:
+        return
+    named = [name for part in effect.parts for name in part]
+    known = [unknown.name for unknown in effect.unknowns]
+    for name in named:
+        if name not in known:
+            raise DeclarationError(f"a part of effect '{effect.name}' names '{name}', which is no unknown of it")
+        if named.count(name) > 1:
+            raise DeclarationError(f"effect '{effect.name}': the unknown '{name}' stands in two parts")
+    for name in known:
+        if name not in named:
+            raise DeclarationError(f"effect '{effect.name}': the unknown '{name}' stands in no part")
+
+
 def _check_keywords(effect: Effect[Any, Any], wanted: set[str]) -> None:
     """Refuse a function whose keywords are not the unknowns and conditions; further ones need a default."""
+    if effect.takes_any:
+        return
     parameters = list(inspect.signature(effect.function).parameters.values())
     named = parameters[1 if effect.place == "inputs" else 2 :]
-    if any(item.kind is inspect.Parameter.VAR_KEYWORD for item in named):
-        return
     needed = {item.name for item in named if item.default is inspect.Parameter.empty}
     if not needed <= wanted <= {item.name for item in named}:
         have = ", ".join(item.name for item in named) or "none"

@@ -39,7 +39,8 @@ def _changed(setup: Setup) -> set[str]:
     fields = setup.model.input_fields
     values = setup.model.read_inputs(setup.inputs)
     changed = {f"effects.{item.effect.name}" for item in setup.effects}
-    changed |= {name for name, item in setup.model.conditions.items() if setup.conditions.get(name) != item.zero}
+    known = setup.model.known_conditions
+    changed |= {name for name, value in setup.conditions.items() if name in known and value != known[name].zero}
     for name in setup.places:
         if name in fields and not _is_default(fields[name].spec, values[name]):
             changed.add(name)

@@ -114,7 +114,7 @@ def _shifts(setup: Setup, distributions: Mapping[str, Distribution]) -> Iterator
 def condition_rows(setup: Setup) -> Iterator[ConditionRow]:
     """Say every condition with its reference."""
     for name, value in setup.conditions.items():
-        condition = setup.model.conditions[name]
+        condition = setup.model.known_conditions[name]
         unit = setup.print_unit(name)
         reference = Value(*format_value(condition.zero, unit, STATED_DIGITS))
         yield ConditionRow(name, Value(*format_value(value, unit, STATED_DIGITS)), reference, condition.note)
@@ -124,7 +124,7 @@ def effect_rows(setup: Setup) -> Iterator[EffectRow]:
     """Say every effect that is on, with its unknowns."""
     for item in setup.effects:
         unknowns = []
-        for unknown in item.effect.unknowns:
+        for unknown in item.unknowns:
             sd = item.sds.get(unknown.name)
             scatter = Value(*format_difference(sd, unknown.unit, 3)) if sd else None
             value = Value(*format_value(item.values[unknown.name], unknown.unit, RESULT_DIGITS))

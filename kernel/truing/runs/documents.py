@@ -162,7 +162,7 @@ def _effect_values(item: SwitchedOn) -> dict[str, Any]:
     from truing.units import difference_unit, unit_factor
 
     said = {}
-    for unknown in item.effect.unknowns:
+    for unknown in item.unknowns:
         value = _value(item.values[unknown.name], unknown.unit)
         sd = item.sds.get(unknown.name)
         if sd is not None:

@@ -151,13 +151,13 @@ def _effect(item: SwitchedOn) -> dict[str, Any]:
     from truing.units import difference_unit, unit_factor
 
     said: dict[str, Any] = {}
-    for unknown in item.effect.unknowns:
+    for unknown in item.unknowns:
         value = exact(item.values[unknown.name], unknown.unit)
         sd = item.sds.get(unknown.name)
         scale = difference_unit(unknown.unit)
         said[unknown.name] = value if sd is None else {"value": value, "sd": exact(sd, scale)}
     if item.covariance:
-        factors = [unit_factor(unknown.unit) for unknown in item.effect.unknowns]
+        factors = [unit_factor(unknown.unit) for unknown in item.unknowns]
         said["covariance"] = [
             [one / factors[i] / factors[j] for j, one in enumerate(row)] for i, row in enumerate(item.covariance)
         ]

@@ -43,7 +43,7 @@ class Slopes:
 def nominal_of(setup: Setup, column: str) -> float:
     """Return the value of an input, a condition or ``effects.NAME.UNKNOWN`` in force."""
     for item in setup.effects:
-        for unknown in item.effect.unknowns:
+        for unknown in item.unknowns:
             if column == effect_column(item.effect.name, unknown.name):
                 return float(item.values[unknown.name])
     return float(setup.nominal(column))
@@ -117,7 +117,7 @@ def _one_unit(setup: Setup, column: str) -> float:
     from truing.units import unit_factor
 
     for item in setup.effects:
-        for unknown in item.effect.unknowns:
+        for unknown in item.unknowns:
             if column == effect_column(item.effect.name, unknown.name):
                 return (unknown.high - unknown.low) * unit_factor(unknown.unit) / WIDEST_SDS
     return unit_factor(setup.unit_of(column))

@@ -189,7 +189,7 @@ def _of_effect(item: SwitchedOn) -> Cause | None:
 
     if item.effect.place == "reading":
         return None
-    names = [unknown.name for unknown in item.effect.unknowns]
+    names = [unknown.name for unknown in item.unknowns]
     sds = [float(item.sds.get(name, 0.0)) for name in names]
     covariance = np.array(item.covariance, dtype=float) if item.covariance else np.diag(np.square(sds))
     if not covariance.any():

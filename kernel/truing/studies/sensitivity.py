@@ -102,7 +102,7 @@ def _sources(setup: Setup, named: tuple[str, ...], study: str) -> tuple[str, ...
         effect_column(item.effect.name, unknown.name)
         for item in setup.effects
         if item.effect.place != "reading"
-        for unknown in item.effect.unknowns
+        for unknown in item.unknowns
     ]
     numbers = [name for name, item in fields.items() if item.kind == "float"]
     known = [*numbers, *setup.conditions, *unknowns]
@@ -116,7 +116,7 @@ def _sources(setup: Setup, named: tuple[str, ...], study: str) -> tuple[str, ...
 
 def _unit(setup: Setup, source: str) -> str:
     for item in setup.effects:
-        for unknown in item.effect.unknowns:
+        for unknown in item.unknowns:
             if source == effect_column(item.effect.name, unknown.name):
                 return unknown.unit
     return setup.print_unit(source)

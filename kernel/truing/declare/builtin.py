@@ -1,0 +1,233 @@
+"""The kernel's own effects on every model: what any gauge may do wrong, whatever it looks at.
+
+All act on the reading, so a diagnosis finds them and no machine fails by them. Each has one part per result of the
+function, so that every gauge is looked at alone; the unknown of a result carries the result's name. On a result along
+an axis the same value acts everywhere. A model's own effect of the same name takes the place of the kernel's.
+
+- ``sensor_offset``: reading + RESULT
+- ``sensor_gain``: reading * (1 + RESULT), about the zero of the unit in which the result is declared
+- ``sensor_drift``: reading + RESULT * time (of a condition: since its reference)
+- ``thermal_drift``: reading + RESULT * (temperature - its reference)
+- ``periodic_order``: reading + RESULT_sine * sin(RESULT_order * angle) + RESULT_cosine * cos(RESULT_order * angle)
+- ``step``: reading + RESULT where time is at least RESULT_after
+
+Time, temperature and angle are what the model has of the kind, else conditions of the kernel. Of several temperatures
+or angles the first has the plain name, the others are ``thermal_drift_of_NAME`` and ``periodic_order_of_NAME``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from truing.declare.batch import column
+from truing.declare.builtin_sources import Seen, angles, temperatures, time_of
+from truing.declare.fields import ResultField, read, with_values
+from truing.declare.sources import Effect, Unknown
+from truing.declare.specs import Axis, Float
+from truing.units.names import PURE
+
+if TYPE_CHECKING:
+    from truing.declare.model import Model
+
+WIDE = 1e6
+LONGEST = 1e6
+"""Hours: how late a step may come."""
+HIGHEST_ORDER = 3
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """One sort of effect: its unknowns of a result by role, and what they and what is seen add to a reading.
+
+    ``is_from_zero``: what is seen counts from where its effects vanish. Nothing is seen but the reading itself where
+    the effect is made for no time, temperature or angle.
+    """
+
+    name: str
+    unknowns: Callable[[ResultField], dict[str, Unknown]]
+    added: Callable[[Mapping[str, Float], Float], Float]
+    looks_like: str
+    why: str
+    source: str
+    is_from_zero: bool = False
+
+
+@dataclass(frozen=True)
+class Reading:
+    """The function of an effect of the kernel: changes the results of which an unknown is stated, and no others.
+
+    ``roles`` holds, for each result, what its unknowns are called; unknowns that are not stated are 0.
+    """
+
+    kind: _Kind
+    roles: tuple[tuple[ResultField, Mapping[str, str]], ...]
+    seen: Seen | None
+
+    def __call__(self, inputs: Any, results: Any, **stated: Any) -> Any:
+        """Return what the gauge reads, from SI numbers or arrays (n,)."""
+        changed = {}
+        for item, names in self.roles:
+            own = {role: _met(stated[name], item) for role, name in names.items() if name in stated}
+            if own:
+                value = read(results, item.path)
+                changed[item.path] = value + self.kind.added(own, self._sight(value, item, (inputs, results, stated)))
+        return with_values(results, changed)
+
+    def _sight(self, value: Float, item: ResultField, held: tuple[Any, Any, Mapping[str, Float]]) -> Float:
+        """Return what the effect looks at, SI: time, temperature or angle, else the reading from its zero."""
+        if self.seen is None:
+            zero = _zero_of(item)
+            return value - zero if zero else value
+        sight = self.seen.of(*held, item)
+        return sight - self.seen.zero if self.kind.is_from_zero and self.seen.zero else sight
+
+
+def builtin_effects(model: Model[Any, Any]) -> dict[str, Effect[Any, Any]]:
+    """Return the kernel's effects on the readings of this model, by name, without those whose name it has taken."""
+    results = tuple(_gauged(model))
+    made = [
+        *_made(_OFFSET, results, [None]),
+        *_made(_GAIN, results, [None]),
+        *_made(_DRIFT, results, time_of(model)),
+        *_made(_THERMAL, results, temperatures(model)),
+        *_made(_ORDER, results, angles(model)),
+        *_made(_STEP, results, time_of(model)),
+    ]
+    return {effect.name: effect for effect in made if effect.name not in model.effects}
+
+
+def _gauged(model: Model[Any, Any]) -> Iterator[ResultField]:
+    """Give the results that a gauge can show: numbers and curves; no axes, and nothing of a table."""
+    fields = model.own_result_fields
+    for item in fields.values():
+        axis = fields.get(f"{item.along}_{item.scope}") or fields.get(item.along)
+        in_table = axis is not None and isinstance(axis.spec, Axis) and axis.spec.is_table
+        if not isinstance(item.spec, Axis) and not in_table:
+            yield item
+
+
+def _made(kind: _Kind, results: Sequence[ResultField], seen_by: Sequence[Seen | None]) -> Iterator[Effect[Any, Any]]:
+    """Make an effect for each quantity that is seen, over the results that can be set against it."""
+    fitting = [(seen, [item for item in results if seen is None or seen.by(item)]) for seen in seen_by]
+    for place, (seen, items) in enumerate((seen, items) for seen, items in fitting if items):
+        unknowns = [(item, kind.unknowns(item)) for item in items]
+        roles = tuple((item, {role: one.name for role, one in own.items()}) for item, own in unknowns)
+        needs = [seen.condition] if seen is not None and seen.condition is not None else []
+        yield Effect(
+            f"{kind.name}_of_{seen.name}" if place and seen is not None else kind.name,
+            on_reading=Reading(kind, roles, seen),
+            unknowns=[one for _, own in unknowns for one in own.values()],
+            parts=[[one.name for one in own.values()] for _, own in unknowns],
+            needs=needs,
+            reads=[seen.name] if seen is not None and not needs else [],
+            looks_like=kind.looks_like.format(seen=seen.name if seen is not None else ""),
+            why=kind.why,
+            source=kind.source,
+        )
+
+
+def _met(value: Float, item: ResultField) -> Float:
+    return column(value) if item.along else value
+
+
+def _amplitude(name: str, unit: str, note: str) -> Unknown:
+    return Unknown(name, -WIDE, WIDE, unit, note=note)
+
+
+def _difference(item: ResultField, per: str = "") -> str:
+    """Return the unit of a difference of this result, or of one per something."""
+    from truing.units import difference_unit
+
+    unit = difference_unit(item.unit)
+    return (f"1/{per}" if unit in PURE else f"{unit}/{per}") if per else unit
+
+
+def _offset_of(item: ResultField) -> dict[str, Unknown]:
+    return {"size": _amplitude(item.name, _difference(item), f"zero of the gauge of {item.name}")}
+
+
+def _gain_of(item: ResultField) -> dict[str, Unknown]:
+    return {"size": Unknown(item.name, -1, 1, "", note=f"of what the gauge of {item.name} shows, too much")}
+
+
+def _drift_of(item: ResultField) -> dict[str, Unknown]:
+    return {"size": _amplitude(item.name, _difference(item, "h"), f"drift of the gauge of {item.name}")}
+
+
+def _thermal_of(item: ResultField) -> dict[str, Unknown]:
+    return {
+        "size": _amplitude(item.name, _difference(item, "K"), f"drift of the gauge of {item.name} with temperature")
+    }
+
+
+def _order_of(item: ResultField) -> dict[str, Unknown]:
+    unit, of = _difference(item), f"part of the wave on {item.name}"
+    return {
+        "sine": _amplitude(f"{item.name}_sine", unit, f"sine {of}"),
+        "cosine": _amplitude(f"{item.name}_cosine", unit, f"cosine {of}"),
+        "order": Unknown(f"{item.name}_order", 1, HIGHEST_ORDER, "", note="waves per turn", whole=True),
+    }
+
+
+def _step_of(item: ResultField) -> dict[str, Unknown]:
+    return {
+        "size": _amplitude(item.name, _difference(item), f"height of the step of {item.name}"),
+        "after": Unknown(f"{item.name}_after", 0, LONGEST, "h", note="when the step comes", along="time"),
+    }
+
+
+def _zero_of(item: ResultField) -> float:
+    """Return the zero of the unit of a result in SI: 273.15 K for degC, 0 for all that are no levels."""
+    from truing.units import to_si
+
+    return float(to_si(0.0, item.unit))
+
+
+def _constant(own: Mapping[str, Float], sight: Float) -> Float:
+    return own["size"]
+
+
+def _in_proportion(own: Mapping[str, Float], sight: Float) -> Float:
+    return own["size"] * sight
+
+
+def _wave(own: Mapping[str, Float], sight: Float) -> Float:
+    import numpy as np
+
+    turned = own["order"] * sight
+    return own.get("sine", 0.0) * np.sin(turned) + own.get("cosine", 0.0) * np.cos(turned)
+
+
+def _jump(own: Mapping[str, Float], sight: Float) -> Float:
+    import numpy as np
+
+    return own.get("size", 0.0) * np.where(sight >= own["after"], 1.0, 0.0)
+
+
+_SENSOR = "sensor error model: a reading is (1 + gain) * value + offset + drift * time"
+_OFFSET = _Kind(
+    "sensor_offset", _offset_of, _constant, "the same everywhere", "the zero of the gauge is off", _SENSOR,
+)  # fmt: skip
+_GAIN = _Kind(
+    "sensor_gain", _gain_of, _in_proportion, "in proportion to what is measured", "the gauge is scaled wrongly",
+    _SENSOR,
+)  # fmt: skip
+_DRIFT = _Kind(
+    "sensor_drift", _drift_of, _in_proportion, "grows steadily with {seen}", "the zero of the gauge moves with time",
+    _SENSOR, is_from_zero=True,
+)  # fmt: skip
+_THERMAL = _Kind(
+    "thermal_drift", _thermal_of, _in_proportion, "follows {seen}",
+    "the gauge, or what holds it, moves with temperature", "temperature coefficient of a zero, linear",
+    is_from_zero=True,
+)  # fmt: skip
+_ORDER = _Kind(
+    "periodic_order", _order_of, _wave, "a wave over {seen}, one to three times a turn",
+    "something that turns is off its centre, bent or out of round", "Fourier orders of a rotation",
+)  # fmt: skip
+_STEP = _Kind(
+    "step", _step_of, _jump, "a jump at one moment of {seen}, steady before and after",
+    "something slipped or was touched", "a step in the mean of a record",
+)  # fmt: skip
