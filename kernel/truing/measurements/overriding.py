@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 NAMES = ("case", "name")
 REMARKS = ("note", "remark", "comment")
+WORDS = frozenset({"switch", "integer", "choice", "text"})
+"""The kinds of inputs whose cells are read one by one."""
 DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d+(?:[eE][+-]?\d+)?\s*", re.ASCII)
 
 
@@ -178,8 +180,10 @@ def _values(header: Header, cells: list[str], texts: _Texts, setup: Setup) -> li
     if item is not None and (item.kind == "file" or (item.kind == "series" and not item.spec.along)):
         faults.add(f"{header.name} cannot change from row to row; state it in the inputs file", table.header_line)
         return [None] * len(cells)
-    is_word = item is not None and item.kind in {"switch", "integer", "choice", "text"}
-    fault = _word_header_fault(header) if is_word else header_fault(header, _unit_of(header.name, setup))
+    is_word = item is not None and item.kind in WORDS
+    fault = (
+        word_header_fault(header.name, header.unit) if is_word else header_fault(header, _unit_of(header.name, setup))
+    )
     if fault:
         faults.add(fault, table.header_line)
         return [None] * len(cells)
@@ -199,25 +203,30 @@ def _unit_of(name: str, setup: Setup) -> str:
     return setup.unit_of(name) if item is None else item.unit
 
 
-def _word_header_fault(header: Header) -> str:
-    if header.unit in {None, "", "-", "1"}:
+def word_header_fault(name: str, unit: str | None) -> str:
+    """Return what is wrong with a unit in the header of an input that is no quantity, or nothing."""
+    if unit is None or unit in PURE:
         return ""
-    return f"column '{header.name}' has the unit [{header.unit}], but it is no quantity; write '{header.name}'"
+    return f"column '{name}' has the unit [{unit}], but it is no quantity; write '{name}'"
+
+
+def read_word(item: InputField, cell: str, *, decimal_comma: bool) -> Any:
+    """Return the value of an input that is a choice, a text, a switch or a whole number. Raises ValueError."""
+    raw: Any = cell.strip()
+    if item.kind == "switch":
+        raw = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}.get(raw.lower(), raw)
+    elif item.kind == "integer":
+        raw = read_cell(raw, decimal_comma=decimal_comma)
+    return read_input(item, raw, Reading(Path()))
 
 
 def _value(cell: str, header: Header, item: InputField | None, texts: _Texts) -> Any:
     """Return one cell in SI, its bounds checked. Raises ValueError with one sentence."""
-    text = cell.strip()
-    if item is not None and item.kind in {"choice", "text"}:
-        return read_input(item, text, Reading(Path()))
-    if item is not None and item.kind == "switch":
-        word = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}.get(text.lower(), text)
-        return read_input(item, word, Reading(Path()))
+    if item is not None and item.kind in WORDS:
+        return read_word(item, cell, decimal_comma=texts.table.decimal_comma)
     from truing.units import to_si
 
-    number = read_cell(text, decimal_comma=texts.table.decimal_comma)
-    if item is not None and item.kind == "integer":
-        return read_input(item, number, Reading(Path()))
+    number = read_cell(cell.strip(), decimal_comma=texts.table.decimal_comma)
     value = number if header.unit is None or header.unit in PURE else to_si(number, header.unit)
     sentence = broken_bound(item, value) if item is not None else ""
     if sentence:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from truing.errors import UnitError
 from truing.measurements.cells import header_fault, read_cell, read_cells
-from truing.measurements.csv_text import Chunk, CsvFile, Header, opened
+from truing.measurements.csv_text import Chunk, CsvFile, Faults, Header, opened
 from truing.units.names import PURE
 
 if TYPE_CHECKING:
@@ -24,7 +24,8 @@ RUN = "run"
 class DataTable:
     """A table of measured data: numbers in SI, shape (n,), NaN where a cell is empty; text columns are labels.
 
-    ``units`` holds what the header says ("" for pure numbers), ``lines`` the line of the file each row begins in.
+    ``units`` holds what the header says ("" for pure numbers), ``lines`` the line of the file each row begins in and
+    ``header_line`` that of the header.
     """
 
     file: str
@@ -32,6 +33,7 @@ class DataTable:
     units: Mapping[str, str]
     lines: tuple[int, ...]
     labels: frozenset[str]
+    header_line: int = 1
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -45,6 +47,19 @@ def read_table(path: Path, units_of: Mapping[str, str], *, inputs: Collection[st
     where their unit is known; the column ``run`` and columns that hold words are labels. An empty cell is missing, and
     so is "NaN", except in columns named by ``inputs``. Raises InputError with every fault and its line.
     """
+    table, faults = gather_table(path, units_of, inputs=inputs)
+    faults.raise_any()
+    return table
+
+
+def gather_table(
+    path: Path, units_of: Mapping[str, str], *, inputs: Collection[str] = (), words: Collection[str] = ()
+) -> tuple[DataTable, Faults]:
+    """Read a table as ``read_table`` does, and return it with its faults for a caller who looks for more of them.
+
+    Columns named by ``words`` stay words, even where every cell is a number. A column whose header is a fault is left
+    out. Raises InputError where the file cannot be read at all.
+    """
     with opened(path) as table:
         columns = [_column(header, units_of, inputs, table) for header in table.headers]
         lines: list[int] = []
@@ -52,22 +67,30 @@ def read_table(path: Path, units_of: Mapping[str, str], *, inputs: Collection[st
             lines.extend(chunk.lines)
             for column in columns:
                 column.take(chunk, table)
-    table.faults.raise_any()
-    made = {column.header.name: column.made() for column in columns}
-    return DataTable(
+    usable = [column for column in columns if column.is_usable]
+    made = {column.header.name: _made(column, words) for column in usable}
+    found = DataTable(
         file=str(path),
         columns=made,
-        units={column.header.name: column.header.unit or "" for column in columns},
+        units={column.header.name: column.header.unit or "" for column in usable},
         lines=tuple(lines),
         labels=frozenset(name for name, values in made.items() if isinstance(values, tuple)),
+        header_line=table.header_line,
     )
+    return found, table.faults
+
+
+def _made(column: _Known | _Other, words: Collection[str]) -> NDArray[np.float64] | tuple[str, ...]:
+    if isinstance(column, _Other) and column.header.name in words:
+        return column.words()
+    return column.made()
 
 
 def _column(header: Header, units_of: Mapping[str, str], inputs: Collection[str], table: CsvFile) -> _Known | _Other:
     of = header.name.removeprefix(SIGMA)
     is_sigma = header.name not in units_of and header.name.startswith(SIGMA) and of in units_of
     if header.name not in units_of and not is_sigma:
-        return _Other(header, table.decimal_comma)
+        return _Other(header, table.decimal_comma, is_usable=bool(header.name))
     declared = units_of[of if is_sigma else header.name]
     fault = header_fault(header, declared, is_difference=is_sigma)
     if fault:
@@ -102,7 +125,8 @@ class _Known:
         from truing.units import difference_unit
 
         unit = self.header.unit or ""
-        return in_si(np.concatenate(self.parts), difference_unit(unit) if self.is_sigma else unit)
+        values = np.concatenate(self.parts) if self.parts else np.empty(0)
+        return in_si(values, difference_unit(unit) if self.is_sigma else unit)
 
 
 @dataclass
@@ -111,6 +135,7 @@ class _Other:
 
     header: Header
     decimal_comma: bool
+    is_usable: bool = True
     cells: list[str] = field(default_factory=list)
 
     def take(self, chunk: Chunk, table: CsvFile) -> None:
@@ -122,17 +147,21 @@ class _Other:
         import numpy as np
 
         if self.header.name == RUN or not any(cell.strip() for cell in self.cells):
-            return tuple(cell.strip() for cell in self.cells)
+            return self.words()
         try:
             values = np.array([
                 read_cell(cell, decimal_comma=self.decimal_comma, may_be_missing_word=True) for cell in self.cells
             ])  # fmt: skip
         except ValueError:
-            return tuple(cell.strip() for cell in self.cells)
+            return self.words()
         try:
             return in_si(values, self.header.unit or "")
         except UnitError:
             return values
+
+    def words(self) -> tuple[str, ...]:
+        """Return the cells as words."""
+        return tuple(cell.strip() for cell in self.cells)
 
 
 def in_si(values: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
