@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Sequence
 from functools import lru_cache
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -31,14 +32,24 @@ LONG = 7
 
 def html_of(sheet: Sheet) -> str:
     """Write a sheet as HTML."""
-    style = (template_folder() / "sheet.css").read_text(encoding="utf-8")
-    page = _html().get_template("sheet.html.j2")
-    return page.render(sheet=sheet, style=_markup(style + page_style(sheet)), has_contents=_is_long(sheet)) + "\n"
+    return page("sheet.html.j2", sheet, has_contents=_is_long(sheet))
+
+
+def page(template: str, sheet: Any, *, styles: Sequence[str] = ("sheet.css",), **more: Any) -> str:
+    """Write a page from its template; ``sheet`` has a ``head``, whose footer stands in the margin of every page."""
+    style = "".join((template_folder() / name).read_text(encoding="utf-8") for name in styles)
+    style = _markup(style + page_style(sheet.head.footer))
+    return _html().get_template(template).render(sheet=sheet, style=style, **more) + "\n"
 
 
 def markdown_of(sheet: Sheet) -> str:
     """Write a sheet as Markdown."""
-    text = _markdown().get_template("sheet.md.j2").render(sheet=sheet)
+    return markdown_page("sheet.md.j2", sheet)
+
+
+def markdown_page(template: str, sheet: Any) -> str:
+    """Write Markdown from its template, no two empty lines in a row."""
+    text = _markdown().get_template(template).render(sheet=sheet)
     blocks = [line.rstrip() for line in text.splitlines()]
     kept = [line for place, line in enumerate(blocks) if line or (place and blocks[place - 1])]
     return "\n".join(kept).strip() + "\n"
@@ -48,9 +59,9 @@ def _is_long(sheet: Sheet) -> bool:
     return sheet.detail != "short" and len(sheet.chapters) > LONG
 
 
-def page_style(sheet: Sheet) -> str:
+def page_style(footer: str) -> str:
     """Write what only this sheet's pages say: its title in the margin, from the second page on."""
-    title = f'@page {{ @top-left {{ content: "{css_text(sheet.head.footer)}"; }} }}'
+    title = f'@page {{ @top-left {{ content: "{css_text(footer)}"; }} }}'
     return f"\n{title}\n@page :first {{ @top-left {{ content: none; }} }}\n"
 
 

@@ -91,7 +91,7 @@ def _of_cause(cause: Cause, diagnosis: Diagnosis) -> Iterator[str]:
     from truing.numbers import format_number
     from truing.units import from_si
 
-    effect = diagnosis.setup.model.effects.get(cause.effect)
+    effect = diagnosis.setup.model.known_effects.get(cause.effect)
     about = "" if effect is None else effect.why or effect.looks_like
     yield f"Found by diagnosis{': ' + about if about else ''}."
     for unknown in cause.unknowns:

@@ -1,0 +1,356 @@
+"""The chapters of a diagnosis: what is wrong, why, the extended model, its worth, what to measure next, the data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+from truing.declare.blocks import Words
+from truing.numbers import ABSENT, STATED_DIGITS, format_number, format_value, pretty, with_unit
+from truing.report import diagnosis_figures as figures
+from truing.report.chapters import Figures
+from truing.report.context import BlockView, Chapter, TableView
+from truing.report.diagnosis_words import (
+    UNKNOWN,
+    amount_text,
+    certainty,
+    explanation,
+    listed,
+    number_texts,
+    p_text,
+    percent,
+    spoken,
+)
+from truing.runs.diagnosis_document import file_labels
+
+if TYPE_CHECKING:
+    from truing.diagnosis.result import Alternative, Diagnosis, FittedUnknown, NextPoint, Noise
+
+MOST_OUTLIERS = 12
+SEPARABLE, WEAK = 25.0, 10.0
+EVERYTHING = "extended.toml"
+
+
+def diagnosis_chapters(diagnosis: Diagnosis, drawn: Figures) -> Iterator[Chapter]:
+    """Write the chapters in the order in which they are asked for."""
+    yield _chapter("wrong", "What is wrong", _wrong(diagnosis, drawn))
+    yield _chapter("cause", "Cause", _cause(diagnosis, drawn))
+    yield _chapter("model", "Extended model", _model(diagnosis))
+    yield _chapter("gain", "Gain", _gain(diagnosis, drawn))
+    yield _chapter("next", "Next measurement", _next(diagnosis))
+    yield _chapter("data", "Data", _data(diagnosis))
+
+
+def _chapter(ident: str, title: str, blocks: Iterator[BlockView]) -> Chapter:
+    return Chapter("", ident, title, "blocks", blocks=tuple(blocks))
+
+
+def _table(
+    title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], numeric: Sequence[int] = (), note: str = ""
+) -> TableView:
+    flags = tuple(place in numeric for place in range(len(columns)))
+    return TableView(title, tuple(columns), ("",) * len(columns), tuple(map(tuple, rows)), flags, note)
+
+
+# What is wrong
+
+
+def _wrong(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
+    rows = [
+        (
+            spoken(item.result), str(item.rows), amount_text(item.rmse), amount_text(item.noise_floor),
+            percent(item.reducible_share),
+        )
+        for item in diagnosis.wrong
+    ]  # fmt: skip
+    heads = ("Result", "Rows", "RMS error", "Noise floor", "Reducible")
+    note = (
+        "The error is that of the model calibrated within its tolerances. Reducible is the share of the mean square "
+        "error that lies above the noise floor."
+    )
+    yield _table("Error of the model as it is", heads, rows, (1, 2, 3, 4), note)
+    found = [
+        (spoken(item.result), finding.kind, finding.text, certainty(finding.p_value))
+        for item in diagnosis.wrong
+        for finding in item.findings
+    ]
+    if found:
+        kinds = ("Result", "Kind", "What the residuals show", "How sure, the search paid for")
+        yield _table("Structure in the residuals", kinds, found)
+    else:
+        yield Words("The residuals show no bias, trend, order, step or spread that noise alone would not give.")
+    noise = [(spoken(item.result), *_noise(item.noise)) for item in diagnosis.wrong]
+    about = ("Result", "Standard deviation", "Autocorrelation", "Tails", "Spread", "Suspected outliers")
+    yield _table("The noise, once everything found is taken out", about, noise, (1, 2))
+    for curves in diagnosis.curves:
+        title = f"Measured {spoken(curves.result)} against simulated"
+        caption = (
+            f"{title}: as it is on the left, the difference on the right. Red circles before, blue points after."
+            f"{figures.thinning_words(diagnosis)}"
+        )
+        yield drawn.view(title, partial(figures.against_simulated, diagnosis, curves), caption)
+
+
+def _noise(noise: Noise) -> tuple[str, ...]:
+    places = [f"{label}:{line}" for label, line in _labelled(noise.outliers)]
+    shown = ", ".join(places[:MOST_OUTLIERS])
+    more = f" and {len(places) - MOST_OUTLIERS} more" if len(places) > MOST_OUTLIERS else ""
+    correlation = pretty(format_number(noise.autocorrelation, 2))
+    return (amount_text(noise.sd), correlation, noise.tails, noise.spread, shown + more or "none")
+
+
+def _labelled(outliers: Sequence[tuple[str, int]]) -> Iterator[tuple[str, int]]:
+    names = list(dict.fromkeys(file for file, _ in outliers))
+    labels = dict(zip(names, file_labels(names), strict=True))
+    yield from ((labels[file], line) for file, line in outliers)
+
+
+# Cause
+
+
+def _cause(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
+    yield Words(" ".join(_significance(diagnosis)))
+    if diagnosis.causes:
+        yield _table("Named", ("Cause", "What it is", "The same curve on this data"), list(_named(diagnosis)))
+    if diagnosis.alternatives:
+        others = listed([explanation(item) for item in diagnosis.alternatives], "or")
+        named = listed([spoken(cause.effect) for cause in diagnosis.causes]) or "the explanation given"
+        yield Words(f"Cannot be told apart on this data: {named}; {others}.", kind="warning")
+    for sentence in diagnosis.inseparable:
+        yield Words(sentence[:1].upper() + sentence[1:].rstrip(".") + ".", kind="finding")
+    if diagnosis.ranking:
+        yield _ranking(diagnosis.ranking)
+        title = "Ranking of the explanations"
+        caption = f"{title}: what ends before the dashed line is not excluded by this data."
+        yield drawn.view(title, partial(figures.ranking_bars, diagnosis), caption)
+    yield from _residuals(diagnosis, drawn)
+    yield from _sight(diagnosis)
+
+
+def _significance(diagnosis: Diagnosis) -> Iterator[str]:
+    if diagnosis.verdict == "none":
+        yield f"Nothing is named: the best of all explanations may be chance ({p_text(diagnosis.p_any)})."
+        return
+    yield f"That anything is wrong is {certainty(diagnosis.p_any)}, every explanation that was tried paid for."
+    if diagnosis.p_second is not None:
+        yield f"That there is a second cause is {certainty(diagnosis.p_second)}."
+    if diagnosis.remainder is not None:
+        remainder = diagnosis.remainder
+        over = listed([spoken(name) for name in remainder.depends_on])
+        beside = "beside it " if diagnosis.causes else ""
+        yield (
+            f"What {beside}no registered effect explains depends on {over}: {spoken(remainder.shape)}, in "
+            f"{listed([spoken(name) for name in remainder.results])} ({p_text(remainder.p_value)})."
+        )
+    if diagnosis.verdict == "named":
+        yield (
+            "The verdict is unique: no other explanation is near." if diagnosis.unique else "The verdict is not unique."
+        )
+
+
+def _named(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
+    for cause in diagnosis.causes:
+        effect = diagnosis.setup.model.known_effects.get(cause.effect)
+        about = "an input that must lie outside of its tolerance" if cause.effect.startswith("input:") else ""
+        about = about or ("" if effect is None else effect.why or effect.looks_like)
+        yield spoken(cause.effect), about or ABSENT, ", ".join(map(spoken, cause.same_as)) or "none"
+
+
+def _ranking(items: Sequence[Alternative]) -> TableView:
+    rows = [
+        (explanation(item), pretty(f"{item.behind:.1f}"), pretty(format_number(item.separation, 3)), _separable(item))
+        for item in items
+    ]
+    note = (
+        "Behind is the distance in score units (6 is a Bayes factor of about 20). λ is the loss of fit to expect if "
+        "the best explanation is true and this one is fitted: below 10 they cannot be told apart, above 25 they can."
+    )
+    return _table("Explanations, best first", ("Explanation", "Behind", "λ", "On this data"), rows, (1, 2), note)
+
+
+def _separable(item: Alternative) -> str:
+    if item.behind <= 0:
+        return "best"
+    if item.behind <= figures.AMBIGUOUS or item.separation < WEAK:
+        return "not excluded"
+    return "excluded" if item.separation > SEPARABLE else "weakly excluded"
+
+
+def _residuals(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
+    for covariate in figures.main_covariates(diagnosis):
+        for curves in diagnosis.curves:
+            title = f"Residuals of {spoken(curves.result)} over {spoken(covariate.name)}, before and after"
+            caption = f"{title}. The grey band is the noise floor.{figures.thinning_words(diagnosis)}"
+            yield drawn.view(title, partial(figures.over_covariate, diagnosis, curves, covariate), caption)
+
+
+def _sight(diagnosis: Diagnosis) -> Iterator[BlockView]:
+    """Say what this data could show: how small each effect may be, what is hidden, what was not excited or measured."""
+    rows = [
+        *((spoken(item.name), amount_text(item.smallest), str(item.sight), item.text) for item in diagnosis.seen),
+        *(
+            (spoken(effect), ABSENT, "not measured", f"no column gives {listed(list(conditions))}")
+            for effect, conditions in diagnosis.not_measured.items()
+        ),
+    ]
+    if rows:
+        note = "Smallest visible: with a chance of 90 % this size is found, every explanation that is tried paid for."
+        yield _table("What this data can show", ("Effect", "Smallest visible", "Sight", "Remark"), rows, (1,), note)
+
+
+# Extended model
+
+
+def _model(diagnosis: Diagnosis) -> Iterator[BlockView]:
+    fitted = [
+        row
+        for cause in diagnosis.causes
+        for unknown in cause.unknowns
+        for row in _fitted(spoken(cause.effect), unknown)
+    ]
+    heads = ("Cause", "Unknown", "Value", "95 % interval", "Unit")
+    if fitted:
+        yield _table("Unknowns as fitted", heads, fitted, (2, 3), "Intervals hold if the named cause is the true one.")
+    else:
+        yield Words("Nothing was named, so no effect is switched on.")
+    others = [
+        row
+        for item in diagnosis.alternatives
+        for effect, unknowns in item.unknowns.items()
+        for unknown in unknowns
+        for row in _fitted(
+            f"{explanation(item)}: {spoken(effect)}" if len(item.causes) > 1 else spoken(effect), unknown
+        )
+        if effect != UNKNOWN
+    ]
+    if others:
+        yield _table("The same for the explanations that are not excluded", ("Instead", *heads[1:]), others, (2, 3))
+    if diagnosis.calibrated:
+        note = "Within its tolerance an input may move freely; what matters is how far, in standard deviations."
+        yield _table(
+            "Inputs as fitted to this machine", ("Input", "Nominal", "Fitted", "Moved, in its sd"),
+            list(_calibrated(diagnosis)), (1, 2, 3), note,
+        )  # fmt: skip
+    if diagnosis.causes or diagnosis.calibrated:
+        name = diagnosis.setup.model.name
+        yield Words(f"{EVERYTHING} holds all of it; every verb accepts it: calc run {name} --inputs {EVERYTHING}.")
+    yield from _remainder(diagnosis)
+
+
+def _fitted(cause: str, unknown: FittedUnknown) -> Iterator[tuple[str, ...]]:
+    """Write an unknown as rows: one, or one for each file where every file has its own."""
+    labels = dict(zip(unknown.per_file, file_labels(list(unknown.per_file)), strict=True))
+    fits = {f", {labels[file]}": fit for file, fit in unknown.per_file.items()}
+    for suffix, fit in (fits or {"": (unknown.value, unknown.low, unknown.high)}).items():
+        value, low, high, unit = number_texts(unknown, fit)
+        yield cause, unknown.name.replace("_", " ") + suffix, value, f"{low} … {high}", unit or ABSENT
+
+
+def _calibrated(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
+    setup = diagnosis.setup
+    for item in diagnosis.calibrated:
+        nominal = with_unit(*format_value(setup.nominal(item.name), item.unit, STATED_DIGITS))
+        fitted = with_unit(*format_value(item.value, item.unit, 7))
+        yield spoken(item.name), nominal, fitted, pretty(f"{item.of_its_sd:+.2f}".replace("+", ""))
+
+
+def _remainder(diagnosis: Diagnosis) -> Iterator[BlockView]:
+    remainder = diagnosis.remainder
+    if remainder is None:
+        return
+    yield Words(
+        f"The remainder ({spoken(remainder.shape)}) is in no inputs file. new_effect.py holds its fitted shape as an "
+        "effect, ready to be made physical. It must not be extrapolated beyond the measured range."
+    )
+
+
+# Gain
+
+
+def _gain(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
+    if not diagnosis.gain:
+        yield Words("No gain was estimated.")
+        return
+    rows = [
+        (
+            spoken(item.result), amount_text(item.rmse_before), amount_text(item.rmse_after),
+            amount_text(item.noise_floor), percent(item.reducible_removed),
+            pretty(format_number(item.log_score_gain, 3)), pretty(format_number(item.p_value, 2)),
+            percent(item.coverage90),
+        )
+        for item in diagnosis.gain
+    ]  # fmt: skip
+    heads = ("Result", "Before", "After", "Noise floor", "Removed", "Log score per row", "p", "Coverage")
+    note = (
+        "RMS errors on rows that were not fitted: the whole diagnosis is repeated in every fold of a blocked "
+        "cross-validation and compared with the model calibrated in the same fold. Removed is the share of the "
+        "reducible error. Coverage is that of the 90 % prediction intervals."
+    )
+    yield _table("What the extension is worth", heads, rows, tuple(range(1, 8)), note)
+    if diagnosis.causes:
+        yield Words(f"The same causes were named in {percent(diagnosis.stability)} of the folds.")
+    held = [
+        (
+            spoken(item.result),
+            *(amount_text(type(item.rmse_before)(one, item.rmse_before.unit)) for one in item.held_out),
+        )
+        for item in diagnosis.gain
+        if item.held_out is not None
+    ]
+    if held:
+        yield _table("On the rows that were held out on request", ("Result", "Before", "After"), held, (1, 2))
+    title = "Error before and after, and the noise floor"
+    yield drawn.view(title, partial(figures.gain_bars, diagnosis), f"{title}, on rows that were not fitted.")
+
+
+# Next measurement and data
+
+
+def _next(diagnosis: Diagnosis) -> Iterator[BlockView]:
+    if not diagnosis.next:
+        can_be_more = any(item.sight == "not excited" for item in diagnosis.seen) or diagnosis.not_measured
+        yield Words(
+            "There is nothing to separate."
+            + (" Of what was not excited or not measured (chapter 2) this data says nothing." if can_be_more else "")
+        )
+        return
+    names = list(dict.fromkeys(name for point in diagnosis.next for name in point.settings))
+    rows = [_point(place, point, names) for place, point in enumerate(diagnosis.next, start=1)]
+    heads = ("Point", *(spoken(name).capitalize() for name in names), "Separates", "λ then")
+    note = "λ then is the separation to expect once all points up to this one are measured; above 25 the two are apart."
+    yield _table("Settings to measure", heads, rows, (*range(1, len(names) + 1), len(names) + 2), note)
+    for reason in dict.fromkeys(point.why for point in diagnosis.next if point.why):
+        yield Words(f"Why: {reason.rstrip('.')}.")
+
+
+def _point(place: int, point: NextPoint, names: Sequence[str]) -> tuple[str, ...]:
+    settings = [amount_text(point.settings.get(name), 4) for name in names]
+    pair = f"{spoken(point.separates[0])} / {spoken(point.separates[1])}"
+    return str(place), *settings, pair, pretty(format_number(point.separation, 3))
+
+
+def _data(diagnosis: Diagnosis) -> Iterator[BlockView]:
+    records = diagnosis.records
+    rows = []
+    for place, label in enumerate(file_labels(records.files)):
+        of_file = records.file_of == place
+        rows.append((label, str(int(of_file.sum())), str(len(set(records.run_of[of_file].tolist())))))
+    held = int(records.held_out.sum())
+    note = f"{held} rows were held out: they judge and were not fitted." if held else ""
+    yield _table("Files", ("File", "Rows", "Runs"), rows, (1, 2), note)
+    yield _table("Covariates", ("Name", "From", "To", "Role", "Remark"), list(_covariates(diagnosis)), (1, 2))
+    for sentence in records.notes:
+        yield Words(sentence[:1].upper() + sentence[1:].rstrip(".") + ".")
+
+
+def _covariates(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
+    import numpy as np
+
+    for item in diagnosis.records.covariates.values():
+        finite = item.values[np.isfinite(item.values)]
+        ends = (float(finite.min()), float(finite.max())) if finite.size else (None, None)
+        low, high = (ABSENT if end is None else with_unit(*format_value(end, item.unit, 4)) for end in ends)
+        missing = len(item.values) - finite.size
+        remarks = [*(["never changes"] if item.is_constant else []), *([f"{missing} missing"] if missing else [])]
+        yield spoken(item.name), pretty(low), pretty(high), item.role, ", ".join(remarks) or ABSENT

@@ -1,0 +1,223 @@
+"""Figures of a diagnosis: measured against simulated, residuals over what they depend on, ranking, gain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from truing.report.diagnosis_words import amount_text, explanation, spoken
+
+if TYPE_CHECKING:
+    import numpy as np
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from truing.diagnosis.records import Covariate
+    from truing.diagnosis.result import Curves, Diagnosis, Gain
+
+BEFORE, AFTER, QUIET, NEUTRAL = "#9d1c1c", "#0b4f8a", "#8b949e", "#3b434c"
+MOST_POINTS = 1500
+MOST_PLACES = 5
+"""A covariate with fewer different values shows no course."""
+AMBIGUOUS = 6.0
+MOST_BARS = 8
+
+
+@dataclass(frozen=True)
+class _Residuals:
+    """What a figure shows of one result: residuals in the unit for differences, and the noise floor in it."""
+
+    result: str
+    unit: str
+    before: NDArray[np.float64]
+    after: NDArray[np.float64]
+    floor: float
+
+
+def main_covariates(diagnosis: Diagnosis) -> list[Covariate]:
+    """Return what residuals are drawn over: the covariate of every cause and of the remainder, else the main one."""
+    found = [_guilty(diagnosis, cause.effect) for cause in diagnosis.causes]
+    covariates = diagnosis.records.covariates
+    if diagnosis.remainder is not None:
+        found += [covariates[name] for name in diagnosis.remainder.depends_on[:2] if name in covariates]
+    unique = {item.name: item for item in found if item is not None}
+    if not unique and (main := _main(diagnosis)) is not None:
+        unique = {main.name: main}
+    return list(unique.values())[:3]
+
+
+def _guilty(diagnosis: Diagnosis, cause: str) -> Covariate | None:
+    """Return the covariate that a cause follows: the condition it needs that takes most values, else the main one."""
+    effect = diagnosis.setup.model.known_effects.get(cause)
+    covariates = diagnosis.records.covariates
+    needs = [covariates[need.name] for need in effect.needs if need.name in covariates] if effect is not None else []
+    rich = sorted((item for item in needs if _places(item) >= MOST_PLACES), key=_places, reverse=True)
+    return rich[0] if rich else _main(diagnosis)
+
+
+def _main(diagnosis: Diagnosis) -> Covariate | None:
+    """Return the covariate to look over first: an angle, else another input, else the time, else the order."""
+    rank = {"input": 1, "time": 2, "condition": 3, "other": 4, "order": 5}
+    able = [item for item in diagnosis.records.covariates.values() if _places(item) >= MOST_PLACES]
+    return min(able, key=lambda item: (not item.is_angle, rank[item.role]), default=None)
+
+
+def _places(covariate: Covariate) -> int:
+    import numpy as np
+
+    return len(np.unique(covariate.values[np.isfinite(covariate.values)]))
+
+
+def residuals_of(diagnosis: Diagnosis, curves: Curves) -> _Residuals:
+    """Return the residuals of one result in the unit for its differences."""
+    from truing.units import unit_factor
+
+    unit = diagnosis.units.get(curves.result) or diagnosis.setup.print_unit(curves.result)
+    factor = unit_factor(unit)
+    floor = next((item.noise_floor.value for item in diagnosis.wrong if item.result == curves.result), 0.0)
+    return _Residuals(
+        curves.result, unit, (curves.measured - curves.before) / factor, (curves.measured - curves.after) / factor,
+        floor / factor,
+    )  # fmt: skip
+
+
+def thinned(rows: int) -> slice:
+    """Return the rows that are drawn: all, or evenly every so many."""
+    return slice(None, None, -(-rows // MOST_POINTS) if rows > MOST_POINTS else 1)
+
+
+def thinning_words(diagnosis: Diagnosis) -> str:
+    """Say what is left out of a figure with very many rows."""
+    step = thinned(len(diagnosis.records)).step
+    return f" Every {step}th row is drawn." if step > 1 else ""
+
+
+def _label(name: str, unit: str) -> str:
+    from truing.units import unit_text
+
+    words = spoken(name).replace("$", r"\$")
+    return f"{words} [{unit_text(unit)}]" if unit else words
+
+
+def over_covariate(diagnosis: Diagnosis, curves: Curves, covariate: Covariate) -> Figure:
+    """Draw the residuals of one result over a covariate, before and after, with the noise floor as a band."""
+    from matplotlib.figure import Figure
+
+    from truing.units import from_si
+
+    shown = residuals_of(diagnosis, curves)
+    kept = thinned(len(shown.before))
+    place = from_si(covariate.values, covariate.unit)[kept]
+    figure = Figure(figsize=(6.4, 3.0), layout="constrained")
+    left, right = figure.subplots(1, 2, sharey=True)
+    panels = ((left, shown.before, BEFORE, "before"), (right, shown.after, AFTER, "after"))
+    for axes, values, colour, when in panels:
+        axes.axhspan(-shown.floor, shown.floor, color="#e4e7ea", linewidth=0)
+        axes.axhline(0.0, color=NEUTRAL, linewidth=0.7)
+        axes.plot(place, values[kept], ".", color=colour, markersize=3.5)
+        axes.set_title(when, loc="left")
+        axes.set_xlabel(_label(covariate.name, covariate.unit))
+    left.set_ylabel(_label(shown.result, shown.unit) + "\nmeasured − simulated")
+    return figure
+
+
+def against_simulated(diagnosis: Diagnosis, curves: Curves) -> Figure:
+    """Draw measured against simulated, and beside it their difference, where the error can be seen."""
+    from matplotlib.figure import Figure
+
+    from truing.units import from_si
+
+    shown = residuals_of(diagnosis, curves)
+    unit = diagnosis.setup.print_unit(curves.result)
+    kept = thinned(len(shown.before))
+    measured, before, after = (from_si(one, unit)[kept] for one in (curves.measured, curves.before, curves.after))
+    figure = Figure(figsize=(6.4, 3.0), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    left.plot(before, measured, "o", color=BEFORE, markersize=4.5, markerfacecolor="none", markeredgewidth=0.6)
+    left.plot(after, measured, ".", color=AFTER, markersize=3)
+    low, high = _extent([measured, before, after])
+    left.plot([low, high], [low, high], color=NEUTRAL, linewidth=0.7)
+    left.set_ylabel(f"measured {_label(curves.result, unit)}")
+    right.axhline(0.0, color=NEUTRAL, linewidth=0.7)
+    right.plot(before, shown.before[kept], "o", color=BEFORE, markersize=4.5, markerfacecolor="none",
+               markeredgewidth=0.6, label="before")  # fmt: skip
+    right.plot(after, shown.after[kept], ".", color=AFTER, markersize=3, label="after")
+    right.set_ylabel(f"measured − simulated [{_unit(shown.unit)}]")
+    right.legend(loc="best", frameon=True, framealpha=0.8, edgecolor="none", handletextpad=0.2)
+    for axes in (left, right):
+        axes.set_xlabel(f"simulated {_label(curves.result, unit)}")
+    return figure
+
+
+def _unit(unit: str) -> str:
+    from truing.units import unit_text
+
+    return unit_text(unit) or "1"
+
+
+def _extent(values: Sequence[NDArray[np.float64]]) -> tuple[float, float]:
+    import numpy as np
+
+    joined = np.concatenate([one[np.isfinite(one)] for one in values])
+    return (float(joined.min()), float(joined.max())) if joined.size else (0.0, 1.0)
+
+
+def ranking_bars(diagnosis: Diagnosis) -> Figure:
+    """Draw how far every explanation is behind the best; what lies inside of the line is not excluded."""
+    from matplotlib.figure import Figure
+
+    items = diagnosis.ranking[:MOST_BARS]
+    figure = Figure(figsize=(6.4, 0.7 + 0.3 * len(items)), layout="constrained")
+    axes = figure.subplots()
+    behind = [item.behind for item in items]
+    widest = max([*behind, AMBIGUOUS])
+    for place, item in enumerate(items):
+        colour = AFTER if item.behind <= AMBIGUOUS else QUIET
+        axes.barh(place, item.behind, height=0.62, color=colour)
+        axes.text(item.behind + 0.01 * widest, place, f" {item.behind:.1f}", va="center", fontsize=8, color=NEUTRAL)
+    axes.axvline(AMBIGUOUS, color=BEFORE, linewidth=0.9, linestyle=(0, (4, 3)))
+    axes.set_yticks(range(len(items)), [_short(explanation(item)) for item in items])
+    axes.invert_yaxis()
+    axes.set_xlim(0, 1.12 * widest)
+    axes.set_xlabel("score units behind the best explanation")
+    axes.tick_params(axis="y", length=0)
+    return figure
+
+
+def _short(text: str, most: int = 46) -> str:
+    words = text.replace("$", r"\$")
+    return words if len(words) <= most else words[: most - 1] + "…"
+
+
+def gain_bars(diagnosis: Diagnosis) -> Figure:
+    """Draw the error on rows that were not fitted, before and after, each as a share of what it was before."""
+    from matplotlib.figure import Figure
+
+    gains = diagnosis.gain
+    figure = Figure(figsize=(6.4, 0.7 + 0.75 * len(gains)), layout="constrained")
+    axes = figure.subplots()
+    for place, item in enumerate(gains):
+        for offset, (name, colour, value) in enumerate(_bars(item)):
+            share = 100 * value.value / item.rmse_before.value if item.rmse_before.value else 0.0
+            height = place + 0.26 * (offset - 1)
+            axes.barh(height, share, height=0.24, color=colour, label=name if not place else None)
+            axes.text(share + 1, height, amount_text(value), va="center", fontsize=8, color=NEUTRAL)
+    axes.set_yticks(range(len(gains)), [_short(spoken(item.result), 30) for item in gains])
+    axes.invert_yaxis()
+    axes.set_xlim(0, 1.16 * max(axes.get_xlim()[1], 100.0))
+    axes.set_xlabel("root mean square error on rows that were not fitted, % of that before")
+    axes.tick_params(axis="y", length=0)
+    _legend_above(axes)
+    return figure
+
+
+def _bars(item: Gain) -> Iterator[tuple[str, str, Any]]:
+    yield "before", BEFORE, item.rmse_before
+    yield "after", AFTER, item.rmse_after
+    yield "noise floor", QUIET, item.noise_floor
+
+
+def _legend_above(axes: Axes) -> None:
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=3, borderaxespad=0.2, handlelength=1.2)

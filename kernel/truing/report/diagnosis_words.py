@@ -1,0 +1,197 @@
+"""A diagnosis in words: what an engineer would tell a colleague, and the pieces that sheet and terminal share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from truing.numbers import ABSENT, format_number, format_value, pretty, with_unit
+
+if TYPE_CHECKING:
+    from truing.diagnosis.result import Alternative, Amount, Cause, Diagnosis, FittedUnknown, Gain, NextPoint
+
+CERTAIN, LIKELY = 0.005, 0.05
+TO = " … "
+UNKNOWN = "unknown"
+
+
+def spoken(name: str) -> str:
+    """Say a name: without underscores; an input that lies outside of its band as such."""
+    if name.startswith("input:"):
+        return f"{name.removeprefix('input:').replace('_', ' ')} outside of its tolerance"
+    return "something unregistered" if name == UNKNOWN else name.replace("_", " ")
+
+
+def listed(words: Sequence[str], joined: str = "and") -> str:
+    """Join words as a sentence does: a, b and c."""
+    words = list(dict.fromkeys(words))
+    if len(words) < 2:
+        return "".join(words)
+    return f"{', '.join(words[:-1])} {joined} {words[-1]}"
+
+
+def explanation(item: Alternative) -> str:
+    """Say one explanation: its causes, or that nothing is wrong."""
+    if not item.causes:
+        return "nothing but noise"
+    names = [spoken(name) for name in item.causes]
+    over = f" over {listed([spoken(name) for name in item.depends_on])}" if item.depends_on else ""
+    return " + ".join(names) + over
+
+
+def amount_text(amount: Amount | None, digits: int = 3) -> str:
+    """Write a number with its unit, as many digits as carry meaning."""
+    if amount is None:
+        return ABSENT
+    number, unit = format_value(amount.value, amount.unit, digits)
+    return with_unit(pretty(number), unit)
+
+
+def percent(share: float | None) -> str:
+    """Write a share in percent."""
+    return ABSENT if share is None or not math.isfinite(share) else f"{pretty(format_number(100 * share, 3))} %"
+
+
+def p_text(p_value: float | None) -> str:
+    """Write a significance."""
+    if p_value is None:
+        return "not tested"
+    return "p < 0.001" if p_value < 0.001 else f"p {pretty(format_number(p_value, 2))}"
+
+
+def certainty(p_value: float | None) -> str:
+    """Say how sure something is that was found with this significance, the search paid for."""
+    if p_value is None:
+        return ABSENT
+    words = "practically certain" if p_value <= CERTAIN else "likely" if p_value <= LIKELY else "may be chance"
+    return f"{words} ({p_text(p_value)})"
+
+
+def number_texts(unknown: FittedUnknown, fitted: tuple[float, float | None, float | None]) -> tuple[str, str, str, str]:
+    """Write value, lower end, upper end and unit; the width of the interval decides the digits, an open end is open."""
+    from truing.units import from_si, unit_text
+
+    numbers = [None if one is None else float(from_si(one, unknown.unit)) for one in fitted]
+    spread = _half_width(numbers)
+    value, low, high = (_as_wide(one, spread) for one in numbers)
+    return value, low, high, unit_text(unknown.unit)
+
+
+def _half_width(numbers: Sequence[float | None]) -> float:
+    value, low, high = numbers
+    ends = [abs(end - value) for end in (low, high) if end is not None and value is not None]
+    return max((end for end in ends if math.isfinite(end)), default=0.0)
+
+
+def _as_wide(number: float | None, spread: float) -> str:
+    """Write a number to two digits of its uncertainty; without one to four of its own."""
+    if number is None:
+        return "open"
+    if not 1e-5 < spread < 1e6 or not math.isfinite(number):
+        return pretty(format_number(number, 4))
+    decimals = max(0, 1 - math.floor(math.log10(spread)))
+    return pretty(f"{number:.{decimals}f}".replace("-0.00000", "0.00000") if number else "0")
+
+
+def fitted_text(unknown: FittedUnknown, *, with_name: bool = True) -> str:
+    """Write an unknown with its interval: expansion 11.8 µm/(m·K) (95 %: 11.4 … 12.2)."""
+    value, low, high, unit = number_texts(unknown, (unknown.value, unknown.low, unknown.high))
+    name = f"{unknown.name.replace('_', ' ')} " if with_name else ""
+    if unknown.per_file:
+        return f"{name}of each file alone"
+    if unknown.low is None and unknown.high is None:
+        return f"{name}{with_unit(value, unit)} (its interval is open)"
+    return f"{name}{with_unit(value, unit)} (95 %: {low}{TO}{high})"
+
+
+def cause_text(cause: Cause) -> str:
+    """Say a cause with its size."""
+    sizes = "; ".join(fitted_text(unknown) for unknown in cause.unknowns)
+    return f"{spoken(cause.effect)}, {sizes}" if sizes else spoken(cause.effect)
+
+
+def verdict_word(diagnosis: Diagnosis) -> str:
+    """Say the verdict in two or three words."""
+    if diagnosis.verdict == "none":
+        return "Nothing found"
+    if diagnosis.verdict == "unknown":
+        return "Cause unknown"
+    word = "Cause named" if diagnosis.unique else "Cause named, others possible"
+    return f"{word}, a remainder left" if diagnosis.remainder is not None else word
+
+
+def headline(diagnosis: Diagnosis) -> list[str]:
+    """Say what an engineer would tell a colleague: what is wrong, why, how much, what it is worth, what to do next."""
+    if diagnosis.verdict == "none":
+        return list(_nothing(diagnosis))
+    said = [*_cause_sentences(diagnosis), *_gain_sentences(diagnosis), *_next_sentences(diagnosis)]
+    return [sentence[:1].upper() + sentence[1:] for sentence in said]
+
+
+def _nothing(diagnosis: Diagnosis) -> Iterator[str]:
+    parts = [
+        f"{spoken(item.result)} to {amount_text(item.rmse)} (noise floor {amount_text(item.noise_floor)})"
+        for item in diagnosis.wrong
+    ]
+    yield f"Within its tolerances the model meets the measurement: {listed(parts)}."
+    yield "What is left is noise; no effect, registered or not, is needed."
+    blind = [spoken(item.name) for item in diagnosis.seen if item.sight == "not excited"]
+    if blind:
+        yield f"That says nothing of {listed(blind)}: this data does not excite {'it' if len(blind) == 1 else 'them'}."
+
+
+def wrong_results(diagnosis: Diagnosis) -> list[str]:
+    """Return the results that are wrong: with findings or a gain, else those of the remainder, else all."""
+    found = [item.result for item in diagnosis.wrong if item.findings]
+    gained = [item.result for item in diagnosis.gain if is_gain(item)]
+    names = [name for name in diagnosis.measured if name in {*found, *gained}]
+    of_remainder = list(diagnosis.remainder.results) if diagnosis.remainder is not None else []
+    return names or of_remainder or list(diagnosis.measured)
+
+
+def is_gain(item: Gain) -> bool:
+    """Tell whether a gain is more than chance."""
+    return item.p_value <= LIKELY and item.rmse_after.value < item.rmse_before.value
+
+
+def _cause_sentences(diagnosis: Diagnosis) -> Iterator[str]:
+    results = listed([spoken(name) for name in wrong_results(diagnosis)])
+    if diagnosis.causes:
+        causes = listed([cause_text(cause) for cause in diagnosis.causes])
+        yield f"what the model misses in {results}: {causes}."
+    if diagnosis.verdict == "named" and not diagnosis.unique:
+        others = listed([explanation(item) for item in diagnosis.alternatives[:4]], "or")
+        yield f"But this data does not exclude {others or 'other explanations'}."
+    remainder = diagnosis.remainder
+    if remainder is not None:
+        over = listed([spoken(name) for name in remainder.depends_on])
+        of_results = listed([spoken(name) for name in remainder.results])
+        what = "Beside it something" if diagnosis.causes else "Something"
+        yield f"{what} that no registered effect explains is in {of_results}, over {over}: {spoken(remainder.shape)}."
+
+
+def _gain_sentences(diagnosis: Diagnosis) -> Iterator[str]:
+    gains = [item for item in diagnosis.gain if is_gain(item)]
+    for item in gains:
+        yield (
+            f"on rows that were not fitted the error of {spoken(item.result)} falls from "
+            f"{amount_text(item.rmse_before)} to {amount_text(item.rmse_after)} (noise floor "
+            f"{amount_text(item.noise_floor)}): {percent(item.reducible_removed)} of what can be removed is gone."
+        )
+    if diagnosis.gain and not gains:
+        yield "on rows that were not fitted this is worth nothing that could not be chance."
+
+
+def _next_sentences(diagnosis: Diagnosis) -> Iterator[str]:
+    if diagnosis.next:
+        point = diagnosis.next[0]
+        first, second = (spoken(name) for name in point.separates)
+        yield f"measure next at {settings_text(point)}: it separates {first} from {second}."
+    elif diagnosis.verdict == "named" and diagnosis.unique:
+        yield "no other explanation comes near; there is nothing left to separate."
+
+
+def settings_text(point: NextPoint) -> str:
+    """Write a setting: load -50 kN, crank angle 28.6°."""
+    return ", ".join(f"{spoken(name)} {amount_text(amount)}" for name, amount in point.settings.items())
