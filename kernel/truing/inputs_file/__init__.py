@@ -56,6 +56,7 @@ def _setup(document: Document, offer: Offer, folder: Path) -> Setup:
     from pydantic import ValidationError
 
     from truing.inputs_file import assemble
+    from truing.inputs_file.effects_on import names_stated, part_faults
     from truing.inputs_file.file_model import file_model
     from truing.inputs_file.sentences import each, faults_of, in_order
     from truing.inputs_file.values import Reading
@@ -64,12 +65,18 @@ def _setup(document: Document, offer: Offer, folder: Path) -> Setup:
     faults = document.faults
     unreadable = _prune(document.data, ())
     _switch_off(document.data)
+    reading.stated.update(names_stated(document.data, unreadable))
     document.data.setdefault("inputs", {})
     try:
         file_model(offer.model).model_validate(document.data, context=reading)
     except ValidationError as error:
         faults += faults_of(error, document, offer.model, unreadable)
-    late = [*reading.faults, *_of_plugin(offer, reading), *assemble.take_old_names(offer, reading)]
+    late = [
+        *reading.faults,
+        *part_faults(offer.model, reading.stated),
+        *_of_plugin(offer, reading),
+        *assemble.take_old_names(offer, reading),
+    ]
     studies = assemble.studies_of(offer.model, reading.values, late)
     faults += [*each(late, document), *assemble.spread_faults(offer.model, document, reading.values)]
     if faults:

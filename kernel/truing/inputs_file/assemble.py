@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from truing.declare.fields import InputField
@@ -14,6 +14,7 @@ from truing.errors import Fault, TruingError
 from truing.inputs_file.checks import renamed
 from truing.inputs_file.diagnose_options import diagnose_options
 from truing.inputs_file.document import Document
+from truing.inputs_file.effects_on import effects_of
 from truing.inputs_file.values import Reading
 from truing.kernel import Offer
 from truing.setup import DEFAULT_SEED, Setup, SwitchedOn
@@ -99,26 +100,6 @@ def _is_nan(value: Any) -> bool:
     return isinstance(value, float) and math.isnan(value)
 
 
-def effects_of(model: Model[Any, Any], values: Values) -> tuple[SwitchedOn, ...]:
-    """Return the effects that are on, in the order of their declaration."""
-    on = []
-    for name, effect in model.effects.items():
-        keys = {unknown.name: ("effects", name, unknown.name) for unknown in effect.unknowns}
-        stated = {unknown: float(values[key]) for unknown, key in keys.items() if key in values}
-        if len(stated) < len(keys):
-            continue
-        covariance = values.get(("effects", name, "covariance"), ())
-        sds = {
-            unknown: values[("effects", name, unknown, "sd")]
-            for unknown in stated
-            if ("effects", name, unknown, "sd") in values
-        }
-        if covariance:
-            sds = {unknown: math.sqrt(covariance[place][place]) for place, unknown in enumerate(stated)} | sds
-        on.append(SwitchedOn(effect, stated, sds, covariance))
-    return tuple(on)
-
-
 def studies_of(model: Model[Any, Any], values: Values, faults: list[tuple[tuple[str, ...], str]]) -> tuple[Study, ...]:
     """Return the studies that run, in order, with the options the file sets."""
     studies: dict[str, Study] = {}
@@ -151,7 +132,7 @@ def make_setup(offer: Offer, reading: Reading, studies: tuple[Study, ...], docum
     fields: Mapping[str, InputField] = model.input_fields
     stated = {path: value for path, value in values.items() if len(path) == 2}
     inputs = {fields[name].path: value for (section, name), value in stated.items() if section == "inputs"}
-    nominals = nominals_of(model, values)
+    effects = effects_of(model, values)
 
     def of(section: str) -> dict[str, Any]:
         return {path[1]: value for path, value in stated.items() if path[0] == section}
@@ -164,8 +145,8 @@ def make_setup(offer: Offer, reading: Reading, studies: tuple[Study, ...], docum
         inputs=make(model.input_type, inputs),
         stated=frozenset(names),
         spreads=spreads_of(model, values),
-        conditions={name: float(nominals[name]) for name in model.conditions},
-        effects=effects_of(model, values),
+        conditions=_conditions_in_force(model, values, effects),
+        effects=effects,
         calibrated=of("calibrated"),
         studies=studies,
         units=of("units"),
@@ -180,6 +161,14 @@ def make_setup(offer: Offer, reading: Reading, studies: tuple[Study, ...], docum
         warnings=tuple(of("warnings").values()),
         diagnose=diagnose_options(model, values),
     )
+
+
+def _conditions_in_force(model: Model[Any, Any], values: Values, effects: Sequence[SwitchedOn]) -> dict[str, float]:
+    """Return the model's own conditions in SI, and of the kernel's those that are stated or that an effect needs."""
+    zeros = {name: condition.zero for name, condition in model.conditions.items()}
+    zeros |= {need.name: need.zero for item in effects for need in item.effect.needs if need.name not in zeros}
+    stated = {path[1]: float(value) for path, value in values.items() if len(path) == 2 and path[0] == "conditions"}
+    return {**zeros, **stated}
 
 
 def places_of(model: Model[Any, Any], document: Document) -> dict[str, tuple[str, int | None]]:

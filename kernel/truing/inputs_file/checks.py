@@ -153,6 +153,9 @@ def _keep_within(unknown: Unknown, value: float) -> None:
         raise SentenceError(
             f"{unknown.name} is {here}; it must lie from {plain(unknown.low)} to {plain(unknown.high)}{unit}"
         )
+    number = from_si(value, unknown.unit)
+    if unknown.whole and abs(number - round(number)) > 1e-9 * max(1.0, abs(number)):
+        raise SentenceError(f"{unknown.name} is {number:.12g}; it must be a whole number")
 
 
 def _sd(unknown: Unknown, raw: Any) -> float:
@@ -167,18 +170,20 @@ def _sd(unknown: Unknown, raw: Any) -> float:
 
 
 def of_covariance(effect: Effect[Any, Any]) -> Check:
-    """Make the check of a covariance: a symmetric matrix over the unknowns, in their declared units."""
-    size = len(effect.unknowns)
-    names = ", ".join(f"{unknown.name} [{unknown.unit or '1'}]" for unknown in effect.unknowns)
-    like = f"covariance is a list of {size} rows of {size} numbers, over {names}"
+    """Make the check of a covariance: a symmetric matrix over the unknowns that are given, in their declared units."""
 
     def check(raw: Any, reading: Reading) -> Any:
+        given = reading.stated.get(effect.name, frozenset()) if effect.parts else None
+        unknowns = [unknown for unknown in effect.unknowns if given is None or unknown.name in given]
+        size = len(unknowns)
+        names = ", ".join(f"{unknown.name} [{unknown.unit or '1'}]" for unknown in unknowns)
+        like = f"covariance is a list of {size} rows of {size} numbers, over {names}"
         if not isinstance(raw, list) or len(raw) != size or any(not _is_row(row, size) for row in raw):
             raise SentenceError(like)
         _keep_possible(raw)
         from truing.units import unit_factor
 
-        factors = [unit_factor(unknown.unit) for unknown in effect.unknowns]
+        factors = [unit_factor(unknown.unit) for unknown in unknowns]
         rows = tuple(
             tuple(float(one) * factors[i] * factors[j] for j, one in enumerate(row)) for i, row in enumerate(raw)
         )

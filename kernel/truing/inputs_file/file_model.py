@@ -19,6 +19,7 @@ from truing.inputs_file import checks
 from truing.inputs_file.diagnose_options import NAME, diagnose_schema, of_diagnose
 from truing.inputs_file.schema_words import (
     condition_schema,
+    covariance_schema,
     effect_schema,
     input_schema,
     study_schema,
@@ -61,7 +62,7 @@ def file_model(model: Model[Any, Any]) -> type[BaseModel]:
         ),
         "tolerances": (_section("Tolerances", _tolerances(model)), "How inputs scatter about their nominals."),
         "conditions": (_section("Conditions", _conditions(model)), "What is measured but no input of the model."),
-        "effects": (_effects(model), "Effects that are on, by name, each with all its unknowns."),
+        "effects": (_effects(model), "Effects that are on, by name, each with its unknowns."),
         "calibrated": (_section("Calibrated", _calibrated(model)), "Inputs as fitted to one machine."),
         "studies": (_section("Studies", _studies(model)), "Which studies run, in which order, and their options."),
         "units": (_section("Units", _units(model)), "The unit in which a result or input is printed."),
@@ -141,14 +142,15 @@ def _tolerances(model: Model[Any, Any]) -> dict[str, Entry]:
 
 
 def _conditions(model: Model[Any, Any]) -> dict[str, Entry]:
-    return {name: Entry(checks.of_condition(item), condition_schema(item)) for name, item in model.conditions.items()}
+    known = model.known_conditions
+    return {name: Entry(checks.of_condition(item), condition_schema(item)) for name, item in known.items()}
 
 
 def _effects(model: Model[Any, Any]) -> type[BaseModel]:
     from pydantic import Field, create_model
 
     fields: dict[str, Any] = {}
-    for place, (name, effect) in enumerate(model.effects.items()):
+    for place, (name, effect) in enumerate(model.known_effects.items()):
         words = effect_schema(effect)["description"]
         section = _section(f"Effect {name}", _effect(effect))
         fields[f"effect_{place}"] = (section, Field(default_factory=dict, alias=name, title=name, description=words))
@@ -157,14 +159,10 @@ def _effects(model: Model[Any, Any]) -> type[BaseModel]:
 
 def _effect(effect: Effect[Any, Any]) -> dict[str, Entry]:
     entries = {
-        unknown.name: Entry(checks.of_unknown(effect, unknown), unknown_schema(unknown), required=True)
+        unknown.name: Entry(checks.of_unknown(effect, unknown), unknown_schema(unknown), required=not effect.parts)
         for unknown in effect.unknowns
     }
-    size = len(effect.unknowns)
-    row = {"type": "array", "items": {"type": "number"}, "minItems": size, "maxItems": size}
-    words = "Covariance of the unknowns in their declared units, in the order they are declared."
-    schema = {"type": "array", "items": row, "minItems": size, "maxItems": size, "description": words}
-    entries.setdefault("covariance", Entry(checks.of_covariance(effect), schema))
+    entries.setdefault("covariance", Entry(checks.of_covariance(effect), covariance_schema(effect)))
     return entries
 
 

@@ -39,7 +39,7 @@ def _path(name: str, model: Model[Any, Any]) -> tuple[str, ...]:
         if first in {"effects", "studies"}:
             return (first, *rest.split(".", 1))
         return (first, rest)
-    if name in model.conditions:
+    if name not in model.input_fields and name in model.known_conditions:
         return ("conditions", name)
     if name not in model.input_fields and name in {"seed", "detail"}:
         return ("studies" if name == "seed" else "sheet", name)

@@ -83,8 +83,18 @@ def condition_schema(condition: Condition) -> dict[str, Any]:
 
 def effect_schema(effect: Effect[Any, Any]) -> dict[str, Any]:
     """Return the words of one effect."""
-    words = (effect.why or effect.looks_like or effect.name, f"acts on the {effect.place}", effect.source)
+    alone = "what is left out is off" if effect.parts else ""
+    words = (effect.why or effect.looks_like or effect.name, f"acts on the {effect.place}", effect.source, alone)
     return {"description": "; ".join(word for word in words if word)}
+
+
+def covariance_schema(effect: Effect[Any, Any]) -> dict[str, Any]:
+    """Return the schema of the covariance of an effect's unknowns."""
+    size = {} if effect.parts else {"minItems": len(effect.unknowns), "maxItems": len(effect.unknowns)}
+    which = "unknowns that are given" if effect.parts else "unknowns"
+    words = f"Covariance of the {which} in their declared units, in the order they are declared."
+    row = {"type": "array", "items": {"type": "number"}, **size}
+    return {"type": "array", "items": row, **size, "description": words}
 
 
 def unknown_schema(unknown: Unknown) -> dict[str, Any]:
@@ -92,7 +102,7 @@ def unknown_schema(unknown: Unknown) -> dict[str, Any]:
     bounds = f"from {plain(unknown.low)} to {plain(unknown.high)} {unknown.unit}".strip()
     value = {"type": ["number", "string"] if unknown.unit in PURE else "string"}
     table = {"type": "object", "properties": {"value": value, "sd": value}, "required": ["value"]}
-    words = "; ".join(word for word in (unknown.note, bounds) if word)
+    words = "; ".join(word for word in (unknown.note, bounds, "a whole number" if unknown.whole else "") if word)
     return {"anyOf": [value, {**table, "additionalProperties": False}], "description": words, "x-unit": unknown.unit}
 
 

@@ -57,12 +57,11 @@ class _Words:
         if len(path) == 1:
             return self.unknown_section(name)
         if path[0] == "effects" and len(path) == 3:
-            effect = self.model.effects[path[1]]
+            effect = self.model.known_effects[path[1]]
             unknowns = {unknown.name: unknown for unknown in effect.unknowns}
-            known = ", ".join(unknowns)
-            return (
-                f"effect '{effect.name}' has no unknown {shown(name)}.{self.near(name, unknowns)} (unknowns: {known})"
-            )
+            many = len(unknowns) > 12
+            known = f"`calc describe {self.model.name}` lists them" if many else f"unknowns: {', '.join(unknowns)}"
+            return f"effect '{effect.name}' has no unknown {shown(name)}.{self.near(name, unknowns)} ({known})"
         what, known_names = self.known(path[0])
         elsewhere = self.elsewhere(name, path[0])
         if elsewhere:
@@ -88,8 +87,8 @@ class _Words:
         return {
             "inputs": ("input", list(model.input_fields)),
             "tolerances": ("tolerance", list(model.tolerances)),
-            "conditions": ("condition", list(model.conditions)),
-            "effects": ("effect", list(model.effects)),
+            "conditions": ("condition", list(model.known_conditions)),
+            "effects": ("effect", list(model.known_effects)),
             "calibrated": ("input to calibrate called", [n for n, item in model.input_fields.items() if item.varies]),
             "studies": ("study", studies),
             "units": ("result or input", [*model.result_fields, *model.input_fields]),
@@ -136,7 +135,7 @@ class _Words:
         """Say that something is missing, and how it is written."""
         name = path[-1]
         if path[0] == "effects":
-            unknown = next(one for one in self.model.effects[path[1]].unknowns if one.name == name)
+            unknown = next(one for one in self.model.known_effects[path[1]].unknowns if one.name == name)
             bounds = f"from {unknown.low:g} to {unknown.high:g} {unknown.unit}".strip()
             return f"effect '{path[1]}' is on, so its unknown '{name}' must be given ({bounds})"
         item = self.model.input_fields[name]

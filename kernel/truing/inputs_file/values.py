@@ -23,13 +23,17 @@ class SentenceError(ValueError):
 
 @dataclass
 class Reading:
-    """What was read so far: values in SI by section and name, data files with their hashes and their folder."""
+    """What was read so far: values in SI by section and name, data files with their hashes and their folder.
+
+    ``stated`` holds the names that stand under each [effects.NAME].
+    """
 
     folder: Path
     values: dict[tuple[str, ...], Any] = field(default_factory=dict)
     files: dict[str, str] = field(default_factory=dict)
     tables: dict[str, dict[str, Any]] = field(default_factory=dict)
     faults: list[tuple[tuple[str, ...], str]] = field(default_factory=list)
+    stated: dict[str, frozenset[str]] = field(default_factory=dict)
 
 
 def read_input(item: InputField, raw: Any, reading: Reading) -> Any:
