@@ -78,7 +78,7 @@ class Reading:
     def _sight(self, value: Float, item: ResultField, held: tuple[Any, Any, Mapping[str, Float]]) -> Float:
         """Return what the effect looks at, SI: time, temperature or angle, else the reading from its zero."""
         if self.seen is None:
-            zero = _zero_of(item)
+            zero = zero_of(item)
             return value - zero if zero else value
         sight = self.seen.of(*held, item)
         return sight - self.seen.zero if self.kind.is_from_zero and self.seen.zero else sight
@@ -178,7 +178,7 @@ def _step_of(item: ResultField) -> dict[str, Unknown]:
     }
 
 
-def _zero_of(item: ResultField) -> float:
+def zero_of(item: ResultField) -> float:
     """Return the zero of the unit of a result in SI: 273.15 K for degC, 0 for all that are no levels."""
     from truing.units import to_si
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from truing.declare.sources import Effect, Unknown
 from truing.diagnosis.machine import Machine, predict
+from truing.diagnosis.readings import gauged, reading_curve
 from truing.setup import SwitchedOn
 from truing.units import to_si
 
@@ -95,12 +96,6 @@ def candidates_of(machine: Machine) -> list[Candidate]:
     return [item for item in found if not item.is_kernel or gauged(item, machine.records.measured)]
 
 
-def gauged(candidate: Candidate, measured: Iterable[str]) -> str:
-    """Return the measured result whose reading a part of a built-in effect changes, or nothing."""
-    names = {unknown.name for unknown in candidate.amplitudes}
-    return next((result for result in measured if names in ({result}, {f"{result}_sine", f"{result}_cosine"})), "")
-
-
 def grid_of(unknown: Unknown, machine: Machine, count: int = GRID) -> list[float]:
     """Return the values of a shape that are tried: whole numbers, places of the record, or a grid inside its bounds."""
     import numpy as np
@@ -156,7 +151,8 @@ def terms_of(place: int, candidate: Candidate, machine: Machine, scales: Mapping
 
 def _stands_still(candidate: Candidate, machine: Machine) -> bool:
     covariates = machine.records.covariates
-    known = [covariates[need.name] for need in candidate.effect.needs if need.name in covariates]
+    names = [*(need.name for need in candidate.effect.needs), *candidate.effect.reads]
+    known = [covariates[name] for name in names if name in covariates]
     return bool(known) and all(item.is_constant for item in known)
 
 
@@ -231,8 +227,6 @@ def _files(machine: Machine, candidate: Candidate, unknown: str) -> Sequence[int
 
 def _sides(machine: Machine, candidate: Candidate, unknown: Unknown, shape: Mapping[str, float]) -> list[Curve]:
     """Return the derivative by an amplitude at zero; upward and downward where there is a kink."""
-    from truing.diagnosis.readings import reading_curve
-
     known = reading_curve(machine, candidate, unknown, shape)
     if known is not None:
         return [known]

@@ -214,12 +214,20 @@ def spread_of(innovations: NDArray[np.float64], drivers: dict[str, NDArray[np.fl
     return Spread(name, slope, p_value)
 
 
-def weights_of(spread: Spread, driver: NDArray[np.float64] | None, rows: int) -> NDArray[np.float64]:
-    """Return the weight of each row: one over the relative standard deviation of its noise."""
+def weights_of(
+    spread: Spread, driver: NDArray[np.float64] | None, learnt: NDArray[np.intp], rows: int
+) -> NDArray[np.float64]:
+    """Return the weight of each of ``rows`` rows: one over the relative standard deviation of its noise.
+
+    ``learnt`` are the rows that the spread was learnt from: the driver is standardised over them.
+    """
     import numpy as np
 
     if driver is None or not spread.driver:
         return np.ones(rows)
-    exponent = np.clip(spread.slope * standardised(driver), -LARGEST_EXPONENT, LARGEST_EXPONENT)
+    here = driver[learnt]
+    middle, sd = np.nanmean(here), np.nanstd(here)
+    z = (np.where(np.isfinite(driver), driver, middle) - middle) / sd
+    exponent = np.clip(spread.slope * z, -LARGEST_EXPONENT, LARGEST_EXPONENT)
     weights: Any = np.exp(-exponent)
     return np.asarray(weights, dtype=float)

@@ -2,14 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from truing.declare.sources import Unknown
+from truing.declare.builtin import Reading, zero_of
+from truing.declare.sources import Effect, Unknown
 from truing.diagnosis.machine import Machine
 
 if TYPE_CHECKING:
     from truing.diagnosis.candidates import Candidate, Curve
+
+
+def reading_of(effect: Effect[Any, Any]) -> Reading | None:
+    """Return the reading of a built-in effect; None for other effects."""
+    return effect.function if isinstance(effect.function, Reading) else None
+
+
+def gauged(candidate: Candidate, measured: Iterable[str]) -> str:
+    """Return the measured result whose reading a part of a built-in effect changes, or nothing."""
+    reading = reading_of(candidate.effect)
+    names = {unknown.name for unknown in (*candidate.amplitudes, *candidate.shapes)}
+    for item, roles in reading.roles if reading is not None else ():
+        if item.name in set(measured) and names == set(roles.values()):
+            return item.name
+    return ""
+
+
+def followed_by(candidate: Candidate) -> str:
+    """Return the name of the input, condition or axis that a built-in effect follows; nothing for an offset or gain."""
+    reading = reading_of(candidate.effect)
+    return reading.seen.name if reading is not None and reading.seen is not None else ""
 
 
 def reading_curve(machine: Machine, candidate: Candidate, unknown: Unknown, shape: Mapping[str, float]) -> Curve | None:
@@ -19,42 +41,27 @@ def reading_curve(machine: Machine, candidate: Candidate, unknown: Unknown, shap
     """
     import numpy as np
 
-    from truing.diagnosis.candidates import gauged
-
-    if not candidate.is_kernel:
+    reading = reading_of(candidate.effect)
+    if reading is None:
         return None
     result = gauged(candidate, machine.records.measured)
+    item, roles = next(entry for entry in reading.roles if entry[0].name == result)
+    own = {role: 1.0 if name == unknown.name else shape.get(name, 0.0) for role, name in roles.items()}
+    sight = machine.base[result] - zero_of(item) if reading.seen is None else _seen(machine, reading)
     curve = {name: np.zeros(len(machine.records)) for name in machine.records.measured}
-    curve[result] = _read(machine, candidate, unknown, shape, result=result)
+    curve[result] = np.broadcast_to(np.asarray(reading.kind.added(own, sight), dtype=float), (len(machine.records),))
     return curve
 
 
-def _read(machine: Machine, candidate: Candidate, unknown: Unknown, shape: Mapping[str, float], *, result: str) -> Any:
+def _seen(machine: Machine, reading: Reading) -> Any:
+    """Return what a built-in effect follows, one value per row in SI, from where its effects vanish."""
     import numpy as np
 
-    kind = candidate.name.partition("_of_")[0]
-    if kind == "sensor_offset":
-        return np.ones(len(machine.records))
-    if kind == "sensor_gain":
-        return machine.base[result]
-    covariate, zero = covariate_of(machine, candidate)
-    if kind in {"sensor_drift", "thermal_drift"}:
-        return covariate - zero
-    if kind == "step":
-        return (covariate >= next(iter(shape.values()))).astype(float)
-    order = next(iter(shape.values()))
-    return np.cos(order * covariate) if unknown.name.endswith("_cosine") else np.sin(order * covariate)
-
-
-def covariate_of(machine: Machine, candidate: Candidate) -> tuple[Any, float]:
-    """Return what a built-in effect follows, one value per row in SI, and the reference at which it vanishes."""
-    import numpy as np
-
-    from truing.declare.builtin import followed
-
-    name, zero = followed(machine.start.model, candidate.name)
-    values = machine.records.rows.columns.get(name)
-    if values is None:
-        values = machine.records.rows.axes.get(name, machine.records.rows.series.get(name))
-    held = machine.start.nominal(name) if values is None else values
-    return np.broadcast_to(np.asarray(held, dtype=float), (len(machine.records),)), zero
+    seen = reading.seen
+    if seen is None:
+        return np.zeros(len(machine.records))
+    rows = machine.records.rows
+    measured = next((kind[seen.name] for kind in (rows.columns, rows.axes, rows.series) if seen.name in kind), None)
+    held = machine.start.nominal(seen.name) if measured is None else measured
+    values = np.broadcast_to(np.asarray(held, dtype=float), (len(machine.records),))
+    return values - seen.zero if reading.kind.is_from_zero else values

@@ -1,0 +1,141 @@
+"""One contest of all explanations over chosen rows: search, learn the noise from the best, search again."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from truing.diagnosis.hypotheses import NOTHING, Hypothesis, Piece, mixed, off_inputs, pairs, shapes, singles
+from truing.diagnosis.problem import Problem, terms_for_pairs
+from truing.diagnosis.search import (
+    Evidence,
+    Found,
+    NoiseModel,
+    Solution,
+    evidence_of,
+    learned,
+    likely_settings,
+    search,
+    solve,
+)
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+ROUNDS = 3
+FAVOURITES = 8
+OUTSIDE = 3.0
+"""An input is off its band beyond this many standard deviations of its tolerance."""
+SURELY = 3.0
+
+
+@dataclass(frozen=True)
+class Contest:
+    """How the explanations stand on some rows: noise as learnt, every hypothesis scored, the filters tried."""
+
+    problem: Problem
+    noise: NoiseModel
+    evidence: Evidence
+    found: Found
+    settings: tuple[tuple[int, ...], ...]
+
+    def solution(self, place: int) -> Solution:
+        """Solve one of the hypotheses at its best noise filter."""
+        return solve(self.evidence, self.found.hypotheses[place], self.found.setting[place])
+
+
+def contest(problem: Problem, noise: NoiseModel, rows: NDArray[np.bool_], *, rounds: int = ROUNDS) -> Contest:
+    """Search and learn the noise in turn, ``rounds`` times."""
+    raw = dict(noise.residuals)
+    for left in range(rounds - 1, -1, -1):
+        evidence = evidence_of(problem, noise, rows)
+        found, settings = _all_scored(problem, evidence)
+        if left:
+            best = found.best()
+            noise = learned(problem, evidence, solve(evidence, found.hypotheses[best], found.setting[best]), raw)
+    return Contest(problem, noise, evidence, found, tuple(settings))
+
+
+def _all_scored(problem: Problem, evidence: Evidence) -> tuple[Found, list[tuple[int, ...]]]:
+    """Score nothing, single causes, shapes and inputs; then pairs; then causes beside shapes."""
+    simple = [NOTHING, *singles(problem.term_pieces), *shapes(problem.shape_pieces)]
+    settings = likely_settings(evidence, simple)
+    first = search(evidence, simple, settings)
+    favourites = best_terms(first)
+    terms = terms_for_pairs(problem, frozenset(piece.place for piece in favourites))
+    found = [
+        first,
+        search(evidence, pairs(terms), settings),
+        search(evidence, mixed(favourites, problem.shape_pieces, problem.like), settings),
+        _outside(evidence, search(evidence, off_inputs(problem.input_pieces), settings)),
+    ]
+    return _together(found), settings
+
+
+def best_terms(found: Found, count: int = FAVOURITES) -> list[Piece]:
+    """Return the best variant of each of the best single causes."""
+    kept: list[Piece] = []
+    for place in found.ranked():
+        hypothesis = found.hypotheses[place]
+        if hypothesis.kind == "one":
+            kept.append(hypothesis.pieces[0])
+    return kept[:count]
+
+
+def _outside(evidence: Evidence, found: Found) -> Found:
+    """Strike out every input that may well lie inside its band: it is calibrated, not named."""
+    import numpy as np
+
+    score = found.score.copy()
+    for place, hypothesis in enumerate(found.hypotheses):
+        if not np.isfinite(score[place]):
+            continue
+        case = evidence.case(found.setting[place])
+        column = hypothesis.columns[0]
+        curvature = float(case.total_h[column, column])
+        off = abs(float(case.total_g[column, 0]) / curvature) if curvature > 0 else 0.0
+        if curvature <= 0 or off - OUTSIDE < SURELY / np.sqrt(curvature):
+            score[place] = -np.inf
+    return replace(found, score=score)
+
+
+def _together(found: Sequence[Found]) -> Found:
+    """Put lists of scored hypotheses one after the other."""
+    import numpy as np
+
+    return Found(
+        tuple(hypothesis for each in found for hypothesis in each.hypotheses),
+        np.concatenate([each.score for each in found]),
+        np.concatenate([each.likelihood for each in found]),
+        tuple(setting for each in found for setting in each.setting),
+    )
+
+
+def names_of(problem: Problem, hypothesis: Hypothesis) -> tuple[str, ...]:
+    """Return the names of what a hypothesis is made of; a shape is called unknown."""
+    return tuple(dict.fromkeys(_name(problem, piece) for piece in hypothesis.pieces))
+
+
+def _name(problem: Problem, piece: Piece) -> str:
+    if piece.kind == "term":
+        return problem.candidates[piece.owner].name
+    if piece.kind == "input":
+        return f"input:{problem.machine.inputs[piece.owner].name}"
+    return "unknown"
+
+
+def curve_space(contest: Contest, hypothesis: Hypothesis) -> Mapping[str, NDArray[np.float64]]:
+    """Return the columns of a hypothesis by result on the rows of its channel, shape (n, k), in units of the noise."""
+    import numpy as np
+
+    found = {}
+    for channel in contest.evidence.channels:
+        made = np.zeros((len(channel), len(hypothesis.columns)))
+        for place, column in enumerate(hypothesis.columns):
+            item = contest.problem.columns[column]
+            if channel.name in item.parts:
+                made[:, place] = item.parts[channel.name][channel.rows] * (item.per / channel.scale)
+        found[channel.name] = made
+    return found

@@ -1,0 +1,239 @@
+"""What the rows say, reduced to inner products: one matrix per measured result and noise filter.
+
+Every column is one of: the residual, a direction of the tolerated inputs (unit prior), a column of the registry or of
+the library of shapes. Rows are taken in blocks of whole pieces of runs, so memory does not grow with their number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from truing.diagnosis.noise import SETTINGS, Setting, colour, whiten
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+LONGEST = 4096
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of the search: parts by measured result, shape (n,) over the rows of all records, SI."""
+
+    parts: Mapping[str, Matrix]
+    per: float = 1.0
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One measured result on the rows where it was measured, in units of its noise.
+
+    ``rows`` are places among the records; ``starts`` marks where the noise filter starts anew; ``weights`` is one over
+    the relative standard deviation of the noise. ``residual`` has shape (n,), ``directions`` (n, K).
+    """
+
+    name: str
+    scale: float
+    rows: NDArray[np.intp]
+    starts: NDArray[np.bool_]
+    weights: Matrix
+    residual: Matrix
+    directions: Matrix
+    columns: Sequence[Column]
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def block(self, rows: slice) -> Matrix:
+        """Return residual, directions and columns of some rows, weighted, shape (rows, 1 + K + m)."""
+        import numpy as np
+
+        places = self.rows[rows]
+        k = self.directions.shape[1]
+        made = np.zeros((len(places), 1 + k + len(self.columns)))
+        made[:, 0] = self.residual[rows]
+        made[:, 1 : 1 + k] = self.directions[rows]
+        for place, column in enumerate(self.columns, start=1 + k):
+            part = column.parts.get(self.name)
+            if part is not None:
+                made[:, place] = part[places] * (column.per / self.scale)
+        made *= self.weights[rows, None]
+        return made
+
+    @cached_property
+    def blocks(self) -> list[slice]:
+        """Rows in blocks of whole pieces of runs."""
+        import numpy as np
+
+        firsts = np.flatnonzero(self.starts)
+        ends = [*firsts[1:], len(self)]
+        found: list[slice] = []
+        begin = 0
+        for end in ends:
+            if end - begin >= LONGEST:
+                found.append(slice(begin, int(end)))
+                begin = int(end)
+        if begin < len(self):
+            found.append(slice(begin, len(self)))
+        return found
+
+
+def starts_of(run_of: NDArray[np.intp], rows: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Mark the first row of every run, and of every piece of a run that is longer than a block."""
+    import numpy as np
+
+    runs = run_of[rows]
+    starts = np.ones(len(rows), dtype=bool)
+    starts[1:] = runs[1:] != runs[:-1]
+    first = np.flatnonzero(starts)
+    since = np.arange(len(rows)) - np.repeat(first, np.diff([*first, len(rows)]))
+    starts |= (since % LONGEST) == 0
+    return starts
+
+
+@dataclass(frozen=True)
+class Products:
+    """Inner products of one channel under one noise filter: matrix (1 + K + m) squared, and the filter's constant."""
+
+    matrix: Matrix
+    constant: float
+
+
+def products_of(channel: Channel, settings: Sequence[Setting] = SETTINGS) -> list[Products]:
+    """Return the inner products of all columns of a channel, one matrix per noise filter."""
+    import numpy as np
+
+    size = 1 + channel.directions.shape[1] + len(channel.columns)
+    found = [np.zeros((size, size)) for _ in settings]
+    for rows in channel.blocks:
+        block, starts = channel.block(rows), channel.starts[rows]
+        for matrix, setting in zip(found, settings, strict=True):
+            white = whiten(block, starts, setting)
+            matrix += white.T @ white
+    base = 2 * float(np.log(channel.weights).sum())
+    runs = int(channel.starts.sum())
+    constants = [base - runs * float(np.log(setting.variance_ratio)) for setting in settings]
+    return [Products(matrix, constant) for matrix, constant in zip(found, constants, strict=True)]
+
+
+@dataclass(frozen=True)
+class Replicates:
+    """Inner products of simulated residuals of one channel under one noise filter.
+
+    ``with_all`` has shape (K + m, B): with every direction and column; ``own`` (B,): with themselves.
+    """
+
+    with_all: Matrix
+    own: Matrix
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """How residuals are simulated: innovations to draw from, the filter, and a fitted part to add (weighted, (n,))."""
+
+    innovations: Matrix
+    setting: Setting
+    mean: Matrix
+
+
+def replicates_of(
+    channel: Channel,
+    simulation: Simulation,
+    inputs: Matrix,
+    generator: np.random.Generator,
+    settings: Sequence[Setting],
+) -> list[Replicates]:
+    """Simulate residuals, with inputs drawn from their tolerances (K, B), and reduce them to inner products."""
+    import numpy as np
+
+    count, k = inputs.shape[1], channel.directions.shape[1]
+    sizes = (k + len(channel.columns), count)
+    together = [np.zeros(sizes) for _ in settings]
+    own = [np.zeros(count) for _ in settings]
+    for rows in channel.blocks:
+        block, starts = channel.block(rows)[:, 1:], channel.starts[rows]
+        drawn = generator.choice(simulation.innovations, size=(len(block), count))
+        made = colour(drawn, starts, simulation.setting) + simulation.mean[rows, None] + block[:, :k] @ inputs
+        for place, setting in enumerate(settings):
+            white = whiten(made, starts, setting)
+            together[place] += whiten(block, starts, setting).T @ white
+            own[place] += np.einsum("ij,ij->j", white, white)
+    return [Replicates(first, second) for first, second in zip(together, own, strict=True)]
+
+
+def combined(counts: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """Return every combination of one noise filter per channel."""
+    from itertools import product
+
+    return product(*(range(count) for count in counts))
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """The columns with the tolerated inputs eliminated, under one noise filter per channel.
+
+    For coefficients b of some columns the sum of squares of channel o is ``own[o] - 2 b g[o] + b h[o] b``; the last
+    entry of the three is the prior of the inputs. ``rows`` counts the rows by channel. B residuals at once.
+    """
+
+    h: tuple[Matrix, ...]
+    g: tuple[Matrix, ...]
+    own: tuple[Matrix, ...]
+    constant: float
+    rows: tuple[int, ...]
+
+    @cached_property
+    def total_h(self) -> Matrix:
+        """Normal matrix of the columns, (m, m)."""
+        return sum(self.h[1:], self.h[0])
+
+    @cached_property
+    def total_g(self) -> Matrix:
+        """Right-hand sides, (m, B)."""
+        return sum(self.g[1:], self.g[0])
+
+
+def reduced(
+    products: Sequence[Products], rows: Sequence[int], k: int, replicates: Sequence[Replicates] | None = None
+) -> Reduced:
+    """Eliminate the K directions, each with unit prior; the noise has unit scale here.
+
+    Without ``replicates`` the right-hand side is the measured residual itself.
+    """
+    import numpy as np
+    from scipy.linalg import cho_factor, cho_solve
+
+    matrices = [item.matrix for item in products]
+    uu = [matrix[1 : 1 + k, 1 : 1 + k] for matrix in matrices]
+    uc = [matrix[1 : 1 + k, 1 + k :] for matrix in matrices]
+    cc = [matrix[1 + k :, 1 + k :] for matrix in matrices]
+    if replicates is None:
+        ub = [matrix[1 : 1 + k, :1] for matrix in matrices]
+        cb = [matrix[1 + k :, :1] for matrix in matrices]
+        own = [matrix[:1, 0] for matrix in matrices]
+    else:
+        ub = [item.with_all[:k] for item in replicates]
+        cb = [item.with_all[k:] for item in replicates]
+        own = [item.own for item in replicates]
+    constant = sum(item.constant for item in products)
+    if k == 0:
+        nothing = np.zeros_like(cc[0]), np.zeros_like(cb[0]), np.zeros_like(own[0])
+        return Reduced((*cc, nothing[0]), (*cb, nothing[1]), (*own, nothing[2]), constant, tuple(rows))
+    factor = cho_factor(sum(uu, np.eye(k)))
+    gamma = cho_solve(factor, sum(uc[1:], uc[0]))
+    start = cho_solve(factor, sum(ub[1:], ub[0]))
+    h = [c - gamma.T @ a - a.T @ gamma + gamma.T @ u @ gamma for c, a, u in zip(cc, uc, uu, strict=True)]
+    g = [b - gamma.T @ v - (a - u @ gamma).T @ start for b, v, a, u in zip(cb, ub, uc, uu, strict=True)]
+    left = [
+        r - 2 * np.einsum("ij,ij->j", start, v) + np.einsum("ij,ij->j", start, u @ start)
+        for r, v, u in zip(own, ub, uu, strict=True)
+    ]
+    constant -= 2 * float(np.log(np.diag(factor[0])).sum())
+    prior = gamma.T @ gamma, gamma.T @ start, np.einsum("ij,ij->j", start, start)
+    return Reduced((*h, prior[0]), (*g, prior[1]), (*left, prior[2]), constant, tuple(rows))

@@ -1,0 +1,141 @@
+"""Every explanation that competes: nothing, one cause, two causes, an unregistered shape, a cause beside a shape."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from math import inf, log
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+Kind = Literal["none", "one", "two", "shape", "mixed", "input"]
+MASSES: Mapping[Kind, float] = {"none": 0.50, "one": 0.30, "two": 0.12, "shape": 0.06, "mixed": 0.02, "input": 0.02}
+"""Prior mass of every class, shared equally by its members: a class with many members does not win by numbers."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """What a hypothesis is made of: one variant of a cause, an input off its band, or a shape on some results.
+
+    ``owner`` names the explanation whatever the variant; ``columns`` are places among all columns; ``size`` counts the
+    parameters; ``low`` and ``high`` bound the coefficients.
+    """
+
+    kind: Literal["term", "input", "shape"]
+    place: int
+    owner: int
+    columns: tuple[int, ...]
+    size: int
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """One explanation: its pieces, and the logarithm of its prior mass."""
+
+    kind: Kind
+    pieces: tuple[Piece, ...]
+    log_prior: float
+
+    @cached_property
+    def columns(self) -> tuple[int, ...]:
+        """Places of all columns."""
+        return tuple(column for piece in self.pieces for column in piece.columns)
+
+    @cached_property
+    def size(self) -> int:
+        """Number of free parameters."""
+        return sum(piece.size for piece in self.pieces)
+
+    @cached_property
+    def key(self) -> tuple[tuple[str, int], ...]:
+        """The explanation itself, whatever the variant."""
+        return tuple(sorted((piece.kind, piece.owner) for piece in self.pieces))
+
+
+NOTHING = Hypothesis("none", (), log(MASSES["none"]))
+
+
+def _members(kind: Kind, pieces: Sequence[tuple[Piece, ...]]) -> list[Hypothesis]:
+    """Share the mass of a class among its explanations."""
+    keys = {tuple(sorted((piece.kind, piece.owner) for piece in each)) for each in pieces}
+    share = log(MASSES[kind]) - log(max(len(keys), 1))
+    return [Hypothesis(kind, each, share) for each in pieces]
+
+
+def singles(terms: Sequence[Piece]) -> list[Hypothesis]:
+    """Return one hypothesis per variant of every cause."""
+    return _members("one", [(term,) for term in terms])
+
+
+def pairs(terms: Sequence[Piece]) -> list[Hypothesis]:
+    """Return every pair of variants of two different causes."""
+    return _members("two", [(a, b) for a, b in combinations(terms, 2) if a.owner != b.owner])
+
+
+def shapes(groups: Sequence[Piece]) -> list[Hypothesis]:
+    """Return one hypothesis per unregistered shape."""
+    return _members("shape", [(group,) for group in groups])
+
+
+def off_inputs(inputs: Sequence[Piece]) -> list[Hypothesis]:
+    """Return one hypothesis per input that may lie outside its band."""
+    return _members("input", [(item,) for item in inputs])
+
+
+def mixed(terms: Sequence[Piece], groups: Sequence[Piece], like: frozenset[tuple[int, int]]) -> list[Hypothesis]:
+    """Return every cause beside every shape, but for shapes that reproduce the cause (``like``: owner, shape)."""
+    return _members("mixed", [(a, b) for a in terms for b in groups if (a.owner, b.owner) not in like])
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Hypotheses with the same number of columns, as arrays: solved together.
+
+    ``places`` are their places in the list they came from; ``index`` (n, k), ``low`` and ``high`` (n, k), ``penalty``
+    (n,): size times log rows, less twice the log prior.
+    """
+
+    places: NDArray[np.intp]
+    index: NDArray[np.intp]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    penalty: NDArray[np.float64]
+
+
+def batches_of(hypotheses: Sequence[Hypothesis], rows: int, largest: int = 4000) -> list[Batch]:
+    """Group hypotheses by their number of columns, in batches of bounded size."""
+    import numpy as np
+
+    by_count: dict[int, list[int]] = {}
+    for place, hypothesis in enumerate(hypotheses):
+        by_count.setdefault(len(hypothesis.columns), []).append(place)
+    found = []
+    for count, every in sorted(by_count.items()):
+        for begin in range(0, len(every), largest):
+            places = every[begin : begin + largest]
+            chosen = [hypotheses[place] for place in places]
+            low = [[value for piece in each.pieces for value in piece.low] for each in chosen]
+            high = [[value for piece in each.pieces for value in piece.high] for each in chosen]
+            shape = (len(places), count)
+            found.append(
+                Batch(
+                    np.array(places),
+                    np.array([each.columns for each in chosen], dtype=int).reshape(shape),
+                    np.array(low, dtype=float).reshape(shape),
+                    np.array(high, dtype=float).reshape(shape),
+                    np.array([each.size * log(rows) - 2 * each.log_prior for each in chosen]),
+                )
+            )
+    return found
+
+
+def unbounded(columns: Sequence[int]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Return the bounds of coefficients that have none."""
+    return (-inf,) * len(columns), (inf,) * len(columns)

@@ -1,0 +1,218 @@
+"""The search laid out: which causes, inputs and shapes compete on these rows, and the columns they are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import inf
+from typing import TYPE_CHECKING
+
+from truing.diagnosis.candidates import Candidate, Term, candidates_of, stacked, terms_of
+from truing.diagnosis.evidence import Column
+from truing.diagnosis.hypotheses import Piece, unbounded
+from truing.diagnosis.machine import Machine
+from truing.diagnosis.readings import followed_by
+from truing.diagnosis.shapes import Library, library_of
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+SAME_CURVE = 1e-4
+REPRODUCED = 0.98
+STEPS_IN_PAIRS = 4
+SPARSE = 3
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Everything that competes. ``same_as`` holds, by place of a candidate, others that are the same curve here.
+
+    ``shape_results`` holds, by the owner of a shape piece, the place of the shape and the results it acts on;
+    ``like`` the (candidate, shape owner) pairs in which the shape reproduces the cause.
+    """
+
+    machine: Machine
+    candidates: tuple[Candidate, ...]
+    terms: tuple[Term, ...]
+    library: Library
+    columns: tuple[Column, ...]
+    term_pieces: tuple[Piece, ...]
+    input_pieces: tuple[Piece, ...]
+    shape_pieces: tuple[Piece, ...]
+    shape_results: tuple[tuple[int, tuple[str, ...]], ...]
+    same_as: Mapping[int, tuple[str, ...]]
+    like: frozenset[tuple[int, int]]
+    unexcited: tuple[str, ...]
+
+
+def problem_of(machine: Machine, scales: Mapping[str, float]) -> Problem:
+    """Lay out the search; ``scales`` holds a first estimate of the noise by result, SI."""
+    every = candidates_of(machine)
+    variants = [terms_of(place, candidate, machine, scales) for place, candidate in enumerate(every)]
+    kept, same_as = _merged(every, variants, scales)
+    terms = [term for place in kept for term in variants[place]]
+    library = library_of(machine.records, _registered_orders(every, variants), has_steps=_has_steps(every, variants))
+    made = _Columns()
+    term_pieces = [made.term(place, term) for place, term in enumerate(terms)]
+    input_pieces = made.inputs(machine, scales)
+    shape_pieces, shape_results = made.shapes(library, tuple(scales), scales)
+    seen = {every[place].name for place in range(len(every)) if variants[place]}
+    problem = Problem(
+        machine,
+        tuple(every),
+        tuple(terms),
+        library,
+        tuple(made.columns),
+        tuple(term_pieces),
+        tuple(input_pieces),
+        tuple(shape_pieces),
+        tuple(shape_results),
+        same_as,
+        frozenset(),
+        tuple(dict.fromkeys(candidate.name for candidate in every if candidate.name not in seen)),
+    )
+    return replace(problem, like=_alike(problem, scales))
+
+
+def _merged(
+    every: Sequence[Candidate], variants: Sequence[Sequence[Term]], scales: Mapping[str, float]
+) -> tuple[list[int], dict[int, tuple[str, ...]]]:
+    """Return the candidates that stay, and the names of those that are the same curve on this data.
+
+    Without this the prior mass of a curve with two names would be halved, and no verdict could be unique.
+    """
+    import numpy as np
+
+    order = sorted(
+        (place for place in range(len(every)) if variants[place]), key=lambda place: every[place].weakest_first
+    )
+    spaces: dict[int, NDArray[np.float64]] = {}
+    same: dict[int, list[str]] = {}
+    for place in order:
+        terms = variants[place]
+        if len(terms) > 1:
+            same[place] = []
+            continue
+        space = np.linalg.qr(np.column_stack([stacked(curve, scales) for curve in terms[0].curves]))[0]
+        twin = next((other for other, known in spaces.items() if _is_same(space, known)), None)
+        if twin is None:
+            spaces[place], same[place] = space, []
+        elif every[place].name != every[twin].name:
+            same[twin].append(every[place].name)
+    return sorted(same), {place: tuple(dict.fromkeys(names)) for place, names in same.items()}
+
+
+def _is_same(first: NDArray[np.float64], second: NDArray[np.float64]) -> bool:
+    """Tell whether two column spaces coincide (sine squared of the largest angle below 1e-4)."""
+    import numpy as np
+
+    if first.shape[1] != second.shape[1]:
+        return False
+    cosine = np.linalg.svd(first.T @ second, compute_uv=False).min()
+    return bool(1 - cosine**2 < SAME_CURVE)
+
+
+def _registered_orders(every: Sequence[Candidate], variants: Sequence[Sequence[Term]]) -> dict[str, frozenset[int]]:
+    """Return, by angle, the orders that effects of the kernel look for already."""
+    found: dict[str, frozenset[int]] = {}
+    for candidate, terms in zip(every, variants, strict=True):
+        if candidate.is_kernel and candidate.name.startswith("periodic_order") and terms:
+            angle = followed_by(candidate)
+            found[angle] = frozenset(round(next(iter(term.shape.values()))) for term in terms)
+    return found
+
+
+def _has_steps(every: Sequence[Candidate], variants: Sequence[Sequence[Term]]) -> bool:
+    return any(item.name == "step" and terms for item, terms in zip(every, variants, strict=True))
+
+
+class _Columns:
+    """Collects the columns of the search and the pieces that are made of them."""
+
+    def __init__(self) -> None:
+        self.columns: list[Column] = []
+
+    def add(self, parts: Mapping[str, NDArray[np.float64]], per: float) -> int:
+        """Return the place of a new column."""
+        self.columns.append(Column(parts, per))
+        return len(self.columns) - 1
+
+    def term(self, place: int, term: Term) -> Piece:
+        """Add the columns of one variant of a cause."""
+        import numpy as np
+
+        columns = []
+        for curve, per in zip(term.curves, term.per, strict=True):
+            parts = {name: np.nan_to_num(values) for name, values in curve.items() if np.any(values)}
+            columns.append(self.add(parts, per))
+        return Piece("term", place, term.candidate, tuple(columns), term.size, term.low, term.high)
+
+    def inputs(self, machine: Machine, scales: Mapping[str, float]) -> list[Piece]:
+        """Add one column per tolerated input, per standard deviation, free of its prior."""
+        import numpy as np
+
+        found = []
+        for place, _ in enumerate(machine.inputs):
+            parts = {name: machine.slopes[name][:, place] for name in scales}
+            if any(np.any(values) for values in parts.values()):
+                column = self.add(parts, 1.0)
+                found.append(Piece("input", place, place, (column,), 1, (-inf,), (inf,)))
+        return found
+
+    def shapes(
+        self, library: Library, results: Sequence[str], scales: Mapping[str, float]
+    ) -> tuple[list[Piece], list[tuple[int, tuple[str, ...]]]]:
+        """Add the columns of the library for every result; a shape may act on one result or on all."""
+        places = {name: [self.add({name: basis.values}, scales[name]) for basis in library.bases] for name in results}
+        groups = [(name,) for name in results] + ([tuple(results)] if len(results) > 1 else [])
+        pieces: list[Piece] = []
+        owners: list[tuple[int, tuple[str, ...]]] = []
+        for place, shape in enumerate(library.shapes):
+            for group in groups:
+                columns = tuple(places[name][column] for name in group for column in shape.columns)
+                size = len(columns) + shape.extra
+                pieces.append(Piece("shape", len(owners), len(owners), columns, size, *unbounded(columns)))
+                owners.append((place, group))
+        return pieces, owners
+
+
+def _alike(problem: Problem, scales: Mapping[str, float]) -> frozenset[tuple[int, int]]:
+    """Return the pairs of a cause and a shape that reproduces it: the split between the two would be arbitrary."""
+    import numpy as np
+
+    bases = np.column_stack([basis.values for basis in problem.library.bases]) if problem.library.bases else None
+    found: set[tuple[int, int]] = set()
+    if bases is None:
+        return frozenset()
+    spaces = [np.linalg.qr(bases[:, list(shape.columns)])[0] for shape in problem.library.shapes]
+    for term in problem.terms:
+        for curve in term.curves:
+            parts = {name: np.nan_to_num(curve[name]) / scales[name] for name in scales}
+            sizes = {name: float(values @ values) for name, values in parts.items()}
+            explained = [{name: float(np.sum((space.T @ parts[name]) ** 2)) for name in scales} for space in spaces]
+            for owner, (place, results) in enumerate(problem.shape_results):
+                covered = sum(explained[place][name] for name in results)
+                if covered > REPRODUCED * sum(sizes.values()):
+                    found.add((term.candidate, owner))
+    return frozenset(found)
+
+
+def terms_for_pairs(problem: Problem, favourites: frozenset[int] = frozenset(), *, sparse: bool = False) -> list[Piece]:
+    """Return the variants that enter pairs: all, but of places of a step every fourth and the ``favourites``.
+
+    ``sparse`` takes every third value of other grids too: enough for the largest of many simulated scores.
+    """
+    by_owner: dict[int, list[Piece]] = {}
+    for piece in problem.term_pieces:
+        by_owner.setdefault(piece.owner, []).append(piece)
+    found = []
+    for owner, pieces in by_owner.items():
+        shapes = problem.candidates[owner].shapes
+        every = STEPS_IN_PAIRS if any(shape.along for shape in shapes) else 1
+        if sparse and every == 1 and len(pieces) > SPARSE and not any(shape.whole for shape in shapes):
+            every = SPARSE
+        found += [
+            piece for place, piece in enumerate(pieces) if place % every == every // 2 or piece.place in favourites
+        ]
+    return found

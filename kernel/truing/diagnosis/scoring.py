@@ -1,0 +1,105 @@
+"""The score of many hypotheses on many residuals at once: likelihood, parameters paid for, prior."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from truing.diagnosis.evidence import Reduced
+from truing.diagnosis.hypotheses import Batch
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+RIDGE = 1e-10
+FLOOR = 1e-12
+BOUND_SLACK = 2.0
+
+
+@dataclass(frozen=True)
+class Scores:
+    """Twice the profiled log-likelihood and the score of every hypothesis and residual, shape (n, B)."""
+
+    likelihood: Matrix
+    score: Matrix
+
+
+def base_likelihood(case: Reduced) -> Matrix:
+    """Return twice the profiled log-likelihood without any column, shape (B,)."""
+    import numpy as np
+
+    total = np.full(len(case.own[0]), case.constant)
+    for rows, own in zip(case.rows, case.own, strict=False):
+        total -= rows * np.log(np.maximum(own, FLOOR) / rows)
+    return total - case.own[-1]
+
+
+def coefficients(case: Reduced, batch: Batch) -> Matrix:
+    """Solve every hypothesis of a batch, shape (n, k, B)."""
+    import numpy as np
+
+    index = batch.index
+    normal = case.total_h[index[:, :, None], index[:, None, :]].copy()
+    diagonal = np.einsum("nii->ni", normal)
+    diagonal += RIDGE * np.maximum(diagonal, 1e-300) + 1e-300
+    return np.asarray(np.linalg.solve(normal, case.total_g[index]))
+
+
+def batch_likelihood(case: Reduced, batch: Batch) -> Matrix:
+    """Return twice the profiled log-likelihood of every hypothesis of a batch, shape (n, B).
+
+    The noise of every result is estimated anew under every hypothesis. Solutions that leave the bounds of an unknown
+    by more than two standard errors count as impossible.
+    """
+    import numpy as np
+
+    solved = coefficients(case, batch)
+    index = batch.index
+    total = np.full((len(index), solved.shape[2]), case.constant)
+    variance = np.zeros_like(total)
+    for place, (h, g, own) in enumerate(zip(case.h, case.g, case.own, strict=True)):
+        part = h[index[:, :, None], index[:, None, :]]
+        left = own[None, :] + np.einsum("nkb,nkb->nb", solved, part @ solved - 2 * g[index])
+        if place == len(case.rows):
+            total -= left
+            continue
+        rows = case.rows[place]
+        left = np.maximum(left, FLOOR)
+        total -= rows * np.log(left / rows)
+        variance += left
+    variance /= sum(case.rows)
+    return np.where(_is_possible(case, batch, solved, variance), total, -np.inf)
+
+
+def _is_possible(case: Reduced, batch: Batch, solved: Matrix, variance: Matrix) -> NDArray[np.bool_]:
+    """Tell which solutions lie inside the bounds; a bound at zero is a sign and is kept strictly."""
+    import numpy as np
+
+    possible = np.ones((solved.shape[0], solved.shape[2]), dtype=bool)
+    for column in range(batch.index.shape[1]):
+        low, high = batch.low[:, column, None], batch.high[:, column, None]
+        value = solved[:, column]
+        curvature = np.diag(case.total_h)[batch.index[:, column], None]
+        slack = BOUND_SLACK * np.sqrt(np.maximum(variance, 0) / np.maximum(curvature, 1e-300))
+        possible &= value >= np.where(low == 0, 0.0, low - slack)
+        possible &= value <= np.where(high == 0, 0.0, high + slack)
+    return possible
+
+
+def scores_of(case: Reduced, batches: Sequence[Batch], count: int) -> Scores:
+    """Score ``count`` hypotheses; without a batch of its own a hypothesis has no columns (nothing is wrong)."""
+    import numpy as np
+
+    residuals = len(case.own[0])
+    likelihood = np.full((count, residuals), -np.inf)
+    score = np.full((count, residuals), -np.inf)
+    for batch in batches:
+        has_columns = batch.index.shape[1] > 0
+        value = batch_likelihood(case, batch) if has_columns else base_likelihood(case)[None, :]
+        likelihood[batch.places] = value
+        score[batch.places] = value - batch.penalty[:, None]
+    return Scores(likelihood, score)

@@ -1,0 +1,320 @@
+"""Scoring every explanation under every noise filter, and learning what the noise is like from the best of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING
+
+from truing.diagnosis.evidence import (
+    Channel,
+    Products,
+    Reduced,
+    combined,
+    products_of,
+    reduced,
+    starts_of,
+)
+from truing.diagnosis.hypotheses import Batch, Hypothesis, batches_of
+from truing.diagnosis.machine import Machine, directions_of
+from truing.diagnosis.noise import (
+    SETTINGS,
+    Spread,
+    Tails,
+    clipped,
+    colour,
+    spread_of,
+    tails_of,
+    weights_of,
+    whiten,
+)
+from truing.diagnosis.problem import Problem
+from truing.diagnosis.scoring import Scores, coefficients, scores_of
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+KEPT_SETTINGS = 4
+SMALLEST_SHARE = 1e-6
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """The rows as the search sees them: channels, their inner products, and the directions of the tolerated inputs.
+
+    ``directions`` has shape (inputs, K): u directions move the inputs by ``directions @ u`` standard deviations.
+    """
+
+    channels: tuple[Channel, ...]
+    products: tuple[tuple[Products, ...], ...]
+    directions: Matrix
+
+    @property
+    def rows(self) -> int:
+        """Number of measured values."""
+        return sum(len(channel) for channel in self.channels)
+
+    def case(self, setting: tuple[int, ...]) -> Reduced:
+        """Return the reduced problem of the measured residuals under one noise filter per channel."""
+        chosen = [products[place] for products, place in zip(self.products, setting, strict=True)]
+        return reduced(chosen, [len(channel) for channel in self.channels], self.directions.shape[1])
+
+
+@dataclass(frozen=True)
+class NoiseModel:
+    """What is known of the noise of each result so far: scale (SI), weights per row of the records, clipped tails."""
+
+    scales: Mapping[str, float]
+    weights: Mapping[str, Matrix]
+    residuals: Mapping[str, Matrix]
+    spreads: Mapping[str, Spread]
+    tails: Mapping[str, Tails]
+
+
+@dataclass(frozen=True)
+class Found:
+    """The scores of a list of hypotheses on the measured residuals, each at its best noise filter."""
+
+    hypotheses: tuple[Hypothesis, ...]
+    score: Matrix
+    likelihood: Matrix
+    setting: tuple[tuple[int, ...], ...]
+
+    def best(self, accept: Callable[[Hypothesis], bool] = lambda _: True) -> int:
+        """Return the place of the best accepted hypothesis, -1 where there is none."""
+        import numpy as np
+
+        places = [place for place, item in enumerate(self.hypotheses) if accept(item)]
+        if not places or not np.isfinite(self.score[places]).any():
+            return -1
+        return places[int(np.argmax(self.score[places]))]
+
+    def ranked(self) -> list[int]:
+        """Return the best place of every explanation, whatever its variant, best first."""
+        import numpy as np
+
+        best: dict[object, int] = {}
+        for place in np.argsort(-self.score, kind="stable"):
+            if np.isfinite(self.score[place]):
+                best.setdefault(self.hypotheses[place].key, int(place))
+        return list(best.values())
+
+
+def residuals_of(machine: Machine) -> dict[str, Matrix]:
+    """Return measured minus predicted at the mean of the tolerances, SI, NaN where missing."""
+    import numpy as np
+
+    means = np.array([item.mean / item.sd for item in machine.inputs])
+    return {
+        name: values - machine.base[name] - (machine.slopes[name] @ means if len(means) else 0.0)
+        for name, values in machine.records.measured.items()
+    }
+
+
+def evidence_of(problem: Problem, noise: NoiseModel, rows: NDArray[np.bool_]) -> Evidence:
+    """Reduce the chosen rows of the records to inner products, in units of the noise."""
+    import numpy as np
+
+    machine = problem.machine
+    places = {name: np.flatnonzero(rows & np.isfinite(noise.residuals[name])) for name in noise.scales}
+    slopes = np.concatenate([machine.slopes[name][places[name]] / noise.scales[name] for name in noise.scales])
+    directions = directions_of(slopes)
+    channels = []
+    for name, scale in noise.scales.items():
+        here = places[name]
+        channels.append(
+            Channel(
+                name,
+                scale,
+                here,
+                starts_of(_pieces(machine, rows), here),
+                noise.weights[name][here],
+                noise.residuals[name][here] / scale,
+                machine.slopes[name][here] @ directions / scale,
+                problem.columns,
+            )
+        )
+    products = tuple(tuple(products_of(channel)) for channel in channels)
+    return Evidence(tuple(channels), products, directions)
+
+
+def _pieces(machine: Machine, rows: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Number the pieces of runs that are left when only some rows are taken: a gap starts the noise anew."""
+    import numpy as np
+
+    runs = machine.records.run_of
+    gap = np.zeros(len(rows), dtype=np.intp)
+    gap[1:] = (runs[1:] != runs[:-1]) | (rows[1:] & ~rows[:-1])
+    return np.cumsum(gap)
+
+
+def search(evidence: Evidence, hypotheses: Sequence[Hypothesis], settings: Sequence[tuple[int, ...]]) -> Found:
+    """Score every hypothesis under every given noise filter and keep the best of each."""
+    import numpy as np
+
+    batches = batches_of(hypotheses, evidence.rows)
+    best = np.full(len(hypotheses), -np.inf)
+    likelihood = np.full(len(hypotheses), -np.inf)
+    chosen = np.zeros(len(hypotheses), dtype=int)
+    for place, setting in enumerate(settings):
+        found: Scores = scores_of(evidence.case(setting), batches, len(hypotheses))
+        better = found.score[:, 0] > best
+        best[better] = found.score[better, 0]
+        likelihood[better] = found.likelihood[better, 0]
+        chosen[better] = place
+    return Found(tuple(hypotheses), best, likelihood, tuple(settings[place] for place in chosen))
+
+
+def likely_settings(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[tuple[int, ...]]:
+    """Return the noise filters worth trying: all of one channel; of several, the likeliest few of each.
+
+    ``hypotheses`` are the simple ones: nothing, single causes, shapes. Each channel is scanned with the others held.
+    """
+    import numpy as np
+
+    count = len(evidence.products[0])
+    if len(evidence.channels) == 1:
+        return list(combined([count]))
+    held = [0] * len(evidence.channels)
+    kept: list[list[int]] = []
+    for _ in range(2):
+        kept = []
+        for channel in range(len(held)):
+            trials = [(*held[:channel], place, *held[channel + 1 :]) for place in range(count)]
+            batches = batches_of(hypotheses, evidence.rows)
+            scores = [scores_of(evidence.case(trial), batches, len(hypotheses)).score[:, 0] for trial in trials]
+            none = np.array([score[0] for score in scores])
+            best = np.array([score.max() for score in scores])
+            held[channel] = int(np.argmax(best))
+            order = [place for pair in zip(np.argsort(-best), np.argsort(-none), strict=True) for place in pair]
+            kept.append([int(place) for place in dict.fromkeys(order)][:KEPT_SETTINGS])
+    chosen = combined([len(places) for places in kept])
+    return [tuple(kept[channel][place] for channel, place in enumerate(each)) for each in chosen]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A hypothesis solved: coefficients of its columns, of the directions, and what is left, by channel.
+
+    ``fitted`` and ``innovations`` have shape (n,), in units of the noise, of the rows of the channel.
+    """
+
+    hypothesis: Hypothesis
+    setting: tuple[int, ...]
+    coefficients: Matrix
+    directions: Matrix
+    fitted: tuple[Matrix, ...]
+    innovations: tuple[Matrix, ...]
+
+
+def solve(evidence: Evidence, hypothesis: Hypothesis, setting: tuple[int, ...]) -> Solution:
+    """Solve one hypothesis under one noise filter per channel."""
+    import numpy as np
+
+    case = evidence.case(setting)
+    columns = list(hypothesis.columns)
+    b = np.zeros(0)
+    if columns:
+        batch: Batch = batches_of([hypothesis], evidence.rows)[0]
+        b = coefficients(case, batch)[0, :, 0]
+    u = _directions(evidence, setting, columns, b)
+    fitted, left = [], []
+    for channel, place in zip(evidence.channels, setting, strict=True):
+        made = channel.directions @ u
+        for column, value in zip(columns, b, strict=True):
+            item = channel.columns[column]
+            if channel.name in item.parts:
+                made = made + item.parts[channel.name][channel.rows] * (item.per / channel.scale * value)
+        fitted.append(made)
+        left.append(whiten((channel.residual - made) * channel.weights, channel.starts, SETTINGS[place]))
+    return Solution(hypothesis, setting, b, u, tuple(fitted), tuple(left))
+
+
+def _directions(evidence: Evidence, setting: tuple[int, ...], columns: Sequence[int], b: Matrix) -> Matrix:
+    import numpy as np
+
+    k = evidence.directions.shape[1]
+    chosen = [products[place].matrix for products, place in zip(evidence.products, setting, strict=True)]
+    total = sum(chosen[1:], chosen[0])
+    right = total[1 : 1 + k, 0] - total[1 : 1 + k][:, [1 + k + column for column in columns]] @ b
+    return np.asarray(np.linalg.solve(total[1 : 1 + k, 1 : 1 + k] + np.eye(k), right))
+
+
+def learned(problem: Problem, evidence: Evidence, solution: Solution, raw: Mapping[str, Matrix]) -> NoiseModel:
+    """Learn scale, spread and tails of the noise from what a solution leaves, and clip what lies too far out.
+
+    The clipped innovations are put back through the noise filter: least squares on these pseudo-observations is a
+    one-step robust estimate, so that all later algebra stays linear. Measured values themselves are never clipped.
+    """
+    import numpy as np
+
+    scales, weights, residuals, spreads, tails = {}, {}, {}, {}, {}
+    drivers = _drivers(problem)
+    free = len(solution.coefficients) / len(evidence.channels) + np.sqrt(evidence.directions.shape[1])
+    for channel, fitted, place in zip(evidence.channels, solution.fitted, solution.setting, strict=True):
+        setting = SETTINGS[place]
+        left = raw[channel.name][channel.rows] / channel.scale - fitted
+        plain = whiten(left, channel.starts, setting)
+        own = {**drivers, **_size(problem, channel.name)}
+        spread = spread_of(plain, {name: values[channel.rows] for name, values in own.items()})
+        every = weights_of(spread, own.get(spread.driver), channel.rows, len(problem.machine.records))
+        row_weights = every[channel.rows]
+        innovations = whiten(left * row_weights, channel.starts, setting)
+        tail = tails_of(innovations)
+        kept = clipped(innovations, tail)
+        sd = float(np.sqrt(np.sum(kept**2) / max(len(kept) - free, 1.0)))
+        full = np.array(raw[channel.name])
+        cleaned = fitted + colour(kept, channel.starts, setting) / row_weights
+        full[channel.rows] = cleaned * channel.scale
+        floor = SMALLEST_SHARE * float(np.sqrt(np.mean(raw[channel.name][channel.rows] ** 2)))
+        scales[channel.name] = max(sd * channel.scale, floor, 1e-300)
+        weights[channel.name], residuals[channel.name] = every, full
+        spreads[channel.name], tails[channel.name] = spread, tail
+    return NoiseModel(scales, weights, residuals, spreads, tails)
+
+
+def _drivers(problem: Problem) -> dict[str, Matrix]:
+    """Return what the spread of noise may depend on: every covariate, and its size where it changes sign."""
+    import numpy as np
+
+    found: dict[str, Matrix] = {}
+    for name, item in problem.machine.records.covariates.items():
+        if item.is_constant:
+            continue
+        found[name] = item.values
+        if np.nanmin(item.values) < 0 < np.nanmax(item.values):
+            found[f"size of {name}"] = np.abs(item.values)
+    return found
+
+
+def _size(problem: Problem, result: str) -> dict[str, Matrix]:
+    import numpy as np
+
+    return {f"size of {result}": np.abs(problem.machine.base[result])}
+
+
+def first_noise(machine: Machine, columns: Mapping[str, Matrix]) -> NoiseModel:
+    """Return a first idea of the noise: what all tolerated inputs and ``columns`` (n, m) together cannot explain."""
+    import numpy as np
+
+    raw = residuals_of(machine)
+    scales = {}
+    for name, values in raw.items():
+        here = np.isfinite(values) & ~machine.records.held_out
+        design = np.column_stack([machine.slopes[name][here], columns[name][here], np.ones(int(here.sum()))])
+        size = np.sqrt(np.mean(design**2, axis=0))
+        design = design[:, size > 0] / size[size > 0]
+        left, singular, _ = np.linalg.svd(design, full_matrices=False)
+        left = left[:, singular > 1e-6 * singular[0]] if len(singular) else left
+        left = left[:, : max(1, int(here.sum()) // 3)]
+        rest = values[here] - left @ (left.T @ values[here])
+        sd = float(np.sqrt(rest @ rest / max(int(here.sum()) - left.shape[1], 1)))
+        floor = SMALLEST_SHARE * float(np.sqrt(np.mean(values[here] ** 2)))
+        scales[name] = max(sd, floor, 1e-300)
+    ones = {name: np.ones(len(machine.records)) for name in raw}
+    nothing = {name: Tails(inf, 4.5, 0.0) for name in raw}
+    return NoiseModel(scales, ones, raw, {name: Spread() for name in raw}, nothing)
