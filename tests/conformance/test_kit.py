@@ -155,6 +155,14 @@ def warm(it: Spring, base: Force, *, slope: Float, room: Float) -> Force:
     return replace(base, energy=base.energy + slope * (room - 290.0))
 
 
+def slack(it: Spring, *, loss: Float, load: Float) -> Spring:
+    return replace(it, lost=it.lost + np.where(load < 0, -loss, loss))
+
+
+def unheeding(it: Spring, *, loss: Float, load: Float) -> Spring:
+    return replace(it, lost=it.lost + loss)
+
+
 LOSS = [Unknown("loss", 0, 1, "mm")]
 ROOM = Condition("room", "degC", reference=20)
 ELSEWHERE = replace(good(), name="elsewhere", function=elsewhere)
@@ -295,6 +303,13 @@ def test_other_ways_to_be_wrong(name: str, make: Callable[[], Model[Any, Any]], 
     found = failures(make())
     assert name in found, found
     assert sentence in found[name]
+
+
+def test_a_condition_may_be_a_switch_whose_reference_is_one_of_its_states() -> None:
+    needs = [Condition("load", "N")]
+    assert failures(good(errors=[Effect("slack", on_inputs=slack, needs=needs, unknowns=LOSS)])) == {}
+    unheeded = failures(good(errors=[Effect("slack", on_inputs=unheeding, needs=needs, unknowns=LOSS)]))
+    assert "although 'load' stays at its reference" in unheeded["references are neutral"]
 
 
 def test_effects_whose_order_matters_are_named() -> None:

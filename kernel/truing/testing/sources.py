@@ -64,19 +64,33 @@ def zero_is_the_base(subject: Subject) -> None:
 
 
 def references_are_neutral(subject: Subject) -> None:
-    """An effect that needs conditions changes nothing while all of them stay at their references."""
+    """An effect changes nothing while all conditions it needs stay at their references, unless they only switch it."""
     base = _answers(subject.setup)
     for effect in subject.model.effects.values():
         if not effect.needs:
             continue
         setup = _switched(subject.setup, effect)
         changed = _changed(_answers(setup), base) if setup is not None else []
-        if changed:
+        if setup is not None and changed and not _only_switched(setup):
             needs = " and ".join(f"'{need.name}'" for need in effect.needs)
             fail(
                 f"{subject.model.name}: effect '{effect.name}' changes '{changed[0]}' although {needs} stays at its "
                 "reference, where it is to vanish"
             )
+
+
+def _only_switched(setup: Setup) -> bool:
+    """Whether the conditions only choose between states, as the sign of a load: at rest one side shows, not the other.
+
+    The reference then belongs to one of the states. A condition that is used as it is, not from its reference on,
+    differs on both sides; one that is not used at all on neither.
+    """
+    shown = _answers(setup)
+    try:
+        sides = [_answers(_off_reference(setup, steps)) for steps in (10, -10)]
+    except InfeasibleError:
+        return False
+    return sum(not _changed(answers, shown) for answers in sides) == 1
 
 
 def effects_act(subject: Subject) -> None:
@@ -186,11 +200,11 @@ def _with(setup: Setup, effect: Effect[Any, Any], values: Mapping[str, float]) -
     return replace(setup, effects=(SwitchedOn(effect, values),))
 
 
-def _off_reference(setup: Setup) -> Setup:
-    """Move every condition off its reference, by ten of its units."""
+def _off_reference(setup: Setup, steps: float = 10) -> Setup:
+    """Move every condition off its reference, by so many of its units."""
     from truing.units import unit_factor
 
-    moved = {name: item.zero + 10 * unit_factor(item.unit) for name, item in setup.model.conditions.items()}
+    moved = {name: item.zero + steps * unit_factor(item.unit) for name, item in setup.model.conditions.items()}
     return replace(setup, conditions={**setup.conditions, **moved})
 
 
