@@ -66,7 +66,7 @@ def _say_unused(read: RowsFile, setup: Setup, settings: Settings) -> None:
     from truing.declare.near_miss import near_miss
     from truing.measurements.overriding import NAMES, REMARKS
 
-    known = [*setup.model.input_fields, *setup.model.conditions]
+    known = [*setup.model.input_fields, *setup.conditions]
     for name in read.others:
         if name in setup.model.result_fields:
             settings.say(f"column '{name}' is a result: it is calculated here")

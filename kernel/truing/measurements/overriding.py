@@ -11,10 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 from truing.declare.fields import Axis, InputField
 from truing.declare.near_miss import near_miss
+from truing.declare.sources import SINCE_START, Condition
 from truing.inputs_file.values import Reading, broken_bound, read_input
 from truing.kernel import Offer
-from truing.measurements.cells import header_fault, read_cell
+from truing.measurements.cells import header_fault, read_cell, read_cells
 from truing.measurements.csv_text import CsvFile, Header, opened
+from truing.measurements.derived import derive
+from truing.measurements.table import in_si
 from truing.setup import Setup
 from truing.units.grammar import shown
 from truing.units.names import PURE
@@ -116,37 +119,111 @@ def read_cases(path: Path, offer: Offer, setup: Setup) -> list[Case]:
 def read_rows(path: Path, offer: Offer, setup: Setup) -> RowsFile:
     """Read the rows of a virtual measurement; columns that are no input and no condition are kept as written.
 
-    Raises InputError with every fault.
+    Conditions that are history are made from these rows (``derived``); those of the kernel are known where an effect
+    that is on needs them, or the inputs file states them. Raises InputError with every fault.
+    """
+    with opened(path) as table:
+        texts = _read_texts(table)
+    read = _Columns()
+    for header, cells in zip(table.headers, texts.cells, strict=True):
+        _take(header, cells, texts, setup, read)
+    made, used = _histories(texts, setup, read)
+    read.columns.update(made)
+    table.faults.raise_any()
+    written = {header.text: _written(cells, table) for header, cells in zip(table.headers, texts.cells, strict=True)}
+    used |= {*read.columns, *read.series, *read.axes, *(["run"] if read.series else [])}
+    others = tuple(header.name for header in table.headers if header.name not in used)
+    return RowsFile(str(path), read.columns, read.series, written, tuple(texts.lines), others, read.axes, read.runs)
+
+
+@dataclass
+class _Columns:
+    """The columns of a file as far as they are read; ``raw`` holds numbers before history is made of them."""
+
+    columns: dict[str, Any] = field(default_factory=dict)
+    series: dict[str, Any] = field(default_factory=dict)
+    axes: dict[str, Any] = field(default_factory=dict)
+    raw: dict[str, Any] = field(default_factory=dict)
+    runs: tuple[str, ...] = ()
+
+
+def _take(header: Header, cells: list[str], texts: _Texts, setup: Setup, read: _Columns) -> None:
+    """Read one column to its place; where a cell is empty the value of the inputs file stands."""
+    import numpy as np
+
+    name = header.name
+    is_axis, is_known = _is_axis(name, setup), _is_known(name, setup)
+    if name == "run" and not is_axis:
+        read.runs = tuple(cell.strip() for cell in cells)
+    if not is_axis and not is_known:
+        return
+    item = setup.model.input_fields.get(name)
+    found = _values(header, cells, texts, setup)
+    if is_axis or (item is not None and item.kind == "series"):
+        read.raw[name] = numbers = np.array([math.nan if value is None else value for value in found], dtype=float)
+        (read.axes if is_axis else read.series)[name] = numbers
+        return
+    otherwise = setup.calibrated.get(name, setup.nominal(name))
+    filled = [otherwise if value is None else value for value in found]
+    if item is not None and not item.varies:
+        read.columns[name] = filled
+        return
+    read.columns[name] = np.array(filled, dtype=float)
+    raw = filled if item is not None else [math.nan if value is None else value for value in found]
+    read.raw[name] = np.array(raw, dtype=float)
+
+
+def _histories(texts: _Texts, setup: Setup, read: _Columns) -> tuple[dict[str, NDArray[np.float64]], set[str]]:
+    """Return the conditions in force that are made from whole runs of the file, SI, and the columns used for that.
+
+    One with a column of its own is not made from another. Where nothing can be said the value of the inputs file
+    stands.
     """
     import numpy as np
 
-    with opened(path) as table:
-        texts = _read_texts(table)
-    columns: dict[str, Any] = {}
-    series: dict[str, Any] = {}
-    axes: dict[str, Any] = {}
-    runs: tuple[str, ...] = ()
-    for header, cells in zip(table.headers, texts.cells, strict=True):
-        if _is_axis(header.name, setup):
-            found = _values(header, cells, texts, setup)
-            axes[header.name] = np.array([math.nan if value is None else value for value in found], dtype=float)
-        elif header.name == "run":
-            runs = tuple(cell.strip() for cell in cells)
-        if not _is_known(header.name, setup):
+    wanted = [item for item in setup.model.known_conditions.values() if item.derived and _is_known(item.name, setup)]
+    wanted = [item for item in wanted if item.made_from == item.name or item.name not in read.columns]
+    made: dict[str, NDArray[np.float64]] = {}
+    used: set[str] = set()
+    for condition in wanted:
+        source = read.raw.get(condition.made_from)
+        source = _stranger(condition, texts) if source is None else source
+        if source is None:
             continue
-        item = setup.model.input_fields.get(header.name)
-        found = _values(header, cells, texts, setup)
-        if item is not None and item.kind == "series":
-            series[header.name] = np.array([math.nan if value is None else value for value in found], dtype=float)
-            continue
-        otherwise = setup.calibrated.get(header.name, setup.nominal(header.name))
-        filled = [otherwise if value is None else value for value in found]
-        columns[header.name] = filled if item is not None and not item.varies else np.array(filled, dtype=float)
-    table.faults.raise_any()
-    written = {header.text: _written(cells, table) for header, cells in zip(table.headers, texts.cells, strict=True)}
-    used = {*columns, *series, *axes, *(["run"] if series else [])}
-    others = tuple(header.name for header in table.headers if header.name not in used)
-    return RowsFile(str(path), columns, series, written, tuple(texts.lines), others, axes, runs)
+        runs, time = np.array(read.runs) if read.runs else None, read.raw.get("time")
+        values = derive(condition, {condition.made_from: source}, runs, _clock(texts) if time is None else time)
+        made[condition.name] = np.where(np.isnan(values), setup.nominal(condition.name), values)
+        used |= {condition.made_from, *(["run", "time"] if condition.history != SINCE_START else ["time"])}
+    return made, used
+
+
+def _stranger(condition: Condition, texts: _Texts) -> NDArray[np.float64] | None:
+    """Return the column from which a condition is made where it is neither input nor condition; None if not there."""
+    found = [header for header in texts.table.headers if header.name == condition.made_from]
+    if not found:
+        return None
+    header = found[0]
+    fault = "" if condition.history == "direction" else header_fault(header, condition.unit)
+    if fault:
+        texts.table.faults.add(f"{fault} ('{condition.name}' is made from it)", texts.table.header_line)
+        return None
+    cells, table = texts.cells[header.place], texts.table
+    numbers = read_cells(cells, texts.lines, header, table.faults, decimal_comma=table.decimal_comma, strict=True)
+    return in_si(numbers, header.unit or "") if condition.history != "direction" else numbers
+
+
+def _clock(texts: _Texts) -> NDArray[np.float64] | None:
+    """Return a column "time" that nothing but the order of the rows depends on; None where it is none of numbers."""
+    import numpy as np
+
+    for header in texts.table.headers:
+        if header.name == "time":
+            comma = texts.table.decimal_comma
+            try:
+                return np.array([read_cell(cell, decimal_comma=comma) for cell in texts.cells[header.place]])
+            except ValueError:
+                return None
+    return None
 
 
 def _written(cells: list[str], table: CsvFile) -> tuple[str, ...]:
@@ -157,7 +234,7 @@ def _written(cells: list[str], table: CsvFile) -> tuple[str, ...]:
 
 
 def _is_known(name: str, setup: Setup) -> bool:
-    return name in setup.model.input_fields or name in setup.model.conditions
+    return name in setup.model.input_fields or name in setup.conditions
 
 
 def _is_axis(name: str, setup: Setup) -> bool:
@@ -166,7 +243,7 @@ def _is_axis(name: str, setup: Setup) -> bool:
 
 
 def _unknown(header: Header, setup: Setup, offer: Offer) -> str:
-    known = [*setup.model.input_fields, *setup.model.conditions]
+    known = [*setup.model.input_fields, *setup.conditions]
     meant = near_miss(header.name[:80], known)
     if header.name in setup.model.result_fields:
         meant = " It is a result; cases change inputs."
