@@ -8,6 +8,7 @@ from typing import Any
 
 from truing.declare.fields import Axis, Found, Given, InputField, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary
+from truing.declare.sources import Condition
 from truing.inputs_file.values import bounds_in_words
 from truing.kernel import Offer
 
@@ -33,10 +34,13 @@ def description(offer: Offer) -> dict[str, Any]:
             for item in model.tolerances.values()
         ],
         "effects": [_effect(effect) for effect in model.effects.values()],
-        "conditions": [
-            {"name": item.name, "unit": item.unit, "reference": item.reference, "note": item.note}
-            for item in model.conditions.values()
-        ],
+        "conditions": [_condition(item) for item in model.conditions.values()],
+        "built_in": {
+            "effects": [_effect(item) for name, item in model.known_effects.items() if name not in model.effects],
+            "conditions": [
+                _condition(item) for name, item in model.known_conditions.items() if name not in model.conditions
+            ],
+        },
         "objectives": [_objective(item) for item in model.objectives],
         "studies": [study.name for study in model.studies],
         "cites": list(model.cites),
@@ -76,16 +80,37 @@ def _result(item: ResultField) -> dict[str, Any]:
     }
 
 
+def _condition(item: Condition) -> dict[str, Any]:
+    return {
+        "name": item.name,
+        "unit": item.unit,
+        "reference": item.reference,
+        "note": item.note,
+        "derived": item.derived,
+        "low": item.low,
+        "high": item.high,
+    }
+
+
 def _effect(effect: Any) -> dict[str, Any]:
     return {
         "name": effect.name,
         "acts_on": effect.place,
         "looks_like": effect.looks_like,
         "unknowns": [
-            {"name": item.name, "low": item.low, "high": item.high, "unit": item.unit, "amplitude": item.is_amplitude}
+            {
+                "name": item.name,
+                "low": item.low,
+                "high": item.high,
+                "unit": item.unit,
+                "amplitude": item.is_amplitude,
+                "whole": item.whole,
+                "along": item.along,
+            }
             for item in effect.unknowns
         ],
         "needs": [item.name for item in effect.needs],
+        "parts": [list(part) for part in effect.parts],
     }
 
 

@@ -47,10 +47,11 @@ def _lines(said: dict[str, Any]) -> Iterator[str]:
             for item in said["tolerances"]
         ],
         "Effects": [_effect_row(item) for item in said["effects"]],
-        "Conditions": [
-            _row(item["name"], f"reference {item['reference']:g}", _unit(item["unit"]), item["note"])
-            for item in said["conditions"]
+        "Conditions": [_condition_row(item) for item in said["conditions"]],
+        "Built-in effects, on the reading of each RESULT": [
+            _built_in_row(item, [one["name"] for one in said["results"]]) for item in said["built_in"]["effects"]
         ],
+        "Built-in conditions": [_condition_row(item) for item in said["built_in"]["conditions"]],
         "Objectives": [_row(*_objective_words(item), "", "") for item in said["objectives"]],
     }
     for title, rows in sections.items():
@@ -86,6 +87,21 @@ def _input_row(item: dict[str, Any]) -> tuple[str, ...]:
     unit = " | ".join(item["choices"]) if item["choices"] else _unit(item["unit"])
     note = "; ".join(text for text in (item["note"], item["bounds"], item["source"]) if text)
     return _row(item["name"], _symbol(item), "" if default is None else default, unit, note)
+
+
+def _condition_row(item: dict[str, Any]) -> tuple[str, ...]:
+    made = f"made: {item['derived']}" if item["derived"] else ""
+    words = "; ".join(text for text in (item["note"], made) if text)
+    return _row(item["name"], f"reference {item['reference']:g}", _unit(item["unit"]), words)
+
+
+def _built_in_row(item: dict[str, Any], results: list[str]) -> tuple[str, ...]:
+    """Name the unknowns of any result by those of the first."""
+    first = item["parts"][0]
+    own = max((name for name in results if all(one.startswith(name) for one in first)), key=len)
+    unknowns = ", ".join("RESULT" + name.removeprefix(own) for name in first)
+    needs = "needs " + ", ".join(item["needs"]) if item["needs"] else ""
+    return _row(item["name"], unknowns, needs, item["looks_like"])
 
 
 def _effect_row(item: dict[str, Any]) -> tuple[str, ...]:
