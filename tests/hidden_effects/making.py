@@ -1,0 +1,200 @@
+"""Cases from seeds: a drawn machine, a way of measuring, noise, and something wrong with it, or nothing.
+
+Nominal inputs are drawn from their tolerances in every case. Sizes are such that the part which no machine within its
+tolerances imitates is half the noise to three times; in a fifth of the cases the whole effect is.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hidden_effects.candidates import HOUR, Candidate, changes
+from hidden_effects.cases import Case, Stratum
+from hidden_effects.designs import DESIGNS, KINDS, Design, Kind, drawn_noise, measured, parted
+from hidden_effects.press_machine import POSITION, SCATTER, TILT, Array, Hidden, Rows, shown
+from hidden_effects.record import Record
+from hidden_effects.shapes import MAKERS, Shape
+
+SCHEDULE: tuple[Stratum, ...] = (
+    "none", "single", "double", "none", "single", "none", "unknown", "none", "single", "beside",
+    "none", "double", "none", "single", "none", "unknown", "none", "single", "beside", "double",
+)  # fmt: skip
+LENGTHS = (80, 150, 300)
+HELD_OUT = 200
+LEAST, MOST = 0.5, 3.0
+WHOLE = 0.2
+REACH = 0.9
+ATTEMPTS = 400
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What a case is to be like; what is left open follows from the seed.
+
+    ``effects`` names candidates, ``maker`` the function that makes the unregistered shape, ``size`` is that of the part
+    which no machine within its tolerances imitates, over the noise.
+    """
+
+    stratum: Stratum | None = None
+    design: Design | None = None
+    kind: Kind | None = None
+    results: tuple[str, ...] | None = None
+    rows: int | None = None
+    effects: tuple[str, ...] = ()
+    size: float | None = None
+    maker: str = ""
+
+
+NOTHING = Wish()
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A machine on the bench: its record, the rows that judge, and what its parts are off."""
+
+    record: Record
+    held: Rows
+    off: dict[str, float]
+
+
+def make_case(seed: int, wish: Wish = NOTHING) -> Case:
+    """The case of this seed. Stratum, noise and what is measured follow from the seed in turn, all else is drawn."""
+    rng = np.random.default_rng([seed, 20240])
+    stratum = wish.stratum or SCHEDULE[seed % len(SCHEDULE)]
+    kind = wish.kind or KINDS[(seed + seed // len(SCHEDULE)) % len(KINDS)]
+    results = wish.results or ((POSITION,), (POSITION, TILT))[int(rng.integers(2))]
+    design = wish.design or DESIGNS[int(rng.integers(len(DESIGNS)))]
+    for _ in range(ATTEMPTS):
+        bench = _bench(design, wish.rows or int(rng.choice(LENGTHS)), kind, results, rng)
+        found = _wrong(stratum, bench, wish, rng)
+        if found is not None:
+            return _case(seed, stratum, design, bench, found, rng)
+    raise ValueError(f"seed {seed}: nothing of this kind can be hidden at this size")
+
+
+def _bench(design: Design, count: int, kind: Kind, results: tuple[str, ...], rng: np.random.Generator) -> Bench:
+    rows, held = parted(measured(design, count + HELD_OUT, rng), count, rng)
+    off = {name: float(sd * rng.standard_normal()) for name, sd in SCATTER.items()}
+    return Bench(Record(rows, results, drawn_noise(kind, rng)), held, off)
+
+
+@dataclass(frozen=True)
+class Wrong:
+    """What is wrong with a machine: effects with their unknowns, the candidates they belong to, and a shape."""
+
+    hidden: Hidden
+    truth: tuple[str, ...]
+    shape: Shape | None = None
+
+
+def _case(seed: int, stratum: Stratum, design: Design, bench: Bench, wrong: Wrong, rng: np.random.Generator) -> Case:
+    record, first = bench.record, rng.random() < 0.5
+    case = Case(
+        seed=seed, stratum=stratum, design=design, record=record, held=bench.held, off=bench.off, hidden=wrong.hidden,
+        truth=wrong.truth, shape=wrong.shape, readings={}, held_readings={},
+        counters=(0.0, 0.0) if first else (rng.uniform(0, 500) * HOUR, float(rng.integers(0, 4_000_000))),
+    )  # fmt: skip
+    return replace(case, readings=_noisy(case, record.rows, rng), held_readings=_noisy(case, bench.held, rng))
+
+
+def _noisy(case: Case, rows: Rows, rng: np.random.Generator) -> dict[str, Array]:
+    parts = zip(case.results, np.split(case.true_readings(rows), len(case.results)), strict=True)
+    return {result: part + case.record.noise.drawn(rows, result, rng) for result, part in parts}
+
+
+def _wrong(stratum: Stratum, bench: Bench, wish: Wish, rng: np.random.Generator) -> Wrong | None:
+    """Draw what is wrong; None where what was drawn cannot be hidden here at its size."""
+    many = {"none": 0, "single": 1, "double": 2, "unknown": 0, "beside": 1}[stratum]
+    in_whole = wish.size is None and rng.random() < WHOLE
+    hidden: dict[str, Mapping[str, float]] = {}
+    truth: list[str] = []
+    for at in range(many):
+        candidate = _candidate(bench.record, wish.effects[at] if wish.effects else "", rng)
+        unknowns = _sized(bench, candidate, _target(wish, rng), in_whole, rng)
+        if unknowns is None or candidate.effect in hidden:
+            return None
+        hidden[candidate.effect] = unknowns
+        truth.append(candidate.name)
+    if _is_one_in_another(bench.record, truth):
+        return None
+    shape = _shape(bench, wish, in_whole, rng) if stratum in ("unknown", "beside") else None
+    if shape is not None and shape.also in hidden:
+        return None
+    return Wrong(hidden, tuple(truth), shape)
+
+
+def _target(wish: Wish, rng: np.random.Generator) -> float:
+    return rng.uniform(LEAST, MOST) if wish.size is None else wish.size
+
+
+def _candidate(record: Record, name: str, rng: np.random.Generator) -> Candidate:
+    """A candidate by name, or any: an effect first, then one of its parts."""
+    if name:
+        return record.candidates[record.place(name)]
+    effects = sorted({candidate.effect for candidate in record.candidates})
+    effect = effects[int(rng.integers(len(effects)))]
+    parts = [candidate for candidate in record.candidates if candidate.effect == effect]
+    return parts[int(rng.integers(len(parts)))]
+
+
+def _is_one_in_another(record: Record, truth: list[str]) -> bool:
+    """Whether one of a pair can make the curve of the other, so that there is no pair."""
+    if len(truth) < 2:
+        return False
+    one, two = (record.place(name) for name in truth)
+    return bool(record.contained[one, two] or record.contained[two, one])
+
+
+def _sized(
+    bench: Bench, candidate: Candidate, target: float, in_whole: bool, rng: np.random.Generator
+) -> dict[str, float] | None:
+    """Unknowns of the wanted size, or None where their bounds do not allow it."""
+    record = bench.record
+    shapes = {name: _shape_value(name, record.rows, rng) for name in candidate.shapes or {}}
+    ways = rng.standard_normal(len(candidate.amplitudes))
+    ways = ways / np.linalg.norm(ways)
+    signs = [abs(way) if low >= 0 else way for way, (low, _) in zip(ways, candidate.amplitudes.values(), strict=True)]
+    factor = candidate.small
+    for _ in range(4):
+        amplitudes = {name: float(factor * way) for name, way in zip(candidate.amplitudes, signs, strict=True)}
+        if not _is_inside(candidate, amplitudes):
+            return None
+        change = changes(record.rows, record.results, {candidate.effect: {**shapes, **amplitudes}}, bench.off)
+        size = record.size_of(change if in_whole else record.left_over(change))
+        if size < 1e-9 * target:
+            return None
+        factor *= target / size
+    return {**shapes, **amplitudes} if abs(size / target - 1) < 0.1 else None
+
+
+def _is_inside(candidate: Candidate, amplitudes: Mapping[str, float]) -> bool:
+    bounds = candidate.amplitudes
+    return all(REACH * bounds[name][0] <= value <= REACH * bounds[name][1] for name, value in amplitudes.items())
+
+
+def _shape_value(name: str, rows: Rows, rng: np.random.Generator) -> float:
+    """A time constant about as long as the record, a whole order, or a place inside the record."""
+    length = float(rows.time[-1])
+    if name == "time_constant":
+        return float(length * np.exp(rng.uniform(np.log(0.1), np.log(0.7))))
+    return float(rng.integers(1, 4)) if name.endswith("_order") else float(rng.uniform(0.15, 0.85) * length)
+
+
+def _shape(bench: Bench, wish: Wish, in_whole: bool, rng: np.random.Generator) -> Shape:
+    """A shape that nobody registered, in one or all of the readings, of the wanted size."""
+    record = bench.record
+    makers = [maker for maker in MAKERS if wish.maker in ("", maker.__name__)]
+    shape = makers[int(rng.integers(len(makers)))](record.rows, rng)
+    seen = record.results if rng.random() < 0.4 else (record.results[int(rng.integers(len(record.results)))],)
+    ways = {result: record.noise.sd[result] * rng.uniform(0.5, 1.5) * rng.choice([-1.0, 1.0]) for result in seen}
+    unit = replace(shape, sizes=tuple(ways.items()))
+    change = unit.of(record.rows, record.results)
+    size = record.size_of(change if in_whole else record.left_over(change))
+    factor = _target(wish, rng) / size
+    return replace(shape, sizes=tuple((result, float(factor * way)) for result, way in ways.items()))
+
+
+def plain(case: Case, rows: Rows) -> dict[str, Array]:
+    """What the gauges would show of the machine as drawn with nothing wrong."""
+    return shown(rows, case.off, {})
