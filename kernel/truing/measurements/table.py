@@ -58,7 +58,7 @@ def gather_table(
     """Read a table as ``read_table`` does, and return it with its faults for a caller who looks for more of them.
 
     Columns named by ``words`` stay words, even where every cell is a number. A column whose header is a fault is left
-    out. Raises InputError where the file cannot be read at all.
+    out of ``columns``. Raises InputError where the file cannot be read at all.
     """
     with opened(path) as table:
         columns = [_column(header, units_of, inputs, table) for header in table.headers]
@@ -72,7 +72,7 @@ def gather_table(
     found = DataTable(
         file=str(path),
         columns=made,
-        units={column.header.name: column.header.unit or "" for column in usable},
+        units={column.header.name: column.header.unit or "" for column in columns},
         lines=tuple(lines),
         labels=frozenset(name for name, values in made.items() if isinstance(values, tuple)),
         header_line=table.header_line,

@@ -1,0 +1,126 @@
+"""What an error may depend on: inputs, conditions, time, and every other column of numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from truing.declare.near_miss import near_miss
+from truing.diagnosis.data_file import Part, measurable
+from truing.diagnosis.joining import Joined
+from truing.diagnosis.records import Covariate, Role
+from truing.diagnosis.tidying import TIME, counted, is_angle
+from truing.errors import Fault, InputError
+from truing.measurements.table import SIGMA
+from truing.setup import Setup
+from truing.units.grammar import shown
+from truing.units.names import PURE
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+ORDER = "order"
+_ROLES: dict[Part, Role] = {
+    "input": "input", "series": "input", "word": "input", "condition": "condition", "axis": "other", "other": "other",
+}  # fmt: skip
+
+
+def covariates_of(joined: Joined, setup: Setup) -> tuple[dict[str, Covariate], list[str]]:
+    """Return every covariate by name, in the order inputs, conditions, others; and what is to be said of them.
+
+    Where no time was measured, the place in the record stands for it.
+    """
+    import numpy as np
+
+    data = joined.data
+    found: dict[str, Covariate] = {}
+    for part, usual in _ROLES.items():
+        for name in data.named(part):
+            if part == "word" and setup.model.input_fields[name].kind != "integer":
+                continue
+            values, unit = data.columns[name].astype(float), _unit(name, joined, setup)
+            if np.isfinite(values).any():
+                role: Role = "time" if name == TIME and _is_time(unit) else usual
+                found[name] = Covariate(name, values, unit, role, is_angle(unit))
+    if not any(item.role == "time" for item in found.values()):
+        name = ORDER if ORDER not in found else "row order"
+        found[name] = Covariate(name, np.arange(len(joined), dtype=float), "", "order")
+    return found, [*_of_others(joined, setup, found), *_of_constants(found)]
+
+
+def _unit(name: str, joined: Joined, setup: Setup) -> str:
+    """Return the unit to print a covariate in."""
+    model = setup.model
+    if name in model.known_conditions:
+        return setup.units.get(name, model.known_conditions[name].unit)
+    if name in model.input_fields or name in model.own_result_fields:
+        return setup.print_unit(name)
+    unit = joined.data.units.get(name, "")
+    return "" if unit in PURE else unit
+
+
+def _is_time(unit: str) -> bool:
+    from truing.units import same_dimension
+
+    return unit not in PURE and same_dimension(unit, "s")
+
+
+def _of_others(joined: Joined, setup: Setup, found: dict[str, Covariate]) -> list[str]:
+    """Say which columns nobody declared, and what they are taken for."""
+    model = setup.model
+    known = [*measurable(model), *model.known_conditions, *model.input_fields]
+    notes = []
+    for name in joined.data.named("other", "label"):
+        is_label = joined.data.parts[name] == "label"
+        use = "as words, nothing can depend on it" if is_label else "as something an error may depend on"
+        if not is_label and name not in found:
+            use = "but holds no value"
+        near = near_miss(name[:80], known)
+        hint = near if near and near.split("'")[1] not in joined.data.columns else ""
+        notes.append(
+            f"column {shown(name)} is neither input, result nor condition; it is kept {use}.{hint}".rstrip(".")
+        )
+    unused = [name for name in joined.data.named("sigma") if name.removeprefix(SIGMA) not in joined.data.columns]
+    return [*notes, *(f"column {shown(name)} is of a result that is not measured and is not used" for name in unused)]
+
+
+def _of_constants(found: dict[str, Covariate]) -> list[str]:
+    """Say which covariates never changed."""
+    names = [shown(item.name) for item in found.values() if item.is_constant]
+    if not names:
+        return []
+    what = "1 column never changes" if len(names) == 1 else f"{len(names)} columns never change"
+    return [f"{what}, so nothing can be seen of what depends on it: {', '.join(names)}"]
+
+
+def held_out_rows(joined: Joined, setup: Setup) -> tuple[NDArray[np.bool_], list[str]]:
+    """Mark the rows that only judge, as ``[studies.diagnose] hold_out`` says. Raises InputError where it finds none."""
+    import numpy as np
+
+    column, word = setup.diagnose.held_out
+    if not column:
+        return np.zeros(len(joined), dtype=bool), []
+    data = joined.data
+    cells = data.runs if column == "run" else data.columns.get(column)
+    if cells is None:
+        near = near_miss(column[:80], list(data.columns))
+        raise InputError([Fault(f"hold_out: no file has a column {shown(column)}.{near}", setup.file)])
+    found = _equal(cells, word, data.units.get(column, ""))
+    if not found.any():
+        raise InputError([Fault(f"hold_out: no row has {shown(word)} in the column {shown(column)}", setup.file)])
+    return found, [f"{counted(int(found.sum()), 'row only judges', 'rows only judge')}: {column} = {word}"]
+
+
+def _equal(cells: NDArray[np.object_], word: str, unit: str) -> NDArray[np.bool_]:
+    """Whether cells hold a word, or the number it is."""
+    import numpy as np
+
+    from truing.units import to_si
+
+    if cells.dtype == object:
+        return np.array([str(cell).strip() == word for cell in cells.tolist()], dtype=bool)
+    try:
+        number = float(word) if unit in PURE else to_si(float(word), unit)
+    except ValueError:
+        return np.zeros(len(cells), dtype=bool)
+    return np.isclose(cells, number, rtol=1e-9, atol=0)

@@ -1,0 +1,241 @@
+"""One file of measurements: every column in SI with the part it plays, and every fault of the file at once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from truing.declare.fields import Axis, InputField
+from truing.declare.model import Model
+from truing.declare.near_miss import near_miss
+from truing.errors import UnitError
+from truing.inputs_file.values import broken_bound
+from truing.kernel import Offer
+from truing.measurements.csv_text import Faults
+from truing.measurements.overriding import WORDS, read_word, word_header_fault
+from truing.measurements.table import RUN, SIGMA, DataTable, gather_table
+from truing.units.grammar import shown
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+Part = Literal["input", "word", "series", "condition", "axis", "measured", "sigma", "other", "label"]
+
+
+@dataclass(frozen=True)
+class DataFile:
+    """Rows of one file: columns by name, shape (n,), in SI, NaN (words: None) where a cell is empty.
+
+    ``parts`` says what each column is; words and labels are arrays of objects. ``units`` are those of the header.
+    """
+
+    file: str
+    columns: Mapping[str, NDArray[Any]]
+    parts: Mapping[str, Part]
+    units: Mapping[str, str]
+    lines: NDArray[np.intp]
+    runs: NDArray[Any]
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+    def named(self, *parts: Part) -> list[str]:
+        """Return the names of the columns that play one of these parts."""
+        return [name for name in self.columns if self.parts[name] in parts]
+
+    def taken(self, rows: NDArray[Any]) -> DataFile:
+        """Return some of the rows, in this order."""
+        columns = {name: values[rows] for name, values in self.columns.items()}
+        return replace(self, columns=columns, lines=self.lines[rows], runs=self.runs[rows])
+
+
+def read_data_file(path: Path, offer: Offer) -> tuple[DataFile, Faults]:
+    """Read one file for this calculation, with the faults of its headers, cells and bounds.
+
+    Raises InputError where the file cannot be read at all.
+    """
+    import numpy as np
+
+    model = offer.model
+    words = [name for name, item in model.input_fields.items() if item.kind in WORDS]
+    table, faults = gather_table(path, _units(model), words=words)
+    columns: dict[str, NDArray[Any]] = {}
+    for name, values in table.columns.items():
+        if name == RUN and name not in model.input_fields:
+            continue
+        made = _column(name, values, table, model, faults)
+        if made is not None:
+            columns[name] = made
+    parts = {name: part_of(name, model, is_number=values.dtype != object) for name, values in columns.items()}
+    for sentence in (*_unfit(table, model), *_empty(columns, parts)):
+        faults.add(sentence, table.header_line)
+    if not set(table.units) & set(measurable(model)):
+        faults.add(_nothing_measured(table, model), table.header_line)
+    runs = table.columns.get(RUN, ()) if RUN not in model.input_fields else ()
+    units = {name: table.units[name] for name in columns}
+    lines = np.array(table.lines, dtype=np.intp)
+    return DataFile(str(path), columns, parts, units, lines, objects(runs or ("",) * len(table))), faults
+
+
+def objects(values: Iterable[Any]) -> NDArray[Any]:
+    """Return words, or whatever else, as an array (n,)."""
+    import numpy as np
+
+    items = list(values)
+    found = np.empty(len(items), dtype=object)
+    found[:] = items
+    return found
+
+
+def part_of(name: str, model: Model[Any, Any], *, is_number: bool = True) -> Part:
+    """Return the part that a column of this name plays."""
+    item = model.input_fields.get(name)
+    if item is not None:
+        return "word" if item.kind in WORDS else "series" if item.kind == "series" else "input"
+    if name in model.known_conditions:
+        return "condition"
+    if name in model.own_result_fields:
+        return "axis" if isinstance(model.own_result_fields[name].spec, Axis) else "measured"
+    if name.startswith(SIGMA) and name.removeprefix(SIGMA) in measurable(model):
+        return "sigma"
+    return "other" if is_number else "label"
+
+
+def measurable(model: Model[Any, Any]) -> list[str]:
+    """Return the results that rows can hold: numbers and curves, no axes and nothing of a table."""
+    fields = model.own_result_fields
+    tables = {name for name, item in fields.items() if isinstance(item.spec, Axis) and item.spec.is_table}
+    return [
+        name
+        for name, item in fields.items()
+        if not isinstance(item.spec, Axis) and not {item.along, f"{item.along}_{item.scope}"} & tables
+    ]
+
+
+def _units(model: Model[Any, Any]) -> dict[str, str]:
+    """Return the declared unit of every column of numbers that is known by name."""
+    found = {name: item.unit for name, item in model.own_result_fields.items()}
+    found |= {name: condition.unit for name, condition in model.known_conditions.items()}
+    numbers = {"float", "whole", "series"}
+    return found | {name: item.unit for name, item in model.input_fields.items() if item.kind in numbers}
+
+
+def _column(name: str, values: Any, table: DataTable, model: Model[Any, Any], faults: Faults) -> NDArray[Any] | None:
+    """Return one column as an array, its bounds checked; None where it cannot be used."""
+
+    item = model.input_fields.get(name)
+    if item is not None and item.kind in WORDS:
+        return _words(item, values, table, faults)
+    if isinstance(values, tuple):
+        return objects(values)
+    if item is not None:
+        _keep_bounds(item, values, table, faults)
+    elif part_of(name, model) == "other" and not _has_known_unit(name, table, faults):
+        return None
+    numbers: NDArray[np.float64] = values
+    return numbers
+
+
+def _has_known_unit(name: str, table: DataTable, faults: Faults) -> bool:
+    """Whether the unit of a column that nobody declared is one; if not, say so."""
+    from truing.units import check_unit
+
+    try:
+        check_unit(table.units[name])
+    except UnitError as error:
+        hint = "; leave the brackets out where a number has no unit"
+        faults.add(f"column {shown(name)}: {error}{hint}", table.header_line)
+        return False
+    return True
+
+
+def _words(item: InputField, cells: tuple[str, ...], table: DataTable, faults: Faults) -> NDArray[Any] | None:
+    """Return the values of a choice, text, switch or whole number, None where a cell is empty."""
+    import numpy as np
+
+    fault = word_header_fault(item.name, table.units[item.name])
+    if fault:
+        faults.add(fault, table.header_line)
+        return None
+    known: dict[str, Any] = {"": None}
+    found = np.empty(len(cells), dtype=object)
+    for row, cell in enumerate(cells):
+        if cell not in known:
+            try:
+                known[cell] = read_word(item, cell, decimal_comma=True)
+            except ValueError as error:
+                sentence = str(error)
+                own = sentence if sentence.startswith(item.name) else f"{item.name}: {sentence}"
+                faults.add(own, table.lines[row])
+                continue
+        found[row] = known[cell]
+    return found
+
+
+def _keep_bounds(item: InputField, values: NDArray[np.float64], table: DataTable, faults: Faults) -> None:
+    """Say which rows break a declared bound."""
+    import numpy as np
+
+    from truing.units import from_si
+
+    finite = values[np.isfinite(values)]
+    if not len(finite):
+        return
+    outer = (float(finite.min()), float(finite.max()))
+    numbers = from_si(finite, item.unit)
+    is_broken = getattr(item.spec, "whole", False) and (np.abs(numbers - numbers.round()) > 1e-9).any()
+    if not is_broken and not any(broken_bound(item, value) for value in outer):
+        return
+    broken = {float(value): broken_bound(item, float(value)) for value in np.unique(finite)}
+    for row, value in enumerate(values.tolist()):
+        if not math.isnan(value) and broken[value]:
+            faults.add(broken[value], table.lines[row])
+
+
+def _unfit(table: DataTable, model: Model[Any, Any]) -> Iterator[str]:
+    """Say which columns cannot change from row to row, or cannot be measured in rows."""
+    for name in table.columns:
+        item = model.input_fields.get(name)
+        result = model.own_result_fields.get(name)
+        if item is not None and (item.kind == "file" or (item.kind == "series" and not item.spec.along)):
+            yield f"{name} cannot change from row to row; state it in the inputs file"
+        elif result is not None and not isinstance(result.spec, Axis) and name not in measurable(model):
+            yield f"{name} is a column of a table that the calculation makes; it cannot be compared row by row"
+        elif name in measurable(model):
+            yield from _without_axis(name, table, model)
+
+
+def _without_axis(name: str, table: DataTable, model: Model[Any, Any]) -> Iterator[str]:
+    """Say that a result along an axis needs the place of its rows."""
+    item = model.own_result_fields[name]
+    own = f"{item.along}_{item.scope}"
+    axis = own if own in model.own_result_fields else item.along
+    known = model.own_result_fields.get(axis)
+    if item.along and axis not in table.columns and known is not None:
+        like = f"{axis} [{known.unit}]" if known.unit else axis
+        yield f"{name} runs along '{axis}'; give the place of each row in a column '{like}'"
+
+
+def _empty(columns: Mapping[str, NDArray[Any]], parts: Mapping[str, Part]) -> Iterator[str]:
+    """Say which columns that must hold something hold nothing."""
+    import numpy as np
+
+    for name, values in columns.items():
+        if parts[name] not in {"measured", "input", "series", "word", "axis"} or not len(values):
+            continue
+        is_empty = np.array([value is None for value in values]) if values.dtype == object else np.isnan(values)
+        if is_empty.all():
+            yield f"column '{name}' holds no value in any row; fill it or leave it out"
+
+
+def _nothing_measured(table: DataTable, model: Model[Any, Any]) -> str:
+    results = measurable(model)
+    units = {name: model.own_result_fields[name].unit or "1" for name in results}
+    listed = ", ".join(f"{name} [{units[name]}]" for name in results[:12])
+    more = f" and {len(results) - 12} more" if len(results) > 12 else ""
+    near = next((hint for name in table.units if (hint := near_miss(name[:80], results))), "")
+    return f"no column is a result of {model.name}, so nothing is measured; it could be {listed}{more}.{near}"

@@ -1,0 +1,116 @@
+"""Measured files to records that can be explained: read, put in order, joined, held against the model once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from truing.diagnosis.covariates import covariates_of, held_out_rows
+from truing.diagnosis.data_file import DataFile, read_data_file
+from truing.diagnosis.joining import Joined, complete_rows, join, rows_of, settle_conditions
+from truing.diagnosis.records import Records
+from truing.diagnosis.slips import Answers, suspected_slips
+from truing.diagnosis.tidying import counted, numbered, tidy
+from truing.errors import Fault, InputError
+from truing.gauge import one_machine, read_by_gauge
+from truing.kernel import Offer
+from truing.measurements.table import SIGMA
+from truing.setup import Setup
+
+FEWEST = 3
+_FEW = ("no row", "one row", "two rows")
+
+
+def read_records(paths: Sequence[Path], offer: Offer, setup: Setup) -> Records:
+    """Read measured files as the records of one machine; everything odd is counted and said in ``notes``.
+
+    A column is an input, a result (measured), a condition of an effect, ``sigma_NAME``, ``run``, or anything else that
+    an error may depend on. Raises InputError with every fault of every file: nothing measured, a unit that is unknown
+    or of another dimension, cells that are no numbers, columns without any value, fewer than three rows.
+    """
+    files, notes = _read(paths, offer)
+    joined = join(files, setup)
+    _demand_rows(len(joined), joined.files, notes)
+    joined, said = settle_conditions(joined, files, setup)
+    notes += said
+    joined, said = complete_rows(joined, setup)
+    notes += said
+    _demand_rows(len(joined), joined.files, notes)
+    joined, answers, said = _answered(joined, setup)
+    notes += said
+    held_out, said = held_out_rows(joined, setup)
+    notes += said
+    _demand_rows(int((~held_out).sum()), joined.files, notes)
+    slips = suspected_slips(joined, answers, setup)
+    covariates, said = covariates_of(joined, setup)
+    data = joined.data
+    return Records(
+        files=joined.files,
+        rows=rows_of(joined),
+        file_of=joined.file_of,
+        run_of=numbered(data.runs.tolist())[0],
+        lines=data.lines,
+        measured={name: data.columns[name] for name in data.named("measured")},
+        sigma={name.removeprefix(SIGMA): data.columns[name] for name in data.named("sigma")},
+        covariates=covariates,
+        held_out=held_out,
+        notes=(*notes, *said),
+        slips=slips,
+        absent=joined.absent,
+    )
+
+
+def _read(paths: Sequence[Path], offer: Offer) -> tuple[list[DataFile], list[str]]:
+    """Read every file and put its rows in order; raises InputError with the faults of all."""
+    faults: list[Fault] = []
+    files: list[DataFile] = []
+    notes: list[str] = []
+    once = {path.resolve(): path for path in reversed(paths)}
+    if len(once) < len(paths):
+        notes.append(f"{counted(len(paths) - len(once), 'file is', 'files are')} given twice and read once")
+    for path in reversed(once.values()):
+        try:
+            file, found = read_data_file(path, offer)
+            found.raise_any()
+        except InputError as error:
+            faults += error.faults
+            continue
+        file, said = tidy(file, offer.model)
+        files.append(file)
+        notes += [f"{path}: {sentence}" if len(once) > 1 else sentence for sentence in said]
+    if faults:
+        raise InputError(faults)
+    return files, notes
+
+
+def _demand_rows(rows: int, files: Sequence[str], notes: Sequence[str]) -> None:
+    """Raise InputError where too few rows are left to explain anything."""
+    if rows >= FEWEST:
+        return
+    why = f" ({'; '.join(notes)})" if notes else ""
+    left = f"{_FEW[rows]} can be used" if why else f"holds {_FEW[rows]}"
+    raise InputError([Fault(f"{left}; a diagnosis needs {FEWEST} rows at the very least, better fifty{why}", files[0])])
+
+
+def _answered(joined: Joined, setup: Setup) -> tuple[Joined, Answers, list[str]]:
+    """Hold the rows against the model as it stands; leave out those in which it fails."""
+    import numpy as np
+
+    measured = joined.data.named("measured")
+    found = read_by_gauge(one_machine(setup), rows_of(joined), measured)
+    notes: list[str] = []
+    answers = dict(found.results)
+    if found.failed.any():
+        first, reason = next(iter(found.reasons.items()))
+        rows = counted(int(found.failed.sum()), "row is", "rows are")
+        notes.append(f"{rows} left out where the model fails; the first is {joined.place(first)}: {reason}")
+        joined = joined.taken(~found.failed)
+        answers = {name: values[~found.failed] for name, values in answers.items()}
+    columns = dict(joined.data.columns)
+    for name in measured:
+        lost = np.isnan(answers[name]) & np.isfinite(columns[name])
+        if lost.any():
+            columns[name] = np.where(lost, np.nan, columns[name])
+            notes.append(f"'{name}' is not used in {counted(int(lost.sum()))}, which lie beyond its axis")
+    return replace(joined, data=replace(joined.data, columns=columns)), answers, notes

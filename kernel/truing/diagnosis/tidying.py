@@ -1,0 +1,199 @@
+"""Rows of one file put in order: each row once, sorted by time inside its run, angles in one piece, histories made.
+
+Nothing is done in silence: every function returns what it did as sentences.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from truing.declare.model import Model
+from truing.diagnosis.data_file import DataFile, Part
+from truing.inputs_file.values import broken_bound
+from truing.measurements.derived import derive
+from truing.units.names import PURE
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+TIME = "time"
+"""The column by which rows are sorted, whatever part it plays."""
+FEW_DEGREES = 90.0
+SWEEPING = 0.95
+Tidied = tuple[DataFile, list[str]]
+
+
+def tidy(data: DataFile, model: Model[Any, Any]) -> Tidied:
+    """Return the rows of a file in order, and what was done to them, one sentence each."""
+    notes: list[str] = []
+    for step in (each_row_once, in_time_order):
+        data, said = step(data)
+        notes += said
+    data, said = in_one_piece(data, model)
+    return with_histories(data, model), notes + said
+
+
+def counted(number: int, one: str = "row", many: str = "") -> str:
+    """Return "1 row", "3 rows"."""
+    return f"{number} {one}" if number == 1 else f"{number} {many or one + 's'}"
+
+
+def numbered(labels: Iterable[Any]) -> tuple[NDArray[np.intp], list[Any]]:
+    """Number labels from 0 in the order they first appear; return the number of each row and the labels."""
+    import numpy as np
+
+    known: dict[Any, int] = {}
+    numbers = [known.setdefault(label, len(known)) for label in labels]
+    return np.array(numbers, dtype=np.intp), list(known)
+
+
+def each_row_once(data: DataFile) -> Tidied:
+    """Keep the first of rows that are identical in every cell."""
+    import numpy as np
+
+    columns = [_as_numbers(values) for values in (data.runs, *data.columns.values())]
+    mixed = np.zeros(len(data), dtype=np.uint64)
+    for values in columns:
+        mixed = (mixed ^ values.view(np.uint64)) * np.uint64(0x9E3779B97F4A7C15)
+        mixed ^= mixed >> np.uint64(29)
+    _, first, group = np.unique(mixed, return_index=True, return_inverse=True)
+    like = first[group]
+    is_again = like != np.arange(len(data))
+    for values in columns:
+        bits = values.view(np.uint64)
+        is_again &= bits == bits[like]
+    if not is_again.any():
+        return data, []
+    again = counted(int(is_again.sum()), "row repeats", "rows repeat")
+    return data.taken(~is_again), [f"{again} an earlier one in every cell and {_is(is_again)} left out"]
+
+
+def _is(rows: NDArray[np.bool_]) -> str:
+    return "is" if int(rows.sum()) == 1 else "are"
+
+
+def _as_numbers(values: NDArray[Any]) -> NDArray[np.float64]:
+    """Return one number per cell that is equal where the cells are: one NaN, one zero, words by their number."""
+    import numpy as np
+
+    if values.dtype == object:
+        return numbered(values.tolist())[0].astype(float)
+    return np.where(np.isnan(values), np.nan, values + 0.0)
+
+
+def in_time_order(data: DataFile) -> Tidied:
+    """Put runs one after another, by their first time, and sort rows by time inside each; without a time as given."""
+    import numpy as np
+
+    run_of, names = numbered(data.runs.tolist())
+    time = _time(data)
+    by_run = np.argsort(run_of, kind="stable")
+    if time is None:
+        return data.taken(by_run), []
+    starts = np.full(len(names), np.inf)
+    np.fmin.at(starts, run_of, time)
+    rank = np.empty(len(names), dtype=np.intp)
+    rank[np.argsort(starts, kind="stable")] = np.arange(len(names))
+    late = _late(time[by_run], np.bincount(run_of, minlength=len(names)))
+    sentence = f"{counted(late, 'row was', 'rows were')} out of order and sorted by time inside the run"
+    return data.taken(np.lexsort((time, rank[run_of]))), [sentence] if late else []
+
+
+def _time(data: DataFile) -> NDArray[np.float64] | None:
+    """Return the times of the rows where they are measured at all."""
+    import numpy as np
+
+    time = data.columns.get(TIME)
+    return time if time is not None and time.dtype != object and np.isfinite(time).any() else None
+
+
+def _late(time: NDArray[np.float64], sizes: NDArray[np.intp]) -> int:
+    """Count the rows that stand behind a later one of their run."""
+    import numpy as np
+
+    late = 0
+    for part in np.split(np.where(np.isnan(time), -math.inf, time), np.cumsum(sizes)[:-1]):
+        late += int((part < np.maximum.accumulate(part))[np.isfinite(part)].sum())
+    return late
+
+
+def in_one_piece(data: DataFile, model: Model[Any, Any]) -> Tidied:
+    """Join angles of inputs and conditions that jump by a turn inside a sweep.
+
+    A run is a sweep if 95 % of its steps are below 90 degrees once it is joined. An input whose bounds would not hold
+    stays as it is.
+    """
+    import numpy as np
+
+    columns, notes = dict(data.columns), []
+    for name in data.named("input", "series", "condition"):
+        if not is_angle(_declared_unit(name, model)):
+            continue
+        joined, jumps = np.array(columns[name]), 0
+        for rows in _each_run(data):
+            joined[rows], more = _joined(joined[rows])
+            jumps += more
+        if jumps and _keeps_bounds(name, joined, model):
+            columns[name] = joined
+            notes.append(f"'{name}' jumps by a turn at {counted(jumps, 'place')} of a sweep and was joined there")
+    return replace(data, columns=columns), notes
+
+
+def _joined(angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:
+    """Return a sweep without its jumps by a turn and their number; anything else as it is."""
+    import numpy as np
+
+    known = np.flatnonzero(np.isfinite(angles))
+    steps = np.diff(angles[known])
+    jumps = int((np.abs(steps) > np.pi).sum())
+    if not jumps:
+        return angles, 0
+    whole = np.array(angles)
+    whole[known] = np.unwrap(angles[known])
+    small = np.abs(np.diff(whole[known])) < np.radians(FEW_DEGREES)
+    return (whole, jumps) if small.mean() >= SWEEPING else (angles, 0)
+
+
+def _keeps_bounds(name: str, values: NDArray[np.float64], model: Model[Any, Any]) -> bool:
+    import numpy as np
+
+    item = model.input_fields.get(name)
+    return item is None or not any(broken_bound(item, float(end)) for end in (np.nanmin(values), np.nanmax(values)))
+
+
+def is_angle(unit: str) -> bool:
+    """Whether a unit is one of plane angles."""
+    from truing.units import same_dimension
+
+    return unit not in PURE and same_dimension(unit, "rad")
+
+
+def _declared_unit(name: str, model: Model[Any, Any]) -> str:
+    item = model.input_fields.get(name)
+    return item.unit if item is not None else model.known_conditions[name].unit
+
+
+def _each_run(data: DataFile) -> Sequence[NDArray[np.intp]]:
+    """Give the rows of each run; runs stand one after another."""
+    import numpy as np
+
+    run_of, _ = numbered(data.runs.tolist())
+    return np.split(np.arange(len(data)), np.flatnonzero(np.diff(run_of)) + 1)
+
+
+def with_histories(data: DataFile, model: Model[Any, Any]) -> DataFile:
+    """Make the conditions that are derived from whole runs: what has been, since the first row of the file."""
+    made: dict[str, NDArray[Any]] = {}
+    parts: dict[str, Part] = dict(data.parts)
+    runs, _ = numbered(data.runs.tolist())
+    for condition in model.known_conditions.values():
+        source = data.columns.get(condition.made_from)
+        is_measured = condition.name in data.columns and condition.made_from != condition.name
+        if source is not None and source.dtype != object and not is_measured:
+            made[condition.name] = derive(condition, data.columns, runs, _time(data))
+            parts[condition.name] = "condition"
+    return replace(data, columns={**data.columns, **made}, parts=parts)
