@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from truing.cli import compare, describe, init, plugins, run, table, verify
+from truing.cli import compare, describe, diagnose, init, plugins, run, table, verify
 from truing.cli.console import out
 
 app = typer.Typer(
@@ -41,5 +41,6 @@ app.command("describe")(describe.describe)
 app.command("init")(init.init)
 app.command("run")(run.run)
 app.command("table")(table.table)
+app.command("diagnose")(diagnose.diagnose)
 app.command("verify")(verify.verify)
 app.command("compare")(compare.compare)

@@ -83,12 +83,11 @@ def _wrong(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
     noise = [(spoken(item.result), *_noise(item.noise)) for item in diagnosis.wrong]
     about = ("Result", "Standard deviation", "Autocorrelation", "Tails", "Spread", "Suspected outliers")
     yield _table("The noise, once everything found is taken out", about, noise, (1, 2))
-    for curves in diagnosis.curves:
+    for curves in figures.shown_curves(diagnosis):
         title = f"Measured {spoken(curves.result)} against simulated"
-        caption = (
-            f"{title}: as it is on the left, the difference on the right. Red circles before, blue points after."
-            f"{figures.thinning_words(diagnosis)}"
-        )
+        colours = " Red circles before, blue points after." if figures.has_changed(curves) else ""
+        caption = f"{title}: as it is on the left, the difference on the right.{colours}"
+        caption += figures.thinning_words(diagnosis)
         yield drawn.view(title, partial(figures.against_simulated, diagnosis, curves), caption)
 
 
@@ -114,9 +113,9 @@ def _cause(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
     if diagnosis.causes:
         yield _table("Named", ("Cause", "What it is", "The same curve on this data"), list(_named(diagnosis)))
     if diagnosis.alternatives:
-        others = listed([explanation(item) for item in diagnosis.alternatives], "or")
-        named = listed([spoken(cause.effect) for cause in diagnosis.causes]) or "the explanation given"
-        yield Words(f"Cannot be told apart on this data: {named}; {others}.", kind="warning")
+        named = " + ".join(spoken(cause.effect) for cause in diagnosis.causes) or "the explanation given"
+        names = listed([named, *(explanation(item) for item in diagnosis.alternatives)])
+        yield Words(f"Cannot be told apart on this data: {names}.", kind="warning")
     for sentence in diagnosis.inseparable:
         yield Words(sentence[:1].upper() + sentence[1:].rstrip(".") + ".", kind="finding")
     if diagnosis.ranking:
@@ -134,7 +133,7 @@ def _significance(diagnosis: Diagnosis) -> Iterator[str]:
         return
     yield f"That anything is wrong is {certainty(diagnosis.p_any)}, every explanation that was tried paid for."
     if diagnosis.p_second is not None:
-        yield f"That there is a second cause is {certainty(diagnosis.p_second)}."
+        yield f"A second cause: {certainty(diagnosis.p_second)}."
     if diagnosis.remainder is not None:
         remainder = diagnosis.remainder
         over = listed([spoken(name) for name in remainder.depends_on])
@@ -159,7 +158,12 @@ def _named(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
 
 def _ranking(items: Sequence[Alternative]) -> TableView:
     rows = [
-        (explanation(item), pretty(f"{item.behind:.1f}"), pretty(format_number(item.separation, 3)), _separable(item))
+        (
+            explanation(item),
+            pretty(f"{item.behind:.1f}"),
+            pretty(format_number(item.separation, 3)),
+            _separable(item, items[0]),
+        )
         for item in items
     ]
     note = (
@@ -169,9 +173,12 @@ def _ranking(items: Sequence[Alternative]) -> TableView:
     return _table("Explanations, best first", ("Explanation", "Behind", "λ", "On this data"), rows, (1, 2), note)
 
 
-def _separable(item: Alternative) -> str:
-    if item.behind <= 0:
+def _separable(item: Alternative, best: Alternative) -> str:
+    """Say what this data makes of an explanation beside the best one."""
+    if item == best:
         return "best"
+    if best.causes and set(best.causes) < set(item.causes):
+        return "adds nothing"
     if item.behind <= figures.AMBIGUOUS or item.separation < WEAK:
         return "not excluded"
     return "excluded" if item.separation > SEPARABLE else "weakly excluded"
@@ -179,8 +186,9 @@ def _separable(item: Alternative) -> str:
 
 def _residuals(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
     for covariate in figures.main_covariates(diagnosis):
-        for curves in diagnosis.curves:
-            title = f"Residuals of {spoken(curves.result)} over {spoken(covariate.name)}, before and after"
+        for curves in figures.shown_curves(diagnosis):
+            when = ", before and after" if figures.has_changed(curves) else ""
+            title = f"Residuals of {spoken(curves.result)} over {spoken(covariate.name)}{when}"
             caption = f"{title}. The grey band is the noise floor.{figures.thinning_words(diagnosis)}"
             yield drawn.view(title, partial(figures.over_covariate, diagnosis, curves, covariate), caption)
 
@@ -321,7 +329,7 @@ def _next(diagnosis: Diagnosis) -> Iterator[BlockView]:
     note = "λ then is the separation to expect once all points up to this one are measured; above 25 the two are apart."
     yield _table("Settings to measure", heads, rows, (*range(1, len(names) + 1), len(names) + 2), note)
     for reason in dict.fromkeys(point.why for point in diagnosis.next if point.why):
-        yield Words(f"Why: {reason.rstrip('.')}.")
+        yield Words(f"{reason[:1].upper()}{reason[1:].rstrip('.')}.")
 
 
 def _point(place: int, point: NextPoint, names: Sequence[str]) -> tuple[str, ...]:
@@ -341,16 +349,18 @@ def _data(diagnosis: Diagnosis) -> Iterator[BlockView]:
     yield _table("Files", ("File", "Rows", "Runs"), rows, (1, 2), note)
     yield _table("Covariates", ("Name", "From", "To", "Role", "Remark"), list(_covariates(diagnosis)), (1, 2))
     for sentence in records.notes:
-        yield Words(sentence[:1].upper() + sentence[1:].rstrip(".") + ".")
+        yield Words(sentence.rstrip(".") + ".")
 
 
 def _covariates(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
     import numpy as np
 
+    from truing.diagnosis.result import Amount
+
     for item in diagnosis.records.covariates.values():
         finite = item.values[np.isfinite(item.values)]
         ends = (float(finite.min()), float(finite.max())) if finite.size else (None, None)
-        low, high = (ABSENT if end is None else with_unit(*format_value(end, item.unit, 4)) for end in ends)
+        low, high = (ABSENT if end is None else amount_text(Amount(end, item.unit), 4) for end in ends)
         missing = len(item.values) - finite.size
         remarks = [*(["never changes"] if item.is_constant else []), *([f"{missing} missing"] if missing else [])]
-        yield spoken(item.name), pretty(low), pretty(high), item.role, ", ".join(remarks) or ABSENT
+        yield spoken(item.name), low, high, item.role, ", ".join(remarks) or ABSENT

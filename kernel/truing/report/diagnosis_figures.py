@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from truing.report.diagnosis_words import amount_text, explanation, spoken
+from truing.report.diagnosis_words import amount_text, explanation, spoken, wrong_results
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,6 +22,8 @@ MOST_POINTS = 1500
 MOST_PLACES = 5
 """A covariate with fewer different values shows no course."""
 AMBIGUOUS = 6.0
+FARTHEST = 60.0
+"""A bar longer than this is cut: how far behind it is does not matter any more."""
 MOST_BARS = 8
 
 
@@ -70,6 +72,19 @@ def _places(covariate: Covariate) -> int:
     return len(np.unique(covariate.values[np.isfinite(covariate.values)]))
 
 
+def shown_curves(diagnosis: Diagnosis) -> list[Curves]:
+    """Return what is drawn: the results that are wrong, or all where nothing is."""
+    wrong = wrong_results(diagnosis)
+    return [item for item in diagnosis.curves if item.result in wrong]
+
+
+def has_changed(curves: Curves) -> bool:
+    """Tell whether the extension changes a result at all."""
+    import numpy as np
+
+    return not np.array_equal(curves.before, curves.after, equal_nan=True)
+
+
 def residuals_of(diagnosis: Diagnosis, curves: Curves) -> _Residuals:
     """Return the residuals of one result in the unit for its differences."""
     from truing.units import unit_factor
@@ -110,16 +125,18 @@ def over_covariate(diagnosis: Diagnosis, curves: Curves, covariate: Covariate) -
     shown = residuals_of(diagnosis, curves)
     kept = thinned(len(shown.before))
     place = from_si(covariate.values, covariate.unit)[kept]
+    panels = [(shown.before, BEFORE, "before"), (shown.after, AFTER, "after")]
+    if not has_changed(curves):
+        panels = [(shown.before, NEUTRAL, "")]
     figure = Figure(figsize=(6.4, 3.0), layout="constrained")
-    left, right = figure.subplots(1, 2, sharey=True)
-    panels = ((left, shown.before, BEFORE, "before"), (right, shown.after, AFTER, "after"))
-    for axes, values, colour, when in panels:
+    places = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+    for axes, (values, colour, when) in zip(places, panels, strict=True):
         axes.axhspan(-shown.floor, shown.floor, color="#e4e7ea", linewidth=0)
         axes.axhline(0.0, color=NEUTRAL, linewidth=0.7)
         axes.plot(place, values[kept], ".", color=colour, markersize=3.5)
         axes.set_title(when, loc="left")
         axes.set_xlabel(_label(covariate.name, covariate.unit))
-    left.set_ylabel(_label(shown.result, shown.unit) + "\nmeasured − simulated")
+    places[0].set_ylabel(_label(shown.result, shown.unit) + "\nmeasured − simulated")
     return figure
 
 
@@ -135,17 +152,19 @@ def against_simulated(diagnosis: Diagnosis, curves: Curves) -> Figure:
     measured, before, after = (from_si(one, unit)[kept] for one in (curves.measured, curves.before, curves.after))
     figure = Figure(figsize=(6.4, 3.0), layout="constrained")
     left, right = figure.subplots(1, 2)
-    left.plot(before, measured, "o", color=BEFORE, markersize=4.5, markerfacecolor="none", markeredgewidth=0.6)
-    left.plot(after, measured, ".", color=AFTER, markersize=3)
+    circle: Any = {"marker": "o", "linestyle": "", "markersize": 4.5, "fillstyle": "none", "markeredgewidth": 0.6}
+    point: Any = {"marker": ".", "linestyle": "", "markersize": 3.5}
+    right.axhline(0.0, color=NEUTRAL, linewidth=0.7)
+    for axes, one, other in ((left, measured, measured), (right, shown.before[kept], shown.after[kept])):
+        if has_changed(curves):
+            axes.plot(before, one, color=BEFORE, label="before", **circle)
+        axes.plot(after, other, color=AFTER if has_changed(curves) else NEUTRAL, label="after", **point)
     low, high = _extent([measured, before, after])
     left.plot([low, high], [low, high], color=NEUTRAL, linewidth=0.7)
     left.set_ylabel(f"measured {_label(curves.result, unit)}")
-    right.axhline(0.0, color=NEUTRAL, linewidth=0.7)
-    right.plot(before, shown.before[kept], "o", color=BEFORE, markersize=4.5, markerfacecolor="none",
-               markeredgewidth=0.6, label="before")  # fmt: skip
-    right.plot(after, shown.after[kept], ".", color=AFTER, markersize=3, label="after")
     right.set_ylabel(f"measured − simulated [{_unit(shown.unit)}]")
-    right.legend(loc="best", frameon=True, framealpha=0.8, edgecolor="none", handletextpad=0.2)
+    if has_changed(curves):
+        right.legend(loc="best", frameon=True, framealpha=0.8, edgecolor="none", handletextpad=0.2)
     for axes in (left, right):
         axes.set_xlabel(f"simulated {_label(curves.result, unit)}")
     return figure
@@ -171,16 +190,17 @@ def ranking_bars(diagnosis: Diagnosis) -> Figure:
     items = diagnosis.ranking[:MOST_BARS]
     figure = Figure(figsize=(6.4, 0.7 + 0.3 * len(items)), layout="constrained")
     axes = figure.subplots()
-    behind = [item.behind for item in items]
-    widest = max([*behind, AMBIGUOUS])
+    widest = min(max(*(item.behind for item in items), 2 * AMBIGUOUS), FARTHEST)
     for place, item in enumerate(items):
-        colour = AFTER if item.behind <= AMBIGUOUS else QUIET
-        axes.barh(place, item.behind, height=0.62, color=colour)
-        axes.text(item.behind + 0.01 * widest, place, f" {item.behind:.1f}", va="center", fontsize=8, color=NEUTRAL)
+        length = min(item.behind, widest)
+        axes.barh(place, length, height=0.62, color=AFTER if item.behind <= AMBIGUOUS else QUIET)
+        beyond = "›" if item.behind > widest else ""
+        start = length if length > AMBIGUOUS else AMBIGUOUS
+        axes.text(start + 0.008 * widest, place, f"{item.behind:.1f} {beyond}", va="center", fontsize=8, color=NEUTRAL)
     axes.axvline(AMBIGUOUS, color=BEFORE, linewidth=0.9, linestyle=(0, (4, 3)))
     axes.set_yticks(range(len(items)), [_short(explanation(item)) for item in items])
     axes.invert_yaxis()
-    axes.set_xlim(0, 1.12 * widest)
+    axes.set_xlim(0, 1.13 * widest)
     axes.set_xlabel("score units behind the best explanation")
     axes.tick_params(axis="y", length=0)
     return figure

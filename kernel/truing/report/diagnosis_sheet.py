@@ -51,7 +51,7 @@ def make_diagnosis_sheet(diagnosis: Diagnosis, *, provenance: Provenance) -> Dia
         verdict=verdict_word(diagnosis),
         sentences=tuple(headline(diagnosis)),
         slips=tuple(slip.text for slip in diagnosis.records.slips),
-        data=_data_words(diagnosis),
+        data=data_words(diagnosis),
         chapters=tuple(numbered(chapters, 1).values()),
         warnings=warnings,
         provenance=provenance,
@@ -65,7 +65,7 @@ def _mood(diagnosis: Diagnosis) -> str:
     return "open" if is_open else "found"
 
 
-def _data_words(diagnosis: Diagnosis) -> str:
+def data_words(diagnosis: Diagnosis) -> str:
     """Say what was measured, in a line."""
     records = diagnosis.records
     runs = len(set(records.run_of.tolist()))

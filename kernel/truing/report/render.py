@@ -104,6 +104,7 @@ def _html() -> Environment:
         margin=_margin,
         unit=_unit,
         breakable=_breakable,
+        unbroken=_unbroken,
     )
     made.tests.update(narrow=_is_narrow, wide=_is_wide)
     return made
@@ -205,6 +206,11 @@ def _equation_html(equation: Equation) -> Any:
         mathematics = f'<math display="block"{label}><mrow>{line.markup}</mrow></math>'
         blocks.append(f'<div class="line{" next" if place else ""}"{fit}>{mathematics}</div>')
     return _markup("".join(blocks))
+
+
+def _unbroken(text: str) -> Any:
+    """Keep the two ends of an interval on one line."""
+    return _markup(escape(printable_text(text)).replace(" … ", "\u00a0…\u00a0"))
 
 
 def _breakable(name: str) -> Any:

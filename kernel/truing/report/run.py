@@ -61,26 +61,26 @@ def perform(setup: Setup, offer: Offer, order: RunOrder, progress: Progress) -> 
     provenance = provenance_of(calculation.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
     sheet = make_sheet(calculation, provenance=provenance, verified=verified, cases=cases)
     sheets: dict[str, str | bytes] = {"sheet.html": html_of(sheet), "sheet.md": markdown_of(sheet)}
-    note = _print(sheets, order) if order.pdf else ""
+    note = add_pdf(sheets, order.folder) if order.pdf else ""
     document = write_run(
         order.folder,
         calculation,
         offer,
         provenance=provenance,
-        run_info=_run_info(started, order.workers, lost),
+        run_info=run_info(started, order.workers, lost),
         sheets=sheets,
         cases=cases,
     )
     return Done(calculation, document, cases, note)
 
 
-def _print(sheets: dict[str, str | bytes], order: RunOrder) -> str:
+def add_pdf(sheets: dict[str, str | bytes], folder: Path) -> str:
     """Add the PDF where a browser can print it, and say what became of it: a run is not lost for want of a browser."""
     try:
         sheets["sheet.pdf"] = pdf_bytes(str(sheets["sheet.html"]))
     except OutputError as error:
         return f"no PDF: {error}"
-    return f"printed: {order.folder / 'sheet.pdf'}"
+    return f"printed: {folder / 'sheet.pdf'}"
 
 
 def _calculate(
@@ -93,7 +93,7 @@ def _calculate(
     return run_cases(setup, read_cases(order.cases, offer, setup), executor=executor, progress=progress)
 
 
-def _run_info(started: float, workers: int, lost: int) -> dict[str, Any]:
+def run_info(started: float, workers: int = 1, lost: int = 0) -> dict[str, Any]:
     """Return what may differ between two equal runs: date, duration, machine, user, workers."""
     import getpass
 

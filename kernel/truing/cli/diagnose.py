@@ -1,0 +1,70 @@
+"""calc diagnose: what the simulation gets wrong, the cause, the extended model, and what it is worth."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from truing.cli.console import Settings, one_line, out, out_json, progress_bar, settings_of, verb
+from truing.cli.load import find_offer, read_or_example
+from truing.cli.words import AsJson, Changed, Plugin
+from truing.errors import UsageError
+
+if TYPE_CHECKING:
+    from truing.report.diagnosis_run import Diagnosed
+
+Data = Annotated[list[Path] | None, typer.Option("--data", "-d", help="A CSV file of measured rows; may be repeated.")]
+
+
+@verb
+def diagnose(
+    context: typer.Context,
+    plugin: Plugin,
+    files: Annotated[list[Path] | None, typer.Argument(help="Further files of measured rows.")] = None,
+    inputs: Annotated[
+        Path | None, typer.Option("--inputs", "-i", help="The inputs file; without it the shipped example.")
+    ] = None,
+    data: Data = None,
+    changed: Changed = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="The folder (default runs/STEM of the first data file).")
+    ] = None,
+    pdf: Annotated[bool, typer.Option("--pdf", help="Print the sheet to PDF with an installed browser.")] = False,
+    as_json: AsJson = False,
+) -> int:
+    """Find what the simulation gets wrong, name the cause, extend the model and measure the gain."""
+    from truing.cli.diagnosis_printed import report
+    from truing.inputs_file.culprit import told_by_line
+    from truing.report.diagnosis_run import DiagnosisOrder, perform_diagnosis
+
+    settings = settings_of(context)
+    measured = (*(data or ()), *(files or ()))
+    if not measured:
+        raise UsageError("nothing to diagnose: name the measured rows with --data FILE.csv")
+    offer = find_offer(plugin, settings)
+    setup = read_or_example(offer, inputs, changed or (), word=plugin, settings=settings)
+    folder = output or Path("runs") / measured[0].stem
+    with progress_bar(settings) as progress, told_by_line(setup):
+        done = perform_diagnosis(setup, offer, DiagnosisOrder(measured, folder, pdf), progress)
+    _say_beside(done, settings)
+    if as_json:
+        out_json(done.document)
+    else:
+        out("\n".join(report(done.diagnosis, folder)))
+    return 0
+
+
+def _say_beside(done: Diagnosed, settings: Settings) -> None:
+    """Say what is no result: what was done to the records, suspected slips, warnings, how the printing went."""
+    records = done.diagnosis.records
+    for slip in records.slips:
+        settings.say(f"warning: suspected unit slip: {one_line(slip.text)} (nothing was changed)")
+    for warning in done.diagnosis.warnings:
+        settings.say(f"warning: {one_line(warning)}")
+    for note in records.notes:
+        settings.say(f"note: {one_line(note)}")
+    if done.note:
+        settings.say(done.note)
+    settings.detail(f"input hash {done.document['input_hash']}, seed {done.document['seed']}")

@@ -1,0 +1,195 @@
+"""A diagnosis on the terminal: the verdict in sentences, then its five questions in a few lines each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from truing.cli.console import broken, one_line
+from truing.numbers import format_number, pretty
+from truing.report.diagnosis_words import (
+    amount_text,
+    cause_text,
+    certainty,
+    explanation,
+    fitted_text,
+    headline,
+    listed,
+    p_text,
+    percent,
+    settings_text,
+    spoken,
+    verdict_word,
+)
+
+if TYPE_CHECKING:
+    from truing.diagnosis.result import Alternative, Diagnosis, Wrong
+
+INDENT = 18
+MOST_PLACES = 5
+MOST_MOVED = 4
+
+
+def report(diagnosis: Diagnosis, folder: Path) -> Iterator[str]:
+    """Say what a diagnosis found: one block for each question, broken to the width of a terminal."""
+    yield from broken(f"DIAGNOSIS  {one_line(_data(diagnosis))}", 11)
+    yield ""
+    word = f"{verdict_word(diagnosis)}."
+    for place, sentence in enumerate(headline(diagnosis)):
+        yield from broken(one_line(f"{word} {sentence}" if not place else sentence), 0)
+    yield ""
+    blocks = {
+        "1 What is wrong": _wrong(diagnosis), "2 Cause": _cause(diagnosis), "3 Extended model": _model(diagnosis),
+        "4 Gain": _gain(diagnosis), "5 Next": _next(diagnosis),
+    }  # fmt: skip
+    for title, lines in blocks.items():
+        for place, line in enumerate(lines):
+            inner = " " * (len(line) - len(line.lstrip()))
+            yield from broken((title if not place else "").ljust(INDENT) + inner + one_line(line), INDENT + len(inner))
+    yield ""
+    yield f"sheet: {folder / 'sheet.html'}"
+    if diagnosis.causes:
+        yield f"extended model: {folder / 'extended.toml'}"
+    if diagnosis.remainder is not None:
+        yield f"remainder as an effect: {folder / 'new_effect.py'}"
+
+
+def _data(diagnosis: Diagnosis) -> str:
+    """Say what was measured, how long it took, and which model it was held against."""
+    from truing.report.diagnosis_sheet import data_words
+
+    time = next((item for item in diagnosis.records.covariates.values() if item.role == "time"), None)
+    lasting = ""
+    if time is not None:
+        import numpy as np
+
+        from truing.diagnosis.result import Amount
+
+        hours = Amount(float(np.nanmax(time.values) - np.nanmin(time.values)), time.unit)
+        lasting = f", {amount_text(hours)}"
+    model = diagnosis.setup.model
+    return (
+        f"{data_words(diagnosis)}{lasting}; {model.name}: {model.title}, {len(diagnosis.calibrated)} inputs calibrated"
+    )
+
+
+def _wrong(diagnosis: Diagnosis) -> Iterator[str]:
+    for item in diagnosis.wrong:
+        yield (
+            f"{spoken(item.result)}: RMS error {amount_text(item.rmse)} against a noise floor of "
+            f"{amount_text(item.noise_floor)}: {percent(item.reducible_share)} of the mean square error is reducible"
+        )
+        for finding in item.findings:
+            yield f"  {finding.kind}: {finding.text} – {certainty(finding.p_value)}"
+        yield f"  noise: {_noise(item)}"
+
+
+def _noise(item: Wrong) -> str:
+    noise = item.noise
+    said = (
+        f"autocorrelation {pretty(format_number(noise.autocorrelation, 2))}, tails {noise.tails}, spread {noise.spread}"
+    )
+    if not noise.outliers:
+        return said
+    places = ", ".join(f"{Path(file).name}:{line}" for file, line in noise.outliers[:MOST_PLACES])
+    more = ", …" if len(noise.outliers) > MOST_PLACES else ""
+    count = len(noise.outliers)
+    return f"{said}; {count} suspected outlier{'s' if count > 1 else ''} ({places}{more})"
+
+
+def _cause(diagnosis: Diagnosis) -> Iterator[str]:
+    yield _named(diagnosis)
+    for cause in diagnosis.causes:
+        if cause.same_as:
+            yield f"the same curve on this data: {listed([spoken(name) for name in cause.same_as])}"
+    for item in diagnosis.alternatives:
+        yield f"not excluded: {explanation(item)}{_distance(item)}"
+    rivals = _rivals(diagnosis)
+    if rivals and diagnosis.verdict != "none":
+        yield f"next best: {explanation(rivals[0])}{_distance(rivals[0])}"
+    yield from diagnosis.inseparable
+    yield from _sight(diagnosis)
+
+
+def _rivals(diagnosis: Diagnosis) -> list[Alternative]:
+    """Return the explanations behind those that are not excluded, without those that only add to the named one."""
+    named = {cause.effect for cause in diagnosis.causes}
+    said = [item.causes for item in diagnosis.alternatives]
+    rivals = [item for item in diagnosis.ranking if item.causes and item.behind > 0 and item.causes not in said]
+    return [item for item in rivals if not (named and named <= set(item.causes))]
+
+
+def _named(diagnosis: Diagnosis) -> str:
+    if diagnosis.verdict == "none":
+        return f"none ({p_text(diagnosis.p_any)})"
+    parts = [spoken(cause.effect) for cause in diagnosis.causes]
+    if diagnosis.remainder is not None:
+        parts.append(f"unregistered: {spoken(diagnosis.remainder.shape)}")
+    second = f", of a second cause {p_text(diagnosis.p_second)}" if diagnosis.p_second is not None else ""
+    unique = {True: "; unique", False: "; not unique"}[diagnosis.unique] if diagnosis.verdict == "named" else ""
+    return f"{' + '.join(parts)} ({p_text(diagnosis.p_any)}{second}{unique})"
+
+
+def _distance(item: Alternative) -> str:
+    return f", {item.behind:.1f} score units behind, λ {pretty(format_number(item.separation, 3))}"
+
+
+def _sight(diagnosis: Diagnosis) -> Iterator[str]:
+    """Say what this data could not show, and the smallest size of what it could."""
+    for sight in ("not excited", "hidden in the tolerances"):
+        found = [
+            spoken(item.name) + (f" ({item.text})" if item.text else "")
+            for item in diagnosis.seen
+            if item.sight == sight
+        ]
+        if found:
+            yield f"{sight}: {'; '.join(found)}"
+    lacking = [f"{spoken(effect)} ({listed(list(needs))})" for effect, needs in diagnosis.not_measured.items()]
+    if lacking:
+        yield f"not measured: {'; '.join(lacking)}"
+    named = {cause.effect for cause in diagnosis.causes}
+    visible = [
+        f"{spoken(item.name)} {amount_text(item.smallest)}"
+        for item in diagnosis.seen
+        if item.sight == "visible" and item.smallest is not None and item.name not in named
+    ]
+    if visible:
+        yield f"would have been seen from: {', '.join(visible)}"
+
+
+def _model(diagnosis: Diagnosis) -> Iterator[str]:
+    for cause in diagnosis.causes:
+        yield cause_text(cause)
+    for item in diagnosis.alternatives:
+        sizes = [fitted_text(unknown) for unknowns in item.unknowns.values() for unknown in unknowns]
+        if sizes:
+            yield f"or {explanation(item)}, {'; '.join(sizes)}"
+    if not diagnosis.causes:
+        yield "nothing was named: the model stands as it is"
+    moved = sorted(diagnosis.calibrated, key=lambda item: -abs(item.of_its_sd))[:MOST_MOVED]
+    if moved:
+        shifts = ", ".join(f"{spoken(item.name)} {pretty(f'{item.of_its_sd:+.2f}'.lstrip('+'))}" for item in moved)
+        yield f"moved most within their tolerances (in standard deviations): {shifts}"
+
+
+def _gain(diagnosis: Diagnosis) -> Iterator[str]:
+    for item in diagnosis.gain:
+        yield (
+            f"{spoken(item.result)}: RMS error {amount_text(item.rmse_before)} → {amount_text(item.rmse_after)} (noise "
+            f"floor {amount_text(item.noise_floor)}) on rows not fitted; {percent(item.reducible_removed)} of the "
+            f"reducible error removed; log score {pretty(format_number(item.log_score_gain, 2))} per row, "
+            f"{p_text(item.p_value)}; 90 % intervals cover {percent(item.coverage90)}"
+        )
+    if diagnosis.causes:
+        yield f"the same causes in {percent(diagnosis.stability)} of the folds"
+
+
+def _next(diagnosis: Diagnosis) -> Iterator[str]:
+    if not diagnosis.next:
+        yield "nothing to separate"
+    for place, point in enumerate(diagnosis.next, start=1):
+        pair = listed([spoken(name) for name in point.separates])
+        yield f"{place}. {settings_text(point)}: separates {pair} (λ then {pretty(format_number(point.separation, 3))})"
+    for reason in dict.fromkeys(point.why for point in diagnosis.next if point.why):
+        yield f"   {reason}"
