@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from truing.declare.fields import read
 from truing.declare.model import Record
+from truing.errors import InfeasibleError
 from truing.evaluate import evaluate
 from truing.executors import open_executor
 from truing.prices import price_answers
-from truing.setup import Setup
+from truing.setup import Setup, SwitchedOn
 from truing.studies.bench import Bench, Check, Outcome, Progress, silent
 from truing.studies.checks import plain_checks
 
@@ -92,9 +93,24 @@ def _idle_effects(setup: Setup) -> list[str]:
     for item in setup.effects:
         needs = item.effect.needs
         still = all(setup.nominal(need.name) == need.zero and need.name not in scattering for need in needs)
-        if needs and still:
+        if needs and still and not _acts(setup, item):
             names = " and ".join(f"'{need.name}'" for need in needs)
             # of a wave over an angle a constant is left there
             left = "it does nothing" if item.effect.name in setup.model.effects else "it reads the same everywhere"
             idle.append(f"effect '{item.effect.name}' is on, but {names} stays at its reference: {left}")
     return idle
+
+
+def _acts(setup: Setup, item: SwitchedOn) -> bool:
+    """Whether an effect changes what is shown all the same: a condition may only switch it, as the sign of a load."""
+    import numpy as np
+
+    others = tuple(other for other in setup.effects if other is not item)
+    try:
+        with_it, without = (
+            setup.model.read_results(evaluate(replace(setup, effects=effects), reading=True))
+            for effects in (setup.effects, others)
+        )
+    except InfeasibleError:
+        return True
+    return any(not np.array_equal(value, without[name], equal_nan=True) for name, value in with_it.items())

@@ -22,8 +22,8 @@ from press_linkage.mechanism import position_of, press_linkage
 from press_linkage.model import PRESS_LINKAGE
 from press_linkage.motion import slider_motion
 from press_linkage.quantities import Press, Slider
-from truing import Effect
-from truing.declare.fields import Float
+from truing import Effect, Float
+from truing.calculation import calculate
 from truing.errors import InfeasibleError
 from truing.evaluate import evaluate
 from truing.setup import SwitchedOn, default_setup
@@ -485,6 +485,15 @@ def test_a_loop_that_does_not_close_is_still_told_by_name(effect: Effect[Any, An
     on = replace(setup, effects=(SwitchedOn(effect, values),), conditions=CONDITIONS)
     with pytest.raises(InfeasibleError, match="loop II, side 1 does not close: the knee drive is open"):
         evaluate(on)
+
+
+def test_a_press_without_load_has_its_clearance_taken_up_and_no_deflection() -> None:
+    setup = replace(default_setup(PRESS_LINKAGE), studies=())
+    loose = SwitchedOn(BY_NAME["joint_clearance"], {"clearance": 2e-5})
+    assert calculate(replace(setup, effects=(loose,))).warnings == ()
+    idle = SwitchedOn(BY_NAME["elastic_deflection"], {"compliance": SOFT})
+    (warning,) = calculate(replace(setup, effects=(loose, idle))).warnings
+    assert warning == "effect 'elastic_deflection' is on, but 'forming_force' stays at its reference: it does nothing"
 
 
 def test_effects_that_act_together_add_up() -> None:
