@@ -10,7 +10,7 @@ from truing.diagnosis.covariates import covariates_of, held_out_rows
 from truing.diagnosis.data_file import DataFile, read_data_file
 from truing.diagnosis.joining import Joined, complete_rows, join, rows_of, settle_conditions
 from truing.diagnosis.records import Records
-from truing.diagnosis.slips import Answers, suspected_slips
+from truing.diagnosis.slips import Answers, factor_that_works, suspected_slips
 from truing.diagnosis.tidying import counted, numbered, tidy
 from truing.errors import Fault, InputError
 from truing.gauge import one_machine, read_by_gauge
@@ -19,6 +19,7 @@ from truing.measurements.table import SIGMA
 from truing.setup import Setup
 
 FEWEST = 3
+MOST_FAILED = 0.5
 _FEW = ("no row", "one row", "two rows")
 
 
@@ -105,6 +106,8 @@ def _answered(joined: Joined, setup: Setup) -> tuple[Joined, Answers, list[str]]
         first, reason = next(iter(found.reasons.items()))
         rows = counted(int(found.failed.sum()), "row is", "rows are")
         notes.append(f"{rows} left out where the model fails; the first is {joined.place(first)}: {reason}")
+        hint = factor_that_works(joined, setup) if found.failed.mean() > MOST_FAILED else ""
+        notes += [hint] if hint else []
         joined = joined.taken(~found.failed)
         answers = {name: values[~found.failed] for name, values in answers.items()}
     columns = dict(joined.data.columns)

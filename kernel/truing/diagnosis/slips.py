@@ -1,17 +1,262 @@
-"""Units that were probably written wrong in a header."""
+"""Units that were probably written wrong in a header: named with the factor that would set them right, never changed.
+
+A slip is suspected of a column only where the model is ten times farther off than its tolerances can make it, and where
+one of a few factors on that column brings the error down to a tenth or less, and to a third of what the model itself
+says. Errors are judged as they are and about their middle (a gauge may have been set to zero anywhere), without the
+largest tenth of them (a few wild readings decide nothing).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from truing.diagnosis.joining import Joined
+from truing.diagnosis.joining import Joined, rows_of
 from truing.diagnosis.records import Slip
+from truing.diagnosis.tidying import is_angle
+from truing.gauge import one_machine, read_by_gauge
+from truing.inputs_file.values import broken_bound
 from truing.setup import Setup
+from truing.units.grammar import shown
+from truing.units.names import LEVELS, PURE
 
-Answers = Mapping[str, Any]
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+Answers = Mapping[str, "NDArray[np.float64]"]
+FACTORS = {1e-3: "0.001", 1e3: "1000", 1e-6: "1e-6", 1e6: "1e6"}
+INCHES = {25.4: "25.4 (inches, not millimetres)", 1 / 25.4: "1/25.4 (millimetres, not inches)"}
+ANGLES = {math.pi / 180: "pi/180 (degrees, not radians)", 180 / math.pi: "180/pi (radians, not degrees)"}
+BETTER = 10.0
+LIKE = 0.3
+FAR = 0.1
+INLIERS = 0.9
+MOST_ROWS = 60
+"""Rows on which factors are tried."""
+FEWEST_ABOUT = 6
+"""Rows that a judgement about the middle needs."""
+
+
+@dataclass(frozen=True)
+class _Gauge:
+    """One measured result on some rows: what was measured, what the model says, how far tolerances reach (by mode)."""
+
+    name: str
+    measured: NDArray[np.float64]
+    answer: NDArray[np.float64]
+    reach: tuple[float, float]
+
+    def gain(self, measured: NDArray[np.float64], answer: NDArray[np.float64]) -> float:
+        """Return how many times smaller the error becomes; 0 where that says nothing about a slip."""
+        best = 0.0
+        for mode in (0, 1) if len(measured) >= FEWEST_ABOUT else (0,):
+            before = _size(self.measured - self.answer, mode)
+            after, signal = _size(measured - answer, mode), _size(answer, mode)
+            if before > BETTER * max(self.reach[mode], after) and after <= LIKE * signal:
+                best = max(best, before / max(after, 1e-12 * before))
+        return best
 
 
 def suspected_slips(joined: Joined, answers: Answers, setup: Setup) -> tuple[Slip, ...]:
-    """Return none."""
-    return ()
+    """Return the columns whose unit is probably wrong, by what each factor does to the error of the model."""
+    out_of_range = tuple(_out_of_range(joined, setup))
+    measured = joined.data.named("measured")
+    if not any(_is_far(joined.data.columns[name], answers[name]) for name in measured):
+        return out_of_range
+    few = joined.taken(_some_rows(joined))
+    gauges = _gauges(few, setup)
+    beyond = [one for one in gauges if _is_far(one.measured, one.answer) and _is_beyond(one)]
+    own = {one.name: found for one in beyond if (found := _own_slip(one, few, setup))}
+    if len(beyond) > len(own) or len(own) > 1:
+        shared = _input_slip(few, gauges, beyond, setup)
+        if shared is not None:
+            return (*out_of_range, shared)
+    return (*out_of_range, *own.values())
+
+
+def _size(errors: NDArray[np.float64], mode: int) -> float:
+    """Return the root mean square without the largest tenth; of mode 1 about the middle; infinite where most fail."""
+    import numpy as np
+
+    known = errors[np.isfinite(errors)]
+    if len(known) < INLIERS * len(errors) or not len(known):
+        return math.inf
+    known = np.abs(known - np.median(known) if mode else known)
+    kept = np.sort(known)[: max(1, math.ceil(INLIERS * len(known)))]
+    return float(np.sqrt(np.mean(kept**2)))
+
+
+def _is_far(measured: NDArray[np.float64], answer: NDArray[np.float64]) -> bool:
+    """Whether the error is a tenth of what is measured at least, as it is or about its middle."""
+    import numpy as np
+
+    here = np.isfinite(measured) & np.isfinite(answer)
+    values, errors = measured[here], (measured - answer)[here]
+    return len(values) > 0 and any(_size(errors, mode) > FAR * _size(values, mode) for mode in (0, 1))
+
+
+def _is_beyond(one: _Gauge) -> bool:
+    return any(_size(one.measured - one.answer, mode) > BETTER * one.reach[mode] for mode in (0, 1))
+
+
+def _some_rows(joined: Joined) -> NDArray[np.intp]:
+    """Return rows spread over the whole record; where series make records, the first whole ones."""
+    import numpy as np
+
+    if not joined.data.named("series"):
+        return np.unique(np.linspace(0, len(joined) - 1, MOST_ROWS).astype(np.intp))
+    first = joined.data.runs == joined.data.runs[0]
+    return np.flatnonzero(first)
+
+
+def _answers(joined: Joined, machine: Setup) -> Answers:
+    return read_by_gauge(machine, rows_of(joined), joined.data.named("measured")).results
+
+
+def _gauges(few: Joined, setup: Setup) -> list[_Gauge]:
+    """Return every measured result on these rows, with how far one standard deviation of each tolerance reaches."""
+    import numpy as np
+
+    machine = one_machine(setup)
+    answers = _answers(few, machine)
+    reach = {name: np.zeros(2) for name in answers}
+    for by_input in setup.distributions().values():
+        for name, distribution in by_input.items():
+            moved = _answers(*_moved(few, machine, name, distribution.sd))
+            for result, values in answers.items():
+                change = moved[result] - values
+                sizes = np.array([_size(change, mode) for mode in (0, 1)])
+                reach[result] += np.where(np.isfinite(sizes), sizes, 0.0) ** 2
+    found = []
+    for name, values in answers.items():
+        here = np.isfinite(few.data.columns[name])
+        raw, about = np.sqrt(reach[name]).tolist()
+        found.append(_Gauge(name, few.data.columns[name], np.where(here, values, np.nan), (raw, about)))
+    return found
+
+
+def _moved(few: Joined, machine: Setup, name: str, by: float) -> tuple[Joined, Setup]:
+    """Return rows and machine with one input or condition off by so much."""
+    if name in few.data.columns:
+        return _with(few, name, few.data.columns[name] + by), machine
+    return few, machine.changed({name: float(machine.nominal(name)) + by})
+
+
+def _with(few: Joined, name: str, values: NDArray[np.float64]) -> Joined:
+    return replace(few, data=replace(few.data, columns={**few.data.columns, name: values}))
+
+
+def _factors(unit: str) -> Mapping[float, str]:
+    """Return the factors by which a unit may have slipped, with their words; none for a temperature level."""
+    from truing.units import same_dimension
+
+    if unit in LEVELS:
+        return {}
+    is_length = unit not in PURE and same_dimension(unit, "m")
+    return {**FACTORS, **(INCHES if is_length else {}), **(ANGLES if is_angle(unit) else {})}
+
+
+def _own_slip(one: _Gauge, few: Joined, setup: Setup) -> Slip | None:
+    """Return the slip in the unit of a measured result, if one factor on it explains the error."""
+    unit = setup.model.own_result_fields[one.name].unit
+    gains = {factor: one.gain(one.measured * factor, one.answer) for factor in _factors(unit)}
+    best = max(gains, key=gains.__getitem__, default=1.0)
+    if not gains.get(best):
+        return None
+    after = one.measured * best - one.answer
+    return _slip(one.name, best, few, _off(one, after, setup), _factors(unit)[best])
+
+
+def _input_slip(few: Joined, gauges: list[_Gauge], beyond: list[_Gauge], setup: Setup) -> Slip | None:
+    """Return the slip of an input or condition that explains every error that is too large, and worsens none."""
+    best: tuple[float, Slip] | None = None
+    for name, factor, words in _trials(few, setup):
+        answers = _answers(_with(few, name, few.data.columns[name] * factor), one_machine(setup))
+        gains = [one.gain(one.measured, answers[one.name]) for one in beyond]
+        if not all(gains) or any(_is_worse(one, answers[one.name]) for one in gauges):
+            continue
+        if best is None or min(gains) > best[0]:
+            after = beyond[0].measured - answers[beyond[0].name]
+            best = min(gains), _slip(name, factor, few, _off(beyond[0], after, setup), words)
+    return None if best is None else best[1]
+
+
+def _is_worse(one: _Gauge, answer: NDArray[np.float64]) -> bool:
+    """Whether a result that was right is far off with another answer."""
+    before, after = _size(one.measured - one.answer, 0), _size(one.measured - answer, 0)
+    return after > LIKE * BETTER * max(before, one.reach[0])
+
+
+def _trials(few: Joined, setup: Setup) -> Iterator[tuple[str, float, str]]:
+    """Give every column that the model sees with every factor that its bounds allow."""
+    import numpy as np
+
+    seen = {need.name for item in setup.effects for need in item.effect.needs}
+    for name in few.data.named("input", "series", "condition"):
+        item = setup.model.input_fields.get(name)
+        if item is None and name not in seen:
+            continue
+        unit = item.unit if item is not None else setup.model.known_conditions[name].unit
+        values = few.data.columns[name]
+        ends = (float(np.nanmin(values)), float(np.nanmax(values)))
+        for factor, words in _factors(unit).items():
+            if item is None or not any(broken_bound(item, factor * end) for end in ends):
+                yield name, factor, words
+
+
+def _off(one: _Gauge, after: NDArray[np.float64], setup: Setup) -> str:
+    """Say how far the model is off a result before and after, in the unit the result is printed in."""
+    from truing.units import difference_unit, from_si
+
+    unit = difference_unit(setup.print_unit(one.name))
+    mode = 1 if _size(one.measured - one.answer, 0) < BETTER * _size(after, 0) else 0
+    sizes = [from_si(_size(errors, mode), unit) for errors in (one.measured - one.answer, after)]
+    scale = "" if unit in PURE else f" {unit}"
+    about = " about its middle" if mode else ""
+    return f"the model is then {sizes[1]:.3g}{scale} off '{one.name}'{about} instead of {sizes[0]:.3g}{scale}"
+
+
+def _slip(name: str, factor: float, joined: Joined, why: str, words: str) -> Slip:
+    header = _header(name, joined)
+    return Slip(name, factor, f"the unit of column {header} is probably wrong: multiply it by {words}; {why}")
+
+
+def _header(name: str, joined: Joined) -> str:
+    unit = joined.data.units.get(name, "")
+    return shown(f"{name} [{unit or '1'}]")
+
+
+def _out_of_range(joined: Joined, setup: Setup) -> Iterator[Slip]:
+    """Give conditions that lie far beyond the range in which they can be set, where one factor brings them into it."""
+    import numpy as np
+
+    from truing.units import to_si
+
+    for name in joined.data.named("condition"):
+        condition = setup.model.known_conditions[name]
+        if condition.low is None or condition.high is None or condition.derived:
+            continue
+        low, high = to_si(condition.low, condition.unit), to_si(condition.high, condition.unit)
+        values, span = joined.data.columns[name], high - low
+        if np.mean((values < low - BETTER * span) | (values > high + BETTER * span)) < 0.5:
+            continue
+        for factor, words in _factors(condition.unit).items():
+            right = values * factor
+            if np.mean((right >= low) & (right <= high)) >= INLIERS:
+                why = f"it can be set from {condition.low:g} to {condition.high:g} {condition.unit}".rstrip()
+                yield _slip(name, factor, joined, why, words)
+                break
+
+
+def factor_that_works(joined: Joined, setup: Setup) -> str:
+    """Say with which factor on a column the model would not fail, where there is one; nothing otherwise."""
+    few = joined.taken(_some_rows(joined))
+    for name, factor, words in _trials(few, setup):
+        scaled = _with(few, name, few.data.columns[name] * factor)
+        found = read_by_gauge(one_machine(setup), rows_of(scaled), joined.data.named("measured"))
+        if found.failed.mean() <= 1 - INLIERS:
+            return f"the model works where column {_header(name, joined)} is multiplied by {words}: is its unit right?"
+    return ""

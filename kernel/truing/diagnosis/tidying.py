@@ -24,6 +24,7 @@ TIME = "time"
 """The column by which rows are sorted, whatever part it plays."""
 FEW_DEGREES = 90.0
 SWEEPING = 0.95
+MOST_JUMPS = 0.25
 Tidied = tuple[DataFile, list[str]]
 
 
@@ -124,8 +125,8 @@ def _late(time: NDArray[np.float64], sizes: NDArray[np.intp]) -> int:
 def in_one_piece(data: DataFile, model: Model[Any, Any]) -> Tidied:
     """Join angles of inputs and conditions that jump by a turn inside a sweep.
 
-    A run is a sweep if 95 % of its steps are below 90 degrees once it is joined. An input whose bounds would not hold
-    stays as it is.
+    A run is a sweep if 95 % of its steps are below 90 degrees once it is joined, and at most every fourth step jumps. An
+    input whose bounds would not hold stays as it is.
     """
     import numpy as np
 
@@ -150,7 +151,7 @@ def _joined(angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:
     known = np.flatnonzero(np.isfinite(angles))
     steps = np.diff(angles[known])
     jumps = int((np.abs(steps) > np.pi).sum())
-    if not jumps:
+    if not 0 < jumps <= MOST_JUMPS * len(steps):
         return angles, 0
     whole = np.array(angles)
     whole[known] = np.unwrap(angles[known])
