@@ -18,6 +18,7 @@ from truing.report.diagnosis_words import (
     listed,
     p_text,
     percent,
+    seen_name,
     settings_text,
     spoken,
     verdict_word,
@@ -139,9 +140,7 @@ def _sight(diagnosis: Diagnosis) -> Iterator[str]:
     """Say what this data could not show, and the smallest size of what it could."""
     for sight in ("not excited", "hidden in the tolerances"):
         found = [
-            spoken(item.name) + (f" ({item.text})" if item.text else "")
-            for item in diagnosis.seen
-            if item.sight == sight
+            seen_name(item) + (f" ({item.text})" if item.text else "") for item in diagnosis.seen if item.sight == sight
         ]
         if found:
             yield f"{sight}: {'; '.join(found)}"
@@ -150,7 +149,7 @@ def _sight(diagnosis: Diagnosis) -> Iterator[str]:
         yield f"not measured: {'; '.join(lacking)}"
     named = {cause.effect for cause in diagnosis.causes}
     visible = [
-        f"{spoken(item.name)} {amount_text(item.smallest)}"
+        f"{seen_name(item)} {amount_text(item.smallest)}"
         for item in diagnosis.seen
         if item.sight == "visible" and item.smallest is not None and item.name not in named
     ]

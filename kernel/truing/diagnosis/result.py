@@ -167,12 +167,16 @@ class NextPoint:
 
 @dataclass(frozen=True)
 class Seen:
-    """How small an effect may be and still be seen on this data (90 % power, search paid for)."""
+    """How small an effect may be and still be seen on this data (90 % power, search paid for).
+
+    ``part`` names the result that one part of an effect is about, where its parts are looked for one by one.
+    """
 
     name: str
     smallest: Amount | None
     sight: Sight
     text: str = ""
+    part: str = ""
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from truing.report.diagnosis_words import (
     number_texts,
     p_text,
     percent,
+    seen_name,
     spoken,
 )
 from truing.runs.diagnosis_document import file_labels
@@ -196,7 +197,7 @@ def _residuals(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
 def _sight(diagnosis: Diagnosis) -> Iterator[BlockView]:
     """Say what this data could show: how small each effect may be, what is hidden, what was not excited or measured."""
     rows = [
-        *((spoken(item.name), amount_text(item.smallest), str(item.sight), item.text) for item in diagnosis.seen),
+        *((seen_name(item), amount_text(item.smallest), str(item.sight), item.text) for item in diagnosis.seen),
         *(
             (spoken(effect), ABSENT, "not measured", f"no column gives {listed(list(conditions))}")
             for effect, conditions in diagnosis.not_measured.items()

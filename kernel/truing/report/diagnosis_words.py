@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from truing.numbers import ABSENT, format_number, format_value, pretty, with_unit
 
 if TYPE_CHECKING:
-    from truing.diagnosis.result import Alternative, Amount, Cause, Diagnosis, FittedUnknown, Gain, NextPoint
+    from truing.diagnosis.result import Alternative, Amount, Cause, Diagnosis, FittedUnknown, Gain, NextPoint, Seen
 
 CERTAIN, LIKELY = 0.005, 0.05
 TO = " … "
@@ -21,6 +21,11 @@ def spoken(name: str) -> str:
     if name.startswith("input:"):
         return f"{name.removeprefix('input:').replace('_', ' ')} outside of its tolerance"
     return "something unregistered" if name == UNKNOWN else name.replace("_", " ")
+
+
+def seen_name(item: Seen) -> str:
+    """Say an effect that was looked for; of one with parts, which of them."""
+    return spoken(item.name) + (f" of {spoken(item.part)}" if item.part else "")
 
 
 def listed(words: Sequence[str], joined: str = "and") -> str:
@@ -136,7 +141,7 @@ def _nothing(diagnosis: Diagnosis) -> Iterator[str]:
     ]
     yield f"Within its tolerances the model meets the measurement: {listed(parts)}."
     yield "What is left is noise; no effect, registered or not, is needed."
-    blind = [spoken(item.name) for item in diagnosis.seen if item.sight == "not excited"]
+    blind = [seen_name(item) for item in diagnosis.seen if item.sight == "not excited"]
     if blind:
         yield f"That says nothing of {listed(blind)}: this data does not excite {'it' if len(blind) == 1 else 'them'}."
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         Gain,
         NextPoint,
         Remainder,
+        Seen,
         Wrong,
     )
 
@@ -186,19 +187,26 @@ def _remainder(remainder: Remainder) -> dict[str, Any]:
 
 def _sight(diagnosis: Diagnosis) -> dict[str, Any]:
     """Say what this data could show, and what it could not."""
-    seen = diagnosis.seen
+    named = seen_names(diagnosis.seen)
     return {
-        "not_excited": [item.name for item in seen if item.sight == "not excited"],
+        "not_excited": [name for name, item in named.items() if item.sight == "not excited"],
         "not_measured": {effect: list(conditions) for effect, conditions in diagnosis.not_measured.items()},
-        "hidden_in_tolerances": [item.name for item in seen if item.sight == "hidden in the tolerances"],
-        "smallest_visible": dict(_smallest(diagnosis)),
+        "hidden_in_tolerances": [name for name, item in named.items() if item.sight == "hidden in the tolerances"],
+        "smallest_visible": {
+            name: {**_amount(item.smallest), "sight": item.sight}
+            for name, item in named.items()
+            if item.smallest is not None
+        },
     }
 
 
-def _smallest(diagnosis: Diagnosis) -> Iterator[tuple[str, dict[str, Any]]]:
-    for item in diagnosis.seen:
-        if item.smallest is not None:
-            yield item.name, {**_amount(item.smallest), "sight": item.sight}
+def seen_names(seen: Sequence[Seen]) -> dict[str, Seen]:
+    """Name each: the first of an effect by the effect alone, further parts as EFFECT.RESULT, or EFFECT.2, EFFECT.3."""
+    found: dict[str, Seen] = {}
+    for item in seen:
+        names = [item.name, f"{item.name}.{item.part}", *(f"{item.name}.{place}" for place in range(2, len(seen) + 1))]
+        found[next(name for name in names if name not in found and not name.endswith("."))] = item
+    return found
 
 
 def _gain(item: Gain) -> dict[str, Any]:
