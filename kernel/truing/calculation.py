@@ -95,14 +95,12 @@ def _idle_effects(setup: Setup) -> list[str]:
         still = all(setup.nominal(need.name) == need.zero and need.name not in scattering for need in needs)
         if needs and still and not _acts(setup, item):
             names = " and ".join(f"'{need.name}'" for need in needs)
-            # of a wave over an angle a constant is left there
-            left = "it does nothing" if item.effect.name in setup.model.effects else "it reads the same everywhere"
-            idle.append(f"effect '{item.effect.name}' is on, but {names} stays at its reference: {left}")
+            idle.append(f"effect '{item.effect.name}' is on, but {names} stays at its reference: it does nothing")
     return idle
 
 
 def _acts(setup: Setup, item: SwitchedOn) -> bool:
-    """Whether an effect changes what is shown all the same: a condition may only switch it, as the sign of a load."""
+    """Whether an effect changes what is shown all the same: as the sign of a load, or the cosine of an angle, may."""
     import numpy as np
 
     others = tuple(other for other in setup.effects if other is not item)
