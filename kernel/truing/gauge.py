@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from truing.errors import UsageError
-from truing.evaluate import Rows, evaluate_rows
+from truing.evaluate import Rows, effect_column, evaluate_rows
 from truing.setup import Setup
 
 if TYPE_CHECKING:
@@ -58,6 +58,7 @@ def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None
     at. ``machine`` is taken as it is: see ``one_machine``.
     """
     seen = {need.name for item in machine.effects for need in item.effect.needs}
+    seen |= {effect_column(item.effect.name, one.name) for item in machine.effects for one in item.effect.unknowns}
     fields = machine.model.input_fields
     columns = {name: values for name, values in rows.columns.items() if name in fields or name in seen}
     names = [name for name in _readable(machine, rows) if wanted is None or name in wanted]

@@ -113,6 +113,19 @@ def _slope(start: Setup, records: Records, item: Tolerated) -> dict[str, NDArray
     return found
 
 
+def visible(columns: NDArray[np.float64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return what the tolerances leave of columns: inner products of the answer are those the data can see.
+
+    ``columns`` has shape (n, m), ``directions`` (n, K) with unit prior, both in units of the noise; the answer has
+    shape (n + K, m). With D the directions its inner product is ``a' (1 + D D')^-1 b``.
+    """
+    import numpy as np
+
+    k = directions.shape[1]
+    taken = np.linalg.solve(directions.T @ directions + np.eye(k), directions.T @ columns)
+    return np.concatenate([columns - directions @ taken, taken])
+
+
 def directions_of(slopes: NDArray[np.float64], faintest: float = FAINTEST) -> NDArray[np.float64]:
     """Return the combinations of inputs that the data can see, shape (inputs, K), columns of unit length.
 

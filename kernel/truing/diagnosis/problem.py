@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from truing.diagnosis.candidates import Candidate, Term, candidates_of, stacked, terms_of
 from truing.diagnosis.evidence import Column
 from truing.diagnosis.hypotheses import Piece, unbounded
-from truing.diagnosis.machine import Machine
+from truing.diagnosis.machine import Machine, directions_of, visible
 from truing.diagnosis.readings import followed_by
 from truing.diagnosis.shapes import Library, library_of
 
@@ -50,7 +50,8 @@ def problem_of(machine: Machine, scales: Mapping[str, float]) -> Problem:
     """Lay out the search; ``scales`` holds a first estimate of the noise by result, SI."""
     every = candidates_of(machine)
     variants = [terms_of(place, candidate, machine, scales) for place, candidate in enumerate(every)]
-    kept, same_as = _merged(every, variants, scales)
+    known = _Sight(machine, scales)
+    kept, same_as = _merged(every, variants, known)
     terms = [term for place in kept for term in variants[place]]
     library = library_of(machine.records, _registered_orders(every, variants), has_steps=_has_steps(every, variants))
     made = _Columns()
@@ -72,11 +73,30 @@ def problem_of(machine: Machine, scales: Mapping[str, float]) -> Problem:
         frozenset(),
         tuple(dict.fromkeys(candidate.name for candidate in every if candidate.name not in seen)),
     )
-    return replace(problem, like=_alike(problem, scales))
+    return replace(problem, like=_alike(problem, known))
+
+
+class _Sight:
+    """What the data can see of a curve once the tolerances have taken their part."""
+
+    def __init__(self, machine: Machine, scales: Mapping[str, float]) -> None:
+        self.scales = scales
+        slopes = stacked(machine.slopes, scales)
+        self.directions = slopes @ directions_of(slopes)
+
+    def of(self, columns: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the visible part of stacked columns, shape (n + K, m)."""
+        return visible(columns, self.directions)
+
+    def term(self, term: Term) -> NDArray[np.float64]:
+        """Return the visible part of the columns of a term."""
+        import numpy as np
+
+        return self.of(np.column_stack([stacked(curve, self.scales) for curve in term.curves]))
 
 
 def _merged(
-    every: Sequence[Candidate], variants: Sequence[Sequence[Term]], scales: Mapping[str, float]
+    every: Sequence[Candidate], variants: Sequence[Sequence[Term]], known: _Sight
 ) -> tuple[list[int], dict[int, tuple[str, ...]]]:
     """Return the candidates that stay, and the names of those that are the same curve on this data.
 
@@ -94,8 +114,8 @@ def _merged(
         if len(terms) > 1:
             same[place] = []
             continue
-        space = np.linalg.qr(np.column_stack([stacked(curve, scales) for curve in terms[0].curves]))[0]
-        twin = next((other for other, known in spaces.items() if _is_same(space, known)), None)
+        space = np.linalg.qr(known.term(terms[0]))[0]
+        twin = next((other for other, space_of in spaces.items() if _is_same(space, space_of)), None)
         if twin is None:
             spaces[place], same[place] = space, []
         elif every[place].name != every[twin].name:
@@ -177,24 +197,24 @@ class _Columns:
         return pieces, owners
 
 
-def _alike(problem: Problem, scales: Mapping[str, float]) -> frozenset[tuple[int, int]]:
+def _alike(problem: Problem, known: _Sight) -> frozenset[tuple[int, int]]:
     """Return the pairs of a cause and a shape that reproduces it: the split between the two would be arbitrary."""
     import numpy as np
 
-    bases = np.column_stack([basis.values for basis in problem.library.bases]) if problem.library.bases else None
     found: set[tuple[int, int]] = set()
-    if bases is None:
-        return frozenset()
-    spaces = [np.linalg.qr(bases[:, list(shape.columns)])[0] for shape in problem.library.shapes]
-    for term in problem.terms:
-        for curve in term.curves:
-            parts = {name: np.nan_to_num(curve[name]) / scales[name] for name in scales}
-            sizes = {name: float(values @ values) for name, values in parts.items()}
-            explained = [{name: float(np.sum((space.T @ parts[name]) ** 2)) for name in scales} for space in spaces]
-            for owner, (place, results) in enumerate(problem.shape_results):
-                covered = sum(explained[place][name] for name in results)
-                if covered > REPRODUCED * sum(sizes.values()):
-                    found.add((term.candidate, owner))
+    terms = [known.term(term) for term in problem.terms]
+    for owner, piece in enumerate(problem.shape_pieces):
+        columns = [problem.columns[place].parts for place in piece.columns]
+        names = list(known.scales)
+        rows = len(problem.machine.records)
+        filled = [{name: parts.get(name, np.zeros(rows)) for name in names} for parts in columns]
+        space = np.linalg.qr(
+            known.of(np.column_stack([stacked(parts, dict.fromkeys(names, 1.0)) for parts in filled]))
+        )[0]
+        for term, seen in zip(problem.terms, terms, strict=True):
+            covered = np.sum((space.T @ seen) ** 2, axis=0) / np.maximum(np.sum(seen**2, axis=0), 1e-300)
+            if covered.min() > REPRODUCED:
+                found.add((term.candidate, owner))
     return frozenset(found)
 
 

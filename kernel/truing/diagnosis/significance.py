@@ -134,11 +134,12 @@ def _maxima(
         case = _case(contest, setting, replicates)
         for place, (each, hypotheses) in enumerate(zip(batches, (simple, rich), strict=True)):
             best[place] = np.maximum(best[place], _best(case, each, len(hypotheses)))
-    return best[1] - best[0]
+    return np.asarray(best[1] - best[0])
 
 
 def _best(case: Reduced, batches: Sequence[Batch], count: int) -> Matrix:
-    return scores_of(case, batches, count).score.max(axis=0)
+    best: Matrix = scores_of(case, batches, count).score.max(axis=0)
+    return best
 
 
 def _case(contest: Contest, setting: tuple[int, ...], replicates: Sequence[dict[int, Replicates]]) -> Reduced:

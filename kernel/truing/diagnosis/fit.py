@@ -1,0 +1,345 @@
+"""The final fit: exact model, effects on, tolerated inputs free within their prior, unknowns within their bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import exp, log, sqrt
+from typing import TYPE_CHECKING, Any
+
+from truing.diagnosis.candidates import Term, si_bounds
+from truing.diagnosis.contest import Contest
+from truing.diagnosis.hypotheses import Hypothesis, Piece
+from truing.diagnosis.machine import Predicted, predict
+from truing.diagnosis.noise import SETTINGS, whiten
+from truing.evaluate import effect_column
+from truing.setup import Setup, SwitchedOn
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+STEP = 1e-4
+LEVEL = 0.975
+LARGEST_LEVERAGE = 0.95
+STEEPEST = 1e-12
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number of the fit: a coefficient of a column, or a shape (as its logarithm where it is positive).
+
+    ``piece`` is the place of the piece in the hypothesis; ``per`` turns a coefficient into SI.
+    """
+
+    piece: int
+    name: str
+    column: int
+    per: float
+    low: float
+    high: float
+    file: int = -1
+    is_shape: bool = False
+    is_log: bool = False
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The fitted explanation: parameters with covariance, directions, what the model then says, and what is left.
+
+    ``covariance`` covers all parameters and directions, scaled for clipping and unequal spread; ``freedom`` is the
+    number of independent rows left. ``predicted`` is SI on all rows of the records, ``innovations`` by channel.
+    """
+
+    hypothesis: Hypothesis
+    setting: tuple[int, ...]
+    parameters: tuple[Parameter, ...]
+    values: Matrix
+    directions: Matrix
+    covariance: Matrix
+    freedom: float
+    predicted: Predicted
+    innovations: tuple[Matrix, ...]
+
+    def si_value(self, place: int) -> float:
+        """Return a parameter in SI."""
+        item = self.parameters[place]
+        value = float(self.values[place])
+        return exp(value) if item.is_log else value * item.per
+
+
+class Fitter:
+    """The exact model of one explanation as a function of its parameters and of the directions of the inputs."""
+
+    def __init__(self, contest: Contest, hypothesis: Hypothesis) -> None:
+        self.contest, self.hypothesis = contest, hypothesis
+        self.machine = contest.problem.machine
+        self.parameters = tuple(_parameters(contest, hypothesis))
+        self.setup = self._switched_on()
+
+    def _terms(self) -> list[tuple[int, Piece, Term]]:
+        terms = self.contest.problem.terms
+        pieces = enumerate(self.hypothesis.pieces)
+        return [(place, piece, terms[piece.place]) for place, piece in pieces if piece.kind == "term"]
+
+    def _switched_on(self) -> Setup:
+        """Return the setup with every cause on, at zero; parts of one effect are on together."""
+        start, problem = self.machine.start, self.contest.problem
+        values: dict[str, dict[str, float]] = {}
+        for _, piece, term in self._terms():
+            candidate = problem.candidates[piece.owner]
+            own = values.setdefault(candidate.name, {})
+            own |= {unknown.name: 0.0 for unknown in candidate.amplitudes} | dict(term.shape)
+        known = start.model.known_effects
+        for name, own in values.items():
+            if known[name].place != "reading" or name in start.model.effects:
+                missing = [unknown for unknown in known[name].unknowns if unknown.name not in own]
+                own |= {each.name: 0.0 if each.is_amplitude else si_bounds(each)[0] for each in missing}
+        on = tuple(SwitchedOn(known[name], own) for name, own in values.items())
+        return replace(start, effects=(*start.effects, *on))
+
+    def columns(self, x: Matrix, u: Matrix) -> dict[str, Any]:
+        """Return the columns that set every unknown and every input, SI: one value for all rows or one per row."""
+        import numpy as np
+
+        files, problem = self.machine.records.file_of, self.contest.problem
+        found: dict[str, Any] = {}
+        off = self.contest.evidence.directions @ u if len(u) else np.zeros(len(self.machine.inputs))
+        for given, moved in zip(self.machine.inputs, off, strict=True):
+            at = float(self.machine.start.nominal(given.name)) + given.mean + moved * given.sd
+            found[given.name] = _in_file(found.get(given.name), given.file, files, at)
+        for item, value in zip(self.parameters, x, strict=True):
+            piece = self.hypothesis.pieces[item.piece]
+            if piece.kind == "term":
+                name = effect_column(problem.candidates[piece.owner].name, item.name)
+                si = exp(value) if item.is_log else float(value) * item.per
+                found[name] = _in_file(found.get(name), item.file, files, si)
+            elif piece.kind == "input":
+                owner = self.machine.inputs[piece.owner]
+                added = np.where((files == owner.file) | (owner.file < 0), float(value) * owner.sd, 0.0)
+                found[owner.name] = found[owner.name] + added
+        return {name: np.broadcast_to(np.asarray(value, dtype=float), (len(files),)) for name, value in found.items()}
+
+    def predicted(self, x: Matrix, u: Matrix) -> dict[str, Matrix]:
+        """Return the extended model at every row, SI, by result."""
+        records = self.machine.records
+        rows = replace(records.rows, columns={**records.rows.columns, **self.columns(x, u)})
+        made = dict(predict(self.setup, replace(records, rows=rows)))
+        for item, value in zip(self.parameters, x, strict=True):
+            if self.hypothesis.pieces[item.piece].kind == "shape":
+                column = self.contest.problem.columns[item.column]
+                for name, part in column.parts.items():
+                    made[name] = made[name] + part * (column.per * value)
+        return made
+
+
+def _in_file(held: Any, file: int, files: Any, value: float) -> Any:
+    """Return a value for all rows, or one per row that holds in its file."""
+    import numpy as np
+
+    if file < 0:
+        return value
+    before = np.zeros(len(files)) if held is None else np.broadcast_to(held, (len(files),))
+    return np.where(files == file, value, before)
+
+
+def _parameters(contest: Contest, hypothesis: Hypothesis) -> list[Parameter]:
+    found: list[Parameter] = []
+    for place, piece in enumerate(hypothesis.pieces):
+        for column, low, high, place_in in zip(
+            piece.columns, piece.low, piece.high, range(len(piece.columns)), strict=True
+        ):
+            per, name, file = contest.problem.columns[column].per, str(place_in), -1
+            if piece.kind == "term":
+                term = contest.problem.terms[piece.place]
+                name, file = term.unknowns[place_in], term.files[place_in]
+            found.append(Parameter(place, name, column, per, low, high, file))
+        if piece.kind == "term":
+            found += _shapes(contest, place, piece)
+    return found
+
+
+def _shapes(contest: Contest, place: int, piece: Piece) -> list[Parameter]:
+    """Return the shapes that can be moved smoothly; whole numbers and places of a step stay where they are."""
+    candidate = contest.problem.candidates[piece.owner]
+    found = []
+    for unknown in candidate.shapes:
+        if unknown.whole or unknown.along:
+            continue
+        low, high = si_bounds(unknown)
+        is_log = low > 0
+        bounds = (log(low), log(high)) if is_log else (low, high)
+        found.append(Parameter(place, unknown.name, -1, 1.0, *bounds, is_shape=True, is_log=is_log))
+    return found
+
+
+def fit(contest: Contest, place: int) -> Fit:
+    """Fit one of the hypotheses of a contest with the exact model."""
+    import numpy as np
+    from scipy.optimize import least_squares
+
+    hypothesis, setting = contest.found.hypotheses[place], contest.found.setting[place]
+    solution = contest.solution(place)
+    fitter = Fitter(contest, hypothesis)
+    start = np.concatenate([_start(fitter, solution.coefficients), solution.directions])
+    p = len(fitter.parameters)
+    residual = _residual(contest, fitter, setting, p)
+    low = np.array([item.low for item in fitter.parameters] + [-np.inf] * (len(start) - p))
+    high = np.array([item.high for item in fitter.parameters] + [np.inf] * (len(start) - p))
+    inside = np.clip(start, low, high)
+    jacobian = _Jacobian(contest, fitter, setting, residual)
+    found = least_squares(residual, inside, jac=jacobian, bounds=(low, high), x_scale="jac", xtol=1e-10, ftol=1e-12)
+    covariance, freedom = _covariance(contest, found.fun, jacobian(found.x), setting)
+    left = _split(contest, found.fun)
+    predicted = fitter.predicted(found.x[:p], found.x[p:])
+    return Fit(hypothesis, setting, fitter.parameters, found.x[:p], found.x[p:], covariance, freedom, predicted, left)
+
+
+def _start(fitter: Fitter, coefficients: Matrix) -> Matrix:
+    """Return where the fit begins: the linear solution, and the grid's value of every shape."""
+    import numpy as np
+
+    values, given = [], iter(coefficients)
+    for item in fitter.parameters:
+        if not item.is_shape:
+            values.append(float(next(given)))
+            continue
+        piece = fitter.hypothesis.pieces[item.piece]
+        value = fitter.contest.problem.terms[piece.place].shape[item.name]
+        values.append(log(value) if item.is_log else value)
+    return np.array(values)
+
+
+class _residual:  # noqa: N801  # a function with what it needs
+    """What is left of the pseudo-observations, whitened, in units of the noise; the prior of the inputs below."""
+
+    def __init__(self, contest: Contest, fitter: Fitter, setting: tuple[int, ...], p: int) -> None:
+        self.contest, self.fitter, self.setting, self.p = contest, fitter, setting, p
+
+    def __call__(self, x: Matrix) -> Matrix:
+        import numpy as np
+
+        u = x[self.p :]
+        made = self.fitter.predicted(x[: self.p], u)
+        machine = self.fitter.machine
+        means = np.array([item.mean / item.sd for item in machine.inputs])
+        parts = []
+        for channel, place in zip(self.contest.evidence.channels, self.setting, strict=True):
+            target = self.contest.noise.residuals[channel.name] + machine.base[channel.name]
+            if len(means):
+                target = target + machine.slopes[channel.name] @ means
+            left = (target - made[channel.name])[channel.rows] / channel.scale
+            parts.append(whiten(left * channel.weights, channel.starts, SETTINGS[place]))
+        return np.concatenate([*parts, u])
+
+
+class _Jacobian:
+    """Derivatives of the residual: of the unknowns by differences, of the inputs from their linear columns."""
+
+    def __init__(self, contest: Contest, fitter: Fitter, setting: tuple[int, ...], residual: _residual) -> None:
+        self.contest, self.fitter, self.residual = contest, fitter, residual
+        self.inputs = _white_directions(contest, setting)
+
+    def __call__(self, x: Matrix) -> Matrix:
+        import numpy as np
+
+        p = self.residual.p
+        made = np.zeros((len(self.inputs) + len(x) - p, len(x)))
+        made[: len(self.inputs), p:] = -self.inputs
+        made[len(self.inputs) :, p:] = np.eye(len(x) - p)
+        for place, item in enumerate(self.fitter.parameters):
+            step = STEP * max(abs(float(x[place])), 1.0 if item.is_log else 1e-2)
+            up, down = x.copy(), x.copy()
+            up[place] = min(x[place] + step, item.high)
+            down[place] = max(x[place] - step, item.low)
+            made[:, place] = (self.residual(up) - self.residual(down)) / (up[place] - down[place])
+        return made
+
+
+def _white_directions(contest: Contest, setting: tuple[int, ...]) -> Matrix:
+    import numpy as np
+
+    parts = [
+        whiten(channel.directions * channel.weights[:, None], channel.starts, SETTINGS[place])
+        for channel, place in zip(contest.evidence.channels, setting, strict=True)
+    ]
+    return np.concatenate(parts)
+
+
+def _split(contest: Contest, residual: Matrix) -> tuple[Matrix, ...]:
+    import numpy as np
+
+    ends = np.cumsum([len(channel) for channel in contest.evidence.channels])
+    return tuple(np.split(residual[: ends[-1]], ends[:-1]))
+
+
+def _covariance(contest: Contest, residual: Matrix, jacobian: Matrix, setting: tuple[int, ...]) -> tuple[Matrix, float]:
+    """Return the covariance of all parameters, and the number of independent rows left.
+
+    The larger of the model-based one and the sandwich (HC3), parameter by parameter; widened by the share of clipped
+    innovations, as for any robust estimate.
+    """
+    import numpy as np
+
+    rows = contest.evidence.rows
+    inverse = np.linalg.pinv(jacobian.T @ jacobian)
+    k = contest.evidence.directions.shape[1]
+    used = float(np.trace(inverse @ jacobian[:rows].T @ jacobian[:rows]))
+    sigma2 = float(np.sum(residual[:rows] ** 2)) / max(rows - used, 1.0)
+    plain = inverse * sigma2
+    leverage = np.minimum(np.einsum("ij,jk,ik->i", jacobian[:rows], inverse, jacobian[:rows]), LARGEST_LEVERAGE)
+    scores = jacobian[:rows] * (residual[:rows] / (1 - leverage))[:, None]
+    prior = np.zeros_like(inverse)
+    if k:
+        prior[-k:, -k:] = np.eye(k)
+    sandwich = inverse @ (scores.T @ scores + sigma2 * prior) @ inverse
+    ratio = np.sqrt(np.maximum(np.diag(sandwich) / np.maximum(np.diag(plain), 1e-300), 1.0))
+    clipped = max(contest.noise.tails[channel.name].clipped for channel in contest.evidence.channels)
+    shares = [SETTINGS[place].independent_share for place in setting]
+    counts = [len(channel) for channel in contest.evidence.channels]
+    free = sum(share * count for share, count in zip(shares, counts, strict=True)) - used
+    return plain * np.outer(ratio, ratio) / (1 - clipped) ** 2, max(free, 2.0)
+
+
+def interval(found: Fit, place: int) -> tuple[float, float]:
+    """Return the 95 % interval of a parameter in SI, within its bounds."""
+    from scipy.special import stdtrit
+
+    item = found.parameters[place]
+    reach = float(stdtrit(found.freedom, LEVEL)) * sqrt(max(float(found.covariance[place, place]), 0.0))
+    value = float(found.values[place])
+    ends = (value - reach, value + reach)
+    if item.is_log:
+        return exp(max(ends[0], item.low)), exp(min(ends[1], item.high))
+    return min(ends) * item.per, max(ends) * item.per
+
+
+def si_covariance(found: Fit, places: Sequence[int]) -> tuple[tuple[float, ...], ...]:
+    """Return the covariance of some parameters in SI."""
+    import numpy as np
+
+    factors = np.array(
+        [found.si_value(place) if found.parameters[place].is_log else found.parameters[place].per for place in places]
+    )
+    part = found.covariance[np.ix_(list(places), list(places))] * np.outer(factors, factors)
+    return tuple(tuple(float(value) for value in row) for row in part)
+
+
+def input_values(contest: Contest, found: Fit) -> Mapping[str, tuple[float, float]]:
+    """Return every tolerated input as calibrated, SI, and how far it moved in units of its sd (the first file's)."""
+    directions = contest.evidence.directions
+    machine = contest.problem.machine
+    moved = directions @ found.directions if directions.size else [0.0] * len(machine.inputs)
+    extra = {
+        found.hypothesis.pieces[item.piece].owner: float(value)
+        for item, value in zip(found.parameters, found.values, strict=True)
+        if found.hypothesis.pieces[item.piece].kind == "input"
+    }
+    answer: dict[str, tuple[float, float]] = {}
+    for place, item in enumerate(machine.inputs):
+        off = float(moved[place]) + extra.get(place, 0.0)
+        value = float(machine.start.nominal(item.name)) + item.mean + off * item.sd
+        answer.setdefault(item.name, (value, off + item.mean / item.sd))
+    return answer
