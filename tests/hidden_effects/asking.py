@@ -62,8 +62,8 @@ def press_offer() -> Offer:
 class Answer:
     """What was said to a case: the document, and what the model then predicts for rows that were held out.
 
-    Both predictions are by result, (rows held out, without the first): of the calibrated machine with every cause and
-    shape that was found, and of the nominal machine.
+    ``predicted`` is what the calibrated machine shows with every cause and shape that was found, in SI, one result
+    after another, without the first row (that of the record).
     """
 
     document: dict[str, Any]
@@ -98,17 +98,16 @@ def _predicted(case: Case, diagnosis: Diagnosis, setup: Setup, file: Path) -> Ar
     from dataclasses import replace
 
     from truing.diagnosis.reading import read_records
-    from truing.gauge import shown_by_gauge
-    from truing.units import to_si
+    from truing.gauge import one_machine, read_by_gauge
 
     calibrated = {item.name: item.value for item in diagnosis.calibrated}
     machine = diagnosis.extended or replace(setup, calibrated={**setup.calibrated, **calibrated})
     records = read_records([file], press_offer(), setup)
-    shown = shown_by_gauge(machine, records.rows)
+    shown = read_by_gauge(one_machine(machine), records.rows, case.results).results
     known: dict[str, Any] = {name: one.values for name, one in records.covariates.items()}
     parts = []
     for result in case.results:
-        values = np.asarray(to_si(shown.values[result], shown.units[result]))
+        values = shown[result]
         for term in diagnosis.remainder.terms.get(result, ()) if diagnosis.remainder else ():
             values = values + term.coefficient * np.asarray(eval(term.expression, {"np": np}, known))
         parts.append(values[1:])

@@ -1,0 +1,83 @@
+"""What the best possible diagnosis would predict: the true structure, fitted with the true covariance of the noise."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from hidden_effects.candidates import changes, stacked, tolerance_columns
+from hidden_effects.cases import Case
+from hidden_effects.press_machine import SCATTER, Array, Rows, shown
+
+
+def unknown_columns(case: Case, rows: Rows) -> Array:
+    """Derivatives of the readings by everything that is unknown but the tolerances, at the truth.
+
+    Amplitudes, time constants and the sizes of a shape; where a step lies and which order a wave has is taken as known.
+    """
+    made = [np.zeros((len(rows) * len(case.results), 0))]
+    if case.truth:
+        made.append(case.true_columns(rows))
+    if "warm_up" in case.hidden:
+        made.append(_by_time_constant(case, rows)[:, None])
+    for result, size in case.shape.sizes if case.shape else ():
+        alone = replace(case.shape, sizes=((result, 1.0),)) if case.shape else None
+        made.append(alone.of(rows, case.results)[:, None] if alone and size else made[0])
+    return np.hstack(made)
+
+
+def _by_time_constant(case: Case, rows: Rows) -> Array:
+    warm = case.hidden["warm_up"]
+    step = 1e-4 * warm["time_constant"]
+    up, down = (
+        changes(rows, case.results, {"warm_up": {**warm, "time_constant": warm["time_constant"] + way * step}}, {})
+        for way in (1, -1)
+    )
+    return np.asarray((up - down) / (2 * step))
+
+
+def oracle(case: Case) -> Array:
+    """Predict the rows held out (without the first): generalised least squares, each tolerance with its prior."""
+    rows, count = case.record.rows, len(SCATTER)
+    unknown, unknown_held = unknown_columns(case, rows), unknown_columns(case, case.held)
+    lengths = np.linalg.norm(unknown, axis=0)
+    design = np.hstack([case.record.tolerances, unknown / lengths])
+    held = np.hstack([tolerance_columns(case.held, case.results), unknown_held / lengths])
+    prior = np.concatenate([np.ones(count), np.zeros(design.shape[1] - count)])
+    truth = np.array([case.off[name] / sd for name, sd in SCATTER.items()])
+    weighted = np.linalg.solve(case.record.covariance, design)
+    noise = stacked(case.readings, case.results) - case.true_readings(rows)
+    pull = np.concatenate([truth, np.zeros(design.shape[1] - count)])
+    error = _solved(design.T @ weighted + np.diag(prior), weighted.T @ noise - pull)
+    return judged(case, case.true_readings(case.held) + held @ error)
+
+
+def _solved(matrix: Array, right: Array) -> Array:
+    """Solve a symmetric system whose unknowns differ by orders of magnitude in scale."""
+    scale = 1 / np.sqrt(np.diag(matrix))
+    return np.asarray(scale * np.linalg.lstsq(matrix * np.outer(scale, scale), scale * right, rcond=1e-12)[0])
+
+
+def calibrated(case: Case) -> Array:
+    """Predict the rows held out with the base model, calibrated within its tolerances with the true noise."""
+    rows, design = case.record.rows, case.record.tolerances
+    weighted = np.linalg.solve(case.record.covariance, design)
+    nominal = stacked(shown(rows, {}, {}), case.results)
+    right = weighted.T @ (stacked(case.readings, case.results) - nominal)
+    found = np.linalg.solve(design.T @ weighted + np.eye(design.shape[1]), right)
+    off = {name: float(sd * value) for (name, sd), value in zip(SCATTER.items(), found, strict=True)}
+    return judged(case, stacked(shown(case.held, off, {}), case.results))
+
+
+def judged(case: Case, values: Array) -> Array:
+    """Leave the first row of every result out: it belongs to the record."""
+    return np.concatenate([part[1:] for part in np.split(values, len(case.results))])
+
+
+def scale(case: Case) -> Array:
+    """The standard deviation of the noise at every judged row, by result."""
+    return np.repeat([case.record.noise.sd[result] for result in case.results], len(case.held) - 1)
+
+
+def rms(values: Array) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(values**2)))
