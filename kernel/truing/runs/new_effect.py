@@ -67,10 +67,10 @@ def new_effect_source(diagnosis: Diagnosis) -> str:
     if diagnosis.remainder is None:
         return ""
     sources = tuple(_sources(diagnosis))
-    parts = [_head(diagnosis), _conditions(sources)]
+    parts = ["\n\n".join(filter(None, [_head(diagnosis), _conditions(sources)]))]
     parts += [_shape(result, terms, sources) for result, terms in _terms(diagnosis).items()]
     parts += [_effect_function(diagnosis, sources), _declaration(diagnosis, sources), _hook(diagnosis)]
-    return "\n\n\n".join(part for part in parts if part) + "\n"
+    return "\n\n\n".join(parts) + "\n"
 
 
 def _terms(diagnosis: Diagnosis) -> Mapping[str, Sequence[ShapeTerm]]:
@@ -91,10 +91,9 @@ def _sources(diagnosis: Diagnosis) -> Iterator[_Source]:
     model = diagnosis.setup.model
     taken = set(TAKEN)
     texts = [term.expression for terms in _terms(diagnosis).values() for term in terms]
-    known = {*diagnosis.records.covariates, *model.input_fields, *model.conditions, *diagnosis.remainder.depends_on}
-    for name in sorted(known, key=lambda name: (name not in diagnosis.remainder.depends_on, name)):  # type: ignore[union-attr]
-        if name not in diagnosis.remainder.depends_on and not any(_names(name, text) for text in texts):
-            continue
+    rest = sorted({*diagnosis.records.covariates, *model.input_fields, *model.conditions})
+    named = [name for name in rest if any(_names(name, text) for text in texts)]
+    for name in dict.fromkeys([*diagnosis.remainder.depends_on, *named]):
         code = code_name(name, taken)
         taken.add(code)
         if name in model.input_fields:
@@ -140,11 +139,12 @@ def safe_expression(text: str, names: Mapping[str, str]) -> str | None:
         tree = ast.parse(text.strip(), mode="eval")
     except (SyntaxError, ValueError, MemoryError, RecursionError):
         return None
+    called = [node.func for node in ast.walk(tree) if isinstance(node, ast.Call)]
     allowed = set(names.values())
-    return ast.unparse(tree) if all(_is_harmless(node, allowed) for node in ast.walk(tree)) else None
+    return ast.unparse(tree) if all(_is_harmless(node, allowed, called) for node in ast.walk(tree)) else None
 
 
-def _is_harmless(node: ast.AST, names: set[str]) -> bool:
+def _is_harmless(node: ast.AST, names: set[str], called: Sequence[ast.expr]) -> bool:
     if not isinstance(node, _NODES):
         return False
     if isinstance(node, ast.Constant):
@@ -153,7 +153,7 @@ def _is_harmless(node: ast.AST, names: set[str]) -> bool:
         return node.id in names or node.id == "np"
     if isinstance(node, ast.Attribute):
         is_numpy = isinstance(node.value, ast.Name) and node.value.id == "np"
-        return is_numpy and node.attr in FUNCTIONS | CONSTANTS
+        return is_numpy and node.attr in (FUNCTIONS if node in called else CONSTANTS)
     if isinstance(node, ast.Call):
         return isinstance(node.func, ast.Attribute) and not node.keywords
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
