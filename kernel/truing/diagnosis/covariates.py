@@ -71,15 +71,12 @@ def _of_others(joined: Joined, setup: Setup, found: dict[str, Covariate]) -> lis
     known = [*measurable(model), *model.known_conditions, *model.input_fields]
     notes = []
     for name in joined.data.named("other", "label"):
-        is_label = joined.data.parts[name] == "label"
-        use = "as words, nothing can depend on it" if is_label else "as something an error may depend on"
-        if not is_label and name not in found:
-            use = "but holds no value"
+        is_label = joined.data.parts[name] == "label" and any(joined.data.columns[name].tolist())
+        words = "it is kept as words, on which nothing can depend" if is_label else "it holds no value and is not used"
+        use = "it is kept as something an error may depend on" if name in found else words
         near = near_miss(name[:80], known)
         hint = near if near and near.split("'")[1] not in joined.data.columns else ""
-        notes.append(
-            f"column {shown(name)} is neither input, result nor condition; it is kept {use}.{hint}".rstrip(".")
-        )
+        notes.append(f"column {shown(name)} is neither input, result nor condition; {use}.{hint}".rstrip("."))
     unused = [name for name in joined.data.named("sigma") if name.removeprefix(SIGMA) not in joined.data.columns]
     return [*notes, *(f"column {shown(name)} is of a result that is not measured and is not used" for name in unused)]
 

@@ -71,7 +71,7 @@ def read_data_file(path: Path, offer: Offer) -> tuple[DataFile, Faults]:
         if made is not None:
             columns[name] = made
     parts = {name: part_of(name, model, is_number=values.dtype != object) for name, values in columns.items()}
-    for sentence in (*_unfit(table, model), *_empty(columns, parts)):
+    for sentence in (*_unfit(table, model), *_empty(columns, parts, faults)):
         faults.add(sentence, table.header_line)
     if not set(table.units) & set(measurable(model)):
         faults.add(_nothing_measured(table, model), table.header_line)
@@ -220,12 +220,14 @@ def _without_axis(name: str, table: DataTable, model: Model[Any, Any]) -> Iterat
         yield f"{name} runs along '{axis}'; give the place of each row in a column '{like}'"
 
 
-def _empty(columns: Mapping[str, NDArray[Any]], parts: Mapping[str, Part]) -> Iterator[str]:
-    """Say which columns that must hold something hold nothing."""
+def _empty(columns: Mapping[str, NDArray[Any]], parts: Mapping[str, Part], faults: Faults) -> Iterator[str]:
+    """Say which columns that must hold something hold nothing, not even what cannot be read."""
     import numpy as np
 
     for name, values in columns.items():
         if parts[name] not in {"measured", "input", "series", "word", "axis"} or not len(values):
+            continue
+        if any(fault.message.startswith(f"{name}:") for fault in faults.found):
             continue
         is_empty = np.array([value is None for value in values]) if values.dtype == object else np.isnan(values)
         if is_empty.all():

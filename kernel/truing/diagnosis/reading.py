@@ -90,8 +90,10 @@ def _demand_rows(rows: int, files: Sequence[str], notes: Sequence[str]) -> None:
     if rows >= FEWEST:
         return
     why = f" ({'; '.join(notes)})" if notes else ""
-    left = f"{_FEW[rows]} can be used" if why else f"holds {_FEW[rows]}"
-    raise InputError([Fault(f"{left}; a diagnosis needs {FEWEST} rows at the very least, better fifty{why}", files[0])])
+    held = f"holds {_FEW[rows]}" if len(files) == 1 else f"the files hold {_FEW[rows]} together"
+    left = f"{_FEW[rows]} can be used" if why else held
+    sentence = f"{left}; a diagnosis needs {FEWEST} rows at the very least, better fifty{why}"
+    raise InputError([Fault(sentence, files[0] if len(files) == 1 else "")])
 
 
 def _answered(joined: Joined, setup: Setup) -> tuple[Joined, Answers, list[str]]:
