@@ -22,7 +22,10 @@ if TYPE_CHECKING:
     from truing.kernel import Offer
     from truing.setup import Setup
 
-INPUTS = 'plugin = "press_linkage"\n\n[inputs]\nreading = "complete"\n'
+INPUTS = (
+    'plugin = "press_linkage"\n\n[inputs]\nreading = "complete"\n'
+    '\n[studies.diagnose]\nbox = {crank_angle = "-60..60 deg"}\n'
+)
 WRITTEN = {POSITION: ("mm", 1e3), TILT: ("urad", 1e6)}
 
 

@@ -1,0 +1,184 @@
+"""Do the settings that a diagnosis proposes separate what it could not tell apart? Against chance, and the best chance.
+
+A pair is the truth and another explanation that the diagnosis left open. The separation after further rows is
+``min_c`` of the whole deviance, the rival refitted to all rows, the machine within its tolerances throughout.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from hidden_effects.candidates import HOUR, Candidate, columns, stacked, tolerance_columns
+from hidden_effects.cases import Case
+from hidden_effects.outcome import FIRST, is_alternative, is_exact, names_of
+from hidden_effects.press_machine import Array, Rows, shown
+
+POINTS = 4
+SETS = 200
+ROUNDS = 3
+SPARSE = 16
+APART = 10.0
+BOX = {  # where the press can be set, SI; the crank angle as the inputs file of a case says, all else as declared
+    "crank_angle": (-np.pi / 3, np.pi / 3), "forming_force": (-200e3, 2000e3), "link_temperature": (15.0, 60.0),
+    "time": (0.0, 10 * HOUR), "strokes": (0.0, 1e6), "speed": (5 / 60, 1.0), "direction": (-1.0, 1.0),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Normal:
+    """A least squares problem in summed form: its matrix (k, k), right side (k,) and sum of squares."""
+
+    matrix: Array
+    right: Array
+    total: float
+
+
+def asked(case: Case, document: Mapping[str, Any]) -> dict[str, Any] | None:
+    """What four points would have done for the first pair that was left open; None where there is no such pair."""
+    rival = open_rival(case, document)
+    if rival is None:
+        return None
+    proposed = _points(case, document["next"][:POINTS])
+    rng = np.random.default_rng([case.seed, 7])
+    drawn = _random(POINTS * SETS, rng)
+    problems = list(_problems(case, rival, _joined(proposed, drawn)))
+    if _left(problems, []) >= APART:
+        return None
+    many = len(proposed)
+    sets = [list(range(many + POINTS * at, many + POINTS * (at + 1))) for at in range(SETS)]
+    found = [_left(problems, each) for each in sets]
+    best = max(found)
+    if best <= APART:
+        best = _exchanged(problems, sets[int(np.argmax(found))], range(many, many + POINTS * SETS, SPARSE))
+    after = _left(problems, range(many))
+    return {
+        "rival": list(rival), "before": _left(problems, []), "points": many, "proposed": after,
+        "random_share": float(np.mean(np.array(found) > APART)), "best_random": max(found), "best": max(best, after),
+    }  # fmt: skip
+
+
+def open_rival(case: Case, document: Mapping[str, Any]) -> tuple[str, ...] | None:
+    """The names of the first registered explanation beside the truth in an answer that leaves both open."""
+    if case.shape is not None or not case.truth or document["unique"] or document["verdict"] != "named":
+        return None
+    others = document["alternatives"][:FIRST]
+    if is_exact(case, document):
+        named = [tuple(other["causes"]) for other in others if "unknown" not in other["causes"]]
+    else:
+        is_open = any(is_alternative(case, other) for other in others) and document["remainder"] is None
+        named = [tuple(cause["effect"] for cause in document["causes"])] if is_open else []
+    true = set().union(*(names_of(case, name) for name in case.truth))
+    kept = [names for names in named if not set(names) <= true and not any("input:" in name for name in names)]
+    return kept[0] if kept else None
+
+
+def _points(case: Case, proposed: Sequence[Mapping[str, Any]]) -> Rows:
+    """The settings that were proposed; what they leave open stays at the middle of the record."""
+    from truing.units import to_si
+
+    rows = {name: np.full(len(proposed), float(np.median(values))) for name, values in vars(case.record.rows).items()}
+    for at, point in enumerate(proposed):
+        for name, amount in point["settings"].items():
+            value = float(to_si(amount["value"], amount["unit"]))
+            rows[name][at] = value - 273.15 if name == "link_temperature" else value
+    return Rows(**rows)
+
+
+def _random(count: int, rng: np.random.Generator) -> Rows:
+    """Points anywhere in the box."""
+    rows = {name: rng.uniform(low, high, count) for name, (low, high) in BOX.items()}
+    return Rows(**{**rows, "direction": np.where(rows["direction"] < 0, -1.0, 1.0)})
+
+
+def _joined(*parts: Rows) -> Rows:
+    return Rows(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in vars(parts[0])})
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One rival with its shapes chosen: the record summed up, and further points over their noise, by result.
+
+    ``design`` (results, points, k), ``change`` (results, points).
+    """
+
+    record: Normal
+    design: Array
+    change: Array
+
+    def left(self, points: Sequence[int]) -> float:
+        """The separation once these points are measured too."""
+        chosen = list(points)
+        design = self.design[:, chosen].reshape(-1, self.design.shape[2])
+        change = self.change[:, chosen].reshape(-1)
+        matrix = self.record.matrix + design.T @ design
+        right = self.record.right + design.T @ change
+        scale = 1 / np.sqrt(np.maximum(np.diag(matrix), 1e-30))
+        solved = np.linalg.solve(matrix * np.outer(scale, scale) + 1e-12 * np.eye(len(scale)), scale * right)
+        return self.record.total + float(change @ change) - float(solved @ (scale * right))
+
+
+def _left(problems: Sequence[Problem], points: Sequence[int]) -> float:
+    """The separation from a rival whatever its shapes."""
+    return min(problem.left(points) for problem in problems)
+
+
+def _exchanged(problems: Sequence[Problem], points: Sequence[int], pool: Sequence[int]) -> float:
+    """Exchange points one by one for better ones of the pool; the separation that this reaches."""
+    chosen, best = list(points), _left(problems, points)
+    for _, place in product(range(ROUNDS), range(len(chosen))):
+        for other in pool:
+            tried = [*chosen[:place], other, *chosen[place + 1 :]]
+            found = _left(problems, tried)
+            if found > best:
+                best, chosen = found, tried
+        if best > APART:
+            break
+    return best
+
+
+def _problems(case: Case, rival: Sequence[str], points: Rows) -> Iterator[Problem]:
+    """Give the rival with every choice of its shapes."""
+    record = case.record
+    change = _change(case, points)
+    weight = np.asarray(np.linalg.inv(record.covariance), dtype=float)
+    tolerances = tolerance_columns(points, case.results)
+    groups = [_of_name(case, name) for name in rival]
+    for choice in product(*groups):
+        made = [
+            np.hstack([columns(rows, case.results, candidate, shapes) for candidate, shapes in choice])
+            for rows in (record.rows, points)
+        ]
+        scale = np.linalg.norm(made[0], axis=0) + np.linalg.norm(made[1], axis=0)
+        old = np.hstack([record.tolerances, made[0] / np.where(scale > 0, scale, 1.0)])
+        new = np.hstack([tolerances, made[1] / np.where(scale > 0, scale, 1.0)])
+        yield _problem(case, _summed(old, case.change, weight, record.tolerances.shape[1]), new, change)
+
+
+def _of_name(case: Case, name: str) -> list[tuple[Candidate, dict[str, float]]]:
+    """Every candidate of this effect with every choice of its shapes; one of several parts is enough."""
+    fits = [candidate for candidate in case.record.candidates if candidate.effect == name]
+    return [(candidate, shapes) for candidate in fits for shapes in candidate.variants()]
+
+
+def _summed(design: Array, change: Array, weight: Array, tolerances: int) -> Normal:
+    prior = np.zeros(design.shape[1])
+    prior[:tolerances] = 1.0
+    weighted = design.T @ weight
+    return Normal(weighted @ design + np.diag(prior), weighted @ change, float(change @ weight @ change))
+
+
+def _problem(case: Case, record: Normal, design: Array, change: Array) -> Problem:
+    """Sum up the record, and bring the further points into units of their noise."""
+    sds = np.array([case.record.noise.sd[result] for result in case.results])[:, None]
+    return Problem(
+        record, np.array(np.split(design, len(sds))) / sds[:, :, None], np.array(np.split(change, len(sds))) / sds
+    )
+
+
+def _change(case: Case, rows: Rows) -> Array:
+    """What is hidden at these rows, one result after another."""
+    true = case.true_readings(rows)
+    return true - stacked(shown(rows, case.off, {}), case.results)
