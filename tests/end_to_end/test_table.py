@@ -67,6 +67,38 @@ def test_readings_act_and_conditions_are_columns(table: Table) -> None:
     assert added == pytest.approx([0, 15, 15], abs=1e-9)
 
 
+def test_a_plugin_that_declares_nothing_of_the_kind_has_a_gauge_that_may_be_off(calc: Calc, tmp_path: Path) -> None:
+    """30 um of the kernel's own offset: seen by the gauge, and no part of what is calculated."""
+    import json
+
+    offset = '[effects.sensor_offset]\ndepth = "30 um"\n'
+    depths = {}
+    for name, text in (("plain", "[inputs]\n"), ("off", offset)):
+        (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
+        (tmp_path / "rows.csv").write_text("load [N]\n120\n240\n", encoding="utf-8")
+        shown = columns(calc("table", PIN, "--inputs", f"{name}.toml", "--rows", "rows.csv").out)
+        assert calc("run", PIN, "--inputs", f"{name}.toml", "-q").code == 0
+        found = json.loads((tmp_path / "runs" / name / "results.json").read_text(encoding="utf-8"))
+        depths[name] = ([float(cell) for cell in shown["depth [um]"]], found["results"], found["effects"])
+    added = [one - other for one, other in zip(depths["off"][0], depths["plain"][0], strict=True)]
+    assert added == pytest.approx([30, 30], abs=1e-9)
+    assert depths["off"][1] == depths["plain"][1]
+    assert depths["plain"][2] == {}
+    assert depths["off"][2]["sensor_offset"]["depth"]["value"] == pytest.approx(30)
+    assert "sensor offset" in (tmp_path / "runs" / "off" / "sheet.html").read_text(encoding="utf-8")
+
+
+def test_time_counts_from_the_first_row_of_the_file(table: Table) -> None:
+    """A drift of 4 um/h seen by a press whose record begins at 7 h."""
+    rows = "time [h],crank_angle [deg]\n7,0\n7.5,0\n9,0\n"
+    drift = '[effects.sensor_drift]\nslider_position = "4 um/h"\n'
+    plain, drifted = (
+        columns(table(rows, text, plugin="press_linkage").out)["slider_position [mm]"] for text in ("[inputs]\n", drift)
+    )
+    added = [float(one) - float(other) for one, other in zip(drifted, plain, strict=True)]
+    assert added == pytest.approx([0, 2e-3, 8e-3], abs=1e-12)
+
+
 def test_an_effect_on_the_inputs_is_seen_by_the_gauge_too(table: Table) -> None:
     """Running-in adds its whole depth after many lengths: 360 km against 100 m."""
     effect = '[effects.running_in]\nextra = "7 um"\nlength = "100 m"\n'

@@ -524,6 +524,40 @@ WRONG_EFFECTS: list[tuple[dict[str, Any], str]] = [
 ]
 
 
+PLACE = Unknown("place", 0, 9, along="room")
+WRONG_EFFECTS += [
+    ({"on_inputs": wider, "unknowns": [EXTRA], "parts": [["etxra"]]}, "a part of effect 'it' names 'etxra'"),
+    ({"on_inputs": wider, "unknowns": [EXTRA], "parts": [["extra"], ["extra"]]}, "'extra' stands in two parts"),
+    ({"on_inputs": any_keyword, "unknowns": [EXTRA, Unknown("more", 0, 1)], "parts": [["extra"]]},
+     "the unknown 'more' stands in no part"),
+    ({"on_inputs": any_keyword, "unknowns": [EXTRA, Unknown("more", 1, 2)], "parts": [["extra"], ["more"]]},
+     "the part more of effect 'it' has no amplitude"),
+    ({"on_inputs": any_keyword, "unknowns": [EXTRA, PLACE]}, "'place' lies along 'room', which it does not see"),
+]  # fmt: skip
+
+
+def test_places_lie_along_what_an_effect_sees() -> None:
+    assert Effect("it", on_inputs=any_keyword, unknowns=[EXTRA, PLACE], needs=[ROOM]).unknowns[1] is PLACE
+    assert Effect("it", on_inputs=any_keyword, unknowns=[EXTRA, PLACE], reads=["room"]).reads == ("room",)
+    with pytest.raises(DeclarationError, match="effect 'it' reads 'room', which is neither input nor axis"):
+        bar_model(errors=[Effect("it", on_inputs=any_keyword, unknowns=[EXTRA, PLACE], reads=["room"])])
+
+
+def test_whole_unknowns_have_whole_bounds_and_are_no_amplitudes() -> None:
+    assert not Unknown("order", 0, 3, whole=True).is_amplitude
+    with pytest.raises(DeclarationError, match="unknown 'order': it is a whole number, so its bounds are"):
+        Unknown("order", 0.5, 3, whole=True)
+    with pytest.raises(DeclarationError, match="unknown 'order': a place along 'time' is no whole number"):
+        Unknown("order", 1, 3, whole=True, along="time")
+
+
+def test_more_than_three_unknowns_come_in_parts() -> None:
+    four = [Unknown(name, -1, 1) for name in "abcd"]
+    assert len(Effect("it", on_inputs=any_keyword, unknowns=four, parts=["ab", "cd"]).groups()) == 2
+    with pytest.raises(DeclarationError, match="effect 'it' has 4 unknowns; one to three can be found"):
+        Effect("it", on_inputs=any_keyword, unknowns=four)
+
+
 @pytest.mark.parametrize(("arguments", "sentence"), WRONG_EFFECTS)
 def test_effects_that_do_not_fit_their_function(arguments: dict[str, Any], sentence: str) -> None:
     with pytest.raises(DeclarationError, match=sentence):

@@ -16,6 +16,7 @@ import pytest
 
 import truing
 from truing import Allocation, Kernel, Record, Reliability, Sensitivity, Sweep, Table, errors, hookspecs
+from truing.declare.sources import HISTORIES, SINCE_START
 from truing.errors import TruingError, UnitError
 from truing.evaluate import evaluate
 from truing.kernel.loading import load_file
@@ -234,6 +235,22 @@ def test_every_check_of_the_kit_is_listed_with_its_promise() -> None:
     for check in CHECKS:
         row = f"| {check.name} | {check.promise} |"
         assert row in text, f"docs/reference/conformance.md needs the row {row}"
+
+
+def test_every_built_in_effect_and_condition_has_its_row() -> None:
+    from truing.declare.builtin import builtin_effects
+
+    text = page("builtin_effects.md")
+    model = load_file(DOCS / "examples" / "coil_spring.py").COIL_SPRING
+    listed = re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE)
+    assert listed == list(builtin_effects(model))
+    for name in [*(set(model.known_conditions) - set(model.conditions)), "temperature"]:
+        assert f"condition `{name}` [" in text or f"\n  condition `{name}` [" in text
+
+
+@pytest.mark.parametrize("word", [SINCE_START, *(f"{word} of X" for word in HISTORIES)])
+def test_every_history_has_its_row(word: str) -> None:
+    assert f'\n| `"{word}"` |' in page("declaring.md")
 
 
 def table(text: str, title: str) -> list[list[str]]:

@@ -206,7 +206,7 @@ def _jump(own: Mapping[str, Float], sight: Float) -> Float:
     return own.get("size", 0.0) * np.where(sight >= own["after"], 1.0, 0.0)
 
 
-_SENSOR = "sensor error model: a reading is (1 + gain) * value + offset + drift * time"
+_SENSOR = "linear model of a gauge: gain, offset and drift"
 _OFFSET = _Kind(
     "sensor_offset", _offset_of, _constant, "the same everywhere", "the zero of the gauge is off", _SENSOR,
 )  # fmt: skip
