@@ -41,10 +41,10 @@ class Diagnosed:
 
 def perform_diagnosis(setup: Setup, offer: Offer, order: DiagnosisOrder, progress: Progress) -> Diagnosed:
     """Read, diagnose and write the folder; it is complete or absent, whatever happens."""
+    demand_place(order.folder, "diagnosis")
     from truing.diagnosis.engine import diagnose
     from truing.diagnosis.reading import read_records
 
-    demand_place(order.folder, "diagnosis")
     started = time.time()
     diagnosis = diagnose(setup, read_records(order.data, offer, setup), progress=progress)
     document, note = write_all(diagnosis, order, started)

@@ -1,0 +1,382 @@
+"""The sheet of a diagnosis and its report on a terminal: what every verdict says, whatever its texts try to be."""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from html import unescape
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+from diagnosis_samples import SAMPLES, ambiguous, named, none_found, unknown
+from test_report_sheet import HOSTILE, Page
+
+from shared import Calc
+from truing.cli.diagnosis_printed import report
+from truing.diagnosis.records import Covariate, Slip
+from truing.diagnosis.result import Alternative, Amount, Cause, Diagnosis, Finding, FittedUnknown, NextPoint, Seen
+from truing.report.context import FigureView, TableView
+from truing.report.diagnosis_figures import main_covariates, thinned
+from truing.report.diagnosis_sheet import (
+    DiagnosisSheet,
+    diagnosis_html,
+    diagnosis_markdown,
+    make_diagnosis_sheet,
+)
+from truing.report.diagnosis_words import (
+    amount_text,
+    certainty,
+    explanation,
+    fitted_text,
+    headline,
+    listed,
+    number_texts,
+    p_text,
+    percent,
+    spoken,
+    verdict_word,
+)
+from truing.runs.provenance import provenance_of
+
+
+def sheet_of(made: Diagnosis) -> DiagnosisSheet:
+    return make_diagnosis_sheet(made, provenance=provenance_of(made.setup, date="2026-11-21"))
+
+
+@pytest.fixture(scope="module", params=list(SAMPLES))
+def sheet(request: pytest.FixtureRequest) -> DiagnosisSheet:
+    return sheet_of(SAMPLES[request.param]())
+
+
+def texts_of(sheet: DiagnosisSheet) -> Iterator[str]:
+    """Every text that stands on the sheet, as it was said."""
+    yield from (sheet.head.title, sheet.verdict, sheet.data, *sheet.sentences, *sheet.slips, *sheet.warnings)
+    for chapter in sheet.chapters:
+        yield chapter.title
+        for block in chapter.blocks:
+            if isinstance(block, TableView):
+                yield from (block.title, *block.columns, block.note)
+                yield from (cell for row in block.rows for cell in row)
+            elif isinstance(block, FigureView):
+                yield block.caption
+            else:
+                yield block.text
+
+
+def plain(text: str) -> str:
+    """A text without what markup needs: entities, backslashes, true minus signs and narrow spaces stay as they are."""
+    return re.sub(r"\s+", " ", text.replace("\u00a0", " ")).strip()
+
+
+# The sheet, in both languages
+
+
+def test_figures_can_all_be_drawn(sheet: DiagnosisSheet) -> None:
+    views = [block for chapter in sheet.chapters for block in chapter.blocks if isinstance(block, FigureView)]
+    assert len(views) >= 3
+    assert [view.number for view in views] == list(range(1, len(views) + 1))
+    assert not [text for text in sheet.warnings if "figure" in text]
+
+
+def test_html_and_markdown_say_the_same(sheet: DiagnosisSheet) -> None:
+    html = plain(Page(diagnosis_html(sheet)).text)
+    markdown = plain(re.sub(r"\\(.)", r"\1", unescape(diagnosis_markdown(sheet))))
+    said = [plain(text) for text in texts_of(sheet) if text]
+    assert len(said) > 80
+    assert [text for text in said if text not in html and text.replace("-", "−") not in html] == []
+    assert [text for text in said if text not in markdown and text.replace("-", "−") not in markdown] == []
+
+
+def test_the_page_cannot_act(sheet: DiagnosisSheet) -> None:
+    page = Page(diagnosis_html(sheet))
+    names = {tag for tag, _ in page.tags}
+    assert not names & {"script", "iframe", "object", "embed", "link", "form", "input", "base", "audio", "video", "img"}
+    for tag, attributes in page.tags:
+        assert not [name for name in attributes if name.startswith("on")], tag
+        for name in ("src", "href", "xlink:href", "action", "srcset"):
+            assert (attributes.get(name) or "#").startswith("#"), (tag, attributes)
+    policies = [a["content"] for tag, a in page.tags if tag == "meta" and a.get("http-equiv")]
+    assert policies == ["default-src 'none'; style-src 'unsafe-inline'; img-src data:"]
+
+
+def test_the_same_diagnosis_gives_the_same_sheet() -> None:
+    assert diagnosis_html(sheet_of(ambiguous())) == diagnosis_html(sheet_of(ambiguous()))
+
+
+def test_the_chapters_follow_the_questions(sheet: DiagnosisSheet) -> None:
+    titles = [chapter.title for chapter in sheet.chapters]
+    asked = ["What is wrong", "Cause", "Extended model", "Gain", "Next measurement", "Data"]
+    assert titles[:6] == asked
+    assert titles[-1] == "Provenance"
+
+
+def test_a_unit_slip_stands_before_everything_else() -> None:
+    text = diagnosis_html(sheet_of(ambiguous()))
+    assert 0 < text.index("Suspected unit slip.") < text.index("<h2")
+    assert "Suspected unit slip" not in diagnosis_html(sheet_of(named()))
+
+
+def test_hostile_texts_are_printed_and_do_nothing() -> None:
+    made = ambiguous()
+    covariates = {**made.records.covariates, HOSTILE: Covariate(HOSTILE, np.arange(160.0), "", "other")}
+    records = replace(
+        made.records, covariates=covariates, notes=(HOSTILE,), slips=(Slip(HOSTILE, 10.0, HOSTILE),),
+        files=(HOSTILE, "b.csv"),
+    )  # fmt: skip
+    wrong = replace(made.wrong[0], findings=(Finding("trend", HOSTILE, 0.01, HOSTILE),))
+    made = replace(
+        made, records=records, wrong=(wrong, made.wrong[1]), warnings=(HOSTILE,), inseparable=(HOSTILE,),
+        alternatives=(Alternative((HOSTILE,), 1.0, 2.0, (HOSTILE,)),),
+        causes=(*made.causes, Cause(f"input:{HOSTILE}", (FittedUnknown(HOSTILE, 1.0, 0.5, 1.5, ""),), (), (HOSTILE,))),
+        next=(NextPoint({HOSTILE: Amount(1.0, "")}, (HOSTILE, HOSTILE), HOSTILE, 3.0),),
+        seen=(Seen(HOSTILE, None, "not excited", HOSTILE, HOSTILE),), not_measured={HOSTILE: (HOSTILE,)},
+    )  # fmt: skip
+    sheet = sheet_of(made)
+    html = diagnosis_html(sheet)
+    assert "<script" not in html
+    assert HOSTILE in plain(Page(html).text)
+    markdown = diagnosis_markdown(sheet)
+    assert "<script" not in markdown
+    assert "](https://evil" not in markdown
+    assert "**bold**" not in markdown
+    printed = "\n".join(report(made, Path("runs/x")))
+    assert "alert(1)" in printed
+
+
+# Words
+
+
+def fitted(value: float, low: float | None, high: float | None, unit: str = "um") -> FittedUnknown:
+    return FittedUnknown("size", value, low, high, unit)
+
+
+@pytest.mark.parametrize(
+    ("unknown", "expected"),
+    [
+        (fitted(11.8e-6, 11.42e-6, 12.18e-6), ("11.80", "11.42", "12.18", "µm")),
+        (fitted(118.2e-6, 101e-6, 135e-6), ("118", "101", "135", "µm")),
+        (fitted(-0.66e-6, -0.71e-6, -0.61e-6), ("−0.660", "−0.710", "−0.610", "µm")),
+        (fitted(41e-6, None, 52e-6), ("41", "open", "52", "µm")),
+        (fitted(41e-6, None, None), ("41", "open", "open", "µm")),
+        (fitted(0.0, -1e-6, 1e-6), ("0", "−1.0", "1.0", "µm")),
+        (fitted(7.0, 7.0, 7.0, ""), ("7", "7", "7", "")),
+        (fitted(298.15, 297.15, 299.15, "degC"), ("25.0", "24.0", "26.0", "°C")),
+    ],
+)
+def test_the_width_of_the_interval_decides_the_digits(unknown: FittedUnknown, expected: tuple[str, ...]) -> None:
+    assert number_texts(unknown, (unknown.value, unknown.low, unknown.high)) == expected
+
+
+def test_an_interval_without_ends_is_said_to_be_open() -> None:
+    assert fitted_text(fitted(41e-6, None, None)) == "size 41 µm (its interval is open)"
+    assert fitted_text(fitted(41e-6, 38e-6, 44e-6)) == "size 41.0 µm (95 %: 38.0 … 44.0)"
+
+
+@pytest.mark.parametrize(
+    ("p_value", "expected"),
+    [
+        (0.0004, "practically certain (p < 0.001)"), (0.0033, "practically certain (p 0.0033)"),
+        (0.02, "likely (p 0.02)"), (0.4, "may be chance (p 0.4)"), (None, "–"),
+    ],
+)  # fmt: skip
+def test_significance_is_said_in_words(p_value: float | None, expected: str) -> None:
+    assert certainty(p_value) == expected
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"), [((), ""), (("a",), "a"), (("a", "b"), "a and b"), (("a", "b", "a", "c"), "a, b and c")]
+)
+def test_words_are_listed_as_a_sentence_does(words: tuple[str, ...], expected: str) -> None:
+    assert listed(words) == expected
+
+
+def test_small_pieces_of_words() -> None:
+    assert p_text(None) == "not tested"
+    assert percent(0.9991) == "99.9 %"
+    assert percent(math.nan) == "–"
+    assert amount_text(Amount(2.3e-6, "um")) == "2.3 µm"
+    assert amount_text(None) == "–"
+    assert spoken("input:rod") == "rod outside of its tolerance"
+    assert explanation(Alternative((), 1.0, 1.0)) == "nothing but noise"
+    assert explanation(Alternative(("a_b", "unknown"), 1.0, 1.0, ("x",))) == "a b + something unregistered over x"
+
+
+SAID = {
+    "none": ["meets the measurement: slide position to 6.1 µm (noise floor 6 µm)", "nothing of joint play"],
+    "named": ["slide position: rod heating, expansion 11.80 µm/(m·K) (95 %: 11.42 … 12.18).",
+              "falls from 41.2 µm to 6.12 µm (noise floor 6 µm): 99.9 %", "No other explanation comes near"],
+    "ambiguous": ["does not exclude sensor drift", "Measure next at rod temperature 50 °C, load −50 kN"],
+    "unknown": ["Something that no registered effect explains is in slide position, over crank angle: order 7"],
+    "remainder": ["rod heating, expansion 11.80", "Beside it something that no registered effect explains"],
+}  # fmt: skip
+WORDS = {
+    "none": "Nothing found", "named": "Cause named", "ambiguous": "Cause named, others possible",
+    "unknown": "Cause unknown", "remainder": "Cause named, a remainder left",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_the_sentence_for_a_colleague_holds_cause_size_gain_and_what_is_next(name: str) -> None:
+    made = SAMPLES[name]()
+    said = " ".join(headline(made))
+    assert [words for words in SAID[name] if words not in said] == []
+    assert verdict_word(made) == WORDS[name]
+    assert said in plain(Page(diagnosis_html(sheet_of(made))).text)
+
+
+def test_a_gain_that_may_be_chance_is_called_so() -> None:
+    made = replace(named(), gain=tuple(replace(item, p_value=0.3) for item in named().gain))
+    assert "On rows that were not fitted this is worth nothing that could not be chance." in headline(made)
+
+
+# What residuals are drawn over
+
+
+@pytest.mark.parametrize(
+    ("sample", "expected"),
+    [
+        ("none", ["crank_angle"]), ("named", ["rod_temperature"]), ("unknown", ["crank_angle"]),
+        ("remainder", ["rod_temperature", "crank_angle"]),
+    ],
+)  # fmt: skip
+def test_residuals_are_drawn_over_what_is_guilty(sample: str, expected: list[str]) -> None:
+    assert [item.name for item in main_covariates(SAMPLES[sample]())] == expected
+
+
+def test_a_condition_with_few_values_shows_no_course() -> None:
+    """The play follows the load, which has two values here: the angle is looked at instead."""
+    play = Cause("joint_play", (FittedUnknown("clearance", 9e-6, 5e-6, 13e-6, "um"),))
+    assert [item.name for item in main_covariates(replace(named(), causes=(play,)))] == ["crank_angle"]
+
+
+@pytest.mark.parametrize(("rows", "step"), [(160, 1), (1500, 1), (1501, 2), (100_000, 67)])
+def test_figures_of_long_records_are_thinned(rows: int, step: int) -> None:
+    assert thinned(rows).step == step
+
+
+# The terminal
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_the_report_answers_the_five_questions(name: str) -> None:
+    text = "\n".join(report(SAMPLES[name](), Path("runs/x")))
+    titles = re.findall(r"^(\d [A-Z][a-z ]+?)  ", text, re.MULTILINE)
+    assert titles == ["1 What is wrong", "2 Cause", "3 Extended model", "4 Gain", "5 Next"]
+    assert text.startswith("DIAGNOSIS  press_record.csv, second day.csv: 160 rows, 3 runs, 4 h; slide: ")
+    assert [words for words in SAID[name] if words not in text] == []
+    assert ("extended model: " in text) == (name in {"named", "ambiguous", "remainder"})
+    assert ("new_effect.py" in text) == (name in {"unknown", "remainder"})
+
+
+def test_a_narrow_terminal_breaks_behind_the_titles(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    lines = "\n".join(report(ambiguous(), Path("runs/x"))).splitlines()
+    assert max(map(len, lines)) <= 80
+    start = lines.index(next(line for line in lines if line.startswith("1 What is wrong")))
+    end = lines.index(next(line for line in lines if line.startswith("sheet: ")))
+    assert [line for line in lines[start : end - 1] if line[1:2] != " " and line[:1].strip()] == []
+
+
+@pytest.fixture
+def engine(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """An engine that found what a sample holds; what it is asked is written down."""
+    from truing.diagnosis import reading
+
+    asked: list[Any] = []
+
+    def diagnose(setup: Any, records: Any, *, progress: Callable[[str, int, int], None] | None = None) -> Diagnosis:
+        asked.append(setup)
+        if progress is not None:
+            progress("explanations", 1, 1)
+        return replace(ambiguous(), setup=setup, extended=replace(setup, calibrated={}))
+
+    def read_records(paths: Any, offer: Any, setup: Any) -> Any:
+        asked.append(tuple(paths))
+        return ambiguous().records
+
+    module = ModuleType("truing.diagnosis.engine")
+    module.diagnose = diagnose  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "truing.diagnosis.engine", module)
+    monkeypatch.setattr(reading, "read_records", read_records)
+    return asked
+
+
+@pytest.fixture
+def plugin(tmp_path: Path) -> str:
+    """The slide as a file that can be named on the command line."""
+    text = "from diagnosis_samples import SLIDE\nfrom truing import hookimpl\n\n\n@hookimpl\ndef truing_models():\n"
+    (tmp_path / "sliding.py").write_text(f"{text}    return [SLIDE]\n", encoding="utf-8")
+    (tmp_path / "press record.csv").write_text("x\n1\n", encoding="utf-8")
+    return "./sliding.py"
+
+
+def test_the_verb_prints_the_report_and_writes_the_folder(
+    calc: Calc, plugin: str, engine: list[Any], tmp_path: Path
+) -> None:
+    answer = calc("diagnose", plugin, "--data", "press record.csv", "b.csv", "-d", "c.csv")
+    assert answer.code == 0
+    assert engine[0] == (Path("press record.csv"), Path("c.csv"), Path("b.csv"))
+    assert answer.out.startswith("DIAGNOSIS  press_record.csv")
+    assert answer.out.endswith("extended model: runs/press record/extended.toml\n")
+    said = [line.split(":")[0] for line in answer.err.splitlines()]
+    assert said == ["no --inputs", "warning", "warning", "note", "note"]
+    assert "warning: suspected unit slip: load lies" in answer.err
+    names = {path.name for path in (tmp_path / "runs" / "press record").iterdir()}
+    assert names >= {"diagnosis.json", "extended.toml", "sheet.html", "sheet.md", "inputs.toml", "run.json"}
+
+
+def test_the_verb_prints_one_document_with_json(calc: Calc, plugin: str, engine: list[Any], tmp_path: Path) -> None:
+    import json
+
+    (tmp_path / "in.toml").write_text('[inputs]\nradius = "81 mm"\n', encoding="utf-8")
+    answer = calc(
+        "diagnose",
+        plugin,
+        "-i",
+        "in.toml",
+        "--data",
+        "press record.csv",
+        "--json",
+        "-o",
+        "there",
+        "--set",
+        "rod=300 mm",
+    )
+    assert answer.code == 0
+    assert json.loads(answer.out) == json.loads((tmp_path / "there" / "diagnosis.json").read_text(encoding="utf-8"))
+    assert engine[1].inputs.radius == pytest.approx(0.081)
+    assert engine[1].inputs.rod == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ((), "calc: nothing to diagnose: name the measured rows with --data FILE.csv"),
+        (("--data", "x.csv", "--output", "sliding.py"), "sliding.py: is a file; a diagnosis is a folder"),
+        (("--data", "x.csv", "--inputs", "no.toml"), "no.toml"),
+        (("--data", "x.csv", "--output", "."), "is an existing folder but no diagnosis of ours"),
+    ],
+)
+def test_bad_words_are_answered_in_a_sentence(
+    calc: Calc, plugin: str, arguments: tuple[str, ...], sentence: str
+) -> None:
+    answer = calc("diagnose", plugin, *arguments)
+    assert answer.code == 2
+    assert answer.out == ""
+    assert sentence in answer.err
+    assert "fault of the program" not in answer.err
+
+
+@pytest.mark.parametrize("sample", [none_found, unknown])
+def test_every_verdict_ends_with_exit_code_0(
+    calc: Calc, plugin: str, engine: list[Any], sample: Callable[[], Diagnosis], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys.modules["truing.diagnosis.engine"], "diagnose", lambda *_, **__: sample())
+    assert calc("diagnose", plugin, "--data", "press record.csv", "-q").code == 0
