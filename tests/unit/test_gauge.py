@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from pin_wear import PIN_WEAR
 
-from truing import Effect, Float, Model, Unknown, axis, column, found, given, inputs, results
+from truing import Condition, Effect, Float, Model, Unknown, axis, column, found, given, inputs, results
 from truing.errors import UsageError
-from truing.gauge import Shown, one_machine, shown_by_gauge
+from truing.gauge import Shown, one_machine, read_by_gauge, shown_by_gauge
 from truing.inputs_file import setup_from_text
 from truing.kernel import Offer, Origin
-from truing.measurements import read_rows
+from truing.measurements import RowsFile, read_rows
+from truing.setup import Setup, SwitchedOn
 
 
 @inputs
@@ -51,8 +53,6 @@ def wall(given_: Wall) -> Course:
 
 def dirt(given_: Wall, base: Course, *, offset: Float) -> Course:
     """The probe reads warmer by a constant."""
-    from dataclasses import replace
-
     return replace(base, inside=base.inside + offset)
 
 
@@ -166,3 +166,70 @@ def test_a_record_has_one_value_of_everything_else(gauge: Gauge) -> None:
 def test_a_model_of_curves_only_asks_for_the_axis(gauge: Gauge) -> None:
     with pytest.raises(UsageError, match="every result of curve runs along depth: give that column"):
         gauge(CURVE, "flux [W/m^2]\n10\n")
+
+
+# As the engine asks: one machine, chosen results, SI
+
+
+def rows_for(model: Model, path: Path, text: str) -> tuple[Setup, RowsFile]:
+    offer = Offer(model.name, model, Origin(model.name, "", "", "", f"module:{model.name}"))
+    path.write_text(text)
+    setup = setup_from_text("[inputs]\n", offer, file="given.toml", folder=path.parent)
+    return setup, read_rows(path, offer, setup)
+
+
+def test_wanted_results_in_si(tmp_path: Path) -> None:
+    setup, rows = rows_for(PIN_WEAR, tmp_path / "rows.csv", "load [N]\n28\n56\n")
+    found = read_by_gauge(setup, rows, ["pressure"])
+    assert list(found.results) == ["pressure"]
+    np.testing.assert_allclose(found.results["pressure"], [1e6, 2e6])
+
+
+def test_conditions_that_nobody_needs_are_not_looked_at(tmp_path: Path) -> None:
+    setup, rows = rows_for(PIN_WEAR, tmp_path / "rows.csv", "load [N]\n28\n56\n")
+    more = replace(rows, columns={**rows.columns, "of_another_effect": np.array([1.0, 2.0])})
+    np.testing.assert_allclose(read_by_gauge(setup, more, ["pressure"]).results["pressure"], [1e6, 2e6])
+
+
+def test_all_rows_are_one_call(tmp_path: Path) -> None:
+    calls = []
+
+    def counted(given_: Wall) -> Course:
+        calls.append(np.shape(given_.flux))
+        return wall(given_)
+
+    model = replace(WALL, function=counted)
+    setup, rows = rows_for(model, tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
+    np.testing.assert_allclose(read_by_gauge(setup, rows, ["inside"]).results["inside"] - 293.15, [1, 2, 3])
+    assert calls == [(3,)]
+
+
+def test_axes_are_calculated_where_they_are_needed(tmp_path: Path) -> None:
+    text = "run,depth [mm],pressing [N]\na,0,1\na,50,2\na,100,3\n"
+    setup, rows = rows_for(WALL, tmp_path / "rows.csv", text)
+    found = read_by_gauge(setup, rows, ["work"])
+    assert list(found.results) == ["work"]
+    np.testing.assert_allclose(found.results["work"], [1, 2, 3])
+
+
+def warm(given_: Wall, base: Course, *, slope: Float, room: Float) -> Course:
+    """The probe reads warmer with the room."""
+    return replace(base, inside=base.inside + slope * (room - 293.15), temperature=base.temperature + slope)
+
+
+def test_a_condition_may_change_within_a_record(tmp_path: Path) -> None:
+    """The wall is at 21 degC inside; half a kelvin per kelvin of the room is read on top."""
+    effect = Effect(
+        "warm",
+        on_reading=warm,
+        needs=[Condition("room", "degC", reference=20)],
+        unknowns=[Unknown("slope", -5, 5)],
+        looks_like="the room",
+    )
+    model = replace(WALL, errors=[effect])
+    text = "depth [mm],pressing [N],room [degC]\n0,1,20\n50,2,22\n100,3,24\n"
+    setup, rows = rows_for(model, tmp_path / "rows.csv", text)
+    on = replace(setup, effects=(SwitchedOn(effect, {"slope": 0.5}),))
+    found = read_by_gauge(on, rows)
+    np.testing.assert_allclose(found.results["inside"] - 273.15, [21, 22, 23])
+    np.testing.assert_allclose(found.results["work"], [1, 2, 3])
