@@ -429,3 +429,21 @@ def test_a_diagnosis_is_replaced_by_a_diagnosis_and_by_nothing_else(tmp_path: Pa
     with pytest.raises(OutputError, match="an existing folder but no diagnosis of ours"):
         write(tmp_path / "mine", named())
     assert [path.name for path in (tmp_path / "mine").iterdir()] == ["letter.txt"]
+
+
+# The manual
+
+
+def test_every_field_is_explained() -> None:
+    import re
+
+    page = Path(__file__).parents[2] / "docs" / "reference" / "verbs" / "diagnose.md"
+    rows = re.findall(r"^\| (`[^|]+`) \|(.*)\|$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    named = {name for cell, _ in rows for name in re.findall(r"`(\w+)`", cell)}
+    spoken = {name for row in rows for cell in row for name in re.findall(r"`(\w+)`", cell)}
+    document = written(ambiguous())
+    assert set(document) <= named
+    for item in (document["wrong"]["slide_position"], document["alternatives"][0], document["next"][0]):
+        assert set(item) - {"rows"} <= spoken
+    assert set(written(unknown())["remainder"]) <= spoken
+    assert set(document["gain"]["slide_position"]) <= spoken
