@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import jsonschema
@@ -47,6 +48,13 @@ def test_they_are_written_back_as_they_are() -> None:
     options = setup_of(TEXT).diagnose
     again = setup_of(complete_inputs(setup_of(TEXT)))
     assert again.diagnose == options
+
+
+def test_conditions_of_the_kernel_have_a_range_too() -> None:
+    text = '[studies.diagnose]\nbox = { angle = "-90..90 deg" }\n'
+    options = setup_of(text).diagnose
+    assert options.box["angle"] == pytest.approx((-math.pi / 2, math.pi / 2))
+    assert setup_of(complete_inputs(setup_of(text))).diagnose == options
 
 
 def test_they_can_be_set_on_the_command_line() -> None:

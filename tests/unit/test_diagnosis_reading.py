@@ -198,6 +198,16 @@ def test_rows_beyond_the_axis_measure_nothing_there(read: Read) -> None:
     assert said(records, "axis") == ["'work' is not used in 1 row, which lie beyond its axis"]
 
 
+def test_a_standard_deviation_of_nothing_is_none(read: Read) -> None:
+    records = read(PIN_WEAR, "depth [um],sigma_depth [um],sigma_pressure [MPa]\n1,0,1\n2,0.5,1\n3,,1\n")
+    assert list(records.sigma) == ["depth"]
+    np.testing.assert_allclose(records.sigma["depth"], [np.nan, 5e-7, np.nan])
+    assert said(records, "sigma") == [
+        "column 'sigma_pressure' is of a result that is not measured and is not used",
+        "'sigma_depth' is 0 in 1 row, which no gauge is; it counts as not given there",
+    ]
+
+
 # What is refused
 
 ANGLES = "crank_angle [deg],slider_position [mm]\n1,2700\n2,2700\n3,2700\n"
@@ -267,6 +277,9 @@ PIN_RESULTS = "pressure [MPa], distance [km], depth [um]"
         ]),
         (PROBE, "force [N],work [J]\n1,1\n2,2\n3,3\n", [
             "a.csv:1: work runs along 'depth'; give the place of each row in a column 'depth [mm]'",
+        ]),
+        (SPRING, "load [kg],travel [mm]\n1,1\n2,2\n3,3\n", [
+            "a.csv:1: column 'load [kg]': 'kg' is a mass (kg), expected a force (kN)",
         ]),
         (PIN_WEAR, "sigma_depth [um],depth [um]\n-1,1\n1,2\n1,3\n", [
             "a.csv:2: sigma_depth: a standard deviation is 0 or more",

@@ -118,7 +118,9 @@ def measurable(model: Model[Any, Any]) -> list[str]:
 
 def _units(model: Model[Any, Any]) -> dict[str, str]:
     """Return the declared unit of every column of numbers that is known by name."""
-    found = {name: item.unit for name, item in model.own_result_fields.items()}
+    conditions = model.known_conditions.values()
+    found = {item.made_from: item.unit for item in conditions if item.derived and item.history != "direction"}
+    found |= {name: item.unit for name, item in model.own_result_fields.items()}
     found |= {name: condition.unit for name, condition in model.known_conditions.items()}
     numbers = {"float", "whole", "series"}
     return found | {name: item.unit for name, item in model.input_fields.items() if item.kind in numbers}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from truing.diagnosis.covariates import covariates_of, held_out_rows
 from truing.diagnosis.data_file import DataFile, read_data_file
@@ -17,6 +18,10 @@ from truing.gauge import one_machine, read_by_gauge
 from truing.kernel import Offer
 from truing.measurements.table import SIGMA
 from truing.setup import Setup
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 FEWEST = 3
 MOST_FAILED = 0.5
@@ -45,6 +50,7 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup) -> Records:
     _demand_rows(int((~held_out).sum()), joined.files, notes)
     slips = suspected_slips(joined, answers, setup)
     covariates, said = covariates_of(joined, setup)
+    sigma, unused = _sigma(joined)
     data = joined.data
     return Records(
         files=joined.files,
@@ -53,10 +59,10 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup) -> Records:
         run_of=numbered(data.runs.tolist())[0],
         lines=data.lines,
         measured={name: data.columns[name] for name in data.named("measured")},
-        sigma={name.removeprefix(SIGMA): data.columns[name] for name in data.named("sigma")},
+        sigma=sigma,
         covariates=covariates,
         held_out=held_out,
-        notes=(*notes, *said),
+        notes=(*notes, *said, *unused),
         slips=slips,
         absent=joined.absent,
     )
@@ -94,6 +100,20 @@ def _demand_rows(rows: int, files: Sequence[str], notes: Sequence[str]) -> None:
     left = f"{_FEW[rows]} can be used" if why else held
     sentence = f"{left}; a diagnosis needs {FEWEST} rows at the very least, better fifty{why}"
     raise InputError([Fault(sentence, files[0] if len(files) == 1 else "")])
+
+
+def _sigma(joined: Joined) -> tuple[dict[str, NDArray[np.float64]], list[str]]:
+    """Return the standard deviations that are given, by result; one of 0 is none."""
+    import numpy as np
+
+    data, notes = joined.data, []
+    used = [name for name in data.named("sigma") if name.removeprefix(SIGMA) in data.columns]
+    for name in used:
+        zero = int((data.columns[name] == 0).sum())
+        if zero:
+            notes.append(f"'{name}' is 0 in {counted(zero)}, which no gauge is; it counts as not given there")
+    found = {name: np.where(data.columns[name] > 0, data.columns[name], np.nan) for name in used}
+    return {name.removeprefix(SIGMA): values for name, values in found.items()}, notes
 
 
 def _answered(joined: Joined, setup: Setup) -> tuple[Joined, Answers, list[str]]:

@@ -105,11 +105,13 @@ def in_time_order(data: DataFile) -> Tidied:
 
 
 def _time(data: DataFile) -> NDArray[np.float64] | None:
-    """Return the times of the rows where they are measured at all."""
+    """Return the times of the rows where they are known; a result of that name is no clock."""
     import numpy as np
 
-    time = data.columns.get(TIME)
-    return time if time is not None and time.dtype != object and np.isfinite(time).any() else None
+    if data.parts.get(TIME) in {None, "label", "word", "measured"}:
+        return None
+    time = data.columns[TIME]
+    return time if np.isfinite(time).any() else None
 
 
 def _late(time: NDArray[np.float64], sizes: NDArray[np.intp]) -> int:
@@ -125,8 +127,8 @@ def _late(time: NDArray[np.float64], sizes: NDArray[np.intp]) -> int:
 def in_one_piece(data: DataFile, model: Model[Any, Any]) -> Tidied:
     """Join angles of inputs and conditions that jump by a turn inside a sweep.
 
-    A run is a sweep if 95 % of its steps are below 90 degrees once it is joined, and at most every fourth step jumps. An
-    input whose bounds would not hold stays as it is.
+    A run is a sweep if 95 % of its steps are below 90 degrees once it is joined and at most every fourth step jumps.
+    An input whose bounds would not hold stays as it is.
     """
     import numpy as np
 
