@@ -262,6 +262,17 @@ def _differ(up: Curve, down: Curve) -> bool:
     return False
 
 
+def new_curves(machine: Machine, candidate: Candidate, term: Term) -> list[Curve]:
+    """Return the curves of a term on other rows than it was made for, at the same shape, SI per amplitude."""
+    found: list[Curve] = []
+    for name, low in zip(term.unknowns, term.low, strict=True):
+        unknown = next(each for each in candidate.amplitudes if each.name == name)
+        sides = _sides(machine, candidate, unknown, term.shape)
+        downward = len(sides) > 1 and low < 0
+        found.append(sides[1] if downward else sides[0])
+    return found
+
+
 @dataclass(frozen=True)
 class _Column:
     curve: Curve

@@ -54,7 +54,7 @@ def contest(problem: Problem, noise: NoiseModel, rows: NDArray[np.bool_], *, rou
         found, settings = _all_scored(problem, evidence)
         if left:
             best = found.best()
-            noise = learned(problem, evidence, solve(evidence, found.hypotheses[best], found.setting[best]), raw)
+            noise = learned(problem, evidence, solve(evidence, found.hypotheses[best], found.setting[best]), raw, noise)
     return Contest(problem, noise, evidence, found, tuple(settings))
 
 

@@ -222,17 +222,20 @@ class _residual:  # noqa: N801  # a function with what it needs
         import numpy as np
 
         u = x[self.p :]
-        made = self.fitter.predicted(x[: self.p], u)
-        machine = self.fitter.machine
-        means = np.array([item.mean / item.sd for item in machine.inputs])
-        parts = []
-        for channel, place in zip(self.contest.evidence.channels, self.setting, strict=True):
-            target = self.contest.noise.residuals[channel.name] + machine.base[channel.name]
-            if len(means):
-                target = target + machine.slopes[channel.name] @ means
-            left = (target - made[channel.name])[channel.rows] / channel.scale
-            parts.append(whiten(left * channel.weights, channel.starts, SETTINGS[place]))
-        return np.concatenate([*parts, u])
+        return np.concatenate([white_residual(self.contest, self.fitter, self.setting, x[: self.p], u), u])
+
+
+def white_residual(contest: Contest, fitter: Fitter, setting: tuple[int, ...], x: Matrix, u: Matrix) -> Matrix:
+    """Return what is left of the pseudo-observations at some parameters, whitened, in units of the noise."""
+    import numpy as np
+
+    made, machine = fitter.predicted(x, u), fitter.machine
+    parts = []
+    for channel, place in zip(contest.evidence.channels, setting, strict=True):
+        target = contest.noise.residuals[channel.name] + machine.base[channel.name] + machine.shifts[channel.name]
+        left = (target - made[channel.name])[channel.rows] / channel.scale
+        parts.append(whiten(left * channel.weights, channel.starts, SETTINGS[place]))
+    return np.concatenate(parts)
 
 
 class _Jacobian:
@@ -240,7 +243,7 @@ class _Jacobian:
 
     def __init__(self, contest: Contest, fitter: Fitter, setting: tuple[int, ...], residual: _residual) -> None:
         self.contest, self.fitter, self.residual = contest, fitter, residual
-        self.inputs = _white_directions(contest, setting)
+        self.inputs = white_directions(contest, setting)
 
     def __call__(self, x: Matrix) -> Matrix:
         import numpy as np
@@ -258,7 +261,8 @@ class _Jacobian:
         return made
 
 
-def _white_directions(contest: Contest, setting: tuple[int, ...]) -> Matrix:
+def white_directions(contest: Contest, setting: tuple[int, ...]) -> Matrix:
+    """Return the directions of the tolerated inputs, whitened, channel below channel."""
     import numpy as np
 
     parts = [

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.records import Records
@@ -49,7 +50,14 @@ class Machine:
     base: Predicted
     inputs: tuple[Tolerated, ...]
     slopes: Predicted
-    """By result, shape (n, len(inputs))."""
+
+    @cached_property
+    def shifts(self) -> Predicted:
+        """By result (n,): what the means of the tolerances add to the prediction at the start."""
+        import numpy as np
+
+        means = np.array([item.mean / item.sd for item in self.inputs])
+        return {name: slopes @ means for name, slopes in self.slopes.items()}
 
 
 def predict(setup: Setup, records: Records) -> Predicted:

@@ -25,6 +25,7 @@ from truing.diagnosis.noise import (
     clipped,
     colour,
     spread_of,
+    standardised,
     tails_of,
     weights_of,
     whiten,
@@ -66,8 +67,12 @@ class Evidence:
 
 @dataclass(frozen=True)
 class NoiseModel:
-    """What is known of the noise of each result so far: scale (SI), weights per row of the records, clipped tails."""
+    """What is known of the noise of each result so far: scale (SI), weights per row of the records, clipped tails.
 
+    ``given`` are the weights that a stated standard deviation of the readings asks for, in any case.
+    """
+
+    given: Mapping[str, Matrix]
     scales: Mapping[str, float]
     weights: Mapping[str, Matrix]
     residuals: Mapping[str, Matrix]
@@ -106,13 +111,8 @@ class Found:
 
 def residuals_of(machine: Machine) -> dict[str, Matrix]:
     """Return measured minus predicted at the mean of the tolerances, SI, NaN where missing."""
-    import numpy as np
-
-    means = np.array([item.mean / item.sd for item in machine.inputs])
-    return {
-        name: values - machine.base[name] - (machine.slopes[name] @ means if len(means) else 0.0)
-        for name, values in machine.records.measured.items()
-    }
+    measured = machine.records.measured
+    return {name: values - machine.base[name] - machine.shifts[name] for name, values in measured.items()}
 
 
 def evidence_of(problem: Problem, noise: NoiseModel, rows: NDArray[np.bool_]) -> Evidence:
@@ -244,7 +244,9 @@ def _directions(evidence: Evidence, setting: tuple[int, ...], columns: Sequence[
     return np.asarray(np.linalg.solve(total[1 : 1 + k, 1 : 1 + k] + np.eye(k), right))
 
 
-def learned(problem: Problem, evidence: Evidence, solution: Solution, raw: Mapping[str, Matrix]) -> NoiseModel:
+def learned(
+    problem: Problem, evidence: Evidence, solution: Solution, raw: Mapping[str, Matrix], noise: NoiseModel
+) -> NoiseModel:
     """Learn scale, spread and tails of the noise from what a solution leaves, and clip what lies too far out.
 
     The clipped innovations are put back through the noise filter: least squares on these pseudo-observations is a
@@ -258,10 +260,11 @@ def learned(problem: Problem, evidence: Evidence, solution: Solution, raw: Mappi
     for channel, fitted, place in zip(evidence.channels, solution.fitted, solution.setting, strict=True):
         setting = SETTINGS[place]
         left = raw[channel.name][channel.rows] / channel.scale - fitted
-        plain = whiten(left, channel.starts, setting)
+        plain = whiten(left * noise.given[channel.name][channel.rows], channel.starts, setting)
         own = {**drivers, **_size(problem, channel.name)}
         spread = spread_of(plain, {name: values[channel.rows] for name, values in own.items()})
         every = weights_of(spread, own.get(spread.driver), channel.rows, len(problem.machine.records))
+        every = every * noise.given[channel.name]
         row_weights = every[channel.rows]
         innovations = whiten(left * row_weights, channel.starts, setting)
         tail = tails_of(innovations)
@@ -274,7 +277,7 @@ def learned(problem: Problem, evidence: Evidence, solution: Solution, raw: Mappi
         scales[channel.name] = max(sd * channel.scale, floor, 1e-300)
         weights[channel.name], residuals[channel.name] = every, full
         spreads[channel.name], tails[channel.name] = spread, tail
-    return NoiseModel(scales, weights, residuals, spreads, tails)
+    return NoiseModel(noise.given, scales, weights, residuals, spreads, tails)
 
 
 def _drivers(problem: Problem) -> dict[str, Matrix]:
@@ -297,15 +300,18 @@ def _size(problem: Problem, result: str) -> dict[str, Matrix]:
     return {f"size of {result}": np.abs(problem.machine.base[result])}
 
 
-def first_noise(machine: Machine, columns: Mapping[str, Matrix]) -> NoiseModel:
-    """Return a first idea of the noise: what all tolerated inputs and ``columns`` (n, m) together cannot explain."""
+def first_noise(machine: Machine) -> NoiseModel:
+    """Return a first idea of the noise: what the tolerated inputs and powers of all covariates cannot explain."""
     import numpy as np
 
     raw = residuals_of(machine)
     scales = {}
+    covariates = [item for item in machine.records.covariates.values() if not item.is_constant]
+    powers = [standardised(item.values) ** power for item in covariates for power in (1, 2)]
+    columns = np.column_stack([np.ones(len(machine.records)), *powers])
     for name, values in raw.items():
         here = np.isfinite(values) & ~machine.records.held_out
-        design = np.column_stack([machine.slopes[name][here], columns[name][here], np.ones(int(here.sum()))])
+        design = np.column_stack([machine.slopes[name][here], columns[here]])
         size = np.sqrt(np.mean(design**2, axis=0))
         design = design[:, size > 0] / size[size > 0]
         left, singular, _ = np.linalg.svd(design, full_matrices=False)
@@ -315,6 +321,17 @@ def first_noise(machine: Machine, columns: Mapping[str, Matrix]) -> NoiseModel:
         sd = float(np.sqrt(rest @ rest / max(int(here.sum()) - left.shape[1], 1)))
         floor = SMALLEST_SHARE * float(np.sqrt(np.mean(values[here] ** 2)))
         scales[name] = max(sd, floor, 1e-300)
-    ones = {name: np.ones(len(machine.records)) for name in raw}
+    given = {name: _stated(machine, name) for name in raw}
     nothing = {name: Tails(inf, 4.5, 0.0) for name in raw}
-    return NoiseModel(scales, ones, raw, {name: Spread() for name in raw}, nothing)
+    return NoiseModel(given, scales, given, raw, {name: Spread() for name in raw}, nothing)
+
+
+def _stated(machine: Machine, name: str) -> Matrix:
+    """Return the weights that stated standard deviations ask for: 1 where none is stated, less where it is larger."""
+    import numpy as np
+
+    stated = machine.records.sigma.get(name)
+    if stated is None or not (stated > 0).any():
+        return np.ones(len(machine.records))
+    middle = float(np.median(stated[stated > 0]))
+    return np.where(stated > 0, middle / np.where(stated > 0, stated, middle), 1.0)

@@ -1,0 +1,306 @@
+"""The next measurement: settings that separate explanations which this data cannot tell apart.
+
+Every explanation is believed in turn while its rival refits to everything so far; a setting is worth what the rival
+then still gets wrong (greedy T-optimal design). The raw distance of two predictions would be the wrong criterion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import pi
+from typing import TYPE_CHECKING
+
+from truing.declare.fields import InputField
+from truing.diagnosis.candidates import new_curves
+from truing.diagnosis.contest import Contest, names_of
+from truing.diagnosis.findings import in_unit
+from truing.diagnosis.hypotheses import Hypothesis
+from truing.diagnosis.machine import Machine, machine_of
+from truing.diagnosis.noise import SETTINGS
+from truing.diagnosis.readable import readable_unit
+from truing.diagnosis.records import Covariate, Records
+from truing.diagnosis.result import Amount, NextPoint
+from truing.diagnosis.search import Solution
+from truing.measurements import RowsFile
+from truing.numbers import format_number
+from truing.units import from_si, same_dimension, to_si
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+POINTS = 4
+TRIED = 512
+RIVALS = 4
+FEW_VALUES = 3
+SEPARATED = 10.0
+
+
+@dataclass
+class _Duel:
+    """One explanation believed, a rival refitted to it: the rival's coefficients and inverse normal matrix.
+
+    ``signal`` and ``rows`` hold, by result, what the believed one says at every setting (T,), and the rival's row
+    there (T, p), both in units of the noise of one value.
+    """
+
+    names: tuple[str, str]
+    separation: float
+    coefficients: Matrix
+    inverse: Matrix
+    signal: Mapping[str, Matrix]
+    rows: Mapping[str, Matrix]
+
+    def gains(self) -> Matrix:
+        """Return what every setting would add to the separation, shape (T,)."""
+        import numpy as np
+
+        total = np.zeros(len(next(iter(self.signal.values()))))
+        for name, signal in self.signal.items():
+            rows = self.rows[name]
+            leverage = np.einsum("ij,jk,ik->i", rows, self.inverse, rows)
+            total += (signal - rows @ self.coefficients) ** 2 / (1 + leverage)
+        return total
+
+    def measure(self, place: int) -> None:
+        """Add one setting to the data: the rival refits (exact rank-one update)."""
+        for name, signal in self.signal.items():
+            row = self.rows[name][place]
+            carried = self.inverse @ row
+            scale = 1 + float(row @ carried)
+            left = float(signal[place] - row @ self.coefficients)
+            self.separation += left**2 / scale
+            self.coefficients = self.coefficients + carried * (left / scale)
+            self.inverse = self.inverse - carried[:, None] * carried[None, :] / scale
+
+
+def next_points(full: Contest, winner: int, rivals: Sequence[int]) -> list[NextPoint]:
+    """Return up to four settings that separate the winner and its rivals, with the reason for each.
+
+    Shapes that nobody registered say nothing beyond the rows they were fitted to, so they are no rivals here.
+    """
+    import numpy as np
+
+    places = [place for place in (winner, *rivals) if _is_physical(full.found.hypotheses[place])][: RIVALS + 1]
+    if len(places) < 2:
+        return []
+    settings = _settings(full)
+    if not settings:
+        return []
+    there = _machine_there(full, settings)
+    duels = [_duel(full, there, a, b) for a in places for b in places if a != b]
+    found: list[NextPoint] = []
+    for _ in range(POINTS):
+        worth = sum((np.log1p(duel.separation + duel.gains()) for duel in duels), np.zeros(len(there.records)))
+        worth = np.where(np.isfinite(worth), worth, -np.inf)
+        place = int(np.argmax(worth))
+        if not np.isfinite(worth[place]):
+            break
+        weakest = min(duels, key=lambda duel: duel.separation)
+        why = _why(full, settings, place, weakest)
+        for duel in duels:
+            duel.measure(place)
+        least = min(duel.separation for duel in duels)
+        found.append(NextPoint(_amounts(full, settings, place), weakest.names, why, least))
+    return _with_count(found)
+
+
+def _is_physical(hypothesis: Hypothesis) -> bool:
+    return hypothesis.kind in {"one", "two", "input"}
+
+
+def _with_count(found: list[NextPoint]) -> list[NextPoint]:
+    """Say at the last point how many would be needed where these do not suffice."""
+    if not found or found[-1].separation >= SEPARATED:
+        return found
+    last = found[-1]
+    if last.separation < 1e-3:
+        words = "; no setting within reach separates these two"
+    else:
+        words = f"; about {round(SEPARATED / last.separation * len(found)) + 1} points like these would be needed"
+    return [*found[:-1], replace(last, why=last.why + words)]
+
+
+def _settings(full: Contest) -> dict[str, Matrix]:
+    """Return the settings that are tried, by input or condition, SI: the corners of the box and points inside it."""
+    import numpy as np
+    from scipy.stats import qmc
+
+    boxes = {}
+    for name, item in full.problem.machine.records.covariates.items():
+        box = _box(full, name, item)
+        if box is not None and box[1] > box[0]:
+            boxes[name] = box
+    if not boxes:
+        return {}
+    sampler = qmc.Sobol(len(boxes), scramble=False)
+    unit = sampler.random(TRIED)
+    edges = np.random.Generator(np.random.SFC64(0)).integers(0, 3, size=(TRIED, len(boxes))) / 2
+    every = np.concatenate([unit, edges])
+    found = {}
+    for column, (name, (low, high)) in enumerate(boxes.items()):
+        values = low + (high - low) * every[:, column]
+        known = full.problem.machine.records.covariates[name].values
+        if len(np.unique(known[np.isfinite(known)])) <= FEW_VALUES:
+            values = np.where(every[:, column] < 0.5, low, high)
+        found[name] = values
+    return found
+
+
+def _box(full: Contest, name: str, item: Covariate) -> tuple[float, float] | None:
+    """Return the range in which something can be set: asked for, declared, or half as wide again as measured."""
+    import numpy as np
+
+    start = full.problem.machine.start
+    if name in start.diagnose.box:
+        return start.diagnose.box[name]
+    low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
+    condition = start.model.known_conditions.get(name)
+    if condition is not None:
+        limits = [
+            None if each is None else float(to_si(each, condition.unit)) for each in (condition.low, condition.high)
+        ]
+        return low if limits[0] is None else limits[0], high if limits[1] is None else limits[1]
+    field = start.model.input_fields.get(name)
+    return None if field is None or not field.varies else _input_box(field, low, high)
+
+
+def _input_box(field: InputField, low: float, high: float) -> tuple[float, float]:
+    declared = [getattr(field.spec, key, None) for key in ("at_least", "above", "at_most", "below")]
+    lows = [float(to_si(value, field.unit)) for value in declared[:2] if isinstance(value, (int, float))]
+    highs = [float(to_si(value, field.unit)) for value in declared[2:] if isinstance(value, (int, float))]
+    is_angle = field.unit not in {"", "1", "-"} and same_dimension(field.unit, "rad")
+    if is_angle and not lows and not highs:
+        return min(low, -pi), max(high, pi)
+    reach = (high - low) / 2
+    return max([low - reach, *lows]), min([high + reach, *highs])
+
+
+def _machine_there(full: Contest, settings: Mapping[str, Matrix]) -> Machine:
+    """Return the machine at the settings that are tried."""
+    import numpy as np
+
+    machine = full.problem.machine
+    count = len(next(iter(settings.values())))
+    columns = {
+        name: np.full(count, _middle(values))
+        for name, values in machine.records.rows.columns.items()
+        if _is_number(values)
+    }
+    columns |= settings
+    zeros = np.zeros(count, dtype=np.intp)
+    rows = RowsFile("", columns, {}, {}, tuple(range(count)))
+    covariates = {name: replace(machine.records.covariates[name], values=values) for name, values in settings.items()}
+    records = Records(
+        files=machine.records.files,
+        rows=rows,
+        file_of=zeros,
+        run_of=zeros,
+        lines=np.arange(count),
+        measured={name: np.zeros(count) for name in machine.records.measured},
+        sigma={},
+        covariates=covariates,
+        held_out=np.zeros(count, dtype=bool),
+        absent=machine.records.absent,
+    )
+    return machine_of(machine.start, records)
+
+
+def _is_number(values: object) -> bool:
+    import numpy as np
+
+    return isinstance(values, np.ndarray) and values.dtype.kind == "f"
+
+
+def _middle(values: object) -> float:
+    import numpy as np
+
+    return float(np.nanmedian(np.asarray(values, dtype=float)))
+
+
+def _duel(full: Contest, there: Machine, believed: int, rival: int) -> _Duel:
+    """Set up one believed explanation against one rival, with the rival refitted to the data there is."""
+    import numpy as np
+
+    true, other = full.solution(believed), full.solution(rival)
+    evidence = full.evidence
+    k = evidence.directions.shape[1]
+    chosen = [products[place].matrix for products, place in zip(evidence.products, true.setting, strict=True)]
+    total = np.asarray(sum(chosen[1:], chosen[0]))
+    own = [*range(1, 1 + k), *(1 + k + column for column in other.hypothesis.columns)]
+    normal = total[np.ix_(own, own)].copy()
+    normal[:k, :k] += np.eye(k)
+    normal += 1e-9 * np.diag(np.diag(normal))
+    theirs = [1 + k + column for column in true.hypothesis.columns]
+    cross = total[np.ix_(own, theirs)] @ true.coefficients
+    inverse: Matrix = np.asarray(np.linalg.inv(normal), dtype=np.float64)
+    size = float(true.coefficients @ total[np.ix_(theirs, theirs)] @ true.coefficients)
+    signal, rows = {}, {}
+    for place, channel in enumerate(evidence.channels):
+        spread = channel.scale * np.sqrt(SETTINGS[true.setting[place]].variance_ratio)
+        a, b = (_columns_there(full, there, each, channel.name) for each in (true, other))
+        signal[channel.name] = a @ true.coefficients / spread
+        u = there.slopes[channel.name] @ evidence.directions
+        rows[channel.name] = np.concatenate([u, b], axis=1) / spread
+    names = tuple(" + ".join(names_of(full.problem, each.hypothesis)) for each in (true, other))
+    return _Duel(
+        (names[0], names[1]), max(0.0, size - float(cross @ inverse @ cross)), inverse @ cross, inverse, signal, rows
+    )
+
+
+def _columns_there(full: Contest, there: Machine, solution: Solution, name: str) -> Matrix:
+    """Return the columns of an explanation at the settings that are tried, SI per coefficient, shape (T, k)."""
+    import numpy as np
+
+    problem = full.problem
+    made: list[Matrix] = []
+    for piece in solution.hypothesis.pieces:
+        if piece.kind == "input":
+            given = problem.machine.inputs[piece.owner]
+            place = next(number for number, item in enumerate(there.inputs) if item.name == given.name)
+            made.append(there.slopes[name][:, place])
+            continue
+        term = problem.terms[piece.place]
+        curves = new_curves(there, problem.candidates[piece.owner], term)
+        made += [curve[name] * per for curve, per in zip(curves, term.per, strict=True)]
+    return np.column_stack(made)
+
+
+def _amounts(full: Contest, settings: Mapping[str, Matrix], place: int) -> dict[str, Amount]:
+    start = full.problem.machine.start
+    known = start.model.known_conditions
+    return {
+        name: Amount(float(values[place]), known[name].unit if name in known else start.print_unit(name))
+        for name, values in settings.items()
+    }
+
+
+def _why(full: Contest, settings: Mapping[str, Matrix], place: int, duel: _Duel) -> str:
+    """Say what makes a setting worth measuring: where it leaves the record, and how far the two then differ."""
+    import numpy as np
+
+    evidence, units = full.evidence, full.problem.machine.start
+    gaps = {
+        channel.name: abs(float(duel.signal[channel.name][place] - duel.rows[channel.name][place] @ duel.coefficients))
+        for channel in evidence.channels
+    }
+    name = max(gaps, key=lambda key: gaps[key])
+    channel = next(each for each in evidence.channels if each.name == name)
+    unit = readable_unit(units.print_unit(name), channel.scale)
+    words = f"{duel.names[0]} and {duel.names[1]} there differ by {in_unit(gaps[name] * channel.scale, unit)} in {name}"
+    farthest, reach = "", 0.0
+    for key, values in settings.items():
+        item = full.problem.machine.records.covariates[key]
+        low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
+        out = max(low - values[place], values[place] - high) / max(high - low, 1e-300)
+        if out > max(reach, 0.05):
+            farthest, reach = key, float(out)
+    if not farthest:
+        return words
+    item = full.problem.machine.records.covariates[farthest]
+    low, high = (float(from_si(each, item.unit)) for each in (np.nanmin(item.values), np.nanmax(item.values)))
+    span = f"{format_number(low, 3)} to {format_number(high, 3)} {item.unit}".strip()
+    return f"{words}; {farthest} was only {span} so far"

@@ -1,0 +1,197 @@
+"""The diagnosis from records to answer: machine, search, decision, exact fit, gain, next measurement."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from truing.declare.near_miss import near_miss
+from truing.diagnosis.contest import Contest, contest
+from truing.diagnosis.decide import Decision, alternatives, decide
+from truing.diagnosis.design import next_points
+from truing.diagnosis.findings import wrong_of
+from truing.diagnosis.fit import Fit, fit, input_values
+from truing.diagnosis.gain import Nested, nested, sign_flip_p
+from truing.diagnosis.machine import machine_of
+from truing.diagnosis.naming import alternative_of, causes_of, extended_setup, remainder_of
+from truing.diagnosis.problem import Problem, problem_of
+from truing.diagnosis.records import Records
+from truing.diagnosis.result import Alternative, Amount, Calibrated, Curves, Diagnosis, Gain, Verdict
+from truing.diagnosis.search import NoiseModel, first_noise
+from truing.diagnosis.visibility import inseparable, smallest_visible
+from truing.errors import UsageError
+from truing.setup import Setup
+
+if TYPE_CHECKING:
+    from truing.studies.bench import Progress
+
+RANKED = 8
+STAGES = 5
+
+
+def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None) -> Diagnosis:
+    """Show what the model gets wrong on these records, name the cause, extend the model, measure the gain.
+
+    The same records, setup and seed give the same answer. Raises UsageError where an option names what is not there.
+    """
+    _check_options(setup)
+    step = _Steps(progress)
+    machine = machine_of(setup, records)
+    raw = first_noise(machine)
+    problem = problem_of(machine, raw.scales)
+    step.done("columns")
+    full = contest(problem, raw, ~records.held_out)
+    step.done("search")
+    decision = decide(full, seed=setup.seed)
+    step.done("significance")
+    best = fit(full, decision.winner)
+    step.done("fit")
+    answer = _answer(problem, full, decision, best, raw)
+    step.done("gain")
+    return answer
+
+
+class _Steps:
+    """Says how far a diagnosis has come, where anybody listens."""
+
+    def __init__(self, progress: Progress | None) -> None:
+        self.progress, self.count = progress, 0
+
+    def done(self, what: str) -> None:
+        """Count one stage."""
+        self.count += 1
+        if self.progress is not None:
+            self.progress(what, self.count, STAGES)
+
+
+def _check_options(setup: Setup) -> None:
+    known = {*setup.model.known_effects, *setup.model.input_fields}
+    known |= {f"{name}.{one.name}" for name, item in setup.model.known_effects.items() for one in item.unknowns}
+    for name in setup.diagnose.per_file:
+        if name not in known:
+            near = near_miss(name, known)
+            raise UsageError(f"[studies.diagnose] per_file: '{name}' is no effect, unknown or input.{near}")
+
+
+def _answer(problem: Problem, full: Contest, decision: Decision, best: Fit, raw: NoiseModel) -> Diagnosis:
+    machine, records, setting = problem.machine, problem.machine.records, best.setting
+    units = units_of(full)
+    causes = causes_of(full, best)
+    remainder = remainder_of(full, best, decision, units)
+    rivals = alternatives(full, decision.winner)
+    judged = nested(full, decision.winner, decision.thresholds, raw)
+    wrong = wrong_of(full, best, decision.null, units)
+    verdict: Verdict = "named" if causes else "unknown" if remainder else "none"
+    return Diagnosis(
+        setup=machine.start,
+        records=records,
+        measured=tuple(records.measured),
+        units=units,
+        wrong=wrong,
+        verdict=verdict,
+        causes=causes,
+        unique=not rivals,
+        alternatives=tuple(alternative_of(full, decision.winner, rival) for rival in rivals),
+        remainder=remainder,
+        seen=tuple(smallest_visible(full, setting)),
+        not_measured=_not_measured(problem),
+        calibrated=_calibrated(full, best),
+        gain=tuple(_gains(full, best, judged, units, has_cause=verdict != "none")),
+        stability=judged.stability,
+        next=tuple(next_points(full, decision.winner, rivals)),
+        curves=tuple(_curves(full, best)),
+        p_any=decision.p_any,
+        p_second=decision.p_second,
+        ranking=_ranking(full, decision.winner),
+        inseparable=tuple(inseparable(full, setting)),
+        extended=extended_setup(full, best, causes) if verdict != "none" else None,
+    )
+
+
+def _ranking(full: Contest, winner: int) -> tuple[Alternative, ...]:
+    """Return the best explanations, the winner first, every one with how far it lies behind."""
+    places = [winner, *(place for place in full.found.ranked() if place != winner)][:RANKED]
+    return tuple(alternative_of(full, winner, place) for place in places)
+
+
+def units_of(full: Contest) -> dict[str, str]:
+    """Return by result a unit in which its noise is neither tiny nor huge: 2.3 um rather than 0.0023 mm."""
+    from truing.diagnosis.readable import readable_unit
+
+    setup = full.problem.machine.start
+    return {
+        channel.name: readable_unit(setup.print_unit(channel.name), channel.scale) for channel in full.evidence.channels
+    }
+
+
+def _not_measured(problem: Problem) -> Mapping[str, tuple[str, ...]]:
+    machine = problem.machine
+    absent = machine.records.absent
+    found = {}
+    for name, effect in machine.start.model.known_effects.items():
+        missing = tuple(need.name for need in effect.needs if need.name in absent)
+        if missing:
+            found[name] = missing
+    return found
+
+
+def _calibrated(full: Contest, best: Fit) -> tuple[Calibrated, ...]:
+    setup = full.problem.machine.start
+    values = input_values(full, best)
+    return tuple(Calibrated(name, value, setup.unit_of(name), moved) for name, (value, moved) in values.items())
+
+
+def _curves(full: Contest, best: Fit) -> list[Curves]:
+    from truing.diagnosis.gain import linear_prediction
+
+    machine = full.problem.machine
+    base = full.solution(0)
+    found = []
+    for name, measured in machine.records.measured.items():
+        before = machine.base[name] + linear_prediction(full, base, name) + machine.shifts[name]
+        found.append(Curves(name, measured, before, best.predicted[name]))
+    return found
+
+
+def _gains(full: Contest, best: Fit, judged: Nested, units: Mapping[str, str], *, has_cause: bool) -> list[Gain]:
+    """Say what the extension is worth for every result, on rows it has not seen."""
+    import numpy as np
+
+    found = []
+    for place, channel in enumerate(full.evidence.channels):
+        name, unit, item = channel.name, units[channel.name], judged.judged[channel.name]
+        left = (full.problem.machine.records.measured[name] - best.predicted[name])[channel.rows]
+        used = (len(best.values) + len(best.directions)) / len(full.evidence.channels)
+        floor2 = float(left @ left) / max(len(left) - used, 1.0)
+        before2, after2 = (float(np.nanmean(errors**2)) for errors in (item.before, item.after))
+        reducible = before2 - floor2
+        removed = (before2 - after2) / reducible if has_cause and reducible > 0 else 0.0
+        p_value = sign_flip_p(item.gain, judged.block_of, seed=full.problem.machine.start.seed + place)
+        found.append(
+            Gain(
+                name,
+                Amount(before2**0.5, unit),
+                Amount(after2**0.5, unit),
+                Amount(floor2**0.5, unit),
+                min(removed, 1.0),
+                float(np.nanmean(item.gain)),
+                p_value,
+                float(np.nanmean(item.inside)),
+                _held_out(full, best, name),
+            )
+        )
+    return found
+
+
+def _held_out(full: Contest, best: Fit, name: str) -> tuple[float, float] | None:
+    """Return root mean squares before and after on rows that were held out on request."""
+    import numpy as np
+
+    machine = full.problem.machine
+    rows = machine.records.held_out & np.isfinite(machine.records.measured[name])
+    if not rows.any():
+        return None
+    curve = next(item for item in _curves(full, best) if item.result == name)
+    errors = [(curve.measured - values)[rows] for values in (curve.before, curve.after)]
+    before, after = (float(np.sqrt(np.mean(error**2))) for error in errors)
+    return before, after
