@@ -163,6 +163,12 @@ def unheeding(it: Spring, *, loss: Float, load: Float) -> Spring:
     return replace(it, lost=it.lost + loss)
 
 
+def historic(unit: str, derived: str) -> Model[Any, Any]:
+    """Make a model whose effect needs a history of the travel, in this unit."""
+    needs = [Condition("load", unit, derived=derived)]
+    return good(errors=[Effect("slack", on_inputs=slack, needs=needs, unknowns=LOSS)])
+
+
 LOSS = [Unknown("loss", 0, 1, "mm")]
 ROOM = Condition("room", "degC", reference=20)
 ELSEWHERE = replace(good(), name="elsewhere", function=elsewhere)
@@ -271,6 +277,12 @@ MORE_WRONG: list[tuple[str, Callable[[], Model[Any, Any]], str]] = [
         lambda: good(errors=[Effect("l", on_inputs=losing, unknowns=[Unknown("loss", 0, 1, "mms")])]),
         "",
     ),
+    (
+        "units are known",
+        lambda: historic("N", "running_maximum of travel"),
+        "running_maximum of travel, which is in 'mm'",
+    ),
+    ("units are known", lambda: historic("mm", "direction of travel"), "a direction, which has no unit"),
     ("goals can be read", lambda: good(objectives=[Vary("travel", "5 mm", "1 mm")]), "runs from 5 mm to 1 mm"),
     ("goals can be read", lambda: good(objectives=[Vary("travel", "1 N", "5 mm")]), "Vary('travel')"),
     (

@@ -20,12 +20,27 @@ SAME = 1e-12
 
 
 def units_are_known(subject: Subject) -> None:
-    """Every unit that is declared is one that Truing knows."""
+    """Every unit that is declared is one that Truing knows; history is in a unit of what it is made from."""
     from truing.units import check_unit
 
     for owner, unit in _units(subject):
         with _stating(subject, f"{owner} in '{unit}'"):
             check_unit(unit)
+    _check_histories(subject)
+
+
+def _check_histories(subject: Subject) -> None:
+    from truing.units import same_dimension
+
+    model = subject.model
+    units = {name: item.unit for name, item in model.input_fields.items()}
+    units |= {name: item.unit for name, item in model.conditions.items()}
+    for name, condition in model.conditions.items():
+        made_from = condition.made_from
+        wanted = "" if condition.history == "direction" else units.get(made_from, condition.unit)
+        if made_from and not same_dimension(condition.unit, wanted):
+            what = f"{condition.derived}, which is in '{wanted}'" if wanted else "a direction, which has no unit"
+            fail(f"{model.name}: condition '{name}' is in '{condition.unit}', but it is {what}")
 
 
 def _units(subject: Subject) -> Iterator[tuple[str, str]]:
