@@ -436,6 +436,25 @@ def test_where_the_name_is_taken_by_a_result_what_needs_it_is_left_out() -> None
     assert shown(model, {"sensor_gain": {"time": 0.5}})["time"] == pytest.approx(15 * 3600)
 
 
+@results
+class Twice:
+    """Two results, one of which is called like the moment of a step of the other."""
+
+    depth: Float = found("um")
+    depth_after: Float = found("um")
+
+
+def twice(bar: Bar) -> Twice:
+    """Nothing."""
+    return Twice(depth=0 * bar.load, depth_after=0 * bar.load)
+
+
+def test_names_that_are_taken_make_no_part() -> None:
+    model = Model(name="twice", title="Twice", function=twice)
+    assert model.known_effects["step"].parts == (("depth", "depth_after"),)
+    assert model.known_effects["sensor_offset"].parts == (("depth",), ("depth_after",))
+
+
 # Inputs files
 
 

@@ -112,7 +112,7 @@ def _made(kind: _Kind, results: Sequence[ResultField], seen_by: Sequence[Seen | 
     """Make an effect for each quantity that is seen, over the results that can be set against it."""
     fitting = [(seen, [item for item in results if seen is None or seen.by(item)]) for seen in seen_by]
     for place, (seen, items) in enumerate((seen, items) for seen, items in fitting if items):
-        unknowns = [(item, kind.unknowns(item)) for item in items]
+        unknowns = list(_named_apart(kind, items, seen))
         roles = tuple((item, {role: one.name for role, one in own.items()}) for item, own in unknowns)
         needs = [seen.condition] if seen is not None and seen.condition is not None else []
         yield Effect(
@@ -126,6 +126,22 @@ def _made(kind: _Kind, results: Sequence[ResultField], seen_by: Sequence[Seen | 
             why=kind.why,
             source=kind.source,
         )
+
+
+def _named_apart(
+    kind: _Kind, items: Sequence[ResultField], seen: Seen | None
+) -> Iterator[tuple[ResultField, dict[str, Unknown]]]:
+    """Give the unknowns of each result, by role; a result whose unknowns have names that are taken has none.
+
+    So it is with the step of a result ``depth_after`` beside that of ``depth``.
+    """
+    taken = {seen.name} if seen is not None else set()
+    for item in items:
+        own = kind.unknowns(item)
+        names = {one.name for one in own.values()}
+        if not names & taken:
+            yield item, own
+        taken |= names
 
 
 def _met(value: Float, item: ResultField) -> Float:
