@@ -46,22 +46,31 @@ class Contest:
         return solve(self.evidence, self.found.hypotheses[place], self.found.setting[place])
 
 
-def contest(problem: Problem, noise: NoiseModel, rows: NDArray[np.bool_], *, rounds: int = ROUNDS) -> Contest:
-    """Search and learn the noise in turn, ``rounds`` times."""
+def contest(
+    problem: Problem,
+    noise: NoiseModel,
+    rows: NDArray[np.bool_],
+    *,
+    rounds: int = ROUNDS,
+    settings: Sequence[tuple[int, ...]] = (),
+) -> Contest:
+    """Search and learn the noise in turn, ``rounds`` times; ``settings`` are the noise filters to try, if known."""
     raw = dict(noise.residuals)
     for left in range(rounds - 1, -1, -1):
         evidence = evidence_of(problem, noise, rows)
-        found, settings = _all_scored(problem, evidence)
+        found, tried = _all_scored(problem, evidence, settings)
         if left:
             best = found.best()
             noise = learned(problem, evidence, solve(evidence, found.hypotheses[best], found.setting[best]), raw, noise)
-    return Contest(problem, noise, evidence, found, tuple(settings))
+    return Contest(problem, noise, evidence, found, tuple(tried))
 
 
-def _all_scored(problem: Problem, evidence: Evidence) -> tuple[Found, list[tuple[int, ...]]]:
+def _all_scored(
+    problem: Problem, evidence: Evidence, known: Sequence[tuple[int, ...]]
+) -> tuple[Found, Sequence[tuple[int, ...]]]:
     """Score nothing, single causes, shapes and inputs; then pairs; then causes beside shapes."""
     simple = [NOTHING, *singles(problem.term_pieces), *shapes(problem.shape_pieces)]
-    settings = likely_settings(evidence, simple)
+    settings = known or likely_settings(evidence, simple)
     first = search(evidence, simple, settings)
     favourites = best_terms(first)
     terms = terms_for_pairs(problem, frozenset(piece.place for piece in favourites))

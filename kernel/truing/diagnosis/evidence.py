@@ -191,12 +191,19 @@ class Reduced:
     @cached_property
     def total_h(self) -> Matrix:
         """Normal matrix of the columns, (m, m)."""
-        return sum(self.h[1:], self.h[0])
+        return _sum(self.h)
+
+    @cached_property
+    def curvature(self) -> Matrix:
+        """Diagonal of the normal matrix, (m,)."""
+        import numpy as np
+
+        return np.maximum(np.diag(self.total_h), 1e-300)
 
     @cached_property
     def total_g(self) -> Matrix:
         """Right-hand sides, (m, B)."""
-        return sum(self.g[1:], self.g[0])
+        return _sum(self.g)
 
 
 def reduced(
@@ -225,15 +232,23 @@ def reduced(
     if k == 0:
         nothing = np.zeros_like(cc[0]), np.zeros_like(cb[0]), np.zeros_like(own[0])
         return Reduced((*cc, nothing[0]), (*cb, nothing[1]), (*own, nothing[2]), constant, tuple(rows))
-    factor = cho_factor(sum(uu, np.eye(k)))
-    gamma = cho_solve(factor, sum(uc[1:], uc[0]))
-    start = cho_solve(factor, sum(ub[1:], ub[0]))
-    h = [c - gamma.T @ a - a.T @ gamma + gamma.T @ u @ gamma for c, a, u in zip(cc, uc, uu, strict=True)]
+    factor = cho_factor(_sum(uu) + np.eye(k))
+    gamma = cho_solve(factor, _sum(uc))
+    start = cho_solve(factor, _sum(ub))
+    total = _sum(cc) - gamma.T @ _sum(uc)
+    prior_h = gamma.T @ gamma
+    halves = [gamma.T @ (a - 0.5 * (u @ gamma)) for a, u in zip(uc[:-1], uu[:-1], strict=True)]
+    h = [c - half - half.T for c, half in zip(cc, halves, strict=False)]
+    h.append(total - prior_h - _sum(h) if h else total - prior_h)
     g = [b - gamma.T @ v - (a - u @ gamma).T @ start for b, v, a, u in zip(cb, ub, uc, uu, strict=True)]
     left = [
         r - 2 * np.einsum("ij,ij->j", start, v) + np.einsum("ij,ij->j", start, u @ start)
         for r, v, u in zip(own, ub, uu, strict=True)
     ]
     constant -= 2 * float(np.log(np.diag(factor[0])).sum())
-    prior = gamma.T @ gamma, gamma.T @ start, np.einsum("ij,ij->j", start, start)
-    return Reduced((*h, prior[0]), (*g, prior[1]), (*left, prior[2]), constant, tuple(rows))
+    prior = gamma.T @ start, np.einsum("ij,ij->j", start, start)
+    return Reduced((*h, prior_h), (*g, prior[0]), (*left, prior[1]), constant, tuple(rows))
+
+
+def _sum(matrices: Sequence[Matrix]) -> Matrix:
+    return sum(matrices[1:], matrices[0])

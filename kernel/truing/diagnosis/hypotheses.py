@@ -108,6 +108,14 @@ class Batch:
     high: NDArray[np.float64]
     penalty: NDArray[np.float64]
 
+    @cached_property
+    def bounded(self) -> list[NDArray[np.intp]]:
+        """By column, the hypotheses whose coefficient has a bound."""
+        import numpy as np
+
+        finite = np.isfinite(self.low) | np.isfinite(self.high)
+        return [np.flatnonzero(finite[:, column]) for column in range(self.index.shape[1])]
+
 
 def batches_of(hypotheses: Sequence[Hypothesis], rows: int, largest: int = 4000) -> list[Batch]:
     """Group hypotheses by their number of columns, in batches of bounded size."""

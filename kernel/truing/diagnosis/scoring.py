@@ -80,13 +80,15 @@ def _is_possible(case: Reduced, batch: Batch, solved: Matrix, variance: Matrix) 
     import numpy as np
 
     possible = np.ones((solved.shape[0], solved.shape[2]), dtype=bool)
-    for column in range(batch.index.shape[1]):
-        low, high = batch.low[:, column, None], batch.high[:, column, None]
-        value = solved[:, column]
-        curvature = np.diag(case.total_h)[batch.index[:, column], None]
-        slack = BOUND_SLACK * np.sqrt(np.maximum(variance, 0) / np.maximum(curvature, 1e-300))
-        possible &= value >= np.where(low == 0, 0.0, low - slack)
-        possible &= value <= np.where(high == 0, 0.0, high + slack)
+    for column, bounded in enumerate(batch.bounded):
+        if not len(bounded):
+            continue
+        low, high = batch.low[bounded, column, None], batch.high[bounded, column, None]
+        value = solved[bounded, column]
+        curvature = case.curvature[batch.index[bounded, column], None]
+        slack = BOUND_SLACK * np.sqrt(variance[bounded] / curvature)
+        inside = (value >= np.where(low == 0, 0.0, low - slack)) & (value <= np.where(high == 0, 0.0, high + slack))
+        possible[bounded] &= inside
     return possible
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     Matrix = NDArray[np.float64]
 
 KEPT_SETTINGS = 4
+REMEMBERED = 20
 SMALLEST_SHARE = 1e-6
 
 
@@ -53,6 +54,7 @@ class Evidence:
     channels: tuple[Channel, ...]
     products: tuple[tuple[Products, ...], ...]
     directions: Matrix
+    known: dict[tuple[int, ...], Reduced] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def rows(self) -> int:
@@ -61,8 +63,13 @@ class Evidence:
 
     def case(self, setting: tuple[int, ...]) -> Reduced:
         """Return the reduced problem of the measured residuals under one noise filter per channel."""
-        chosen = [products[place] for products, place in zip(self.products, setting, strict=True)]
-        return reduced(chosen, [len(channel) for channel in self.channels], self.directions.shape[1])
+        if setting not in self.known:
+            chosen = [products[place] for products, place in zip(self.products, setting, strict=True)]
+            if len(self.known) >= REMEMBERED:
+                self.known.pop(next(iter(self.known)))
+            counts = [len(channel) for channel in self.channels]
+            self.known[setting] = reduced(chosen, counts, self.directions.shape[1])
+        return self.known[setting]
 
 
 @dataclass(frozen=True)
