@@ -1,10 +1,11 @@
 """Cases from seeds: a drawn machine, a way of measuring, noise, and something wrong with it, or nothing.
 
-Nominal inputs are drawn from their tolerances in every case. Sizes are such that the part which no machine within its
-tolerances imitates is half the noise to three times; in a fifth of the cases the whole effect is.
+Nominal inputs are drawn from their tolerances in every case. The part which no machine within its tolerances imitates
+is half the noise to three times: in half of these cases what the best imitation leaves, in the others that and how far
+the imitating machine lies outside its tolerances. In a fifth of the cases the whole effect is as large.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -47,6 +48,7 @@ class Wish:
 
 
 NOTHING = Wish()
+Measure = Callable[[Array], float]
 
 
 @dataclass(frozen=True)
@@ -106,22 +108,31 @@ def _noisy(case: Case, rows: Rows, rng: np.random.Generator) -> dict[str, Array]
 def _wrong(stratum: Stratum, bench: Bench, wish: Wish, rng: np.random.Generator) -> Wrong | None:
     """Draw what is wrong; None where what was drawn cannot be hidden here at its size."""
     many = {"none": 0, "single": 1, "double": 2, "unknown": 0, "beside": 1}[stratum]
-    in_whole = wish.size is None and rng.random() < WHOLE
+    measure = _measure(bench.record, wish, rng)
     hidden: dict[str, Mapping[str, float]] = {}
     truth: list[str] = []
     for at in range(many):
         candidate = _candidate(bench.record, wish.effects[at] if wish.effects else "", rng)
-        unknowns = _sized(bench, candidate, _target(wish, rng), in_whole, rng)
+        unknowns = _sized(bench, candidate, _target(wish, rng), measure, rng)
         if unknowns is None or candidate.effect in hidden:
             return None
         hidden[candidate.effect] = unknowns
         truth.append(candidate.name)
     if _is_one_in_another(bench.record, truth):
         return None
-    shape = _shape(bench, wish, in_whole, rng) if stratum in ("unknown", "beside") else None
+    shape = _shape(bench, wish, measure, rng) if stratum in ("unknown", "beside") else None
     if shape is not None and shape.also in hidden:
         return None
     return Wrong(hidden, tuple(truth), shape)
+
+
+def _measure(record: Record, wish: Wish, rng: np.random.Generator) -> Measure:
+    """What is made half the noise to three times."""
+    if wish.size is not None:
+        return record.rest_of
+    if rng.random() < WHOLE:
+        return record.size_of
+    return record.rest_of if rng.random() < 0.5 else record.strangeness_of
 
 
 def _target(wish: Wish, rng: np.random.Generator) -> float:
@@ -147,7 +158,7 @@ def _is_one_in_another(record: Record, truth: list[str]) -> bool:
 
 
 def _sized(
-    bench: Bench, candidate: Candidate, target: float, in_whole: bool, rng: np.random.Generator
+    bench: Bench, candidate: Candidate, target: float, measure: Measure, rng: np.random.Generator
 ) -> dict[str, float] | None:
     """Unknowns of the wanted size, or None where their bounds do not allow it."""
     record = bench.record
@@ -161,7 +172,7 @@ def _sized(
         if not _is_inside(candidate, amplitudes):
             return None
         change = changes(record.rows, record.results, {candidate.effect: {**shapes, **amplitudes}}, bench.off)
-        size = record.size_of(change if in_whole else record.left_over(change))
+        size = measure(change)
         if size < 1e-9 * target:
             return None
         factor *= target / size
@@ -181,7 +192,7 @@ def _shape_value(name: str, rows: Rows, rng: np.random.Generator) -> float:
     return float(rng.integers(1, 4)) if name.endswith("_order") else float(rng.uniform(0.15, 0.85) * length)
 
 
-def _shape(bench: Bench, wish: Wish, in_whole: bool, rng: np.random.Generator) -> Shape:
+def _shape(bench: Bench, wish: Wish, measure: Measure, rng: np.random.Generator) -> Shape:
     """A shape that nobody registered, in one or all of the readings, of the wanted size."""
     record = bench.record
     makers = [maker for maker in MAKERS if wish.maker in ("", maker.__name__)]
@@ -189,9 +200,7 @@ def _shape(bench: Bench, wish: Wish, in_whole: bool, rng: np.random.Generator) -
     seen = record.results if rng.random() < 0.4 else (record.results[int(rng.integers(len(record.results)))],)
     ways = {result: record.noise.sd[result] * rng.uniform(0.5, 1.5) * rng.choice([-1.0, 1.0]) for result in seen}
     unit = replace(shape, sizes=tuple(ways.items()))
-    change = unit.of(record.rows, record.results)
-    size = record.size_of(change if in_whole else record.left_over(change))
-    factor = _target(wish, rng) / size
+    factor = _target(wish, rng) / measure(unit.of(record.rows, record.results))
     return replace(shape, sizes=tuple((result, float(factor * way)) for result, way in ways.items()))
 
 

@@ -71,7 +71,8 @@ def open_rival(case: Case, document: Mapping[str, Any]) -> tuple[str, ...] | Non
         is_open = any(is_alternative(case, other) for other in others) and document["remainder"] is None
         named = [tuple(cause["effect"] for cause in document["causes"])] if is_open else []
     true = set().union(*(names_of(case, name) for name in case.truth))
-    kept = [names for names in named if not set(names) <= true and not any("input:" in name for name in names)]
+    known = {candidate.effect for candidate in case.record.candidates}
+    kept = [names for names in named if not set(names) <= true and set(names) <= known]
     return kept[0] if kept else None
 
 

@@ -79,15 +79,24 @@ class Record:
         low, high = np.array(bounds).T
         return Curves(tuple(variants), np.hstack(made), low, high)
 
-    def left_over(self, hidden: Array) -> Array:
-        """What no machine within its tolerances imitates: hidden less its best imitation, prior included.
+    def imitated(self, hidden: Array) -> tuple[Array, Array]:
+        """What no machine within its tolerances imitates, and the machine of the best imitation in its sds.
 
-        Rows count by their own noise, as if it were independent.
+        Hidden less its best imitation, prior included; rows count by their own noise, as if it were independent.
         """
         count = self.tolerances.shape[1]
         design = np.vstack([self.tolerances * self.weight[:, None], np.eye(count)])
         found = np.linalg.lstsq(design, np.concatenate([hidden * self.weight, np.zeros(count)]), rcond=None)[0]
-        return np.asarray(hidden - self.tolerances @ found)
+        return np.asarray(hidden - self.tolerances @ found), np.asarray(found)
+
+    def rest_of(self, change: Array) -> float:
+        """Root mean square over the noise of what is left of a change by its best imitation."""
+        return self.size_of(self.imitated(change)[0])
+
+    def strangeness_of(self, change: Array) -> float:
+        """The same, with how far the imitating machine lies outside its tolerances counted in."""
+        rest, machine = self.imitated(change)
+        return float(np.sqrt((np.sum((rest * self.weight) ** 2) + machine @ machine) / len(self.rows)))
 
     def size_of(self, change: Array) -> float:
         """Root mean square of a change over the noise, of the result where that is largest."""

@@ -225,16 +225,19 @@ def test_the_same_seed_is_the_same_case() -> None:
 
 
 def test_sizes_are_half_the_noise_to_three_times() -> None:
-    """Either what no machine of this design imitates, or the whole effect, lies in the range."""
+    """What no machine of this design imitates, or the whole effect, lies in the range."""
     sizes = []
     for seed in range(200, 320):
         case = make_case(seed)
         if case.stratum not in {"single", "unknown"}:
             continue
-        whole, rest = case.record.size_of(case.change), case.record.size_of(case.record.left_over(case.change))
-        assert 0.45 < rest < 3.3 or 0.45 < whole < 3.3
-        sizes.append(rest < 0.45)
-    assert 0 < np.mean(sizes) < 0.3
+        record, change = case.record, case.change
+        sizes.append((record.size_of(change), record.rest_of(change), record.strangeness_of(change)))
+        assert any(0.45 < size < 3.3 for size in sizes[-1])
+    whole, rest, strange = np.array(sizes).T
+    assert np.all(rest < whole * 1.001)
+    assert np.all(rest < strange * np.sqrt(2.001))
+    assert 0 < np.mean(strange < 0.45) < 0.25
     assert {make_case(seed).stratum for seed in range(20)} == set(SCHEDULE)
 
 
