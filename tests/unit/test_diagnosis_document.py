@@ -36,7 +36,7 @@ from truing.evaluate import evaluate, evaluate_rows
 from truing.inputs_file import setup_from_text
 from truing.kernel import Kernel, Origin
 from truing.kernel.loading import load_file
-from truing.runs.diagnosis_document import diagnosis_document, file_labels, seen_names
+from truing.runs.diagnosis_document import diagnosis_document, file_labels
 from truing.runs.diagnosis_folder import write_diagnosis
 from truing.runs.extension import extended_setup, extended_text
 from truing.runs.folder import demand_place, is_ours, is_run, json_text, write_folder
@@ -148,12 +148,6 @@ def test_unknowns_of_each_file_stand_by_its_name() -> None:
 )
 def test_files_are_named_shortly_where_that_tells_them_apart(files: list[str], expected: list[str]) -> None:
     assert file_labels(files) == expected
-
-
-def test_parts_of_an_effect_have_names_of_their_own() -> None:
-    parts = [Seen("offset", None, "visible", part=name) for name in ("place", "tilt")]
-    more = [Seen("play", None, "visible"), Seen("play", None, "visible"), Seen("play", None, "visible")]
-    assert list(seen_names([*parts, *more])) == ["offset", "offset.tilt", "play", "play.2", "play.3"]
 
 
 # The extended model

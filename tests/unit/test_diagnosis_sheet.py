@@ -39,6 +39,8 @@ from truing.report.diagnosis_words import (
     number_texts,
     p_text,
     percent,
+    prose,
+    score_text,
     spoken,
     verdict_word,
 )
@@ -135,7 +137,7 @@ def test_hostile_texts_are_printed_and_do_nothing() -> None:
         alternatives=(Alternative((HOSTILE,), 1.0, 2.0, (HOSTILE,)),),
         causes=(*made.causes, Cause(f"input:{HOSTILE}", (FittedUnknown(HOSTILE, 1.0, 0.5, 1.5, ""),), (), (HOSTILE,))),
         next=(NextPoint({HOSTILE: Amount(1.0, "")}, (HOSTILE, HOSTILE), HOSTILE, 3.0),),
-        seen=(Seen(HOSTILE, None, "not excited", HOSTILE, HOSTILE),), not_measured={HOSTILE: (HOSTILE,)},
+        seen=(Seen(HOSTILE, None, "not excited", HOSTILE),), not_measured={HOSTILE: (HOSTILE,)},
     )  # fmt: skip
     sheet = sheet_of(made)
     html = diagnosis_html(sheet)
@@ -196,7 +198,25 @@ def test_words_are_listed_as_a_sentence_does(words: tuple[str, ...], expected: s
     assert listed(words) == expected
 
 
+@pytest.mark.parametrize(
+    ("amount", "expected"),
+    [
+        (Amount(1.15e-6 / 3600, "mm/h"), "1.15 µm/h"), (Amount(5.25e-6, "mm"), "5.25 µm"),
+        (Amount(72.3e-6, "mrad"), "72.3 µrad"), (Amount(2.8e-12, "1/GN"), "0.0028 1/GN"),
+        (Amount(0.12e-3, "mm"), "0.12 mm"), (Amount(0.0, "mm"), "0 mm"), (Amount(2e-4, "deg"), "0.0115°"),
+    ],
+)  # fmt: skip
+def test_sizes_are_written_in_a_unit_that_reads_well(amount: Amount, expected: str) -> None:
+    from truing.report.diagnosis_words import readable
+
+    assert amount_text(readable(amount)) == expected
+
+
 def test_small_pieces_of_words() -> None:
+    assert prose("rises with link_heating, by 12 um or 3 urad/h; 5 umbrellas") == (
+        "rises with link heating, by 12 µm or 3 µrad/h; 5 umbrellas"
+    )
+    assert [score_text(x) for x in (4.8e-16, 6.3, 51.04, 210.4, math.nan)] == ["0", "6.3", "51", "210", "–"]
     assert p_text(None) == "not tested"
     assert percent(0.9991) == "99.9 %"
     assert percent(math.nan) == "–"

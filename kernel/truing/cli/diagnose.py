@@ -47,7 +47,8 @@ def diagnose(
     setup = read_or_example(offer, inputs, changed or (), word=plugin, settings=settings)
     folder = output or Path("runs") / measured[0].stem
     with progress_bar(settings) as progress, told_by_line(setup):
-        done = perform_diagnosis(setup, offer, DiagnosisOrder(measured, folder, pdf), progress)
+        order = DiagnosisOrder(measured, folder, pdf)
+        done = perform_diagnosis(setup, offer, order, lambda _, step, steps: progress("diagnosis", step, steps))
     _say_beside(done, settings)
     if as_json:
         out_json(done.document)

@@ -18,7 +18,9 @@ from truing.report.diagnosis_words import (
     listed,
     p_text,
     percent,
-    seen_name,
+    prose,
+    readable,
+    score_text,
     settings_text,
     spoken,
     verdict_word,
@@ -30,6 +32,8 @@ if TYPE_CHECKING:
 INDENT = 18
 MOST_PLACES = 5
 MOST_MOVED = 4
+MOST_SEEN = 8
+WEAK = 10.0
 
 
 def report(diagnosis: Diagnosis, folder: Path) -> Iterator[str]:
@@ -82,7 +86,8 @@ def _wrong(diagnosis: Diagnosis) -> Iterator[str]:
             f"{amount_text(item.noise_floor)}: {percent(item.reducible_share)} of the mean square error is reducible"
         )
         for finding in item.findings:
-            yield f"  {finding.kind}: {finding.text} – {certainty(finding.p_value)}"
+            sure = f" – {certainty(finding.p_value)}" if finding.p_value is not None else ""
+            yield f"  {finding.kind}: {prose(finding.text)}{sure}"
         yield f"  noise: {_noise(item)}"
 
 
@@ -109,7 +114,7 @@ def _cause(diagnosis: Diagnosis) -> Iterator[str]:
     rivals = _rivals(diagnosis)
     if rivals and diagnosis.verdict != "none":
         yield f"next best: {explanation(rivals[0])}{_distance(rivals[0])}"
-    yield from diagnosis.inseparable
+    yield from map(prose, diagnosis.inseparable)
     yield from _sight(diagnosis)
 
 
@@ -118,7 +123,7 @@ def _rivals(diagnosis: Diagnosis) -> list[Alternative]:
     named = {cause.effect for cause in diagnosis.causes}
     said = [item.causes for item in diagnosis.alternatives]
     rivals = [item for item in diagnosis.ranking if item.causes and item.behind > 0 and item.causes not in said]
-    return [item for item in rivals if not (named and named <= set(item.causes))]
+    return [item for item in rivals if item.separation >= WEAK and not (named and named <= set(item.causes))]
 
 
 def _named(diagnosis: Diagnosis) -> str:
@@ -126,21 +131,23 @@ def _named(diagnosis: Diagnosis) -> str:
         return f"none ({p_text(diagnosis.p_any)})"
     parts = [spoken(cause.effect) for cause in diagnosis.causes]
     if diagnosis.remainder is not None:
-        parts.append(f"unregistered: {spoken(diagnosis.remainder.shape)}")
+        parts.append(f"unregistered: {prose(diagnosis.remainder.shape)}")
     second = f", of a second cause {p_text(diagnosis.p_second)}" if diagnosis.p_second is not None else ""
     unique = {True: "; unique", False: "; not unique"}[diagnosis.unique] if diagnosis.verdict == "named" else ""
     return f"{' + '.join(parts)} ({p_text(diagnosis.p_any)}{second}{unique})"
 
 
 def _distance(item: Alternative) -> str:
-    return f", {item.behind:.1f} score units behind, λ {pretty(format_number(item.separation, 3))}"
+    return f", {item.behind:.1f} score units behind, λ {score_text(item.separation)}"
 
 
 def _sight(diagnosis: Diagnosis) -> Iterator[str]:
     """Say what this data could not show, and the smallest size of what it could."""
     for sight in ("not excited", "hidden in the tolerances"):
         found = [
-            seen_name(item) + (f" ({item.text})" if item.text else "") for item in diagnosis.seen if item.sight == sight
+            spoken(item.name) + (f" ({item.text})" if item.text else "")
+            for item in diagnosis.seen
+            if item.sight == sight
         ]
         if found:
             yield f"{sight}: {'; '.join(found)}"
@@ -148,13 +155,14 @@ def _sight(diagnosis: Diagnosis) -> Iterator[str]:
     if lacking:
         yield f"not measured: {'; '.join(lacking)}"
     named = {cause.effect for cause in diagnosis.causes}
-    visible = [
-        f"{seen_name(item)} {amount_text(item.smallest)}"
-        for item in diagnosis.seen
-        if item.sight == "visible" and item.smallest is not None and item.name not in named
-    ]
+    visible: dict[str, str] = {}
+    for item in diagnosis.seen:
+        effect = item.name.partition(".")[0]
+        if item.sight == "visible" and item.smallest is not None and effect not in named:
+            visible.setdefault(effect, f"{spoken(item.name)} {amount_text(readable(item.smallest))}")
     if visible:
-        yield f"would have been seen from: {', '.join(visible)}"
+        more = "; the sheet lists all" if len(visible) > MOST_SEEN else ""
+        yield f"would have been seen from: {'; '.join(list(visible.values())[:MOST_SEEN])}{more}"
 
 
 def _model(diagnosis: Diagnosis) -> Iterator[str]:
@@ -168,7 +176,7 @@ def _model(diagnosis: Diagnosis) -> Iterator[str]:
         yield "nothing was named: the model stands as it is"
     moved = sorted(diagnosis.calibrated, key=lambda item: -abs(item.of_its_sd))[:MOST_MOVED]
     if moved:
-        shifts = ", ".join(f"{spoken(item.name)} {pretty(f'{item.of_its_sd:+.2f}'.lstrip('+'))}" for item in moved)
+        shifts = ", ".join(f"{spoken(item.name)} by {pretty(f'{item.of_its_sd:.2f}')}" for item in moved)
         yield f"moved most within their tolerances (in standard deviations): {shifts}"
 
 
@@ -177,7 +185,7 @@ def _gain(diagnosis: Diagnosis) -> Iterator[str]:
         yield (
             f"{spoken(item.result)}: RMS error {amount_text(item.rmse_before)} → {amount_text(item.rmse_after)} (noise "
             f"floor {amount_text(item.noise_floor)}) on rows not fitted; {percent(item.reducible_removed)} of the "
-            f"reducible error removed; log score {pretty(format_number(item.log_score_gain, 2))} per row, "
+            f"reducible error removed; log score {score_text(item.log_score_gain)} per row, "
             f"{p_text(item.p_value)}; 90 % intervals cover {percent(item.coverage90)}"
         )
     if diagnosis.causes:
@@ -189,6 +197,6 @@ def _next(diagnosis: Diagnosis) -> Iterator[str]:
         yield "nothing to separate"
     for place, point in enumerate(diagnosis.next, start=1):
         pair = listed([spoken(name) for name in point.separates])
-        yield f"{place}. {settings_text(point)}: separates {pair} (λ then {pretty(format_number(point.separation, 3))})"
+        yield f"{place}. {settings_text(point)}: separates {pair} (λ then {score_text(point.separation)})"
     for reason in dict.fromkeys(point.why for point in diagnosis.next if point.why):
         yield f"   {reason}"

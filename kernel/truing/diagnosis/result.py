@@ -169,14 +169,13 @@ class NextPoint:
 class Seen:
     """How small an effect may be and still be seen on this data (90 % power, search paid for).
 
-    ``part`` names the result that one part of an effect is about, where its parts are looked for one by one.
+    ``name`` is the effect's, with ".UNKNOWN" behind it where the effect has several amplitudes.
     """
 
     name: str
     smallest: Amount | None
     sight: Sight
     text: str = ""
-    part: str = ""
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from truing.declare.blocks import Words
-from truing.numbers import ABSENT, STATED_DIGITS, format_number, format_value, pretty, with_unit
+from truing.numbers import ABSENT, STATED_DIGITS, format_number, pretty
 from truing.report import diagnosis_figures as figures
 from truing.report.chapters import Figures
 from truing.report.context import BlockView, Chapter, TableView
@@ -20,7 +20,9 @@ from truing.report.diagnosis_words import (
     number_texts,
     p_text,
     percent,
-    seen_name,
+    prose,
+    readable,
+    score_text,
     spoken,
 )
 from truing.runs.diagnosis_document import file_labels
@@ -29,7 +31,8 @@ if TYPE_CHECKING:
     from truing.diagnosis.result import Alternative, Diagnosis, FittedUnknown, NextPoint, Noise
 
 MOST_OUTLIERS = 12
-SEPARABLE, WEAK = 25.0, 10.0
+WEAK = 10.0
+FITTED_DIGITS = 7
 EVERYTHING = "extended.toml"
 
 
@@ -72,7 +75,7 @@ def _wrong(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
     )
     yield _table("Error of the model as it is", heads, rows, (1, 2, 3, 4), note)
     found = [
-        (spoken(item.result), finding.kind, finding.text, certainty(finding.p_value))
+        (spoken(item.result), finding.kind, prose(finding.text), certainty(finding.p_value))
         for item in diagnosis.wrong
         for finding in item.findings
     ]
@@ -117,15 +120,16 @@ def _cause(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
         named = " + ".join(spoken(cause.effect) for cause in diagnosis.causes) or "the explanation given"
         names = listed([named, *(explanation(item) for item in diagnosis.alternatives)])
         yield Words(f"Cannot be told apart on this data: {names}.", kind="warning")
-    for sentence in diagnosis.inseparable:
-        yield Words(sentence[:1].upper() + sentence[1:].rstrip(".") + ".", kind="finding")
     if diagnosis.ranking:
-        yield _ranking(diagnosis.ranking)
+        yield _ranking(diagnosis)
         title = "Ranking of the explanations"
-        caption = f"{title}: what ends before the dashed line is not excluded by this data."
+        caption = f"{title}; blue is what this data does not exclude."
         yield drawn.view(title, partial(figures.ranking_bars, diagnosis), caption)
     yield from _residuals(diagnosis, drawn)
     yield from _sight(diagnosis)
+    if diagnosis.inseparable:
+        yield _table("What this experiment can hardly tell apart", ("Because of its design",),
+                     [(prose(sentence).rstrip("."),) for sentence in diagnosis.inseparable])  # fmt: skip
 
 
 def _significance(diagnosis: Diagnosis) -> Iterator[str]:
@@ -140,7 +144,7 @@ def _significance(diagnosis: Diagnosis) -> Iterator[str]:
         over = listed([spoken(name) for name in remainder.depends_on])
         beside = "beside it " if diagnosis.causes else ""
         yield (
-            f"What {beside}no registered effect explains depends on {over}: {spoken(remainder.shape)}, in "
+            f"What {beside}no registered effect explains depends on {over}: {prose(remainder.shape)}, in "
             f"{listed([spoken(name) for name in remainder.results])} ({p_text(remainder.p_value)})."
         )
     if diagnosis.verdict == "named":
@@ -157,32 +161,26 @@ def _named(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
         yield spoken(cause.effect), about or ABSENT, ", ".join(map(spoken, cause.same_as)) or "none"
 
 
-def _ranking(items: Sequence[Alternative]) -> TableView:
+def _ranking(diagnosis: Diagnosis) -> TableView:
+    items = figures.shown_ranking(diagnosis)
     rows = [
-        (
-            explanation(item),
-            pretty(f"{item.behind:.1f}"),
-            pretty(format_number(item.separation, 3)),
-            _separable(item, items[0]),
-        )
+        (explanation(item), pretty(f"{item.behind:.1f}"), score_text(item.separation), _judged(item, diagnosis))
         for item in items
     ]
     note = (
         "Behind is the distance in score units (6 is a Bayes factor of about 20). λ is the loss of fit to expect if "
-        "the best explanation is true and this one is fitted: below 10 they cannot be told apart, above 25 they can."
+        "the best explanation is true and this one is fitted: above 25 the two can be told apart."
     )
     return _table("Explanations, best first", ("Explanation", "Behind", "λ", "On this data"), rows, (1, 2), note)
 
 
-def _separable(item: Alternative, best: Alternative) -> str:
+def _judged(item: Alternative, diagnosis: Diagnosis) -> str:
     """Say what this data makes of an explanation beside the best one."""
-    if item == best:
+    if item == diagnosis.ranking[0]:
         return "best"
-    if best.causes and set(best.causes) < set(item.causes):
-        return "adds nothing"
-    if item.behind <= figures.AMBIGUOUS or item.separation < WEAK:
+    if figures.is_open(item, diagnosis):
         return "not excluded"
-    return "excluded" if item.separation > SEPARABLE else "weakly excluded"
+    return "explains no more with more" if item.separation < WEAK else "excluded"
 
 
 def _residuals(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
@@ -197,7 +195,10 @@ def _residuals(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
 def _sight(diagnosis: Diagnosis) -> Iterator[BlockView]:
     """Say what this data could show: how small each effect may be, what is hidden, what was not excited or measured."""
     rows = [
-        *((seen_name(item), amount_text(item.smallest), str(item.sight), item.text) for item in diagnosis.seen),
+        *(
+            (spoken(item.name), amount_text(readable(item.smallest)), str(item.sight), item.text)
+            for item in diagnosis.seen
+        ),
         *(
             (spoken(effect), ABSENT, "not measured", f"no column gives {listed(list(conditions))}")
             for effect, conditions in diagnosis.not_measured.items()
@@ -257,11 +258,16 @@ def _fitted(cause: str, unknown: FittedUnknown) -> Iterator[tuple[str, ...]]:
 
 
 def _calibrated(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
+    from truing.diagnosis.result import Amount
+
     setup = diagnosis.setup
     for item in diagnosis.calibrated:
-        nominal = with_unit(*format_value(setup.nominal(item.name), item.unit, STATED_DIGITS))
-        fitted = with_unit(*format_value(item.value, item.unit, 7))
-        yield spoken(item.name), nominal, fitted, pretty(f"{item.of_its_sd:+.2f}".replace("+", ""))
+        nominal = float(setup.nominal(item.name))
+        fitted = amount_text(Amount(item.value, item.unit), FITTED_DIGITS)
+        if not nominal:
+            fitted = amount_text(readable(Amount(item.value, item.unit)))
+        stated = amount_text(Amount(nominal, item.unit), STATED_DIGITS)
+        yield spoken(item.name), stated, fitted, pretty(f"{item.of_its_sd:.2f}")
 
 
 def _remainder(diagnosis: Diagnosis) -> Iterator[BlockView]:
@@ -269,7 +275,7 @@ def _remainder(diagnosis: Diagnosis) -> Iterator[BlockView]:
     if remainder is None:
         return
     yield Words(
-        f"The remainder ({spoken(remainder.shape)}) is in no inputs file. new_effect.py holds its fitted shape as an "
+        f"The remainder ({prose(remainder.shape)}) is in no inputs file. new_effect.py holds its fitted shape as an "
         "effect, ready to be made physical. It must not be extrapolated beyond the measured range."
     )
 
@@ -285,7 +291,7 @@ def _gain(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
         (
             spoken(item.result), amount_text(item.rmse_before), amount_text(item.rmse_after),
             amount_text(item.noise_floor), percent(item.reducible_removed),
-            pretty(format_number(item.log_score_gain, 3)), pretty(format_number(item.p_value, 2)),
+            score_text(item.log_score_gain), pretty(format_number(item.p_value, 2)),
             percent(item.coverage90),
         )
         for item in diagnosis.gain
@@ -336,7 +342,7 @@ def _next(diagnosis: Diagnosis) -> Iterator[BlockView]:
 def _point(place: int, point: NextPoint, names: Sequence[str]) -> tuple[str, ...]:
     settings = [amount_text(point.settings.get(name), 4) for name in names]
     pair = f"{spoken(point.separates[0])} / {spoken(point.separates[1])}"
-    return str(place), *settings, pair, pretty(format_number(point.separation, 3))
+    return str(place), *settings, pair, score_text(point.separation)
 
 
 def _data(diagnosis: Diagnosis) -> Iterator[BlockView]:

@@ -15,13 +15,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from truing.diagnosis.records import Covariate
-    from truing.diagnosis.result import Curves, Diagnosis, Gain
+    from truing.diagnosis.result import Alternative, Curves, Diagnosis, Gain
 
 BEFORE, AFTER, QUIET, NEUTRAL = "#9d1c1c", "#0b4f8a", "#8b949e", "#3b434c"
 MOST_POINTS = 1500
 MOST_PLACES = 5
 """A covariate with fewer different values shows no course."""
-AMBIGUOUS = 6.0
 FARTHEST = 60.0
 """A bar longer than this is cut: how far behind it is does not matter any more."""
 MOST_BARS = 8
@@ -183,21 +182,33 @@ def _extent(values: Sequence[NDArray[np.float64]]) -> tuple[float, float]:
     return (float(joined.min()), float(joined.max())) if joined.size else (0.0, 1.0)
 
 
+def shown_ranking(diagnosis: Diagnosis) -> list[Alternative]:
+    """Return the explanations that are listed: the best ones, one of each that reads alike."""
+    unique: dict[str, Alternative] = {}
+    for item in diagnosis.ranking:
+        unique.setdefault(explanation(item), item)
+    return list(unique.values())[:MOST_BARS]
+
+
+def is_open(item: Alternative, diagnosis: Diagnosis) -> bool:
+    """Tell whether this data does not exclude an explanation: it is the best one or an alternative to it."""
+    return item == diagnosis.ranking[0] or item.causes in [other.causes for other in diagnosis.alternatives]
+
+
 def ranking_bars(diagnosis: Diagnosis) -> Figure:
-    """Draw how far every explanation is behind the best; what lies inside of the line is not excluded."""
+    """Draw how far every explanation is behind the best, in blue those that are not excluded."""
     from matplotlib.figure import Figure
 
-    items = diagnosis.ranking[:MOST_BARS]
+    items = shown_ranking(diagnosis)
     figure = Figure(figsize=(6.4, 0.7 + 0.3 * len(items)), layout="constrained")
     axes = figure.subplots()
-    widest = min(max(*(item.behind for item in items), 2 * AMBIGUOUS), FARTHEST)
+    widest = min(max(*(item.behind for item in items), 1.0), FARTHEST)
     for place, item in enumerate(items):
-        length = min(item.behind, widest)
-        axes.barh(place, length, height=0.62, color=AFTER if item.behind <= AMBIGUOUS else QUIET)
-        beyond = "›" if item.behind > widest else ""
-        start = length if length > AMBIGUOUS else AMBIGUOUS
-        axes.text(start + 0.008 * widest, place, f"{item.behind:.1f} {beyond}", va="center", fontsize=8, color=NEUTRAL)
-    axes.axvline(AMBIGUOUS, color=BEFORE, linewidth=0.9, linestyle=(0, (4, 3)))
+        length, beyond = min(item.behind, widest), "›" if item.behind > widest else ""
+        colour = AFTER if is_open(item, diagnosis) else QUIET
+        axes.barh(place, max(length, 0.003 * widest), height=0.62, color=colour)
+        text = f"{item.behind:.1f} {beyond}"
+        axes.text(length + 0.01 * widest, place, text, va="center", fontsize=8, color=NEUTRAL)
     axes.set_yticks(range(len(items)), [_short(explanation(item)) for item in items])
     axes.invert_yaxis()
     axes.set_xlim(0, 1.13 * widest)

@@ -3,29 +3,31 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from truing.numbers import ABSENT, format_number, format_value, pretty, with_unit
 
 if TYPE_CHECKING:
-    from truing.diagnosis.result import Alternative, Amount, Cause, Diagnosis, FittedUnknown, Gain, NextPoint, Seen
+    from truing.diagnosis.result import Alternative, Amount, Cause, Diagnosis, FittedUnknown, Gain, NextPoint
 
 CERTAIN, LIKELY = 0.005, 0.05
 TO = " … "
 UNKNOWN = "unknown"
+MICRO = re.compile(r"(?<=\d )u(?=(?:m|rad|s|N|g|l)\b)")
 
 
 def spoken(name: str) -> str:
-    """Say a name: without underscores; an input that lies outside of its band as such."""
+    """Say a name: without underscores; the unknown of an effect behind it; an input outside of its band as such."""
     if name.startswith("input:"):
         return f"{name.removeprefix('input:').replace('_', ' ')} outside of its tolerance"
-    return "something unregistered" if name == UNKNOWN else name.replace("_", " ")
+    return "something unregistered" if name == UNKNOWN else name.replace("_", " ").replace(".", ", ")
 
 
-def seen_name(item: Seen) -> str:
-    """Say an effect that was looked for; of one with parts, which of them."""
-    return spoken(item.name) + (f" of {spoken(item.part)}" if item.part else "")
+def prose(text: str) -> str:
+    """Write a sentence of the diagnosis for print: without underscores, micro as a letter of its own."""
+    return MICRO.sub("µ", text.replace("_", " "))
 
 
 def listed(words: Sequence[str], joined: str = "and") -> str:
@@ -51,6 +53,27 @@ def amount_text(amount: Amount | None, digits: int = 3) -> str:
         return ABSENT
     number, unit = format_value(amount.value, amount.unit, digits)
     return with_unit(pretty(number), unit)
+
+
+def readable(amount: Amount | None) -> Amount | None:
+    """Return a size in a unit in which it reads well: 1.15 µm/h rather than 0.00115 mm/h."""
+    from truing.diagnosis.readable import FAMILIES, LARGEST, SMALLEST
+    from truing.diagnosis.result import Amount
+    from truing.units import from_si
+
+    if amount is None or not amount.value or SMALLEST <= abs(float(from_si(amount.value, amount.unit))) < LARGEST:
+        return amount
+    head, bar, tail = amount.unit.partition("/")
+    units = [f"{each}{bar}{tail}" for family in FAMILIES if head in family for each in family]
+    fitting = [unit for unit in units if SMALLEST <= abs(float(from_si(amount.value, unit))) < LARGEST]
+    return Amount(amount.value, fitting[0]) if fitting else amount
+
+
+def score_text(number: float | None) -> str:
+    """Write a score, a λ or a gain in log score: to a hundredth below ten, what is smaller is 0."""
+    if number is None or not math.isfinite(number):
+        return ABSENT
+    return pretty(format_number(round(number, 2), 3))
 
 
 def percent(share: float | None) -> str:
@@ -141,7 +164,7 @@ def _nothing(diagnosis: Diagnosis) -> Iterator[str]:
     ]
     yield f"Within its tolerances the model meets the measurement: {listed(parts)}."
     yield "What is left is noise; no effect, registered or not, is needed."
-    blind = [seen_name(item) for item in diagnosis.seen if item.sight == "not excited"]
+    blind = [spoken(item.name) for item in diagnosis.seen if item.sight == "not excited"]
     if blind:
         yield f"That says nothing of {listed(blind)}: this data does not excite {'it' if len(blind) == 1 else 'them'}."
 
@@ -173,7 +196,7 @@ def _cause_sentences(diagnosis: Diagnosis) -> Iterator[str]:
         over = listed([spoken(name) for name in remainder.depends_on])
         of_results = listed([spoken(name) for name in remainder.results])
         what = "Beside it something" if diagnosis.causes else "Something"
-        yield f"{what} that no registered effect explains is in {of_results}, over {over}: {spoken(remainder.shape)}."
+        yield f"{what} that no registered effect explains is in {of_results}, over {over}: {prose(remainder.shape)}."
 
 
 def _gain_sentences(diagnosis: Diagnosis) -> Iterator[str]:

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
         Gain,
         NextPoint,
         Remainder,
-        Seen,
         Wrong,
     )
 
@@ -187,26 +186,15 @@ def _remainder(remainder: Remainder) -> dict[str, Any]:
 
 def _sight(diagnosis: Diagnosis) -> dict[str, Any]:
     """Say what this data could show, and what it could not."""
-    named = seen_names(diagnosis.seen)
+    seen = diagnosis.seen
     return {
-        "not_excited": [name for name, item in named.items() if item.sight == "not excited"],
+        "not_excited": [item.name for item in seen if item.sight == "not excited"],
         "not_measured": {effect: list(conditions) for effect, conditions in diagnosis.not_measured.items()},
-        "hidden_in_tolerances": [name for name, item in named.items() if item.sight == "hidden in the tolerances"],
+        "hidden_in_tolerances": [item.name for item in seen if item.sight == "hidden in the tolerances"],
         "smallest_visible": {
-            name: {**_amount(item.smallest), "sight": item.sight}
-            for name, item in named.items()
-            if item.smallest is not None
+            item.name: {**_amount(item.smallest), "sight": item.sight} for item in seen if item.smallest is not None
         },
     }
-
-
-def seen_names(seen: Sequence[Seen]) -> dict[str, Seen]:
-    """Name each: the first of an effect by the effect alone, further parts as EFFECT.RESULT, or EFFECT.2, EFFECT.3."""
-    found: dict[str, Seen] = {}
-    for item in seen:
-        names = [item.name, f"{item.name}.{item.part}", *(f"{item.name}.{place}" for place in range(2, len(seen) + 1))]
-        found[next(name for name in names if name not in found and not name.endswith("."))] = item
-    return found
 
 
 def _gain(item: Gain) -> dict[str, Any]:
