@@ -193,9 +193,9 @@ def test_a_record_is_a_run_with_its_series_and_places(read: Read) -> None:
 
 
 def test_rows_beyond_the_axis_measure_nothing_there(read: Read) -> None:
-    records = read(PROBE, "depth [mm],force [N],work [J]\n0,1,0.01\n10,2,0.03\n55,2,0.05\n")
-    np.testing.assert_allclose(records.measured["work"], [0.01, 0.03, np.nan])
-    assert said(records, "axis") == ["'work' is not used in 1 row, which lie beyond its axis"]
+    records = read(PROBE, "depth [mm],force [N],work [J]\n0,1,0.01\n10,2,0.03\n20,2,0.05\n75,2,0.05\n")
+    np.testing.assert_allclose(records.measured["work"], [0.01, 0.03, 0.05, np.nan])
+    assert said(records, "axis") == ["'work' is not used in 1 row that its axis does not reach"]
 
 
 def test_a_standard_deviation_of_nothing_is_none(read: Read) -> None:
@@ -307,6 +307,16 @@ def test_too_few_rows_say_where_the_others_are(refused: Refused) -> None:
     assert refused(PIN_WEAR, "depth [um]\n1\n", "depth [um]\n2\n") == [f"the files hold two rows together; {NEEDED}"]
 
 
+def test_a_result_without_values_in_the_rows_that_are_left(read: Read, refused: Refused) -> None:
+    text = "load [N],depth [um],pressure [MPa]\n1,1,\n2,2,\n3,3,1\n,4,4\n,4,5\n,4,6\n"
+    records = read(PIN_WEAR, text)
+    assert list(records.measured) == ["depth"]
+    assert said(records, "too few") == ["'pressure' is not used: 1 value is too few"]
+    (sentence,) = refused(PROBE, "depth [mm],force [N],work [J]\n0,1,0.01\n10,2,\n20,2,0.05\n75,2,0.05\n")
+    assert sentence.startswith("a.csv: two rows can be used; ")
+    assert "'work' is not used in 1 row that its axis does not reach" in sentence
+
+
 def test_rows_that_all_fail_hint_at_the_unit(refused: Refused) -> None:
     """The contact flows above 58.8 kN: loads in newtons under a header in kilonewtons."""
     (sentence,) = refused(PIN_WEAR, "load [kN],depth [um]\n100,1\n110,2\n120,3\n")
@@ -395,19 +405,27 @@ def test_each_run_is_joined_alone(read: Read) -> None:
 
 def test_missing_cells(read: Read) -> None:
     text = "crank_angle [deg],forming_force [kN],speed [rpm],slider_position [mm],slider_tilt [urad]\n"
-    rows = ["1,100,,2700,5", "2,,20,2700,5", ",100,,2700,", "4,100,,2700,nan", "5,100,,2700,5", "6,100,30,,"]
+    rows = [
+        "1,100,,2700,5",
+        "2,,20,2700,5",
+        ",100,,2700,",
+        "4,100,,2700,nan",
+        "5,100,,2700,5",
+        "6,100,30,,",
+        "7,100,,2700,5",
+    ]
     records = read(PRESS, text + "\n".join(rows) + "\n")
-    assert records.lines.tolist() == [2, 5, 6]
-    np.testing.assert_allclose(records.measured["slider_tilt"], [5e-6, np.nan, 5e-6])
+    assert records.lines.tolist() == [2, 5, 6, 8]
+    np.testing.assert_allclose(records.measured["slider_tilt"], [5e-6, np.nan, 5e-6, 5e-6])
     assert "speed" in records.absent
     assert "speed" not in records.rows.columns
     assert "speed" not in records.covariates
     assert said(records, "empty") == [
-        "'speed' is empty in 4 of 6 rows, so it counts as not measured",
+        "'speed' is empty in 5 of 7 rows, so it counts as not measured",
         "1 row is left out where 'crank_angle' is empty",
         "1 row is left out where 'forming_force' is empty",
     ]
-    assert said(records, "missing") == ["'slider_tilt' is missing in 1 of 3 rows"]
+    assert said(records, "missing") == ["'slider_tilt' is missing in 1 of 4 rows"]
 
 
 def test_rows_where_the_model_fails_are_left_out(read: Read) -> None:
@@ -434,13 +452,13 @@ def test_what_one_file_does_not_measure(read: Read) -> None:
     records = read(
         PRESS,
         "crank_angle [deg],forming_force [kN],oil [degC],slider_position [mm]\n1,1,40,2700\n2,2,40,2700\n",
-        "slider_position [mm],slider_tilt [urad]\n2700,1\n2700,2\n",
+        "slider_position [mm],slider_tilt [urad]\n2700,1\n2700,2\n2700,3\n",
         given_='[inputs]\ncrank_angle = "30 deg"\n',
     )
-    np.testing.assert_allclose(np.degrees(records.rows.columns["crank_angle"]), [1, 2, 30, 30])
+    np.testing.assert_allclose(np.degrees(records.rows.columns["crank_angle"]), [1, 2, 30, 30, 30])
     assert "forming_force" in records.absent
-    np.testing.assert_allclose(records.covariates["oil"].values, [313.15, 313.15, np.nan, np.nan])
-    np.testing.assert_allclose(records.measured["slider_tilt"], [np.nan, np.nan, 1e-6, 2e-6])
+    np.testing.assert_allclose(records.covariates["oil"].values, [313.15, 313.15] + [np.nan] * 3)
+    np.testing.assert_allclose(records.measured["slider_tilt"], [np.nan, np.nan, 1e-6, 2e-6, 3e-6])
     (note,) = said(records, "is not in")
     assert note.startswith("'forming_force' is not in ")
     assert note.endswith("b.csv, so it counts as not measured")

@@ -48,6 +48,8 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup) -> Records:
     held_out, said = held_out_rows(joined, setup)
     notes += said
     _demand_rows(int((~held_out).sum()), joined.files, notes)
+    joined, said = _enough_values(joined, ~held_out, notes)
+    notes += said
     slips = suspected_slips(joined, answers, setup)
     covariates, said = covariates_of(joined, setup)
     sigma, unused = _sigma(joined)
@@ -116,6 +118,20 @@ def _sigma(joined: Joined) -> tuple[dict[str, NDArray[np.float64]], list[str]]:
     return {name.removeprefix(SIGMA): values for name, values in found.items()}, notes
 
 
+def _enough_values(joined: Joined, fitted: NDArray[np.bool_], notes: Sequence[str]) -> tuple[Joined, list[str]]:
+    """Leave out measured results with too few values to explain; raises InputError where none is left."""
+    import numpy as np
+
+    measured = joined.data.named("measured")
+    values = {name: int(np.isfinite(joined.data.columns[name][fitted]).sum()) for name in measured}
+    few = {name: count for name, count in values.items() if count < FEWEST}
+    if len(few) == len(measured):
+        _demand_rows(max(few.values()), joined.files, notes)
+    columns = {name: column for name, column in joined.data.columns.items() if name not in few}
+    said = [f"'{name}' is not used: {counted(count, 'value is', 'values are')} too few" for name, count in few.items()]
+    return replace(joined, data=replace(joined.data, columns=columns)), said
+
+
 def _answered(joined: Joined, setup: Setup) -> tuple[Joined, Answers, list[str]]:
     """Hold the rows against the model as it stands; leave out those in which it fails."""
     import numpy as np
@@ -137,5 +153,6 @@ def _answered(joined: Joined, setup: Setup) -> tuple[Joined, Answers, list[str]]
         lost = np.isnan(answers[name]) & np.isfinite(columns[name])
         if lost.any():
             columns[name] = np.where(lost, np.nan, columns[name])
-            notes.append(f"'{name}' is not used in {counted(int(lost.sum()))}, which lie beyond its axis")
-    return replace(joined, data=replace(joined.data, columns=columns)), answers, notes
+            notes.append(f"'{name}' is not used in {counted(int(lost.sum()))} that its axis does not reach")
+    joined = replace(joined, data=replace(joined.data, columns=columns))
+    return joined, answers, notes
