@@ -134,12 +134,18 @@ LOAD: list[Effect[Press, Slider]] = [
         on_inputs=slider_inertia,
         needs=[SPEED],
         unknowns=[
-            Unknown("mass_compliance", 0, 20000, "kg/GN", note="mass of the slider times 1/(EA) of rods and knee links")
+            Unknown(
+                "mass_compliance",
+                -20000,
+                20000,
+                "kg/GN",
+                note="mass of the slider times 1/(EA) of its links; negative where a counterweight outweighs it",
+            )
         ],
         looks_like="an elastic deflection that grows with the square of the speed and follows the acceleration of the "
-        "slider over the crank angle; no tilt",
+        "slider over the crank angle: deeper at the bottom dead centre the faster the press runs; no tilt",
         why="a heavy slider loads its links by its own acceleration",
-        source="elastic deflection under the force -m z'' omega^2",
+        source="d'Alembert: elastic deflection under the inertia of the slider, +m z'' omega^2 upward",
     ),
 ]
 DIE: list[Effect[Press, Slider]] = [

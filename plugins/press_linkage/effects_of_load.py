@@ -84,10 +84,12 @@ def joint_wear(press: Press, *, wear: Float, strokes: Float, forming_force: Floa
 
 
 def slider_inertia(press: Press, *, mass_compliance: Float, speed: Float) -> Press:
-    """The elastic line under the force -m z'' of the slider, with both cranks turning at the same, steady speed.
+    """The elastic line under the inertia of the slider, with both cranks turning at the same, steady speed.
 
-    ``mass_compliance`` is m/(EA), ``speed`` in turns per second; z'' is exact at every crank angle.
+    A slider that accelerates upward (z'' < 0, as at the bottom dead centre) pulls its links down: as a force that is
+    positive upward, its inertia is +m z''. ``mass_compliance`` is m/(EA), ``speed`` in turns per second; z'' is exact
+    at every crank angle.
     """
     position = position_of(press)
     by_angle = _closed(slider_motion(position).acceleration)
-    return pressed(press, position, -mass_compliance * by_angle * (TURN * speed) ** 2)
+    return pressed(press, position, mass_compliance * by_angle * (TURN * speed) ** 2)

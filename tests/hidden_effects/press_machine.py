@@ -196,7 +196,7 @@ def yielded(rows: Rows, angle: Array, sizes: Sizes, hidden: Hidden) -> Sizes:
     slopes = lowering(angle, sizes)
     load = compliance * rows.forming_force
     if inertia:
-        load = load - inertia * curvature(angle, sizes) * (2 * pi * rows.speed) ** 2
+        load = load + inertia * curvature(angle, sizes) * (2 * pi * rows.speed) ** 2
     pushed = np.where(rows.forming_force >= 0, 1.0, -1.0)
     return sizes | {
         name: sizes[name] * (1 - slope * load) - 2 * loose * np.sign(slope) * pushed for name, slope in slopes.items()

@@ -78,7 +78,7 @@ AT_DEAD_CENTRE = [
     ),
     ("crank_phase", {"phase": 10e-3}, {}, POSITION, -0.0686 / 2 * 1e-4, 0.01e-6),
     ("slider_inertia", {"mass_compliance": 1e-6}, {"speed": 1.0}, POSITION,
-     -1e-6 * 0.0686 * 39.478 / 2 * (3.953 + 0.14931**2 * 1.304), 0.01e-6),
+     1e-6 * 0.0686 * 39.478 / 2 * (3.953 + 0.14931**2 * 1.304), 0.01e-6),
     ("die_inclination", {"inclination": 1e-4}, {}, TILT, 1e-4, 1e-12),
     ("sensor_gain", {POSITION: 1e-5}, {}, POSITION, 3.55760e-5, 1e-9),
     ("thermal_drift", {TILT: 2e-6}, {"link_temperature": 25.0}, TILT, 1e-5, 1e-12),
