@@ -27,7 +27,7 @@ from truing.report.diagnosis_words import (
 )
 
 if TYPE_CHECKING:
-    from truing.diagnosis.result import Alternative, Diagnosis, Wrong
+    from truing.diagnosis.result import Alternative, Diagnosis, Seen, Wrong
 
 INDENT = 18
 MOST_PLACES = 5
@@ -144,13 +144,10 @@ def _distance(item: Alternative) -> str:
 def _sight(diagnosis: Diagnosis) -> Iterator[str]:
     """Say what this data could not show, and the smallest size of what it could."""
     for sight in ("not excited", "hidden in the tolerances"):
-        found = [
-            spoken(item.name) + (f" ({item.text})" if item.text else "")
-            for item in diagnosis.seen
-            if item.sight == sight
-        ]
+        found = [_blind(item) for item in diagnosis.seen if item.sight == sight]
         if found:
-            yield f"{sight}: {'; '.join(found)}"
+            more = "; the sheet lists all" if len(found) > MOST_SEEN else ""
+            yield f"{sight}: {'; '.join(found[:MOST_SEEN])}{more}"
     lacking = [f"{spoken(effect)} ({listed(list(needs))})" for effect, needs in diagnosis.not_measured.items()]
     if lacking:
         yield f"not measured: {'; '.join(lacking)}"
@@ -163,6 +160,13 @@ def _sight(diagnosis: Diagnosis) -> Iterator[str]:
     if visible:
         more = "; the sheet lists all" if len(visible) > MOST_SEEN else ""
         yield f"would have been seen from: {'; '.join(list(visible.values())[:MOST_SEEN])}{more}"
+
+
+def _blind(item: Seen) -> str:
+    """Say what could not be seen, and from what size it would be."""
+    visible = f"visible from {amount_text(readable(item.smallest))}" if item.smallest is not None else ""
+    remark = item.text or (visible if item.sight == "hidden in the tolerances" else "")
+    return f"{spoken(item.name)} ({remark})" if remark else spoken(item.name)
 
 
 def _model(diagnosis: Diagnosis) -> Iterator[str]:
