@@ -152,8 +152,7 @@ def terms_of(place: int, candidate: Candidate, machine: Machine, scales: Mapping
 def _stands_still(candidate: Candidate, machine: Machine) -> bool:
     covariates = machine.records.covariates
     names = [*(need.name for need in candidate.effect.needs), *candidate.effect.reads]
-    known = [covariates[name] for name in names if name in covariates]
-    return bool(known) and all(item.is_constant for item in known)
+    return bool(names) and all(name not in covariates or covariates[name].is_constant for name in names)
 
 
 def _refined(terms: list[Term], candidate: Candidate, machine: Machine, scales: Mapping[str, float]) -> list[Term]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.contest import Contest, curve_space
@@ -43,6 +43,21 @@ class Decision:
 
 def _one_term(hypothesis: Hypothesis) -> bool:
     return hypothesis.kind in {"one", "shape", "input"}
+
+
+def without_needless_inputs(contest: Contest) -> Contest:
+    """Strike out inputs off their band unless nothing registered explains the data nearly as well.
+
+    An input is named only when it must lie outside; a gauge or an effect that draws its curve is the smaller claim.
+    """
+    import numpy as np
+
+    found = contest.found
+    named = found.best(lambda hypothesis: hypothesis.kind in {"one", "two"})
+    limit = -np.inf if named < 0 else found.score[named] + CLOSE
+    needless = [item.kind == "input" and found.score[place] < limit for place, item in enumerate(found.hypotheses)]
+    score = np.where(needless, -np.inf, found.score)
+    return replace(contest, found=replace(found, score=score))
 
 
 def _two_terms(hypothesis: Hypothesis) -> bool:

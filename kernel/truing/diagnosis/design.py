@@ -93,14 +93,16 @@ def next_points(full: Contest, winner: int, rivals: Sequence[int]) -> list[NextP
     there = _machine_there(full, settings)
     duels = [_duel(full, there, a, b) for a in places for b in places if a != b]
     found: list[NextPoint] = []
+    taken = np.zeros(len(there.records), dtype=bool)
     for _ in range(POINTS):
         worth = sum((np.log1p(duel.separation + duel.gains()) for duel in duels), np.zeros(len(there.records)))
-        worth = np.where(np.isfinite(worth), worth, -np.inf)
+        worth = np.where(np.isfinite(worth) & ~taken, worth, -np.inf)
         place = int(np.argmax(worth))
         if not np.isfinite(worth[place]):
             break
         weakest = min(duels, key=lambda duel: duel.separation)
         why = _why(full, settings, place, weakest)
+        taken[place] = True
         for duel in duels:
             duel.measure(place)
         least = min(duel.separation for duel in duels)

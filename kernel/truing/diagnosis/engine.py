@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.contest import Contest, contest
-from truing.diagnosis.decide import Decision, alternatives, decide
+from truing.diagnosis.decide import Decision, alternatives, decide, without_needless_inputs
 from truing.diagnosis.design import next_points
 from truing.diagnosis.findings import wrong_of
 from truing.diagnosis.fit import Fit, fit, input_values
@@ -40,7 +40,7 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
     raw = first_noise(machine)
     problem = problem_of(machine, raw.scales)
     step.done("columns")
-    full = contest(problem, raw, ~records.held_out)
+    full = without_needless_inputs(contest(problem, raw, ~records.held_out))
     step.done("search")
     decision = decide(full, seed=setup.seed)
     step.done("significance")

@@ -60,7 +60,7 @@ def _wrong(full: Contest, best: Fit, null: Null, place: int, units: Mapping[str,
     share = max(0.0, 1 - floor**2 / rmse**2) if rmse > 0 and best.hypothesis.pieces else 0.0
     found = [
         *_bias(full, place, raw[rows], unit),
-        *_structure(full, base, null, place, unit),
+        *_structure(full, null, place, unit),
         *_of_noise(full, best, place),
     ]
     noise = _noise(full, best, after, place, floor, unit)
@@ -89,16 +89,17 @@ def _bias(full: Contest, place: int, residual: Matrix, unit: str) -> Iterator[Fi
     yield Finding("bias", "", None, f"on average {in_unit(mean, unit)} off the nominal model, {words}")
 
 
-def _structure(full: Contest, base: Solution, null: Null, place: int, unit: str) -> Iterator[Finding]:
+def _structure(full: Contest, null: Null, place: int, unit: str) -> Iterator[Finding]:
     """Say what the residual of the calibrated model depends on; every p-value has paid for the whole search."""
-    found, problem = full.found, full.problem
+    found = full.found
     name = full.evidence.channels[place].name
+    plain = max(float(found.score[0]), _constant_score(full, name))
     best: dict[tuple[str, ...], tuple[float, int]] = {}
     for number, hypothesis in enumerate(found.hypotheses):
         if len(hypothesis.pieces) != 1 or not _acts_on(full, hypothesis, name):
             continue
         label = _label(full, hypothesis)
-        excess = float(found.score[number] - found.score[0])
+        excess = float(found.score[number] - plain)
         if label and null.p_of(excess) <= SIGNIFICANT and excess > best.get(label, (-float("inf"), 0))[0]:
             best[label] = (excess, number)
     singles = {label[1]: excess for label, (excess, _) in best.items() if len(label) == 2}
@@ -111,7 +112,19 @@ def _structure(full: Contest, base: Solution, null: Null, place: int, unit: str)
         kept += 1
         if kept <= LARGEST_COUNT:
             yield _finding(full, number, null.p_of(excess), name, unit)
-    del base, problem
+
+
+def _constant_score(full: Contest, name: str) -> float:
+    """Return the score of a mere constant on one result: what a trend must beat to be one."""
+    candidates, found = full.problem.candidates, full.found
+    own = [
+        float(found.score[place])
+        for place, hypothesis in enumerate(found.hypotheses)
+        if hypothesis.kind == "one"
+        and candidates[hypothesis.pieces[0].owner].name == "sensor_offset"
+        and set(full.problem.columns[hypothesis.columns[0]].parts) == {name}
+    ]
+    return max(own, default=-float("inf"))
 
 
 def _acts_on(full: Contest, hypothesis: Hypothesis, name: str) -> bool:

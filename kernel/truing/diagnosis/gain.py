@@ -11,7 +11,7 @@ from math import inf, log, pi, sqrt
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.contest import Contest, contest
-from truing.diagnosis.decide import Thresholds, decide_again
+from truing.diagnosis.decide import Thresholds, decide_again, without_needless_inputs
 from truing.diagnosis.noise import SETTINGS, Setting
 from truing.diagnosis.search import NoiseModel, Solution
 
@@ -89,6 +89,7 @@ def nested(full: Contest, winner: int, thresholds: Thresholds, raw: NoiseModel) 
     for fold in range(folds):
         test = usable & (block_of % folds == fold)
         again = contest(full.problem, raw, usable & ~test, rounds=ROUNDS, settings=full.settings)
+        again = without_needless_inputs(again)
         place = decide_again(again, thresholds)
         same += again.found.hypotheses[place].key == key
         base, extended = again.solution(0), again.solution(place)
