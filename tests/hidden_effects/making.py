@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hidden_effects.candidates import HOUR, Candidate, changes
+from hidden_effects.candidates import HOUR, Candidate, changes, columns
 from hidden_effects.cases import Case, Stratum
 from hidden_effects.designs import DESIGNS, KINDS, Design, Kind, drawn_noise, measured, parted
 from hidden_effects.press_machine import POSITION, SCATTER, TILT, Array, Hidden, Rows, shown
@@ -22,7 +22,7 @@ SCHEDULE: tuple[Stratum, ...] = (
     "none", "double", "none", "single", "none", "unknown", "none", "single", "beside", "double",
 )  # fmt: skip
 LENGTHS = (80, 150, 300)
-HELD_OUT = 200
+HELD_OUT = 1000
 LEAST, MOST = 0.5, 3.0
 WHOLE = 0.2
 REACH = 0.9
@@ -164,6 +164,10 @@ def _sized(
     record = bench.record
     shapes = {name: _shape_value(name, record.rows, rng) for name in candidate.shapes or {}}
     ways = rng.standard_normal(len(candidate.amplitudes))
+    made = columns(record.rows, record.results, candidate, shapes)
+    ways = np.where(np.any(made != 0, axis=0), ways, 0.0)  # what these rows do not excite is absent
+    if not np.any(ways):
+        return None
     ways = ways / np.linalg.norm(ways)
     signs = [abs(way) if low >= 0 else way for way, (low, _) in zip(ways, candidate.amplitudes.values(), strict=True)]
     factor = candidate.small

@@ -40,6 +40,7 @@ def oracle(case: Case) -> Array:
     rows, count = case.record.rows, len(SCATTER)
     unknown, unknown_held = unknown_columns(case, rows), unknown_columns(case, case.held)
     lengths = np.linalg.norm(unknown, axis=0)
+    unknown, unknown_held, lengths = unknown[:, lengths > 0], unknown_held[:, lengths > 0], lengths[lengths > 0]
     design = np.hstack([case.record.tolerances, unknown / lengths])
     held = np.hstack([tolerance_columns(case.held, case.results), unknown_held / lengths])
     prior = np.concatenate([np.ones(count), np.zeros(design.shape[1] - count)])

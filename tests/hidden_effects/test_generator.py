@@ -252,7 +252,7 @@ def test_a_case_is_written_as_a_user_would_have_it(tmp_path: Path) -> None:
     )
     assert record[0].startswith("crank_angle [deg],forming_force [kN],link_temperature [degC],time [h],strokes [1],")
     assert record[1].split(",")[:7] == held[1].split(",")[:7]
-    assert (len(record) - 1, len(held) - 1) == (len(case.record.rows), 201)
+    assert (len(record) - 1, len(held) - 1) == (len(case.record.rows), 1001)
     assert float(record[1].split(",")[7]) * 1e-3 == pytest.approx(case.readings[POSITION][0], rel=1e-15)
 
 
