@@ -180,7 +180,7 @@ def _model(diagnosis: Diagnosis) -> Iterator[str]:
         yield "nothing was named: the model stands as it is"
     moved = sorted(diagnosis.calibrated, key=lambda item: -abs(item.of_its_sd))[:MOST_MOVED]
     if moved:
-        shifts = ", ".join(f"{spoken(item.name)} by {pretty(f'{item.of_its_sd:.2f}')}" for item in moved)
+        shifts = ", ".join(f"{spoken(item.name)} by {score_text(item.of_its_sd)}" for item in moved)
         yield f"moved most within their tolerances (in standard deviations): {shifts}"
 
 

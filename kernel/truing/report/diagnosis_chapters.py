@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from truing.diagnosis.result import Alternative, Diagnosis, FittedUnknown, NextPoint, Noise
 
 MOST_OUTLIERS = 12
-WEAK = 10.0
 FITTED_DIGITS = 7
 EVERYTHING = "extended.toml"
 
@@ -176,11 +175,14 @@ def _ranking(diagnosis: Diagnosis) -> TableView:
 
 def _judged(item: Alternative, diagnosis: Diagnosis) -> str:
     """Say what this data makes of an explanation beside the best one."""
-    if item == diagnosis.ranking[0]:
+    best = diagnosis.ranking[0]
+    if item == best:
         return "best"
     if figures.is_open(item, diagnosis):
         return "not excluded"
-    return "explains no more with more" if item.separation < WEAK else "excluded"
+    if best.causes and set(best.causes) < set(item.causes):
+        return "adds nothing"
+    return "excluded" if item.behind >= figures.NEAR else "needs more for the same"
 
 
 def _residuals(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
@@ -267,7 +269,7 @@ def _calibrated(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
         if not nominal:
             fitted = amount_text(readable(Amount(item.value, item.unit)))
         stated = amount_text(Amount(nominal, item.unit), STATED_DIGITS)
-        yield spoken(item.name), stated, fitted, pretty(f"{item.of_its_sd:.2f}")
+        yield spoken(item.name), stated, fitted, score_text(item.of_its_sd)
 
 
 def _remainder(diagnosis: Diagnosis) -> Iterator[BlockView]:

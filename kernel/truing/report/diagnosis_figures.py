@@ -23,6 +23,10 @@ MOST_PLACES = 5
 """A covariate with fewer different values shows no course."""
 FARTHEST = 60.0
 """A bar longer than this is cut: how far behind it is does not matter any more."""
+NEAR = 6.0
+"""So many score units (a Bayes factor of about 20) are no distance; what is nearer and excluded only says more."""
+ENLARGED = 4.0
+"""Residuals that became smaller by this factor are drawn on a scale of their own."""
 MOST_BARS = 8
 
 
@@ -128,7 +132,10 @@ def over_covariate(diagnosis: Diagnosis, curves: Curves, covariate: Covariate) -
     if not has_changed(curves):
         panels = [(shown.before, NEUTRAL, "")]
     figure = Figure(figsize=(6.4, 3.0), layout="constrained")
-    places = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+    enlarged = has_changed(curves) and _span(shown.before) > ENLARGED * _span(shown.after)
+    if enlarged:
+        panels[1] = (shown.after, AFTER, "after, enlarged")
+    places = figure.subplots(1, len(panels), sharey=not enlarged, squeeze=False)[0]
     for axes, (values, colour, when) in zip(places, panels, strict=True):
         axes.axhspan(-shown.floor, shown.floor, color="#e4e7ea", linewidth=0)
         axes.axhline(0.0, color=NEUTRAL, linewidth=0.7)
@@ -137,6 +144,11 @@ def over_covariate(diagnosis: Diagnosis, curves: Curves, covariate: Covariate) -
         axes.set_xlabel(_label(covariate.name, covariate.unit))
     places[0].set_ylabel(_label(shown.result, shown.unit) + "\nmeasured − simulated")
     return figure
+
+
+def _span(values: NDArray[np.float64]) -> float:
+    low, high = _extent([values])
+    return high - low
 
 
 def against_simulated(diagnosis: Diagnosis, curves: Curves) -> Figure:
@@ -218,7 +230,7 @@ def ranking_bars(diagnosis: Diagnosis) -> Figure:
 
 
 def _short(text: str, most: int = 46) -> str:
-    words = text.replace("$", r"\$")
+    words = text.replace("something unregistered", "unregistered").replace("$", r"\$")
     return words if len(words) <= most else words[: most - 1] + "…"
 
 
