@@ -13,6 +13,7 @@ from truing.diagnosis.search import (
     Found,
     NoiseModel,
     Solution,
+    base_solution,
     evidence_of,
     learned,
     likely_settings,
@@ -40,6 +41,10 @@ class Contest:
     evidence: Evidence
     found: Found
     settings: tuple[tuple[int, ...], ...]
+
+    def base(self) -> Solution:
+        """Calibrate the model as it is, with no cause."""
+        return base_solution(self.evidence, self.found.setting[0])
 
     def solution(self, place: int) -> Solution:
         """Solve one of the hypotheses at its best noise filter."""

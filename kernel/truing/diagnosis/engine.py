@@ -145,7 +145,7 @@ def _curves(full: Contest, best: Fit) -> list[Curves]:
     from truing.diagnosis.gain import linear_prediction
 
     machine = full.problem.machine
-    base = full.solution(0)
+    base = full.base()
     found = []
     for name, measured in machine.records.measured.items():
         before = machine.base[name] + linear_prediction(full, base, name) + machine.shifts[name]

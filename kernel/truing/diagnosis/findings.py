@@ -50,7 +50,7 @@ def _wrong(full: Contest, best: Fit, null: Null, place: int, units: Mapping[str,
 
     channel = full.evidence.channels[place]
     unit, rows = units[channel.name], channel.rows
-    base = full.solution(0)
+    base = full.base()
     raw = residuals_of(full.problem.machine)[channel.name]
     before = (raw - linear_prediction(full, base, channel.name))[rows]
     after = (full.problem.machine.records.measured[channel.name] - best.predicted[channel.name])[rows]

@@ -92,7 +92,8 @@ def nested(full: Contest, winner: int, thresholds: Thresholds, raw: NoiseModel) 
         again = without_needless_inputs(again)
         place = decide_again(again, thresholds)
         same += again.found.hypotheses[place].key == key
-        base, extended = again.solution(0), again.solution(place)
+        base = again.base()
+        extended = again.solution(place) if place else base
         for channel, name in enumerate(judged):
             _judge(judged[name], again, (base, extended), channel, test)
     return Nested(judged, block_of, same / folds)

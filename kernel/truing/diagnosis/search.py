@@ -16,7 +16,7 @@ from truing.diagnosis.evidence import (
     reduced,
     starts_of,
 )
-from truing.diagnosis.hypotheses import Batch, Hypothesis, batches_of
+from truing.diagnosis.hypotheses import NOTHING, Batch, Hypothesis, batches_of
 from truing.diagnosis.machine import Machine, directions_of
 from truing.diagnosis.noise import (
     SETTINGS,
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
 KEPT_SETTINGS = 4
 REMEMBERED = 20
+DOUBTS = 12
 SMALLEST_SHARE = 1e-6
 
 
@@ -218,17 +219,16 @@ class Solution:
     innovations: tuple[Matrix, ...]
 
 
-def solve(evidence: Evidence, hypothesis: Hypothesis, setting: tuple[int, ...]) -> Solution:
-    """Solve one hypothesis under one noise filter per channel."""
+def solve(evidence: Evidence, hypothesis: Hypothesis, setting: tuple[int, ...], doubt: float = 1.0) -> Solution:
+    """Solve one hypothesis under one noise filter per channel; ``doubt`` multiplies the scale of the noise."""
     import numpy as np
 
-    case = evidence.case(setting)
     columns = list(hypothesis.columns)
     b = np.zeros(0)
     if columns:
         batch: Batch = batches_of([hypothesis], evidence.rows)[0]
-        b = coefficients(case, batch)[0, :, 0]
-    u = _directions(evidence, setting, columns, b)
+        b = coefficients(evidence.case(setting), batch)[0, :, 0]
+    u = _directions(evidence, setting, columns, b, doubt)
     fitted, left = [], []
     for channel, place in zip(evidence.channels, setting, strict=True):
         made = channel.directions @ u
@@ -241,14 +241,32 @@ def solve(evidence: Evidence, hypothesis: Hypothesis, setting: tuple[int, ...]) 
     return Solution(hypothesis, setting, b, u, tuple(fitted), tuple(left))
 
 
-def _directions(evidence: Evidence, setting: tuple[int, ...], columns: Sequence[int], b: Matrix) -> Matrix:
+def base_solution(evidence: Evidence, setting: tuple[int, ...]) -> Solution:
+    """Calibrate the model as it is, with no cause at all: as far as tolerances and its own misfit make likely.
+
+    What is left may be far more than noise; inputs are not driven out of their tolerances to draw it.
+    """
+    import numpy as np
+
+    trials = [solve(evidence, NOTHING, setting, doubt=2.0**power) for power in range(DOUBTS)]
+
+    def likelihood(trial: Solution) -> float:
+        sizes = [len(left) * float(np.log(max(float(left @ left), 1e-300) / len(left))) for left in trial.innovations]
+        return -sum(sizes) - float(trial.directions @ trial.directions)
+
+    return max(trials, key=likelihood)
+
+
+def _directions(
+    evidence: Evidence, setting: tuple[int, ...], columns: Sequence[int], b: Matrix, doubt: float
+) -> Matrix:
     import numpy as np
 
     k = evidence.directions.shape[1]
     chosen = [products[place].matrix for products, place in zip(evidence.products, setting, strict=True)]
     total = sum(chosen[1:], chosen[0])
     right = total[1 : 1 + k, 0] - total[1 : 1 + k][:, [1 + k + column for column in columns]] @ b
-    return np.asarray(np.linalg.solve(total[1 : 1 + k, 1 : 1 + k] + np.eye(k), right))
+    return np.asarray(np.linalg.solve(total[1 : 1 + k, 1 : 1 + k] + doubt**2 * np.eye(k), right))
 
 
 def learned(
