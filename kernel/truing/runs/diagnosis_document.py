@@ -31,14 +31,10 @@ def diagnosis_document(diagnosis: Diagnosis) -> dict[str, Any]:
     Numbers are in the unit that stands beside them; one that is not finite, and an open end of an interval, is null.
     Coefficients of a remainder's terms are SI, as their expressions are.
     """
-    provenance = provenance_of(diagnosis.setup)
+    provenance, model = provenance_of(diagnosis.setup), diagnosis.setup.model.name
     return {
         "schema": SCHEMA,
-        "plugin": {
-            "name": provenance.plugin,
-            "version": provenance.plugin_version,
-            "model": diagnosis.setup.model.name,
-        },
+        "plugin": {"name": provenance.plugin, "version": provenance.plugin_version, "model": model},
         "kernel": provenance.kernel,
         "input_hash": provenance.input_hash,
         "seed": provenance.seed,
