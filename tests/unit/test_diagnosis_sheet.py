@@ -166,6 +166,7 @@ def fitted(value: float, low: float | None, high: float | None, unit: str = "um"
         (fitted(118.2e-6, 101e-6, 135e-6), ("118", "101", "135", "µm")),
         (fitted(-0.66e-6, -0.71e-6, -0.61e-6), ("−0.660", "−0.710", "−0.610", "µm")),
         (fitted(41e-6, None, 52e-6), ("41", "open", "52", "µm")),
+        (fitted(51.3e-6, 47.2e-6, 55.4e-6, "mm/K"), ("51.3", "47.2", "55.4", "µm/K")),
         (fitted(41e-6, None, None), ("41", "open", "open", "µm")),
         (fitted(0.0, -1e-6, 1e-6), ("0", "−1.0", "1.0", "µm")),
         (fitted(7.0, 7.0, 7.0, ""), ("7", "7", "7", "")),
@@ -231,6 +232,7 @@ def test_small_pieces_of_words() -> None:
 SAID = {
     "none": ["meets the measurement: slide position to 6.1 µm (noise floor 6 µm)", "nothing of joint play"],
     "named": ["slide position: rod heating, expansion 11.80 µm/(m·K) (95 %: 11.42 … 12.18).",
+              "On this data that is one curve with warm up",
               "falls from 41.2 µm to 6.12 µm (noise floor 6 µm): 99.9 %", "No other explanation comes near"],
     "ambiguous": ["does not exclude sensor drift", "Measure next at rod temperature 50 °C, load −50 kN"],
     "unknown": ["Something that no registered effect explains is in slide position, over crank angle: order 7"],

@@ -98,12 +98,15 @@ def certainty(p_value: float | None) -> str:
 
 def number_texts(unknown: FittedUnknown, fitted: tuple[float, float | None, float | None]) -> tuple[str, str, str, str]:
     """Write value, lower end, upper end and unit; the width of the interval decides the digits, an open end is open."""
+    from truing.diagnosis.result import Amount
     from truing.units import from_si, unit_text
 
-    numbers = [None if one is None else float(from_si(one, unknown.unit)) for one in fitted]
+    size = readable(Amount(unknown.value, unknown.unit))
+    unit = unknown.unit if size is None else size.unit
+    numbers = [None if one is None else float(from_si(one, unit)) for one in fitted]
     spread = _half_width(numbers)
     value, low, high = (_as_wide(one, spread) for one in numbers)
-    return value, low, high, unit_text(unknown.unit)
+    return value, low, high, unit_text(unit)
 
 
 def _half_width(numbers: Sequence[float | None]) -> float:
@@ -188,6 +191,10 @@ def _cause_sentences(diagnosis: Diagnosis) -> Iterator[str]:
     if diagnosis.causes:
         causes = listed([cause_text(cause) for cause in diagnosis.causes])
         yield f"what the model misses in {results}: {causes}."
+    for cause in diagnosis.causes:
+        if cause.same_as:
+            others = listed([spoken(name) for name in cause.same_as], "or")
+            yield f"on this data that is one curve with {others}: it may as well be called so."
     if diagnosis.verdict == "named" and not diagnosis.unique:
         others = listed([explanation(item) for item in diagnosis.alternatives[:4]], "or")
         yield f"But this data does not exclude {others or 'other explanations'}."
