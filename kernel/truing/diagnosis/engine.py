@@ -34,8 +34,14 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
 
     The same records, setup and seed give the same answer. Raises UsageError where an option names what is not there.
     """
+    from threadpoolctl import threadpool_limits
+
     _check_options(setup)
-    step = _Steps(progress)
+    with threadpool_limits(limits=1):  # many small matrices: threads would only wait for one another
+        return _diagnose(setup, records, _Steps(progress))
+
+
+def _diagnose(setup: Setup, records: Records, step: _Steps) -> Diagnosis:
     machine = machine_of(setup, records)
     raw = first_noise(machine)
     problem = problem_of(machine, raw.scales)
