@@ -85,7 +85,8 @@ def _priors(setup: Setup) -> dict[str, tuple[float, float]]:
     for by_input in setup.distributions().values():
         for name, distribution in by_input.items():
             mean, sd = found.get(name, (0.0, 0.0))
-            found[name] = (mean + distribution.mean, float((sd**2 + distribution.sd**2) ** 0.5))
+            off = distribution.mean - float(setup.nominal(name))
+            found[name] = (mean + off, float((sd**2 + distribution.sd**2) ** 0.5))
     return found
 
 
