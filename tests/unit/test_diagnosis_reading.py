@@ -249,8 +249,8 @@ PIN_RESULTS = "pressure [MPa], distance [km], depth [um]"
                 "a.csv:1: column 'depth [N]': 'N' is a force (N), expected a length (µm)",
             ],
         ),
-        (PIN_WEAR, "depth [um]\n1\n2\n", [f"a.csv: holds two rows; {NEEDED}"]),
-        (PIN_WEAR, "depth [um]\n1\n", [f"a.csv: holds one row; {NEEDED}"]),
+        (PIN_WEAR, "depth [um]\n1\n2\n", [f"a.csv:3: holds two rows; {NEEDED}"]),
+        (PIN_WEAR, "depth [um]\n1\n", [f"a.csv:2: holds one row; {NEEDED}"]),
         (PIN_WEAR, "depth [um]\n", ["a.csv:1: holds a header but no rows"]),
         (
             PIN_WEAR,
@@ -553,8 +553,8 @@ def test_rows_held_out(read: Read) -> None:
 @pytest.mark.parametrize(
     ("hold_out", "expected"),
     [
-        ("record = valid", "given.toml: hold_out: no row has 'valid' in the column 'record'"),
-        ("recrod = x", "given.toml: hold_out: no file has a column 'recrod'. Did you mean 'record'?"),
+        ("record = valid", "given.toml:2: hold_out: no row has 'valid' in the column 'record'"),
+        ("recrod = x", "given.toml:2: hold_out: no file has a column 'recrod'. Did you mean 'record'?"),
         ("record = fit", "a.csv: two rows can be used; "),
     ],
 )

@@ -97,14 +97,14 @@ def held_out_rows(joined: Joined, setup: Setup) -> tuple[NDArray[np.bool_], list
     column, word = setup.diagnose.held_out
     if not column:
         return np.zeros(len(joined), dtype=bool), []
-    data = joined.data
+    data, place = joined.data, setup.places.get("studies.diagnose.hold_out", (setup.file, None))
     cells = data.runs if column == "run" else data.columns.get(column)
     if cells is None:
         near = near_miss(column[:80], list(data.columns))
-        raise InputError([Fault(f"hold_out: no file has a column {shown(column)}.{near}", setup.file)])
+        raise InputError([Fault(f"hold_out: no file has a column {shown(column)}.{near}", *place)])
     found = _equal(cells, word, data.units.get(column, ""))
     if not found.any():
-        raise InputError([Fault(f"hold_out: no row has {shown(word)} in the column {shown(column)}", setup.file)])
+        raise InputError([Fault(f"hold_out: no row has {shown(word)} in the column {shown(column)}", *place)])
     return found, [f"{counted(int(found.sum()), 'row only judges', 'rows only judge')}: {column} = {word}"]
 
 

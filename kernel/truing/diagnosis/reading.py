@@ -37,17 +37,17 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup) -> Records:
     """
     files, notes = _read(paths, offer)
     joined = join(files, setup)
-    _demand_rows(len(joined), joined.files, notes)
+    _demand_rows(len(joined), joined, notes)
     joined, said = settle_conditions(joined, files, setup)
     notes += said
     joined, said = complete_rows(joined, setup)
     notes += said
-    _demand_rows(len(joined), joined.files, notes)
+    _demand_rows(len(joined), joined, notes)
     joined, answers, said = _answered(joined, setup)
     notes += said
     held_out, said = held_out_rows(joined, setup)
     notes += said
-    _demand_rows(int((~held_out).sum()), joined.files, notes)
+    _demand_rows(int((~held_out).sum()), joined, notes)
     joined, said = _enough_values(joined, ~held_out, notes)
     notes += said
     slips = suspected_slips(joined, answers, setup)
@@ -93,15 +93,17 @@ def _read(paths: Sequence[Path], offer: Offer) -> tuple[list[DataFile], list[str
     return files, notes
 
 
-def _demand_rows(rows: int, files: Sequence[str], notes: Sequence[str]) -> None:
-    """Raise InputError where too few rows are left to explain anything."""
+def _demand_rows(rows: int, joined: Joined, notes: Sequence[str]) -> None:
+    """Raise InputError where too few rows are left to explain anything; a short file is shown where it ends."""
     if rows >= FEWEST:
         return
+    files = joined.files
     why = f" ({'; '.join(notes)})" if notes else ""
     held = f"holds {_FEW[rows]}" if len(files) == 1 else f"the files hold {_FEW[rows]} together"
     left = f"{_FEW[rows]} can be used" if why else held
     sentence = f"{left}; a diagnosis needs {FEWEST} rows at the very least, better fifty{why}"
-    raise InputError([Fault(sentence, files[0] if len(files) == 1 else "")])
+    end = int(joined.data.lines[-1]) if rows and not why else None
+    raise InputError([Fault(sentence, files[0], end) if len(files) == 1 else Fault(sentence)])
 
 
 def _sigma(joined: Joined) -> tuple[dict[str, NDArray[np.float64]], list[str]]:
@@ -126,7 +128,7 @@ def _enough_values(joined: Joined, fitted: NDArray[np.bool_], notes: Sequence[st
     values = {name: int(np.isfinite(joined.data.columns[name][fitted]).sum()) for name in measured}
     few = {name: count for name, count in values.items() if count < FEWEST}
     if len(few) == len(measured):
-        _demand_rows(max(few.values()), joined.files, notes)
+        _demand_rows(max(few.values()), joined, notes)
     columns = {name: column for name, column in joined.data.columns.items() if name not in few}
     said = [f"'{name}' is not used: {counted(count, 'value is', 'values are')} too few" for name, count in few.items()]
     return replace(joined, data=replace(joined.data, columns=columns)), said

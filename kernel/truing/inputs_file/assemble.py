@@ -172,12 +172,14 @@ def _conditions_in_force(model: Model[Any, Any], values: Values, effects: Sequen
 
 
 def places_of(model: Model[Any, Any], document: Document) -> dict[str, tuple[str, int | None]]:
-    """Return where each input, condition and effect is stated; "" stands for the section of inputs."""
+    """Return where each input, condition, effect and option of a diagnosis is stated; "" is the section of inputs."""
     old = renamed(model)
     found = {"": document.places.get(("inputs",)) or document.places.get((), (document.file, None))}
     for path, place in document.places.items():
         if len(path) == 2 and path[0] in {"inputs", "conditions", "effects", "calibrated"}:
             found[f"effects.{path[1]}" if path[0] == "effects" else old.get(path[1], path[1])] = place
+        elif len(path) == 3 and path[:2] == ("studies", "diagnose"):
+            found[".".join(path)] = place
     return found
 
 
