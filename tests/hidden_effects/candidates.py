@@ -69,7 +69,7 @@ def of_gauge(result: str, duration: float) -> list[Candidate]:
     waves = {f"{result}_sine": any_size, f"{result}_cosine": any_size}
     return [
         Candidate("sensor_offset", {result: any_size}, 1e-6, part=result),
-        Candidate("sensor_gain", {result: any_size}, 1e-6, part=result),
+        Candidate("sensor_gain", {result: (-1.0, 1.0)}, 1e-6, part=result),
         Candidate("sensor_drift", {result: any_size}, 1e-6 / HOUR, part=result),
         Candidate("thermal_drift", {result: any_size}, 1e-7, part=result),
         Candidate("periodic_order", waves, 1e-6, {f"{result}_order": (1.0, 2.0, 3.0)}, part=result),

@@ -1,7 +1,5 @@
 """What the best possible diagnosis would predict: the true structure, fitted with the true covariance of the noise."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from hidden_effects.candidates import changes, stacked, tolerance_columns
@@ -19,9 +17,8 @@ def unknown_columns(case: Case, rows: Rows) -> Array:
         made.append(case.true_columns(rows))
     if "warm_up" in case.hidden:
         made.append(_by_time_constant(case, rows)[:, None])
-    for result, size in case.shape.sizes if case.shape else ():
-        alone = replace(case.shape, sizes=((result, 1.0),)) if case.shape else None
-        made.append(alone.of(rows, case.results)[:, None] if alone and size else made[0])
+    if case.shape is not None:
+        made.append(case.shape.columns(rows, case.results))
     return np.hstack(made)
 
 
@@ -58,15 +55,24 @@ def _solved(matrix: Array, right: Array) -> Array:
     return np.asarray(scale * np.linalg.lstsq(matrix * np.outer(scale, scale), scale * right, rcond=1e-12)[0])
 
 
-def calibrated(case: Case) -> Array:
-    """Predict the rows held out with the base model, calibrated within its tolerances with the true noise."""
+def calibrated(case: Case, rounds: int = 0) -> dict[str, float]:
+    """The base model, calibrated within its tolerances with the true noise: what its inputs are off.
+
+    With ``rounds`` the misfit that is left is taken for noise, again and again: what is to be expected of whoever knows
+    neither the noise nor that something is wrong; the calibration then stays nearer to the tolerances.
+    """
     rows, design = case.record.rows, case.record.tolerances
-    weighted = np.linalg.solve(case.record.covariance, design)
-    nominal = stacked(shown(rows, {}, {}), case.results)
-    right = weighted.T @ (stacked(case.readings, case.results) - nominal)
-    found = np.linalg.solve(design.T @ weighted + np.eye(design.shape[1]), right)
-    off = {name: float(sd * value) for (name, sd), value in zip(SCATTER.items(), found, strict=True)}
-    return judged(case, stacked(shown(case.held, off, {}), case.results))
+    residual = stacked(case.readings, case.results) - stacked(shown(rows, {}, {}), case.results)
+    found: Array = np.zeros(design.shape[1])
+    grown: Array = np.ones(len(residual))
+    for _ in range(rounds + 1):
+        weighted = np.linalg.solve(case.record.covariance * np.outer(grown, grown), design)
+        found = np.linalg.solve(design.T @ weighted + np.eye(design.shape[1]), weighted.T @ residual)
+        left = (residual - design @ found) * case.record.weight
+        grown = np.asarray(
+            np.repeat([max(rms(part), 1.0) for part in np.split(left, len(case.results))], len(rows)), dtype=float
+        )
+    return {name: float(sd * value) for (name, sd), value in zip(SCATTER.items(), found, strict=True)}
 
 
 def judged(case: Case, values: Array) -> Array:

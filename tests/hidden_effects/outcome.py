@@ -10,12 +10,12 @@ from hidden_effects.candidates import Candidate, stacked
 from hidden_effects.cases import Case
 from hidden_effects.information import Lens, beside_groups, over_results
 from hidden_effects.oracle import calibrated, judged, oracle, rms, scale
-from hidden_effects.press_machine import SCATTER, Array
+from hidden_effects.press_machine import SCATTER, Array, shown
 from hidden_effects.shapes import groups
 
 Document = Mapping[str, Any]
 FIRST = 4
-APART = 10.0
+DOUBTS = 12
 
 
 def outcome(case: Case, answer: Answer) -> dict[str, Any]:
@@ -46,7 +46,7 @@ def about(case: Case) -> dict[str, Any]:
         "shape": case.shape.text if case.shape else None,
         "depends_on": list(case.shape.depends_on) if case.shape else [],
         "lambda_det": case.lambda_det, "lambda_sep": case.lambda_sep, "rival": list(rival.names),
-        "halves": list(case.halves),
+        "halves": list(case.halves), "halves_beside_curve": list(case.halves_beside_curve),
         "visible": case.is_visible, "separable": case.is_separable,
     }  # fmt: skip
 
@@ -192,7 +192,7 @@ def held_out(case: Case, predicted: Array) -> dict[str, float]:
     sd = scale(case)
     measured = judged(case, stacked(case.held_readings, case.results))
     truth = judged(case, case.true_readings(case.held))
-    best, base = oracle(case), calibrated(case)
+    best, base = oracle(case), judged(case, stacked(shown(case.held, calibrated(case), {}), case.results))
     return {
         "rmse": rms((measured - predicted) / sd), "oracle": rms((measured - best) / sd),
         "base": rms((measured - base) / sd), "mse": rms((truth - predicted) / sd) ** 2,
@@ -201,9 +201,18 @@ def held_out(case: Case, predicted: Array) -> dict[str, float]:
 
 
 def gains(case: Case, document: Document, predicted: Array) -> dict[str, dict[str, float | None]]:
-    """By result: the gain as cross-validated, and as it is at the rows held out, both against the calibrated base."""
-    measured = np.split(judged(case, stacked(case.held_readings, case.results)), len(case.results))
-    before, after = (np.split(values, len(case.results)) for values in (calibrated(case), predicted))
+    """By result: the gain as cross-validated, and as it is at the rows held out, both against the calibrated base.
+
+    Whoever knew the truth would state the gain of the record without error (``sampled``); another one differs still.
+    """
+    many, rows = len(case.results), case.record.rows
+    base = calibrated(case, DOUBTS)
+    readings = stacked(case.readings, case.results)
+    sampled_before = np.split(readings - stacked(shown(rows, base, {}), case.results), many)
+    sampled_after = np.split(readings - case.true_readings(rows), many)
+    measured = judged(case, stacked(case.held_readings, case.results))
+    before = np.split(measured - judged(case, stacked(shown(case.held, base, {}), case.results)), many)
+    after = np.split(measured - predicted, many)
     found = {}
     for at, result in enumerate(case.results):
         said = document["gain"].get(result)
@@ -211,7 +220,8 @@ def gains(case: Case, document: Document, predicted: Array) -> dict[str, dict[st
             continue
         found[result] = {
             "nested_before": said["rmse_before"]["value"], "nested_after": said["rmse_after"]["value"],
-            "held_before": rms(measured[at] - before[at]), "held_after": rms(measured[at] - after[at]),
+            "held_before": rms(before[at]), "held_after": rms(after[at]),
+            "sampled_before": rms(sampled_before[at]), "sampled_after": rms(sampled_after[at]),
             "p_value": said["p_value"], "removed": said["reducible_removed"], "log_score": said["log_score_gain"],
             "coverage90": said["coverage90"],
         }  # fmt: skip

@@ -105,6 +105,8 @@ def names(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
     yield rate("unknown, separable: unknown, right covariates", _exact(unknown, "separable"), ">= 92", ">= 97")
     right = [one["exact"] for one in beside if are_both_visible(one)]
     yield rate("registered beside unregistered, both visible: both right", right, ">= 50", ">= 70")
+    known = [one["exact"] for one in beside if one["visible"] and min(one["halves_beside_curve"]) > VISIBLE]
+    yield rate("  both visible if the very curve of the shape were known", known)
     yield rate("  of those that are separable", _exact(beside, "separable"))
     yield rate("  of all, visible or not", [one["exact"] for one in beside])
     for kind in KINDS:
@@ -151,16 +153,24 @@ def prediction(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
 
 def gain(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
     """Whether the gain that is stated is the gain that is had."""
-    apart = [
-        100 * abs(log(one["nested_after"] / one["nested_before"]) - log(one["held_after"] / one["held_before"]))
+    stated = [
+        one
         for case in outcomes
         if case["verdict"] != "none" and case["stratum"] != "none"
         for one in case["gain"].values()
         if one["nested_before"] and one["nested_after"] and abs(log(one["held_after"] / one["held_before"])) > 0.01
     ]
+    apart = [_apart(one, "nested") for one in stated]
     yield quantile("nested gain against held-out, median |log difference|", apart, 0.5, "<= 5", "<= 4", unit="%")
+    least = [_apart(one, "sampled") for one in stated]
+    yield quantile("  of one who knows truth and noise of the record", least, 0.5, unit="%")
     false = [_has_false_gain(one) for one in of(outcomes, "none")]
     yield rate("false gain on zero-effect cases (p < 0.05, above 0)", false, "0 of 50", "0 of 100")
+
+
+def _apart(one: Mapping[str, float], way: str) -> float:
+    """Difference of two gains in percent."""
+    return 100 * abs(log(one[f"{way}_after"] / one[f"{way}_before"]) - log(one["held_after"] / one["held_before"]))
 
 
 def _has_false_gain(one: Outcome) -> bool:

@@ -34,6 +34,12 @@ class Shape:
         sizes = dict(self.sizes)
         return np.concatenate([sizes.get(result, 0.0) * self.curve(rows) for result in results])
 
+    def columns(self, rows: Rows, results: Sequence[str]) -> Array:
+        """The curve of every result in which it shows by itself, (rows * results, results)."""
+        sizes = dict(self.sizes)
+        shows = np.diag([1.0 if sizes.get(result) else 0.0 for result in results])
+        return np.asarray(np.kron(shows, self.curve(rows)[:, None]), dtype=float)
+
 
 def scaled(values: Array) -> Array:
     """Values as -1 to 1 over the record; 0 where they do not change."""
