@@ -67,7 +67,9 @@ def calibrated(case: Case, rounds: int = 0) -> dict[str, float]:
     grown: Array = np.ones(len(residual))
     for _ in range(rounds + 1):
         weighted = np.linalg.solve(case.record.covariance * np.outer(grown, grown), design)
-        found = np.linalg.solve(design.T @ weighted + np.eye(design.shape[1]), weighted.T @ residual)
+        found = np.asarray(
+            np.linalg.solve(design.T @ weighted + np.eye(len(found)), weighted.T @ residual), dtype=float
+        )
         left = (residual - design @ found) * case.record.weight
         grown = np.asarray(
             np.repeat([max(rms(part), 1.0) for part in np.split(left, len(case.results))], len(rows)), dtype=float
