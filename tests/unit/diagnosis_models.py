@@ -1,0 +1,306 @@
+"""A screw drive to be diagnosed: its model, the errors it may have, and records made by plain formulas.
+
+The numbers of a record are made here without any code of the model or of its effects, in kN, mm, deg, degC, h and um.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from truing.diagnosis.contest import Contest, contest
+from truing.diagnosis.decide import Decision, decide, without_needless_inputs
+from truing.diagnosis.engine import diagnose
+from truing.diagnosis.machine import machine_of
+from truing.diagnosis.problem import problem_of
+from truing.diagnosis.reading import read_records
+from truing.diagnosis.records import Records
+from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.search import first_noise
+from truing.kernel import Offer, Origin
+from truing.setup import Setup, default_setup
+
+Array = NDArray[np.float64]
+KN, UM = 1e3, 1e-6
+CONTACT, SHAFT, STROKE = 3.0, 0.5, 150.0
+"""um at 1 kN, um/kN at a travel of STROKE, and mm."""
+
+HEADER = {
+    "load": "kN", "travel": "mm", "rotation": "deg", "temperature": "degC", "time": "h", "deflection": "um",
+}  # fmt: skip
+
+
+@inputs
+class Drive:
+    """A screw drive under load."""
+
+    load: Float = given(0.0, "kN", symbol="F", note="axial load")
+    travel: Float = given(0.0, "mm", symbol="s", note="place of the nut")
+    rotation: Float = given(0.0, "deg", symbol="phi", note="angle of the screw")
+    contact: Float = given(CONTACT, "um", symbol="c", note="approach of balls and track at 1 kN")
+    shaft: Float = given(SHAFT, "um/kN", symbol="k", note="compliance of the shaft at the full stroke")
+    zero: Float = given(0.0, "um", note="zero of the length gauge as set")
+
+
+@results
+class Deflection:
+    """How far the nut gives way."""
+
+    deflection: Float = found("um", symbol="g", note="axial deflection")
+
+
+def drive(screw: Drive) -> Deflection:
+    """Hertzian contact and a shaft in tension."""
+    contact = screw.contact * np.sign(screw.load) * np.abs(screw.load / KN) ** (2 / 3)
+    return Deflection(deflection=contact + screw.shaft * screw.load * screw.travel / (STROKE * 1e-3) + screw.zero)
+
+
+def stiffness_loss(screw: Drive, *, loss: Float) -> Drive:
+    """Give way as under a larger load."""
+    return replace(screw, load=screw.load * (1 + loss))
+
+
+def thermal_growth(screw: Drive, base: Deflection, *, growth: Float, temperature: Float) -> Deflection:
+    """Follow the temperature."""
+    return replace(base, deflection=base.deflection + growth * (temperature - TEMPERATURE.zero))
+
+
+def warm_up(screw: Drive, base: Deflection, *, rise: Float, time_constant: Float, time: Float) -> Deflection:
+    """Warm up once and stay warm."""
+    return replace(base, deflection=base.deflection + rise * (1 - np.exp(-time / time_constant)))
+
+
+def clearance(screw: Drive, base: Deflection, *, gap: Float) -> Deflection:
+    """Lie on one flank or the other."""
+    return replace(base, deflection=base.deflection + gap * np.sign(screw.load))
+
+
+def wear(screw: Drive, base: Deflection, *, rate: Float, time: Float) -> Deflection:
+    """Lose a little of both flanks in every hour."""
+    return replace(base, deflection=base.deflection + rate * time * np.sign(screw.load))
+
+
+def lead_error(screw: Drive, base: Deflection, *, lead: Float) -> Deflection:
+    """Be off in proportion to the travel."""
+    return replace(base, deflection=base.deflection + lead * screw.travel)
+
+
+TEMPERATURE = Condition("temperature", "degC", reference=20, low=10, high=60)
+TIME = Condition("time", "h", derived="since_start")
+EFFECTS: Mapping[str, Effect[Any, Any]] = {
+    effect.name: effect
+    for effect in (
+        Effect("stiffness_loss", on_inputs=stiffness_loss, unknowns=[Unknown("loss", -0.5, 0.5)]),
+        Effect(
+            "thermal_growth", on_results=thermal_growth, needs=[TEMPERATURE],
+            unknowns=[Unknown("growth", -100, 100, "um/K")],
+        ),
+        Effect(
+            "warm_up", on_results=warm_up, needs=[TIME],
+            unknowns=[Unknown("rise", -1000, 1000, "um"), Unknown("time_constant", 0.1, 20, "h")],
+        ),
+        Effect("clearance", on_results=clearance, unknowns=[Unknown("gap", 0, 500, "um")]),
+        Effect("wear", on_results=wear, needs=[TIME], unknowns=[Unknown("rate", 0, 100, "um/h")]),
+        Effect("lead_error", on_results=lead_error, unknowns=[Unknown("lead", -10, 10, "um/mm")]),
+    )
+}  # fmt: skip
+ALL_EFFECTS = tuple(EFFECTS)
+TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
+
+
+def drive_model(effects: Sequence[str] = ALL_EFFECTS, tolerances: Mapping[str, str] = TOLERANCES) -> Model[Any, Any]:
+    """The screw drive with some of its effects; ``tolerances`` holds standard deviations by input."""
+    spreads = [Tolerance(name, normal(sd=sd), why="drawing") for name, sd in tolerances.items()]
+    errors = [*spreads, *(EFFECTS[name] for name in effects)]
+    return Model(name="drive", title="Deflection of a screw drive", function=drive, errors=errors)
+
+
+def offer_of(model: Model[Any, Any]) -> Offer:
+    """A model as if it had been installed."""
+    return Offer(model.name, model, Origin(model.name, "1.0", "drives", "drive.py", "entry:drive"))
+
+
+def gauge(load: Array, travel: Array, contact: float = CONTACT, shaft: float = SHAFT) -> Array:
+    """The deflection of a drive in um, from kN and mm, by the formula of the textbook."""
+    cube = np.cbrt(load)
+    return np.asarray(contact * np.sign(load) * cube**2 + shaft * load * travel / STROKE)
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Settings of a record, one value per row: kN, mm, deg, degC, h."""
+
+    load: Array
+    travel: Array
+    rotation: Array
+    temperature: Array
+    time: Array
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def columns(self, deflection: Array) -> dict[str, Array]:
+        """The columns of a file of measurements."""
+        return {**vars(self), "deflection": deflection}
+
+
+def wide(n: int = 150, *, seed: int = 0, hours: float = 10.0) -> Bench:
+    """Everything varied independently of everything else."""
+    rng = np.random.default_rng([seed, n])
+    return Bench(
+        load=rng.uniform(-20, 20, n),
+        travel=rng.uniform(0, 300, n),
+        rotation=rng.uniform(0, 360, n),
+        temperature=rng.uniform(15, 45, n),
+        time=np.linspace(0, hours, n),
+    )
+
+
+def warming(n: int = 150, *, seed: int = 0, hours: float = 10.0) -> Bench:
+    """The temperature follows the time: 25 K with three hours."""
+    time = np.linspace(0, hours, n)
+    return replace(wide(n, seed=seed, hours=hours), temperature=20 + 25 * (1 - np.exp(-time / 3)))
+
+
+def wander(rng: np.random.Generator, n: int, rho: float) -> Array:
+    """Noise of unit variance that carries ``rho`` over from row to row, from the recursion itself."""
+    noise = np.empty(n)
+    noise[0] = rng.normal()
+    for row in range(1, n):
+        noise[row] = rho * noise[row - 1] + np.sqrt(1 - rho**2) * rng.normal()
+    return noise
+
+
+def write_csv(
+    path: Path, columns: Mapping[str, Array], units: Mapping[str, str] = HEADER, runs: Sequence[str] = ()
+) -> Path:
+    """Write columns as a file of measurements, every digit kept."""
+    header = [*(["run"] if runs else []), *(f"{name} [{units[name]}]" for name in columns)]
+    cells = [[repr(float(cell)) for cell in column] for column in columns.values()]
+    lines = [",".join(row) for row in zip(*([list(runs)] if runs else []), *cells, strict=True)]
+    path.write_text("\n".join([",".join(header), *lines]) + "\n", encoding="utf-8")
+    return path
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A model and how it is asked."""
+
+    model: Model[Any, Any]
+    seed: int = 0
+    units: Mapping[str, str] = field(default_factory=lambda: HEADER)
+
+    @property
+    def setup(self) -> Setup:
+        """The setup at the defaults of the model."""
+        return replace(default_setup(self.model), seed=self.seed)
+
+    def records(self, path: Path, columns: Mapping[str, Array], runs: Sequence[str] = ()) -> Records:
+        """Write the columns to a file in a folder and read it as records."""
+        file = write_csv(path / "measured.csv", columns, self.units, runs)
+        return read_records([file], offer_of(self.model), self.setup)
+
+    def diagnosed(self, path: Path, columns: Mapping[str, Array], runs: Sequence[str] = ()) -> Diagnosis:
+        """Write, read and diagnose."""
+        return diagnose(self.setup, self.records(path, columns, runs))
+
+
+def names_in(found: Diagnosis) -> set[str]:
+    """Every name the verdict does not exclude: causes, what is the same curve, and the alternatives."""
+    names = {name for cause in found.causes for name in (cause.effect, *cause.same_as)}
+    return names | {name for rival in found.alternatives for name in rival.causes}
+
+
+def name_sets(found: Diagnosis) -> list[set[str]]:
+    """The verdict: for each cause its name and those of the same curve."""
+    return [{cause.effect, *cause.same_as} for cause in found.causes]
+
+
+NOISES = ("gaussian", "heavy", "wandering", "growing")
+DESIGNS = ("wide", "narrow", "warming")
+
+
+def noise_of(kind: str, rng: np.random.Generator, load: Array) -> Array:
+    """Noise of unit standard deviation: normal, t with 3 degrees of freedom, AR(1), or growing with the load."""
+    n = len(load)
+    if kind == "heavy":
+        return np.asarray(rng.standard_t(3, n) / np.sqrt(3))
+    if kind == "wandering":
+        return wander(rng, n, rng.uniform(0.3, 0.8))
+    if kind == "growing":
+        spread = 0.3 + np.abs(load) / np.abs(load).max()
+        return np.asarray(rng.normal(0, 1, n) * spread / np.sqrt(np.mean(spread**2)))
+    return rng.normal(0, 1, n)
+
+
+def nothing_wrong(noise: str, seed: int) -> dict[str, Array]:
+    """A record in which nothing is wrong: a machine within its tolerances, a design and a length by chance, noise."""
+    rng = np.random.default_rng([seed, NOISES.index(noise)])
+    n, design = int(rng.choice([80, 150, 300])), str(rng.choice(DESIGNS))
+    bench = (warming if design == "warming" else wide)(n, seed=seed)
+    if design == "narrow":
+        bench = replace(bench, load=np.abs(bench.load) / 4 + 8, travel=100 + bench.travel / 6)
+    contact, shaft = CONTACT * (1 + 0.03 * rng.normal()), SHAFT * (1 + 0.03 * rng.normal())
+    return bench.columns(gauge(bench.load, bench.travel, contact, shaft) + noise_of(noise, rng, bench.load))
+
+
+def decided(setup: Setup, records: Records) -> tuple[Contest, Decision]:
+    """Search and decide, without the report: what a diagnosis does before it fits and judges."""
+    machine = machine_of(setup, records)
+    noise = first_noise(machine)
+    full = without_needless_inputs(contest(problem_of(machine, noise.scales), noise, ~records.held_out))
+    return full, decide(full, seed=setup.seed)
+
+
+def plain_contest(asked: Asked, records: Records, scale: float) -> Contest:
+    """All explanations on all rows with white noise of a known standard deviation (SI), nothing learnt or clipped."""
+    machine = machine_of(asked.setup, records)
+    noise = first_noise(machine)
+    known = replace(noise, scales=dict.fromkeys(noise.scales, scale))
+    return contest(problem_of(machine, known.scales), known, ~records.held_out, rounds=1, settings=[(0,)])
+
+
+@inputs
+class Nothing:
+    """A model must have an input."""
+
+    size: Float = given(0.0, "", note="of nothing")
+
+
+@results
+class Reading:
+    """What a gauge shows of nothing."""
+
+    reading: Float = found("", note="reading")
+
+
+def silence(nothing: Nothing) -> Reading:
+    """Nothing happens."""
+    return Reading(reading=0.0 * nothing.size)
+
+
+def along_first(nothing: Nothing, base: Reading, *, one: Float, first: Float) -> Reading:
+    """Follow the first condition."""
+    return replace(base, reading=base.reading + one * first)
+
+
+def along_second(nothing: Nothing, base: Reading, *, two: Float, second: Float) -> Reading:
+    """Follow the second condition."""
+    return replace(base, reading=base.reading + two * second)
+
+
+def twist_model() -> Model[Any, Any]:
+    """Two effects, each in proportion to a condition of its own: any two curves that a test writes down."""
+    errors = [
+        Effect("along_first", on_results=along_first, needs=[Condition("first", "")], unknowns=[Unknown("one", -9, 9)]),
+        Effect(
+            "along_second", on_results=along_second, needs=[Condition("second", "")], unknowns=[Unknown("two", -9, 9)]
+        ),
+    ]
+    return Model(name="twist", title="Two curves", function=silence, errors=errors)
