@@ -71,7 +71,7 @@ def make_case(seed: int, wish: Wish = NOTHING) -> Case:
         bench = _bench(design, wish.rows or int(rng.choice(LENGTHS)), kind, results, rng)
         found = _wrong(stratum, bench, wish, rng)
         if found is not None:
-            return _case(seed, stratum, design, bench, found, rng)
+            return _case(bench, found, rng, seed=seed, stratum=stratum, design=design)
     raise ValueError(f"seed {seed}: nothing of this kind can be hidden at this size")
 
 
@@ -90,7 +90,7 @@ class Wrong:
     shape: Shape | None = None
 
 
-def _case(seed: int, stratum: Stratum, design: Design, bench: Bench, wrong: Wrong, rng: np.random.Generator) -> Case:
+def _case(bench: Bench, wrong: Wrong, rng: np.random.Generator, *, seed: int, stratum: Stratum, design: Design) -> Case:
     record, first = bench.record, rng.random() < 0.5
     case = Case(
         seed=seed, stratum=stratum, design=design, record=record, held=bench.held, off=bench.off, hidden=wrong.hidden,

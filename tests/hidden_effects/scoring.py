@@ -53,7 +53,7 @@ def rate(name: str, hits: Sequence[bool], required: str = "", wanted: str = "") 
 
 
 def quantile(
-    name: str, values: Sequence[float], at: float, required: str = "", wanted: str = "", unit: str = ""
+    name: str, values: Sequence[float], at: float, required: str = "", wanted: str = "", *, unit: str = ""
 ) -> Metric:
     """A quantile; its interval from the order statistics."""
     if not values:
