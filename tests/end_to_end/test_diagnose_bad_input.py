@@ -1,0 +1,442 @@
+"""Measured files that are wrong or odd: refused in one sentence, or kept, said and counted; never guessed in silence."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from measured import (
+    ANGLE,
+    CONTRACT,
+    FORCE,
+    HEIGHT,
+    SPEED,
+    TIME,
+    WARMTH,
+    Columns,
+    Diagnosed,
+    Document,
+    calc_here,
+    diagnose_here,
+    heated_press,
+    names,
+    read_document,
+    renamed,
+    taken,
+    text_of,
+    with_cells,
+)
+
+from hidden_effects.asking import table
+from hidden_effects.press_machine import POSITION, Rows, shown
+
+pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
+COMMAND = ("diagnose", "press_linkage", "--inputs", "inputs.toml")
+NEEDED = "a diagnosis needs 3 rows at the very least, better fifty"
+RESULTS = "face_height_1 [mm], face_height_2 [mm], slider_position [mm], slider_tilt [urad], permitted_tilt [deg]"
+
+
+@pytest.fixture(scope="session")
+def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the inputs of the press; what is diagnosed once for several tests lies here."""
+    return tmp_path_factory.mktemp("press")
+
+
+@pytest.fixture(scope="session")
+def press(desk: Path) -> Columns:
+    """The record of a press whose links are warm, as cells of text."""
+    return heated_press(desk)
+
+
+@pytest.fixture(scope="session")
+def plain(desk: Path, press: Columns) -> Diagnosed:
+    """The diagnosis of that record as it is."""
+    return diagnose_here(desk, "plain", text_of(press))
+
+
+@pytest.fixture
+def bench(desk: Path, press: Columns, tmp_path: Path) -> Path:
+    """An empty folder with the inputs of the press."""
+    (tmp_path / "inputs.toml").write_bytes((desk / "inputs.toml").read_bytes())
+    return tmp_path
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def refused(folder: Path, *arguments: str) -> list[str]:
+    """Return what is said, line by line; nothing is answered and nothing is left behind."""
+    before, seen = contents(folder), sorted(path.name for path in folder.iterdir())
+    answer = calc_here(folder, *COMMAND, *arguments)
+    assert (answer.code, answer.out) == (2, ""), answer
+    assert "Traceback" not in answer.err
+    assert contents(folder) == before
+    assert sorted(path.name for path in folder.iterdir()) == seen
+    return answer.err.rstrip("\n").split("\n")
+
+
+# What is refused
+
+
+def without_angle(press: Columns) -> str:
+    """No link reaches a ground pivot that is nine metres away."""
+    return text_of({"ground_pivot_radius [m]": ["9"] * 90, **press})
+
+
+Change = Callable[[Columns], "str | bytes"]
+REFUSED: dict[str, tuple[Change, Sequence[str]]] = {
+    "no measured column": (
+        lambda press: text_of({name: cells for name, cells in press.items() if name != HEIGHT}),
+        [f"m.csv:1: no column is a result of press_linkage, so nothing is measured; it could be {RESULTS}."],
+    ),
+    "misspelt measured column": (
+        lambda press: text_of(renamed(press, HEIGHT, "slider_positon [mm]")),
+        [
+            f"m.csv:1: no column is a result of press_linkage, so nothing is measured; it could be {RESULTS}."
+            " Did you mean 'slider_position'?"
+        ],
+    ),
+    "unknown unit": (
+        lambda press: text_of(renamed(press, HEIGHT, "slider_position [mmm]")),
+        ["m.csv:1: column 'slider_position [mmm]': unknown unit 'mmm'; did you mean 'mm'?"],
+    ),
+    "unknown unit of something nobody declared": (
+        lambda press: text_of({**press, "oil_level [furlongish]": ["1"] * 90}),
+        ["m.csv:1: column 'oil_level': unknown unit 'furlongish'; leave the brackets out where a number has no unit"],
+    ),
+    "unit of another kind": (
+        lambda press: text_of(renamed(press, HEIGHT, "slider_position [kN]")),
+        ["m.csv:1: column 'slider_position [kN]': 'kN' is a force (kN), expected a length (mm)"],
+    ),
+    "a unit that is a trap": (
+        lambda press: text_of(renamed(press, HEIGHT, "slider_position [m**999999999]")),
+        ["m.csv:1: column 'slider_position [m**999999999]': "],
+    ),
+    "two rows": (lambda press: text_of(taken(press, [0, 1])), [f"m.csv:3: holds two rows; {NEEDED}"]),
+    "one row": (lambda press: text_of(taken(press, [0])), [f"m.csv:2: holds one row; {NEEDED}"]),
+    "no row": (lambda press: text_of(taken(press, [])), ["m.csv:1: holds a header but no rows"]),
+    "nothing at all": (
+        lambda press: "",
+        ["m.csv:1: is empty; the first line of a table holds the names, with units such as 'load [N]'"],
+    ),
+    "one row many times": (
+        lambda press: text_of(taken(press, [7] * 80)),
+        [f"m.csv: one row can be used; {NEEDED} (79 rows repeat an earlier one in every cell and are left out)"],
+    ),
+    "a column of NaN": (
+        lambda press: text_of({**press, HEIGHT: ["NaN"] * 90}),
+        ["m.csv:1: column 'slider_position' holds no value in any row; fill it or leave it out"],
+    ),
+    "an empty column": (
+        lambda press: text_of({**press, ANGLE: [""] * 90}),
+        ["m.csv:1: column 'crank_angle' holds no value in any row; fill it or leave it out"],
+    ),
+    "infinity": (
+        lambda press: text_of(with_cells(press, HEIGHT, {0: "inf", 3: "1e999"})),
+        [
+            "m.csv:2: slider_position: 'inf' is not a finite number",
+            "m.csv:5: slider_position: '1e999' is too large for a number",
+        ],
+    ),
+    "formulas and markup": (
+        lambda press: text_of(with_cells(press, FORCE, {2: "=cmd|' /C calc'!A0", 4: "<script>alert(1)</script>"})),
+        [
+            "m.csv:4: forming_force: '=cmd|' /C calc'!A0' is no number",
+            "m.csv:6: forming_force: '<script>alert(1)</script>' is no number",
+        ],
+    ),
+    "a header that moves the cursor": (
+        lambda press: text_of(renamed(press, FORCE, "\x1b[31mforce [kN]")),
+        ["m.csv:1: the header '?[31mforce [kN]' cannot be read; write it like 'load [N]'"],
+    ),
+    "a column twice": (
+        lambda press: text_of({**press, "slider_position [um]": press[HEIGHT]}),
+        ["m.csv:1: the column 'slider_position' occurs twice"],
+    ),
+    "several faults": (
+        lambda press: (
+            text_of(
+                with_cells(
+                    renamed(renamed(press, FORCE, "forming_force [mm]"), SPEED, "speed [flurb]"), TIME, {5: "late"}
+                )
+            )
+            + "1,2,3\n"
+        ),
+        [
+            "m.csv:1: column 'forming_force [mm]': 'mm' is a length (mm), expected a force (kN)",
+            "m.csv:1: column 'speed [flurb]': unknown unit 'flurb'",
+            "m.csv:7: time: 'late' is no number",
+            "m.csv:92: this row has 3 cells, expected 8 as in the header",
+        ],
+    ),
+    "no machine": (
+        without_angle,
+        [
+            f"m.csv: no row can be used; {NEEDED} (90 rows are left out where the model fails; the first is m.csv:2: loop"
+        ],
+    ),
+    "no text": (lambda press: bytes(range(256)) * 9, ["m.csv:1: is a binary file; a table is CSV text in UTF-8"]),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_what_cannot_be_used_is_refused(bench: Path, press: Columns, what: str) -> None:
+    change, expected = REFUSED[what]
+    text = change(press)
+    (bench / "m.csv").write_bytes(text if isinstance(text, bytes) else text.encode())
+    found = refused(bench, "--data", "m.csv")
+    assert len(found) == len(expected), found
+    for line, beginning in zip(found, expected, strict=True):
+        assert line.startswith(beginning)
+        assert re.match(r"m\.csv:\d+: \S", line) or "can be used; " in line
+
+
+def test_the_faults_of_every_file_are_said_at_once(bench: Path, press: Columns) -> None:
+    (bench / "one.csv").write_text(text_of(renamed(press, HEIGHT, "slider_position [s]")), encoding="utf-8")
+    (bench / "two.csv").write_text(text_of(with_cells(press, ANGLE, {1: "steep"})), encoding="utf-8")
+    assert refused(bench, "--data", "one.csv", "--data", "absent.csv", "--data", "two.csv") == [
+        "one.csv:1: column 'slider_position [s]': 's' is a time (s), expected a length (mm)",
+        "absent.csv: no such file",
+        "two.csv:3: crank_angle: 'steep' is no number",
+    ]
+
+
+def test_what_is_no_file(bench: Path) -> None:
+    (bench / "records").mkdir()
+    assert refused(bench, "--data", "records") == ["records: is a folder; name a file"]
+    assert refused(bench, "--data", "press.csv") == ["press.csv: no such file"]
+    assert refused(bench) == ["calc: nothing to diagnose: name the measured rows with --data FILE.csv"]
+
+
+@pytest.mark.parametrize(
+    ("option", "expected"),
+    [
+        ('hold_out = "record = validation"', "inputs.toml:2: hold_out: no file has a column 'record'."),
+        ('hold_out = "time = 77"', "inputs.toml:2: hold_out: no row has '77' in the column 'time'"),
+        ('per_file = ["sensor_ofset"]', "inputs.toml:2: study 'diagnose': per_file names 'sensor_ofset', which is no "),
+        ('box = {speed = "60..10 rpm"}', "inputs.toml:2: study 'diagnose': box: speed = '60..10 rpm' goes from its "),
+    ],
+)
+def test_options_that_cannot_be_met(bench: Path, press: Columns, option: str, expected: str) -> None:
+    (bench / "m.csv").write_text(text_of(press), encoding="utf-8")
+    (bench / "inputs.toml").write_text(f"[studies.diagnose]\n{option}\n", encoding="utf-8")
+    (sentence,) = refused(bench, "--data", "m.csv")
+    assert sentence.startswith(expected)
+
+
+def test_a_folder_that_is_something_else_is_left_alone(bench: Path, press: Columns) -> None:
+    (bench / "m.csv").write_text(text_of(press), encoding="utf-8")
+    (bench / "letters").mkdir()
+    (bench / "letters" / "to the mill.txt").write_text("Dear Sirs", encoding="utf-8")
+    (bench / "notes").write_text("a file", encoding="utf-8")
+    left_alone = "so it is left alone; name another folder or remove this one"
+    assert refused(bench, "--data", "m.csv", "-o", "letters") == [
+        f"calc: letters: is an existing folder but no diagnosis of ours, {left_alone}"
+    ]
+    assert refused(bench, "--data", "m.csv", "-o", "notes") == [
+        "calc: notes: is a file; a diagnosis is a folder, name another place"
+    ]
+    assert calc_here(bench, "run", "press_linkage", "--set", "studies.run=[]", "-o", "run").code in {0, 1}
+    assert refused(bench, "--data", "m.csv", "-o", "run") == [
+        f"calc: run: is an existing run of ours but no diagnosis, {left_alone}"
+    ]
+
+
+def test_an_earlier_diagnosis_outlives_a_refusal(desk: Path, plain: Diagnosed) -> None:
+    before = contents(plain.folder)
+    (desk / "wrong.csv").write_text("slider_position [kN]\n1\n2\n3\n", encoding="utf-8")
+    refused(desk, "--data", "wrong.csv", "-o", plain.folder.name)
+    assert contents(plain.folder) == before
+
+
+# What is kept, said and counted
+
+
+def test_nothing_is_said_of_a_file_without_oddities(plain: Diagnosed) -> None:
+    assert plain.answer.err == ""
+    assert plain.document["notes"] == plain.document["unit_slips"] == plain.document["warnings"] == []
+    assert names(plain.document) == ["link_heating"]
+    assert plain.document["rows"] == 90
+    assert "slider_inertia" not in plain.document["not_excited"]
+
+
+def said(found: Diagnosed, sentence: str) -> bool:
+    """Whether a sentence stands in diagnosis.json and was said beside the results."""
+    return (
+        any(note.startswith(sentence) for note in found.document["notes"]) and f"note: {sentence}" in found.answer.err
+    )
+
+
+def same_findings(found: Document, other: Document) -> None:
+    """Everything is the same number by number, apart from the name of the file and what was said of it."""
+    for name in found.keys() | other.keys():
+        if name not in {"files", "notes"}:
+            assert found[name] == other[name], name
+
+
+def test_what_never_changed_is_not_excited(desk: Path, press: Columns) -> None:
+    found = diagnose_here(desk, "constant", text_of({**press, SPEED: ["30"] * 90, FORCE: ["0"] * 90}))
+    assert said(found, "2 columns never change, so nothing can be seen of what depends on it: ")
+    blind = set(found.document["not_excited"])
+    assert {"slider_inertia", "elastic_deflection"} <= blind
+    assert "link_heating" not in blind
+    assert found.document["covariates"]["speed"] == {"unit": "rpm", "role": "condition", "constant": True}
+    assert names(found.document) == ["link_heating"]
+    assert "slider inertia" in found.answer.out
+
+
+def test_rows_that_repeat_are_kept_once(desk: Path, press: Columns, plain: Diagnosed) -> None:
+    rows = [*range(10), 4, 4, 9, *range(10, 90), 0]
+    found = diagnose_here(desk, "repeated", text_of(taken(press, rows)))
+    assert said(found, "4 rows repeat an earlier one in every cell and are left out")
+    assert found.document["files"] == [{"file": "repeated.csv", "rows": 90, "runs": 1}]
+    same_findings(found.document, plain.document)
+
+
+def test_rows_out_of_order_give_the_identical_answer(desk: Path, press: Columns, plain: Diagnosed) -> None:
+    rows = list(range(90))
+    random.Random(3).shuffle(rows)
+    found = diagnose_here(desk, "shuffled", text_of(taken(press, rows)))
+    late = sum(row < max(rows[:place], default=0) for place, row in enumerate(rows))
+    assert said(found, f"{late} rows were out of order and sorted by time inside the run")
+    same_findings(found.document, plain.document)
+
+
+def test_rows_where_something_is_missing_or_impossible(desk: Path, press: Columns) -> None:
+    """Two rows without a reading, one without a temperature, two that no linkage can reach."""
+    radius = with_cells({"ground_pivot_radius [m]": ["1.393"] * 90}, "ground_pivot_radius [m]", {3: "9", 50: "9"})
+    gaps = with_cells(with_cells(press, HEIGHT, {5: "", 70: "NaN"}), WARMTH, {20: "n/a"})
+    found = diagnose_here(desk, "gaps", text_of({**radius, **gaps}))
+    assert said(found, "2 rows are left out where nothing was measured")
+    assert said(found, "1 row is left out where 'link_temperature' is empty")
+    assert said(found, "2 rows are left out where the model fails; the first is gaps.csv:5: loop II, side 1 does not")
+    assert found.document["rows"] == 85
+    assert names(found.document) == ["link_heating"]
+
+
+def test_some_readings_of_one_result_may_be_missing(desk: Path, press: Columns) -> None:
+    """The tilt was read in half of the rows; the height counts in all of them."""
+    tilt = [str(4 * (-1) ** row) if row % 2 else "" for row in range(90)]
+    found = diagnose_here(desk, "tilt", text_of({**press, "slider_tilt [urad]": tilt}))
+    assert said(found, "'slider_tilt' is missing in 45 of 90 rows")
+    assert {name: item["rows"] for name, item in found.document["wrong"].items()} == {
+        "slider_position": 90,
+        "slider_tilt": 45,
+    }
+
+
+def test_a_condition_that_no_column_gives_is_not_measured(desk: Path, press: Columns) -> None:
+    found = diagnose_here(desk, "cold", text_of({name: cells for name, cells in press.items() if name != WARMTH}))
+    assert said(found, "not measured: 'link_temperature'; what depends on it cannot be seen")
+    lacking = ["link_temperature"]
+    assert found.document["not_measured"] == {
+        "link_heating": lacking, "side_heating": lacking, "thermal_drift": lacking,
+    }  # fmt: skip
+    assert not set(names(found.document)) & set(found.document["not_measured"])
+    assert "not measured: " in found.answer.out
+
+
+def test_angles_at_a_turn_are_joined(desk: Path) -> None:
+    """A slow sweep from 300 through 360 to 430 degrees, as a counter writes it that begins anew with every turn."""
+    rng = np.random.default_rng(5)
+    angle, time = np.radians(np.linspace(300, 430, 90)), np.linspace(0, 6 * 3600, 90)
+    rows = Rows(
+        crank_angle=angle, forming_force=rng.uniform(0, 900e3, 90), link_temperature=rng.uniform(20, 45, 90), time=time,
+        strokes=np.round(np.linspace(0, 2e5, 90)), speed=rng.uniform(10, 50, 90) / 60, direction=np.ones(90),
+    )  # fmt: skip
+    true = shown(rows, {}, {"elastic_deflection": {"compliance": 1e-11}})[POSITION]
+    readings = {POSITION: true + rng.normal(0, 1.5e-6, 90)}
+    whole = diagnose_here(desk, "whole", table(rows, readings))
+    counter = replace(rows, crank_angle=np.remainder(angle, 2 * np.pi))
+    found = diagnose_here(desk, "counter", table(counter, readings))
+    assert said(found, "'crank_angle' jumps by a turn at 1 place of a sweep and was joined there")
+    assert whole.document["notes"] == [note for note in found.document["notes"] if "jumps" not in note]
+    for document in (whole.document, found.document):
+        assert names(document) == ["elastic_deflection"]
+    one, other = (item.document["causes"][0]["unknowns"]["compliance"] for item in (whole, found))
+    assert other["value"] == pytest.approx(one["value"], rel=1e-6)
+    assert other["interval95"][0] < 0.01 < other["interval95"][1]
+
+
+def test_hostile_words_are_shown_and_obeyed_nowhere(desk: Path, press: Columns) -> None:
+    """A name that breaks out of a string of code carries the error, so it stands in every file that is written."""
+    rng = np.random.default_rng(8)
+    level = rng.uniform(0, 1, 90)
+    evil, markup = 't"); import os; os.system("x") #', "remark <img src=x onerror=alert(1)>"
+    height = [repr(float(cell) + 0.05 * float(value)) for cell, value in zip(press[HEIGHT], level, strict=True)]
+    columns = {**press, HEIGHT: height, f"{evil} [mm]": [repr(value) for value in level.tolist()]}
+    columns[markup] = ["<script>alert(1)</script>", "=1+1", "\x1b[31mred", "{{ 7*7 }}", "$HOME"] * 18
+    found = diagnose_here(desk, "oil <script>alert(2)<b>", text_of(columns))
+    assert found.document["remainder"]["depends_on"] == [evil]
+    assert {path.name for path in found.folder.iterdir()} == CONTRACT | {"new_effect.py", "extended.toml"}
+    html = (found.folder / "sheet.html").read_text(encoding="utf-8")
+    assert "<script>alert" not in html
+    assert "<img src=x" not in html
+    assert "\x1b" not in found.answer.out + found.answer.err
+    assert all("\x1b" not in text.decode() for name, text in contents(found.folder).items() if name != "arrays.npz")
+    scope: dict[str, Any] = {"__name__": "new_effect"}
+    exec(compile((found.folder / "new_effect.py").read_text(encoding="utf-8"), "new_effect.py", "exec"), scope)
+    assert "os" not in scope
+    assert calc_here(desk, "run", "press_linkage", "--inputs", found.folder / "extended.toml", "-o", "run").code in {
+        0,
+        1,
+    }
+
+
+# Units that were probably written wrong
+
+
+SLIPS: dict[str, tuple[str, str, float, str]] = {
+    "metres over millimetres": (HEIGHT, "slider_position [m]", 1e-3, "multiply it by 0.001; "),
+    "radians over degrees": (
+        ANGLE, "crank_angle [rad]", np.pi / 180, "multiply it by pi/180 (degrees, not radians); ",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", SLIPS)
+def test_a_unit_that_is_probably_wrong_is_named_and_nothing_is_changed(desk: Path, press: Columns, what: str) -> None:
+    column, header, factor, words = SLIPS[what]
+    found = diagnose_here(desk, what, text_of(renamed(press, column, header)))
+    (slip,) = found.document["unit_slips"]
+    assert slip["column"] == header.split()[0]
+    assert slip["factor"] == pytest.approx(factor, rel=1e-12)
+    assert slip["text"].startswith(f"the unit of column '{header}' is probably wrong: {words}")
+    assert f"warning: suspected unit slip: {slip['text']} (nothing was changed)" in found.answer.err
+    assert "probably wrong" in (found.folder / "sheet.md").read_text(encoding="utf-8")
+    measured = np.load(found.folder / "arrays.npz")["slider_position.measured"]
+    scale = 1e3 if column == HEIGHT else 1.0  # as the header says
+    assert measured == pytest.approx([scale * float(cell) for cell in press[HEIGHT]], rel=1e-12)
+
+
+# Other ways to write the same file
+
+
+def german(press: Columns) -> str:
+    """Semicolons between cells, commas in numbers."""
+    return text_of(press).replace(",", ";").replace(".", ",")
+
+
+WRITTEN: dict[str, Callable[[Columns], bytes]] = {
+    "semicolons and decimal commas": lambda press: german(press).encode(),
+    "byte order mark and CRLF": lambda press: b"\xef\xbb\xbf" + text_of(press).replace("\n", "\r\n").encode(),
+    "all of it, empty lines, spaces": lambda press: (
+        b"\xef\xbb\xbf" + german(press).replace(";", " ; ").replace("\n", "\r\n\r\n").encode()
+    ),
+}
+
+
+@pytest.mark.parametrize("how", WRITTEN)
+def test_every_way_to_write_a_file_gives_the_same_bytes(
+    bench: Path, desk: Path, press: Columns, plain: Diagnosed, how: str
+) -> None:
+    found = diagnose_here(bench, "plain", WRITTEN[how](press))
+    assert (found.folder / "diagnosis.json").read_bytes() == (plain.folder / "diagnosis.json").read_bytes()
+    assert read_document(desk / plain.folder.name) == found.document
