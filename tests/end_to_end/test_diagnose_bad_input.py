@@ -1,4 +1,4 @@
-"""Measured files that are wrong or odd: refused in one sentence, or kept, said and counted; never guessed in silence."""
+"""Measured files that are wrong or odd: refused in one sentence, or kept, said and counted; never silently guessed."""
 
 from __future__ import annotations
 
@@ -178,9 +178,7 @@ REFUSED: dict[str, tuple[Change, Sequence[str]]] = {
     ),
     "no machine": (
         without_angle,
-        [
-            f"m.csv: no row can be used; {NEEDED} (90 rows are left out where the model fails; the first is m.csv:2: loop"
-        ],
+        [f"m.csv: no row can be used; {NEEDED} (90 rows are left out where the model fails; the first is m.csv:2: "],
     ),
     "no text": (lambda press: bytes(range(256)) * 9, ["m.csv:1: is a binary file; a table is CSV text in UTF-8"]),
 }
