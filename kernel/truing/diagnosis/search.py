@@ -24,6 +24,7 @@ from truing.diagnosis.noise import (
     Tails,
     clipped,
     colour,
+    robust_sd,
     spread_of,
     standardised,
     tails_of,
@@ -43,6 +44,8 @@ KEPT_SETTINGS = 4
 REMEMBERED = 20
 DOUBTS = 12
 SMALLEST_SHARE = 1e-6
+ROUNDING = 1e-4
+"""Innovations this small beside the smallest noise that is thought of are rounding: nothing of them is clipped."""
 
 
 @dataclass(frozen=True)
@@ -292,8 +295,9 @@ def learned(
         every = every * noise.given[channel.name]
         row_weights = every[channel.rows]
         innovations = whiten(left * row_weights, channel.starts, setting)
-        tail = tails_of(innovations)
-        kept = clipped(innovations, tail)
+        is_noise = robust_sd(innovations) > ROUNDING
+        tail = tails_of(innovations) if is_noise else noise.tails[channel.name]
+        kept = clipped(innovations, tail) if is_noise else innovations
         sd = float(np.sqrt(np.sum(kept**2) / max(len(kept) - free, 1.0)))
         full = np.array(raw[channel.name])
         cleaned = fitted + colour(kept, channel.starts, setting) / row_weights
