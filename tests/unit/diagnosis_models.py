@@ -91,6 +91,30 @@ def lead_error(screw: Drive, base: Deflection, *, lead: Float) -> Deflection:
     return replace(base, deflection=base.deflection + lead * screw.travel)
 
 
+@inputs
+class DriveInSi:
+    """The screw drive in N, m and rad."""
+
+    load: Float = given(0.0, "N", symbol="F", note="axial load")
+    travel: Float = given(0.0, "m", symbol="s", note="place of the nut")
+    rotation: Float = given(0.0, "rad", symbol="phi", note="angle of the screw")
+    contact: Float = given(CONTACT * UM, "m", symbol="c", note="approach of balls and track at 1 kN")
+    shaft: Float = given(SHAFT * UM / KN, "m/N", symbol="k", note="compliance of the shaft at the full stroke")
+    zero: Float = given(0.0, "m", note="zero of the length gauge as set")
+
+
+@results
+class DeflectionInSi:
+    """How far the nut gives way, in m."""
+
+    deflection: Float = found("m", symbol="g", note="axial deflection")
+
+
+def drive_in_si(screw: DriveInSi) -> DeflectionInSi:
+    """The same machine, declared otherwise."""
+    return DeflectionInSi(deflection=drive(screw).deflection)  # type: ignore[arg-type]
+
+
 TEMPERATURE = Condition("temperature", "degC", reference=20, low=10, high=60)
 TIME = Condition("time", "h", derived="since_start")
 EFFECTS: Mapping[str, Effect[Any, Any]] = {
@@ -111,14 +135,37 @@ EFFECTS: Mapping[str, Effect[Any, Any]] = {
     )
 }  # fmt: skip
 ALL_EFFECTS = tuple(EFFECTS)
+
+
+def _in_si(effect: Effect[Any, Any]) -> Effect[Any, Any]:
+    """The same effect with its unknowns and conditions declared in SI."""
+    from truing.diagnosis.candidates import si_bounds
+
+    units = {"um/K": "m/K", "um": "m", "h": "s", "um/h": "m/s", "um/mm": "", "": ""}
+    unknowns = [Unknown(one.name, *si_bounds(one), units[one.unit]) for one in effect.unknowns]
+    needs = [replace(need, unit="s") if need.name == "time" else need for need in effect.needs]
+
+    def acting(*held: Any, **known: Any) -> Any:
+        return effect.function(*held, **known)
+
+    return Effect(effect.name, **{f"on_{effect.place}": acting}, unknowns=unknowns, needs=needs)
+
+
 TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
 
 
-def drive_model(effects: Sequence[str] = ALL_EFFECTS, tolerances: Mapping[str, str] = TOLERANCES) -> Model[Any, Any]:
-    """The screw drive with some of its effects; ``tolerances`` holds standard deviations by input."""
+def drive_model(
+    effects: Sequence[str] = ALL_EFFECTS, tolerances: Mapping[str, str] = TOLERANCES, *, in_si: bool = False
+) -> Model[Any, Any]:
+    """The screw drive with some of its effects; ``tolerances`` holds standard deviations by input.
+
+    ``in_si`` declares the same model with every number in SI.
+    """
     spreads = [Tolerance(name, normal(sd=sd), why="drawing") for name, sd in tolerances.items()]
-    errors = [*spreads, *(EFFECTS[name] for name in effects)]
-    return Model(name="drive", title="Deflection of a screw drive", function=drive, errors=errors)
+    chosen = [EFFECTS[name] for name in effects]
+    errors = [*spreads, *(_in_si(effect) if in_si else effect for effect in chosen)]
+    function = drive_in_si if in_si else drive
+    return Model(name="drive", title="Deflection of a screw drive", function=function, errors=errors)
 
 
 def offer_of(model: Model[Any, Any]) -> Offer:

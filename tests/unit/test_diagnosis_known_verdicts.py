@@ -1,0 +1,229 @@
+"""Known answers of whole diagnoses: records of a screw drive in which the error is known, read from files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from diagnosis_models import (
+    HEADER,
+    TOLERANCES,
+    UM,
+    Array,
+    Asked,
+    decided,
+    drive_model,
+    gauge,
+    name_sets,
+    names_in,
+    nothing_wrong,
+    warming,
+    wide,
+)
+from numpy.testing import assert_allclose
+
+from truing.diagnosis.result import Diagnosis
+
+ZERO = {**TOLERANCES, "zero": "5 um"}
+PROPER = Asked(drive_model())
+
+
+def named(found: Diagnosis) -> list[str]:
+    return [cause.effect for cause in found.causes]
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_growth_and_drift_are_one_cause_where_the_temperature_rises_steadily(tmp_path: Path, seed: int) -> None:
+    rng = np.random.default_rng([3, seed])
+    bench = wide(150, seed=seed)
+    bench = replace(bench, temperature=20 + 2.5 * bench.time)
+    error = 0.3 * (bench.temperature - 20) + 4.0 + rng.normal(0, 1, len(bench))
+    found = Asked(drive_model(tolerances=ZERO)).diagnosed(
+        tmp_path, bench.columns(gauge(bench.load, bench.travel) + error)
+    )
+    assert found.verdict == "named"
+    (names,) = name_sets(found)
+    assert names == {"thermal_growth", "thermal_drift", "sensor_drift"}
+    assert any("temperature and time move together" in sentence for sentence in found.inseparable)
+
+
+def test_growth_in_a_warm_up_is_seen_but_not_told_from_a_warm_up_in_time(tmp_path: Path) -> None:
+    seen = 0
+    for seed in range(6):
+        rng = np.random.default_rng([5, seed])
+        bench = warming(150, seed=seed)
+        error = 0.1 * (bench.temperature - 20) + rng.normal(0, 1, len(bench))
+        found = PROPER.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
+        if found.verdict != "none":
+            seen += 1
+            assert not found.unique
+            assert {"thermal_drift", "warm_up"} <= names_in(found)  # growth is the same curve and goes by that name
+    assert seen >= 5
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_growth_in_a_warm_up_is_never_surely_a_drift(tmp_path: Path, seed: int) -> None:
+    rng = np.random.default_rng([4, seed])
+    bench = warming(150, seed=seed)
+    error = 0.05 * (bench.temperature - 20) + rng.normal(0, 1, len(bench))
+    asked = Asked(drive_model(("thermal_growth", "clearance", "lead_error"), ZERO))
+    found = asked.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
+    assert found.verdict == "none" or "thermal_drift" in names_in(found)  # the same curve as growth
+
+
+@pytest.mark.parametrize("level", [1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 0.0])
+@pytest.mark.parametrize(
+    ("names", "unknown", "amplitude", "unit"),
+    [({"lead_error"}, "lead", 0.05, 1e-3), ({"thermal_growth", "thermal_drift"}, "deflection", 0.5, UM)],
+)
+def test_a_linear_effect_is_named_and_sized_at_any_noise(
+    tmp_path: Path, level: float, names: set[str], unknown: str, amplitude: float, unit: float
+) -> None:
+    bench = wide(150, seed=3)
+    curve = amplitude * (bench.travel if unknown == "lead" else bench.temperature - 20)
+    noise = level * np.sqrt(np.mean(curve**2)) * np.random.default_rng(4).normal(size=len(bench))
+    found = PROPER.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + curve + noise))
+    assert found.verdict == "named"
+    assert name_sets(found) == [names]
+    assert found.unique
+    (size,) = found.causes[0].unknowns
+    assert size.name == unknown
+    true = amplitude * (UM / 1e-3 if unknown == "lead" else unit)
+    assert_allclose(size.value, true, rtol=5 * level / np.sqrt(len(bench)) + 1e-9)
+    assert size.low is not None
+    assert size.high is not None
+    rounding = 1e-12 * true
+    assert size.low - rounding <= true <= size.high + rounding
+    assert size.high - size.low < 8 * level * abs(true) / np.sqrt(len(bench)) + 1e-8 * abs(true)
+
+
+def test_wear_with_a_negative_size_is_not_wear(tmp_path: Path) -> None:
+    bench = wide(150, seed=12)
+    rng = np.random.default_rng(12)
+    worn = 0.5 * bench.time * np.sign(bench.load)
+    plain = gauge(bench.load, bench.travel) + rng.normal(0, 1, len(bench))
+    grown = PROPER.diagnosed(tmp_path, bench.columns(plain + worn))
+    assert named(grown) == ["wear"]
+    assert grown.unique
+    shrunk = PROPER.diagnosed(tmp_path, bench.columns(plain - worn))
+    assert shrunk.verdict != "none"
+    assert "wear" not in names_in(shrunk)
+
+
+def test_clearance_under_a_load_of_one_sign_may_be_an_offset_and_the_sign_is_asked_for(tmp_path: Path) -> None:
+    bench = wide(150, seed=13)
+    bench = replace(bench, load=np.abs(bench.load) + 0.5)
+    error = 3 + np.random.default_rng(13).normal(0, 1, len(bench))
+    found = PROPER.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
+    assert found.verdict == "named"
+    assert {"clearance", "sensor_offset"} <= names_in(found)
+    assert found.next
+    assert min(point.settings["load"].value for point in found.next) < 0
+    assert any({"clearance", "sensor_offset"} == set(point.separates) for point in found.next)
+
+
+def test_growth_is_not_excited_where_the_temperature_stands_still(tmp_path: Path) -> None:
+    bench = wide(150, seed=14)
+    bench = replace(bench, temperature=np.full(len(bench), 23.0))
+    error = np.random.default_rng(14).normal(0, 1, len(bench))
+    found = PROPER.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
+    sight = {item.name: item.sight for item in found.seen}
+    assert sight["thermal_growth"] == sight["thermal_drift"] == "not excited"
+    assert sight["clearance"] == sight["lead_error"] == "visible"
+    assert any("temperature" in note and "never changes" in note for note in found.records.notes)
+
+
+def warm_and_worn() -> dict[str, Array]:
+    bench = wide(150, seed=15)
+    error = 0.2 * (bench.temperature - 20) + 0.3 * bench.time * np.sign(bench.load)
+    return bench.columns(gauge(bench.load, bench.travel) + error + np.random.default_rng(15).normal(0, 1, len(bench)))
+
+
+def assert_same(one: Diagnosis, other: Diagnosis) -> None:
+    """The same verdict with the same probabilities and, in SI, the same sizes."""
+    assert (one.verdict, one.unique, name_sets(one)) == (other.verdict, other.unique, name_sets(other))
+    assert (one.p_any, one.p_second) == (other.p_any, other.p_second)
+    assert [rival.causes for rival in one.alternatives] == [rival.causes for rival in other.alternatives]
+    for cause, same in zip(one.causes, other.causes, strict=True):
+        for unknown, twin in zip(cause.unknowns, same.unknowns, strict=True):
+            assert unknown.name == twin.name
+            assert_allclose([twin.value, twin.low, twin.high], [unknown.value, unknown.low, unknown.high], rtol=1e-5)
+    assert_allclose([gain.p_value for gain in other.gain], [gain.p_value for gain in one.gain])
+
+
+SCALED = {"load": ("N", 1e3), "travel": ("m", 1e-3), "rotation": ("rad", np.pi / 180), "time": ("s", 3600.0)}
+
+
+@pytest.mark.parametrize("declared", [False, True], ids=["written", "declared"])
+@pytest.mark.parametrize("make", [warm_and_worn, lambda: nothing_wrong("wandering", 4)], ids=["two", "none"])
+def test_units_change_nothing(tmp_path: Path, make: object, declared: bool) -> None:
+    assert callable(make)
+    columns: Mapping[str, Array] = make()
+    factors = {**SCALED, "deflection": ("m", 1e-6)}
+    units = {name: factors[name][0] if name in factors else unit for name, unit in HEADER.items()}
+    scaled = {name: values * (factors[name][1] if name in factors else 1.0) for name, values in columns.items()}
+    model = drive_model(in_si=declared)
+    plain = PROPER.diagnosed(tmp_path, columns)
+    assert_same(plain, Asked(model, units=units).diagnosed(tmp_path, scaled))
+
+
+@pytest.mark.parametrize("runs", [1, 3])
+def test_the_order_of_the_rows_inside_a_run_changes_nothing(tmp_path: Path, runs: int) -> None:
+    columns = warm_and_worn()
+    rows = len(columns["time"])
+    labels = [f"run {row * runs // rows}" for row in range(rows)]
+    rng = np.random.default_rng(16)
+    order = np.concatenate([rng.permutation(part) for part in np.array_split(np.arange(rows), runs)])
+    shuffled = {name: values[order] for name, values in columns.items()}
+    plain = PROPER.diagnosed(tmp_path, columns, labels)
+    assert plain.verdict == "named"
+    again = PROPER.diagnosed(tmp_path, shuffled, [labels[row] for row in order])
+    assert_same(plain, again)
+    assert any("out of order" in note for note in again.records.notes)
+
+
+def test_order_seven_is_unknown_and_said_to_be_order_seven(tmp_path: Path) -> None:
+    bench = wide(150, seed=19)
+    wave = 2 * np.sin(np.radians(7 * bench.rotation + 40))
+    noise = np.random.default_rng(19).normal(0, 1, len(bench))
+    found = PROPER.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + wave + noise))
+    assert found.verdict == "unknown"
+    assert not found.causes
+    assert found.remainder is not None
+    assert found.remainder.depends_on == ("rotation",)
+    assert "order 7 of rotation" in found.remainder.shape
+    (terms,) = found.remainder.terms.values()
+    at = {name: columns for name, columns in bench.columns(wave).items() if name == "rotation"}
+    made = sum(
+        term.coefficient * eval(term.expression, {"np": np, "rotation": np.radians(at["rotation"])}) for term in terms
+    )
+    assert_allclose(np.sqrt(np.mean((made / UM - wave) ** 2)), 0, atol=0.3)
+
+
+@pytest.mark.parametrize("noise", ["gaussian", "heavy", "wandering", "growing"])
+def test_nothing_wrong_gains_nothing(tmp_path: Path, noise: str) -> None:
+    found = PROPER.diagnosed(tmp_path, nothing_wrong(noise, 20))
+    (gain,) = found.gain
+    assert gain.reducible_removed <= 0 or gain.p_value > 0.05
+
+
+def test_the_noise_floor_of_rows_that_carry_over_is_not_too_small(tmp_path: Path) -> None:
+    columns = nothing_wrong("wandering", 2)
+    rows = len(columns["time"])
+    found = PROPER.diagnosed(tmp_path, columns)
+    (wrong,) = found.wrong
+    assert wrong.noise.autocorrelation > 0.2
+    assert_allclose(wrong.noise_floor.value / UM, 1, atol=4 / np.sqrt(rows))
+
+
+def test_a_decision_does_not_depend_on_who_asks(tmp_path: Path) -> None:
+    columns = warm_and_worn()
+    records = PROPER.records(tmp_path, columns)
+    full, decision = decided(PROPER.setup, records)
+    found = PROPER.diagnosed(tmp_path, columns)
+    assert decision.p_any == found.p_any
+    kinds = [piece.kind for piece in full.found.hypotheses[decision.winner].pieces]
+    assert len(kinds) == len(found.causes) == 2
