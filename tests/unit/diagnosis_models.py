@@ -269,34 +269,6 @@ def name_sets(found: Diagnosis) -> list[set[str]]:
     return [{cause.effect, *cause.same_as} for cause in found.causes]
 
 
-NOISES = ("gaussian", "heavy", "wandering", "growing")
-DESIGNS = ("wide", "narrow", "warming")
-
-
-def noise_of(kind: str, rng: np.random.Generator, load: Array) -> Array:
-    """Noise of unit standard deviation: normal, t with 3 degrees of freedom, AR(1), or growing with the load."""
-    n = len(load)
-    if kind == "heavy":
-        return np.asarray(rng.standard_t(3, n) / np.sqrt(3))
-    if kind == "wandering":
-        return wander(rng, n, rng.uniform(0.3, 0.8))
-    if kind == "growing":
-        spread = 0.3 + np.abs(load) / np.abs(load).max()
-        return np.asarray(rng.normal(0, 1, n) * spread / np.sqrt(np.mean(spread**2)))
-    return rng.normal(0, 1, n)
-
-
-def nothing_wrong(noise: str, seed: int) -> dict[str, Array]:
-    """A record in which nothing is wrong: a machine within its tolerances, a design and a length by chance, noise."""
-    rng = np.random.default_rng([seed, NOISES.index(noise)])
-    n, design = int(rng.choice([80, 150, 300])), str(rng.choice(DESIGNS))
-    bench = (warming if design == "warming" else wide)(n, seed=seed)
-    if design == "narrow":
-        bench = replace(bench, load=np.abs(bench.load) / 4 + 8, travel=100 + bench.travel / 6)
-    contact, shaft = CONTACT * (1 + 0.03 * rng.normal()), SHAFT * (1 + 0.03 * rng.normal())
-    return bench.columns(gauge(bench.load, bench.travel, contact, shaft) + noise_of(noise, rng, bench.load))
-
-
 def decided(setup: Setup, records: Records) -> tuple[Contest, Decision]:
     """Search and decide, without the report: what a diagnosis does before it fits and judges."""
     machine = machine_of(setup, records)

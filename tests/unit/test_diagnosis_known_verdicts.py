@@ -19,10 +19,10 @@ from diagnosis_models import (
     gauge,
     name_sets,
     names_in,
-    nothing_wrong,
     warming,
     wide,
 )
+from diagnosis_nothing import nothing_wrong
 from numpy.testing import assert_allclose
 
 from truing.diagnosis.result import Diagnosis
