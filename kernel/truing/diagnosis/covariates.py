@@ -70,8 +70,11 @@ def _of_others(joined: Joined, setup: Setup, found: dict[str, Covariate]) -> lis
     model = setup.model
     known = [*measurable(model), *model.known_conditions, *model.input_fields]
     notes = []
+    asked_for = setup.diagnose.held_out[0]
     for name in joined.data.named("other", "label"):
         is_label = joined.data.parts[name] == "label" and any(joined.data.columns[name].tolist())
+        if is_label and name == asked_for:
+            continue
         words = "it is kept as words, on which nothing can depend" if is_label else "it holds no value and is not used"
         use = "it is kept as something an error may depend on" if name in found else words
         near = near_miss(name[:80], known)

@@ -12,7 +12,7 @@ from truing.runs.diagnosis_document import file_labels
 from truing.runs.inputs_written import complete_inputs
 
 if TYPE_CHECKING:
-    from truing.diagnosis.result import Calibrated, Cause, Diagnosis
+    from truing.diagnosis.result import Calibrated, Cause, Diagnosis, FittedUnknown
     from truing.setup import Setup
 
 WIDTH = 116
@@ -88,16 +88,28 @@ def _moved(item: Calibrated) -> str:
 
 
 def _of_cause(cause: Cause, diagnosis: Diagnosis) -> Iterator[str]:
-    from truing.numbers import format_number
-    from truing.units import from_si
-
     effect = diagnosis.setup.model.known_effects.get(cause.effect)
     about = "" if effect is None else effect.why or effect.looks_like
     yield f"Found by diagnosis{': ' + about if about else ''}."
+    labels = dict(zip(diagnosis.records.files, file_labels(diagnosis.records.files), strict=True))
     for unknown in cause.unknowns:
-        low, high = (
-            "open" if end is None else format_number(from_si(end, unknown.unit)) for end in (unknown.low, unknown.high)
-        )
-        yield f"{unknown.name}: 95 % interval from {low} to {high} {unknown.unit}".rstrip() + "."
+        if not unknown.per_file:
+            yield f"{unknown.name}: {_interval(unknown.low, unknown.high, unknown)}."
+            continue
+        yield f"{unknown.name}: fitted for each file alone; their mean stands here, write that of the file you mean."
+        for file, (value, low, high) in unknown.per_file.items():
+            yield f"{labels.get(file, file)}: {_number(value, unknown)}, {_interval(low, high, unknown)}."
     if cause.same_as:
         yield f"The same curve on this data: {', '.join(cause.same_as)}."
+
+
+def _number(value: float, unknown: FittedUnknown) -> str:
+    from truing.numbers import format_number
+    from truing.units import from_si
+
+    return format_number(from_si(value, unknown.unit))
+
+
+def _interval(low: float | None, high: float | None, unknown: FittedUnknown) -> str:
+    ends = ("open" if end is None else _number(end, unknown) for end in (low, high))
+    return f"95 % interval from {' to '.join(ends)} {unknown.unit}".rstrip()
