@@ -12,12 +12,12 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from truing.declare.fields import InputField
-from truing.diagnosis.candidates import new_curves
-from truing.diagnosis.contest import Contest, names_of
+from truing.diagnosis.candidates import Candidate, Term, new_curves, terms_of
+from truing.diagnosis.contest import Contest, curve_space, names_of
 from truing.diagnosis.findings import in_unit
 from truing.diagnosis.hypotheses import Hypothesis
 from truing.diagnosis.machine import Machine, machine_of
-from truing.diagnosis.noise import SETTINGS
+from truing.diagnosis.noise import SETTINGS, whiten
 from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import Covariate, Records
 from truing.diagnosis.result import Amount, NextPoint
@@ -37,6 +37,8 @@ TRIED = 512
 RIVALS = 4
 FEW_VALUES = 3
 SEPARATED = 10.0
+FAINTEST = 0.01
+"""Curves that no setting sets apart by more, in units of the noise squared, are the same curve everywhere."""
 
 
 @dataclass
@@ -85,13 +87,15 @@ def next_points(full: Contest, winner: int, rivals: Sequence[int]) -> list[NextP
     import numpy as np
 
     places = [place for place in (winner, *rivals) if _is_physical(full.found.hypotheses[place])][: RIVALS + 1]
-    if len(places) < 2:
-        return []
-    settings = _settings(full)
+    twins = _twins(full, full.found.hypotheses[winner])
+    settings = _settings(full) if len(places) > 1 or twins else {}
     if not settings:
         return []
     there = _machine_there(full, settings)
     duels = [_duel(full, there, a, b) for a in places for b in places if a != b]
+    duels += [duel for twin in twins for duel in _twin_duels(full, there, full.solution(winner), twin)]
+    if not duels:
+        return []
     found: list[NextPoint] = []
     taken = np.zeros(len(there.records), dtype=bool)
     for _ in range(POINTS):
@@ -251,6 +255,62 @@ def _duel(full: Contest, there: Machine, believed: int, rival: int) -> _Duel:
     return _Duel(
         (names[0], names[1]), max(0.0, size - float(cross @ inverse @ cross)), inverse @ cross, inverse, signal, rows
     )
+
+
+@dataclass(frozen=True)
+class _Twin:
+    """A cause that draws the curve of a named one on this data: its name, and one term in place of that piece."""
+
+    name: str
+    piece: int
+    candidate: Candidate
+    term: Term
+
+
+def _twins(full: Contest, hypothesis: Hypothesis) -> list[_Twin]:
+    """Return the causes that are the same curve as a piece of a hypothesis: other settings may tell them apart."""
+    problem = full.problem
+    found = []
+    for number, piece in enumerate(hypothesis.pieces if _is_physical(hypothesis) else ()):
+        for name in problem.same_as.get(piece.owner, ()) if piece.kind == "term" else ():
+            for place, candidate in enumerate(problem.candidates):
+                if candidate.name == name:
+                    terms = terms_of(place, candidate, problem.machine, full.noise.scales)
+                    found += [_Twin(name, number, candidate, term) for term in terms[:1] if len(terms) == 1]
+    return found
+
+
+def _twin_duels(full: Contest, there: Machine, solution: Solution, twin: _Twin) -> list[_Duel]:
+    """Set up a named cause against one of the same curve here; none where no setting within reach tells them apart."""
+    import numpy as np
+
+    piece = solution.hypothesis.pieces[twin.piece]
+    before = sum(len(each.columns) for each in solution.hypothesis.pieces[: twin.piece])
+    own = slice(before, before + len(piece.columns))
+    curves = list(zip(twin.term.curves, new_curves(there, twin.candidate, twin.term), twin.term.per, strict=True))
+    k = full.evidence.directions.shape[1]
+    normal, cross, size = np.zeros((k + len(curves),) * 2), np.zeros(k + len(curves)), 0.0
+    signal, rows = {}, {}
+    for place, channel in enumerate(full.evidence.channels):
+        setting = SETTINGS[solution.setting[place]]
+        here = curve_space(full, solution.hypothesis)[channel.name][:, own]
+        rival = np.column_stack([curve[channel.name][channel.rows] * (per / channel.scale) for curve, _, per in curves])
+        made = np.column_stack([channel.directions, rival, here @ solution.coefficients[own]])
+        white = whiten(made * channel.weights[:, None], channel.starts, setting)
+        normal, cross = normal + white[:, :-1].T @ white[:, :-1], cross + white[:, :-1].T @ white[:, -1]
+        size += float(white[:, -1] @ white[:, -1])
+        spread = channel.scale * np.sqrt(setting.variance_ratio)
+        believed = _columns_there(full, there, solution, channel.name)[:, own]
+        signal[channel.name] = believed @ solution.coefficients[own] / spread
+        u = there.slopes[channel.name] @ full.evidence.directions
+        new = np.column_stack([curve[channel.name] * per for _, curve, per in curves])
+        rows[channel.name] = np.concatenate([u, new], axis=1) / spread
+    prior = np.diag([1.0] * k + [0.0] * len(curves)) + 1e-9 * np.diag(np.diag(normal))
+    inverse: Matrix = np.asarray(np.linalg.inv(normal + prior), dtype=np.float64)
+    names = (" + ".join(names_of(full.problem, solution.hypothesis)), twin.name)
+    start = inverse @ cross
+    duel = _Duel(names, max(0.0, size - float(cross @ start)), start, inverse, signal, rows)
+    return [duel] if float(np.nanmax(duel.gains(), initial=0.0)) > FAINTEST else []
 
 
 def _columns_there(full: Contest, there: Machine, solution: Solution, name: str) -> Matrix:
