@@ -1,16 +1,23 @@
 """What the best possible diagnosis would predict: the true structure, fitted with the true covariance of the noise."""
 
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
 import numpy as np
 
 from hidden_effects.candidates import changes, stacked, tolerance_columns
 from hidden_effects.cases import Case
 from hidden_effects.press_machine import SCATTER, Array, Rows, shown
+from hidden_effects.shapes import step_at
+
+FARTHEST = 15  # rows between the true place of a step and one that is tried
 
 
 def unknown_columns(case: Case, rows: Rows) -> Array:
     """Derivatives of the readings by everything that is unknown but the tolerances, at the truth.
 
-    Amplitudes, time constants and the sizes of a shape; where a step lies and which order a wave has is taken as known.
+    Amplitudes, time constants and the sizes of a shape. Where a step lies is tried place by place; which order a wave
+    has is taken as known.
     """
     made = [np.zeros((len(rows) * len(case.results), 0))]
     if case.truth:
@@ -34,6 +41,42 @@ def _by_time_constant(case: Case, rows: Rows) -> Array:
 
 def oracle(case: Case) -> Array:
     """Predict the rows held out (without the first): generalised least squares, each tolerance with its prior."""
+    weight = np.asarray(np.linalg.inv(case.record.covariance), dtype=float)
+    return min((_fitted(assumed, weight) for assumed in _with_steps(case)), key=lambda fit: fit.misfit).predicted
+
+
+@dataclass(frozen=True)
+class _Fit:
+    misfit: float
+    predicted: Array
+
+
+def _with_steps(case: Case) -> Iterator[Case]:
+    """The case as it is; where it has a step, with the step in the middle of every gap between rows near its place."""
+    if not _steps(case):
+        yield case
+    time = case.record.rows.time
+    for after in (time[1:] + time[:-1]) / 2:
+        for name, true in _steps(case).items():
+            if np.sum((time > min(after, true)) & (time < max(after, true))) > FARTHEST:
+                continue
+            if name:
+                moved = {**case.hidden["step"], name: float(after)}
+                yield replace(case, hidden={**case.hidden, "step": moved})
+            elif case.shape is not None:
+                yield replace(case, shape=replace(step_at(float(after)), sizes=case.shape.sizes))
+
+
+def _steps(case: Case) -> dict[str, float]:
+    """When a step comes, by its unknown; that of a shape without a name."""
+    found = {name: when for name, when in case.hidden.get("step", {}).items() if name.endswith("_after")}
+    if case.shape is not None and case.shape.also == "step":
+        found[""] = float(case.record.rows.time[np.argmax(case.shape.curve(case.record.rows) > 0)])
+    return found
+
+
+def _fitted(case: Case, weight: Array) -> _Fit:
+    """Fit what is unknown, steps taken to be where they are said to be."""
     rows, count = case.record.rows, len(SCATTER)
     unknown, unknown_held = unknown_columns(case, rows), unknown_columns(case, case.held)
     lengths = np.linalg.norm(unknown, axis=0)
@@ -42,11 +85,12 @@ def oracle(case: Case) -> Array:
     held = np.hstack([tolerance_columns(case.held, case.results), unknown_held / lengths])
     prior = np.concatenate([np.ones(count), np.zeros(design.shape[1] - count)])
     truth = np.array([case.off[name] / sd for name, sd in SCATTER.items()])
-    weighted = np.linalg.solve(case.record.covariance, design)
     noise = stacked(case.readings, case.results) - case.true_readings(rows)
     pull = np.concatenate([truth, np.zeros(design.shape[1] - count)])
-    error = _solved(design.T @ weighted + np.diag(prior), weighted.T @ noise - pull)
-    return judged(case, case.true_readings(case.held) + held @ error)
+    error = _solved(design.T @ weight @ design + np.diag(prior), design.T @ (weight @ noise) - pull)
+    left, machine = noise - design @ error, truth + error[:count]
+    misfit = float(left @ weight @ left + machine @ machine)
+    return _Fit(misfit, judged(case, case.true_readings(case.held) + held @ error))
 
 
 def _solved(matrix: Array, right: Array) -> Array:

@@ -29,6 +29,7 @@ def outcome(case: Case, answer: Answer) -> dict[str, Any]:
         "exact": exact,
         "in_set": exact or any(is_alternative(case, other) for other in document["alternatives"][:FIRST]),
         "extra": has_extra(case, document),
+        "wrong_name": has_wrong_name(case, document),
         "to_truth": None if exact or document["verdict"] == "none" else to_truth(case, document),
         "covered": covered(case, document) if exact else {},
         "held_out": held_out(case, answer.predicted),
@@ -132,6 +133,16 @@ def has_extra(case: Case, document: Document) -> bool:
     causes = document["causes"]
     found = case.stratum == "single" and any(is_named(true_candidates(case)[0], cause) for cause in causes)
     return found and (len(causes) > 1 or document["remainder"] is not None)
+
+
+def has_wrong_name(case: Case, document: Document) -> bool:
+    """Whether a cause is named that is not there, under any name of its curve."""
+    true = true_candidates(case)
+    also = case.shape.also if case.shape else ""
+    return any(
+        cause["effect"] != also and not any(is_named(candidate, cause) for candidate in true)
+        for cause in document["causes"]
+    )
 
 
 def to_truth(case: Case, document: Document) -> float:

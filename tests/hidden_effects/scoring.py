@@ -125,6 +125,8 @@ def honesty(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
     stated = [one for one in outcomes if one["unique"] and one["verdict"] != "none" and one["stratum"] != "none"]
     wrong = [is_unique_and_wrong(one) for one in stated]
     yield rate("stated unique and wrong (lambda to the truth >= 10)", wrong, "<= 1.5", "<= 0.7")
+    named = [is_unique_and_wrong(one) and one["wrong_name"] for one in stated]
+    yield rate("  of these, a cause is named that is not there", named)
     yield rate("an extra second name on a single", [one["extra"] for one in of(outcomes, "single")], "<= 2.5", "<= 1")
     for kind in KINDS:
         held = [hit for one in outcomes if one["noise"] == kind for hit in one["covered"].values()]
@@ -164,6 +166,11 @@ def gain(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
     yield quantile("nested gain against held-out, median |log difference|", apart, 0.5, "<= 5", "<= 4", unit="%")
     least = [_apart(one, "sampled") for one in stated]
     yield quantile("  of one who knows truth and noise of the record", least, 0.5, unit="%")
+    ratios = [
+        (one["nested_after"] / one["nested_before"], one["sampled_after"] / one["sampled_before"]) for one in stated
+    ]
+    between = [100 * abs(log(nested / sampled)) for nested, sampled in ratios]
+    yield quantile("  between the two", between, 0.5, unit="%")
     false = [_has_false_gain(one) for one in of(outcomes, "none")]
     yield rate("false gain on zero-effect cases (p < 0.05, above 0)", false, "0 of 50", "0 of 100")
 

@@ -67,9 +67,8 @@ def order(rows: Rows, rng: np.random.Generator) -> Shape:
     return Shape(f"order {number} of crank_angle", ("crank_angle",), curve, also=also, family=family)
 
 
-def late_step(rows: Rows, rng: np.random.Generator) -> Shape:
-    """Something slips in the second half of the record."""
-    after = rng.uniform(0.5, 0.85) * rows.time[-1]
+def step_at(after: float) -> Shape:
+    """Something slips at one moment."""
 
     def curve(at: Rows) -> Array:
         return np.where(at.time >= after, 1.0, 0.0)
@@ -78,6 +77,11 @@ def late_step(rows: Rows, rng: np.random.Generator) -> Shape:
         return np.column_stack([np.ones(len(at)), curve(at)])
 
     return Shape("late step in time", ("time",), curve, also="step", family=family)
+
+
+def late_step(rows: Rows, rng: np.random.Generator) -> Shape:
+    """Something slips in the second half of the record."""
+    return step_at(rng.uniform(0.5, 0.85) * float(rows.time[-1]))
 
 
 def product_of_two(rows: Rows, rng: np.random.Generator) -> Shape:
