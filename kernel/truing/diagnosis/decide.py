@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-ANY_LEVEL = 0.03
+ANY_LEVEL = 0.02
 SECOND_LEVEL = 0.05
 CLOSE = 6.0
 """Explanations less far behind in score are not excluded (a Bayes factor of about 20)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from truing.declare.near_miss import near_miss
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from truing.studies.bench import Progress
 
 RANKED = 8
+FITTED = 4
 STAGES = 5
 
 
@@ -54,7 +56,8 @@ def _diagnose(setup: Setup, records: Records, step: _Steps) -> Diagnosis:
     step.done("fit")
     answer = _answer(problem, full, decision, best, raw)
     step.done("gain")
-    return answer
+    extended = None if answer.extended is None else replace(answer.extended, inputs=setup.inputs)
+    return replace(answer, setup=setup, extended=extended)
 
 
 class _Steps:
@@ -97,7 +100,9 @@ def _answer(problem: Problem, full: Contest, decision: Decision, best: Fit, raw:
         verdict=verdict,
         causes=causes,
         unique=not rivals,
-        alternatives=tuple(alternative_of(full, decision.winner, rival) for rival in rivals),
+        alternatives=tuple(
+            alternative_of(full, decision.winner, rival, fitted=rank < FITTED) for rank, rival in enumerate(rivals)
+        ),
         remainder=remainder,
         seen=tuple(smallest_visible(full, setting)),
         not_measured=_not_measured(problem),

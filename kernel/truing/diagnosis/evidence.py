@@ -118,7 +118,7 @@ def products_of(channel: Channel, settings: Sequence[Setting] = SETTINGS) -> lis
             matrix += white.T @ white
     base = 2 * float(np.log(channel.weights).sum())
     runs = int(channel.starts.sum())
-    constants = [base - runs * float(np.log(setting.variance_ratio)) for setting in settings]
+    constants = [base - runs * float(np.log(setting.variance_ratio)) - setting.cost for setting in settings]
     return [Products(matrix, constant) for matrix, constant in zip(found, constants, strict=True)]
 
 
@@ -179,14 +179,15 @@ class Reduced:
     """The columns with the tolerated inputs eliminated, under one noise filter per channel.
 
     For coefficients b of some columns the sum of squares of channel o is ``own[o] - 2 b g[o] + b h[o] b``; the last
-    entry of the three is the prior of the inputs. ``rows`` counts the rows by channel. B residuals at once.
+    entry of the three is the prior of the inputs. ``rows`` counts the independent rows by channel: those clipped say
+    less. B residuals at once.
     """
 
     h: tuple[Matrix, ...]
     g: tuple[Matrix, ...]
     own: tuple[Matrix, ...]
     constant: float
-    rows: tuple[int, ...]
+    rows: tuple[float, ...]
 
     @cached_property
     def total_h(self) -> Matrix:
@@ -207,7 +208,7 @@ class Reduced:
 
 
 def reduced(
-    products: Sequence[Products], rows: Sequence[int], k: int, replicates: Sequence[Replicates] | None = None
+    products: Sequence[Products], rows: Sequence[float], k: int, replicates: Sequence[Replicates] | None = None
 ) -> Reduced:
     """Eliminate the K directions, each with unit prior; the noise has unit scale here.
 

@@ -53,11 +53,14 @@ class Evidence:
     """The rows as the search sees them: channels, their inner products, and the directions of the tolerated inputs.
 
     ``directions`` has shape (inputs, K): u directions move the inputs by ``directions @ u`` standard deviations.
+    ``counts`` is what the rows of each channel are worth: an estimate from clipped innovations has the variance of
+    one from a share of the rows, (1 - clipped)^2.
     """
 
     channels: tuple[Channel, ...]
     products: tuple[tuple[Products, ...], ...]
     directions: Matrix
+    counts: tuple[float, ...]
     known: dict[tuple[int, ...], Reduced] = field(default_factory=dict, compare=False, repr=False)
 
     @property
@@ -71,8 +74,7 @@ class Evidence:
             chosen = [products[place] for products, place in zip(self.products, setting, strict=True)]
             if len(self.known) >= REMEMBERED:
                 self.known.pop(next(iter(self.known)))
-            counts = [len(channel) for channel in self.channels]
-            self.known[setting] = reduced(chosen, counts, self.directions.shape[1])
+            self.known[setting] = reduced(chosen, self.counts, self.directions.shape[1])
         return self.known[setting]
 
 
@@ -150,7 +152,8 @@ def evidence_of(problem: Problem, noise: NoiseModel, rows: NDArray[np.bool_]) ->
             )
         )
     products = tuple(tuple(products_of(channel)) for channel in channels)
-    return Evidence(tuple(channels), products, directions)
+    counts = [len(channel) * (1 - noise.tails[channel.name].clipped) ** 2 for channel in channels]
+    return Evidence(tuple(channels), products, directions, tuple(counts))
 
 
 def _pieces(machine: Machine, rows: NDArray[np.bool_]) -> NDArray[np.intp]:
