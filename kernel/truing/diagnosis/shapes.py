@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Kind = Literal["trend", "product", "order", "cycle", "step"]
 DEGREE = 4
 ORDERS = range(3, 17)
-CYCLES = range(2, 13)
+CYCLES = (*(half / 2 for half in range(3, 13)), *range(7, 13))
 PLACES = 50
 FULL_TURN = 1.5 * pi
 
@@ -72,8 +72,9 @@ class _Maker:
     def add(self, kind: Kind, on: Sequence[str], columns: Sequence[int], detail: float = 0.0, extra: int = 0) -> None:
         """Add a shape of those columns that are not combinations of the ones before."""
         kept = self._independent(columns)
-        if kept and (kind not in {"trend", "product"} or len(kept) > 1):
-            self.shapes.append(Shape(kind, tuple(on), tuple(kept), detail, extra))
+        shape = Shape(kind, tuple(on), tuple(kept), detail, extra)
+        if kept and shape not in self.shapes and (kind not in {"trend", "product"} or len(kept) > 1):
+            self.shapes.append(shape)
 
     def _independent(self, columns: Sequence[int]) -> list[int]:
         import numpy as np
@@ -106,9 +107,12 @@ def library_of(records: Records, registered: Mapping[str, frozenset[int]], *, ha
     moved = [item for item in records.covariates.values() if not item.is_constant]
     mains = {item.name: list(_main_terms(maker, item)) for item in moved}
     for item in moved:
+        maker.add("trend", [item.name], [one, *mains[item.name][:2]])
         maker.add("trend", [item.name], [one, *mains[item.name]])
     for first, second in combinations(moved, 2):
-        maker.add("product", [first.name, second.name], list(_products(maker, one, first, second, mains)))
+        columns = list(_products(maker, one, first, second, mains))
+        maker.add("product", [first.name, second.name], [columns[place] for place in _bilinear(first, second)])
+        maker.add("product", [first.name, second.name], columns)
     for item in moved:
         if item.is_angle:
             _add_orders(maker, item, registered.get(item.name, frozenset()))
@@ -164,6 +168,13 @@ def _products(
         yield maker.column(f"{left.expression} * {right.expression}", left.values * right.values)
 
 
+def _bilinear(first: Covariate, second: Covariate) -> tuple[int, ...]:
+    """Return which of the columns of a product are linear in both covariates; an angle that goes round has two."""
+    if _turns(first):
+        return (0, 1, 2, 3, 5, 6)
+    return (0, 1, 3, 4, 5, 7) if _turns(second) else (0, 1, 3, 5)
+
+
 def highest_order(angle: NDArray[np.float64]) -> int:
     """Return the highest order that this sampling of an angle shows as itself; above it, it folds back."""
     import numpy as np
@@ -176,7 +187,7 @@ def highest_order(angle: NDArray[np.float64]) -> int:
     is_regular = len(inner) > 0 and float(np.ptp(inner)) < 1e-3 * float(inner.mean())
     if not is_regular:
         return 10**6
-    return int(np.ceil(pi / float(inner.mean()) - 1e-9)) - 1
+    return int(np.ceil(pi / float(inner.mean()) - 1e-6)) - 1  # places are rounded to 1e-9
 
 
 def _add_orders(maker: _Maker, item: Covariate, registered: frozenset[int]) -> None:
@@ -196,7 +207,7 @@ def _add_orders(maker: _Maker, item: Covariate, registered: frozenset[int]) -> N
 
 
 def _add_cycles(maker: _Maker, item: Covariate) -> None:
-    """Add waves of 2 to 12 cycles per record."""
+    """Add waves of one and a half to twelve cycles per record."""
     import numpy as np
 
     text, values = _scaled(item)
