@@ -17,6 +17,7 @@ from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, g
 from truing.diagnosis.contest import Contest, contest
 from truing.diagnosis.decide import Decision, decide, without_needless_inputs
 from truing.diagnosis.engine import diagnose
+from truing.diagnosis.hypotheses import Piece
 from truing.diagnosis.machine import machine_of
 from truing.diagnosis.problem import problem_of
 from truing.diagnosis.reading import read_records
@@ -283,6 +284,12 @@ def plain_contest(asked: Asked, records: Records, scale: float) -> Contest:
     noise = first_noise(machine)
     known = replace(noise, scales=dict.fromkeys(noise.scales, scale))
     return contest(problem_of(machine, known.scales), known, ~records.held_out, rounds=1, settings=[(0,)])
+
+
+def names_of_piece(full: Contest, piece: Piece) -> tuple[str, ...]:
+    """The name of a cause, and those of the same curve."""
+    problem = full.problem
+    return (problem.candidates[piece.owner].name, *problem.same_as[piece.owner])
 
 
 @inputs

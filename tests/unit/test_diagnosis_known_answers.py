@@ -18,6 +18,7 @@ from diagnosis_models import (
     Asked,
     drive_model,
     gauge,
+    names_of_piece,
     plain_contest,
     twist_model,
     warming,
@@ -49,11 +50,6 @@ def piece_of(full: Contest, name: str) -> Piece:
     """The only variant of a cause, whichever of its names it goes by."""
     (found,) = [piece for piece in full.problem.term_pieces if name in names_of_piece(full, piece)]
     return found
-
-
-def names_of_piece(full: Contest, piece: Piece) -> tuple[str, ...]:
-    problem = full.problem
-    return (problem.candidates[piece.owner].name, *problem.same_as[piece.owner])
 
 
 def seen_angle(full: Contest, first: str, second: str) -> float:
