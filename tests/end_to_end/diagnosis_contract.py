@@ -44,7 +44,7 @@ GAIN = _object(
 )  # fmt: skip
 SCHEMA = _object(
     schema={"const": "truing.diagnosis/1"},
-    plugin=_object(name=TEXT, version=TEXT),
+    plugin=_object(name=TEXT, version={"type": "string"}),
     kernel=TEXT,
     input_hash={"type": "string", "pattern": "^[0-9a-f]{64}$"},
     seed=COUNT,
