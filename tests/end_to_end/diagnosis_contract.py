@@ -104,7 +104,9 @@ def _demand_result(name: str, document: Document, unit: str) -> None:
     for amount in (wrong["rmse"], wrong["noise_floor"], *(gain[key] for key in ("rmse_before", "rmse_after"))):
         assert amount["value"] >= 0
         assert _is_same_kind(amount["unit"], unit)
-    assert {one["covariate"] for one in wrong["findings"]} <= {"", *document["covariates"]}
+    known = ["", *document["covariates"]]
+    pairs = {f"{one} and {other}" for one in known for other in known}
+    assert {one["covariate"] for one in wrong["findings"]} <= {*known, *pairs}
 
 
 def _demand_agreement(document: Document) -> None:
