@@ -118,7 +118,8 @@ def products_of(channel: Channel, settings: Sequence[Setting] = SETTINGS) -> lis
             matrix += white.T @ white
     base = 2 * float(np.log(channel.weights).sum())
     runs = int(channel.starts.sum())
-    constants = [base - runs * float(np.log(setting.variance_ratio)) - setting.cost for setting in settings]
+    paid = float(np.log(max(len(channel), 2)))
+    constants = [base - runs * float(np.log(each.variance_ratio)) - paid * each.size for each in settings]
     return [Products(matrix, constant) for matrix, constant in zip(found, constants, strict=True)]
 
 

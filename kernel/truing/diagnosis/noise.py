@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 TAILS = {3.0: 1.9, 4.0: 2.1, 6.0: 2.5, 10.0: 3.0, 30.0: 4.5, inf: 4.5}
 """Degrees of freedom of Student's t, and where innovations are clipped, in standard deviations."""
 SMALL = 0.05
-PARAMETER_COST = 2.0
 LARGEST_EXPONENT = 2.5
 SPREAD_LEVEL = 0.002
 
@@ -40,12 +39,9 @@ class Setting:
         return min(1.0, self.variance_ratio * (1 - self.rho) ** 2 / (1 - self.theta) ** 2)
 
     @property
-    def cost(self) -> float:
-        """What the filter's own parameters cost in score: a wander that nothing asks for is not assumed.
-
-        Without it a slow effect would be taken for a wander of the noise at no cost.
-        """
-        return PARAMETER_COST * ((self.rho > 0) + (self.theta > 0))
+    def size(self) -> int:
+        """Number of its parameters: they are paid for like any other, else a slow effect is a wander at no cost."""
+        return int(self.rho > 0) + int(self.theta > 0)
 
     @property
     def neighbours(self) -> float:
