@@ -25,7 +25,10 @@ STEP = 1e-3
 GRID = 9
 WIDEST_ANGLE = 0.97
 DENSEST = 17
-PLACES = 50
+PLACES = 100
+NARROWEST = 0.07
+"""Angle between neighbouring curves of a grid, in radians."""
+LONG = 50_000
 KINK = 0.01
 FLAT = 1e-12
 
@@ -105,7 +108,7 @@ def grid_of(unknown: Unknown, machine: Machine, count: int = GRID) -> list[float
         return [float(value) for value in range(round(low), round(high) + 1)]
     if unknown.along:
         values = machine.records.rows.columns[unknown.along]
-        places = np.quantile(np.asarray(values, dtype=float), np.linspace(0.02, 0.98, PLACES), method="lower")
+        places = np.quantile(np.asarray(values, dtype=float), np.linspace(0.01, 0.99, PLACES), method="lower")
         return sorted({float(value) for value in places} - {float(np.min(np.asarray(values, dtype=float)))})
     if low > 0:
         return [float(value) for value in np.geomspace(low, high, count)]
@@ -175,7 +178,42 @@ def _refined(terms: list[Term], candidate: Candidate, machine: Machine, scales: 
         if not new:
             place += 1
         terms = [*terms[: place + 1], *new[:1], *terms[place + 1 :]]
-    return terms
+    return _densified(terms, name, scales, is_log=positive)
+
+
+def _densified(terms: list[Term], name: str, scales: Mapping[str, float], *, is_log: bool) -> list[Term]:
+    """Put values between those of a grid until neighbours are nearly one curve, without calling the model.
+
+    Curves between two values are those of a cubic spline over the grid. Long records keep the grid as it is.
+    """
+    import numpy as np
+    from scipy.interpolate import CubicSpline
+
+    first = terms[0]
+    rows = len(next(iter(first.curves[0].values())))
+    if len(terms) < 4 or rows > LONG or any(term.unknowns != first.unknowns for term in terms):
+        return terms
+    at = np.array([np.log(term.shape[name]) if is_log else term.shape[name] for term in terms])
+    if np.any(np.diff(at) <= 0):
+        return terms
+    splines = [
+        {key: CubicSpline(at, np.array([term.curves[column][key] for term in terms]), axis=0) for key in curve}
+        for column, curve in enumerate(first.curves)
+    ]
+    made: list[Term] = []
+    for term, following, begin, end in zip(terms, terms[1:], at, at[1:], strict=False):
+        made.append(term)
+        angle = np.arccos(min(1.0, _cosine(term, following, scales)))
+        for share in np.linspace(0, 1, int(np.ceil(angle / NARROWEST)) + 1)[1:-1]:
+            value = begin + share * (end - begin)
+            columns = [
+                _Column({key: spline(value) for key, spline in curves.items()}, unknown, file, low * per, high * per)
+                for curves, unknown, file, low, high, per in zip(
+                    splines, term.unknowns, term.files, term.low, term.high, term.per, strict=True
+                )
+            ]
+            made += _term(term.candidate, columns, {name: float(np.exp(value) if is_log else value)}, scales)
+    return [*made, terms[-1]]
 
 
 def stacked(curve: Curve, scales: Mapping[str, float]) -> NDArray[np.float64]:

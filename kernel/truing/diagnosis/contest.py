@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.hypotheses import NOTHING, Hypothesis, Piece, mixed, off_inputs, pairs, shapes, singles
-from truing.diagnosis.problem import Problem, terms_for_pairs
+from truing.diagnosis.problem import Problem, near, terms_for_pairs
 from truing.diagnosis.search import (
     Evidence,
     Found,
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 ROUNDS = 3
 FAVOURITES = 8
+REFINED = 4
 OUTSIDE = 3.0
 """An input is off its band beyond this many standard deviations of its tolerance."""
 SURELY = 3.0
@@ -79,10 +80,14 @@ def _all_scored(
     first = search(evidence, simple, settings)
     favourites = best_terms(first)
     terms = terms_for_pairs(problem, frozenset(piece.place for piece in favourites))
-    found = [
-        first,
+    two = [
         search(evidence, pairs(terms), settings),
         search(evidence, mixed(favourites, problem.shape_pieces, problem.like), settings),
+    ]
+    found = [
+        first,
+        *two,
+        *(search(evidence, finer, settings) for each in two if (finer := _finer(problem, each))),
         _outside(evidence, search(evidence, off_inputs(problem.input_pieces), settings)),
     ]
     return _together(found), settings
@@ -96,6 +101,18 @@ def best_terms(found: Found, count: int = FAVOURITES) -> list[Piece]:
         if hypothesis.kind == "one":
             kept.append(hypothesis.pieces[0])
     return kept[:count]
+
+
+def _finer(problem: Problem, found: Found) -> list[Hypothesis]:
+    """Return the best explanations again with the values of a fine grid that were passed over."""
+    made: list[Hypothesis] = []
+    for place in found.ranked()[:REFINED]:
+        hypothesis = found.hypotheses[place]
+        for number, piece in enumerate(hypothesis.pieces):
+            others = hypothesis.pieces[:number], hypothesis.pieces[number + 1 :]
+            if piece.kind == "term":
+                made += [replace(hypothesis, pieces=(*others[0], each, *others[1])) for each in near(problem, piece)]
+    return made
 
 
 def _outside(evidence: Evidence, found: Found) -> Found:

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 SAME_CURVE = 1e-4
 REPRODUCED = 0.98
-STEPS_IN_PAIRS = 4
-SPARSE = 3
+MANY_IN_PAIRS = 20
+FEW_IN_PAIRS = 6
 
 
 @dataclass(frozen=True)
@@ -219,20 +219,35 @@ def _alike(problem: Problem, known: _Sight) -> frozenset[tuple[int, int]]:
 
 
 def terms_for_pairs(problem: Problem, favourites: frozenset[int] = frozenset(), *, sparse: bool = False) -> list[Piece]:
-    """Return the variants that enter pairs: all, but of places of a step every fourth and the ``favourites``.
+    """Return the variants that enter pairs: of a fine grid about twenty and the ``favourites``, else all.
 
-    ``sparse`` takes every third value of other grids too: enough for the largest of many simulated scores.
+    ``sparse`` takes about six of any grid: enough for the largest of many simulated scores.
     """
-    by_owner: dict[int, list[Piece]] = {}
-    for piece in problem.term_pieces:
-        by_owner.setdefault(piece.owner, []).append(piece)
     found = []
-    for owner, pieces in by_owner.items():
-        shapes = problem.candidates[owner].shapes
-        every = STEPS_IN_PAIRS if any(shape.along for shape in shapes) else 1
-        if sparse and every == 1 and len(pieces) > SPARSE and not any(shape.whole for shape in shapes):
-            every = SPARSE
+    for owner, pieces in _by_owner(problem).items():
+        is_grid = len(pieces) > FEW_IN_PAIRS and not any(shape.whole for shape in problem.candidates[owner].shapes)
+        every = stride(len(pieces), sparse=sparse) if is_grid else 1
         found += [
             piece for place, piece in enumerate(pieces) if place % every == every // 2 or piece.place in favourites
         ]
+    return found
+
+
+def stride(count: int, *, sparse: bool = False) -> int:
+    """Return how many values of a grid lie between two that enter pairs."""
+    return max(1, count // (FEW_IN_PAIRS if sparse else MANY_IN_PAIRS))
+
+
+def near(problem: Problem, piece: Piece) -> list[Piece]:
+    """Return the variants of the same cause that were passed over beside one: those up to the next that was tried."""
+    pieces = _by_owner(problem)[piece.owner]
+    every = stride(len(pieces))
+    at = pieces.index(piece)
+    return [each for place, each in enumerate(pieces) if 0 < abs(place - at) <= every] if every > 1 else []
+
+
+def _by_owner(problem: Problem) -> dict[int, list[Piece]]:
+    found: dict[int, list[Piece]] = {}
+    for piece in problem.term_pieces:
+        found.setdefault(piece.owner, []).append(piece)
     return found
