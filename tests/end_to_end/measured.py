@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
@@ -49,7 +49,7 @@ def text_of(columns: Mapping[str, Sequence[str]]) -> str:
     return stream.getvalue()
 
 
-def numbers(columns: Mapping[str, Sequence[float]]) -> Columns:
+def numbers(columns: Mapping[str, Iterable[float]]) -> Columns:
     """Write numbers as cells, every digit kept."""
     return {name: [repr(float(value)) for value in values] for name, values in columns.items()}
 

@@ -73,7 +73,7 @@ GAUGES: dict[str, tuple[Callable[[Array, Array, Array], Array], dict[str, float]
     "sensor_drift": (lambda angle, hours, warm: -1.5 * hours, {"sag": -1.5}),
     "thermal_drift": (lambda angle, hours, warm: 0.4 * (warm - 20), {"sag": 0.4}),
     "periodic_order": (
-        lambda angle, hours, warm: 3 * np.sin(2 * angle) - 2 * np.cos(2 * angle),
+        lambda angle, hours, warm: np.asarray(3 * np.sin(2 * angle) - 2 * np.cos(2 * angle)),
         {"sag_sine": 3.0, "sag_cosine": -2.0, "sag_order": 2.0},
     ),
     "step": (lambda angle, hours, warm: 12.0 * (hours > 3.3), {"sag": 12.0, "sag_after": 3.3}),
