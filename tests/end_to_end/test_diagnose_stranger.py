@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -34,7 +35,7 @@ from hidden_effects.press_machine import POSITION
 from shared import Calc, process
 
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 ROWS = 80
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 
