@@ -119,12 +119,7 @@ def test_what_a_gauge_may_do_is_found_without_any_declaration(
     assert document["calibrated"]["modulus"]["of_its_sd"] == pytest.approx(-0.5, abs=0.1)
 
 
-LATE = pytest.mark.xfail(strict=True, reason="the place of a step is one of a grid, a few rows from the best")
-
-
-@pytest.mark.parametrize(
-    "effect", [pytest.param(effect, marks=LATE) if effect == "step" else effect for effect in GAUGES]
-)
+@pytest.mark.parametrize("effect", GAUGES)
 def test_the_extended_model_shows_what_the_gauge_shows(
     desk: Path, on_its_gauge: Callable[[str], Diagnosed], effect: str
 ) -> None:
