@@ -9,12 +9,14 @@ Marks stand in an HTML comment right above a fenced block:
 
 In a ``console`` block every line that begins with ``$`` is a command; what follows is compared with what it prints.
 A line ``...`` stands for any lines, ``...`` within a line for any text. ``python tests/end_to_end/shown_in_docs.py
-PAGE...`` writes the present output into pages whose blocks do not match.
+PAGE...`` writes the present output into pages whose blocks do not match; where a page shows a part, the lines most
+like those shown.
 """
 
 from __future__ import annotations
 
 import ast
+import difflib
 import os
 import re
 import shlex
@@ -99,8 +101,11 @@ def desk_in(folder: Path) -> Desk:
     """Prepare an empty folder with the examples that the manual ships."""
     work = folder / "work"
     work.mkdir(parents=True)
-    for file in EXAMPLES.glob("*.*"):
-        shutil.copy(file, work / file.name)
+    for example in EXAMPLES.iterdir():
+        if example.is_dir():
+            shutil.copytree(example, work / example.name, ignore=shutil.ignore_patterns("__pycache__", "runs"))
+        else:
+            shutil.copy(example, work / example.name)
     return Desk(work, folder / "site")
 
 
@@ -168,6 +173,23 @@ def matches(shown: str, said: str) -> bool:
     return re.fullmatch(pattern, plain) is not None
 
 
+def refreshed(shown: str, said: str) -> str:
+    """Return what a page should show: all of it, or in its order the lines most like those that it showed in part."""
+    lines = [line.rstrip() for line in said.strip("\n").splitlines()]
+    if "..." not in shown:
+        return "".join(line + "\n" for line in lines)
+    found: list[str] = []
+    for line in shown.strip("\n").splitlines():
+        if "..." in line or not lines:
+            found.append(line)
+            continue
+        likeness = [difflib.SequenceMatcher(None, line, other, autojunk=False).ratio() for other in lines]
+        best = likeness.index(max(likeness))
+        found.append(lines[best])
+        lines = lines[best + 1 :]
+    return "".join(line + "\n" for line in found)
+
+
 def grown(before: str, step: str) -> str:
     """Put the definitions of a step into a file: in the place of those they replace, else above the model.
 
@@ -229,12 +251,12 @@ def rewrite(page: Path, desk: Desk) -> int:
             if code != end:
                 print(f"{page}:{block.line}: '{command.words}' ended with {code}, not {end}")
             good = code != end or matches(command.shown, said)
-            if not good and "..." in command.shown:
+            fresh = command.shown if good else refreshed(command.shown, said)
+            if not good and not matches(fresh, said):
                 print(f"{page}:{block.line}: '{command.words}' no longer prints what the page shows in part")
-                good = True
-            changed += not good
-            plain = "".join(line.rstrip() + "\n" for line in said.strip("\n").splitlines())
-            shown += f"$ {command.words}\n" + (command.shown if good else plain)
+                fresh = command.shown
+            changed += fresh != command.shown
+            shown += f"$ {command.words}\n" + fresh
         start = block.start + moved
         text = text[:start] + shown + text[start + len(block.text) :]
         moved += len(shown) - len(block.text)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from shown_in_docs import EXAMPLES, ROOT, blocks, check_page, commands, desk_in, grown, matches
+from shown_in_docs import EXAMPLES, ROOT, blocks, check_page, commands, desk_in, grown, matches, refreshed
 
 TUTORIAL = ROOT / "docs" / "tutorial" / "first_calculation.md"
 PAGES = sorted(page for page in (ROOT / "docs").rglob("*.md") if any(block.kind == "console" for block in blocks(page)))
@@ -58,6 +58,20 @@ def by_statement(text: str) -> list[str]:
 )
 def test_output_is_compared_line_by_line(shown: str, said: str, same: bool) -> None:
     assert matches(shown, said) is same
+
+
+@pytest.mark.parametrize(
+    ("shown", "said", "fresh"),
+    [
+        ("rate 1 mm\n", "rate 2 mm\nforce 3 N\n", "rate 2 mm\nforce 3 N\n"),
+        ("...\nrate 1 mm\n...\n", "first\nrate 2 mm\nforce 3 N\n", "...\nrate 2 mm\n...\n"),
+        ("rate 1 mm\n...\nrate 5 mm\n", "rate 2 mm\nforce 3 N\nrate 6 mm\n", "rate 2 mm\n...\nrate 6 mm\n"),
+        ("took ... s\nrate 1 mm\n", "took 3 s\nrate 2 mm\n", "took ... s\nrate 2 mm\n"),
+    ],
+)
+def test_what_a_page_shows_is_written_anew(shown: str, said: str, fresh: str) -> None:
+    assert refreshed(shown, said) == fresh
+    assert matches(fresh, said)
 
 
 def test_a_step_replaces_what_has_its_name_and_puts_the_rest_above_the_model() -> None:
