@@ -11,9 +11,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import block_diag, solve_triangular, toeplitz
 
 from truing.diagnosis import evidence
+from truing.diagnosis.columns import Column, Design
 from truing.diagnosis.evidence import (
     Channel,
-    Column,
     Products,
     Reduced,
     Simulation,
@@ -34,9 +34,10 @@ from truing.diagnosis.hypotheses import (
     shapes,
     singles,
 )
-from truing.diagnosis.machine import directions_of, visible
+from truing.diagnosis.machine import directions_of
 from truing.diagnosis.noise import Setting
 from truing.diagnosis.scoring import BOUND_SLACK, base_likelihood, batch_likelihood, scores_of
+from truing.diagnosis.sight import visible
 from truing.diagnosis.significance import LARGEST_RHO, carried
 
 K, M = 2, 4
@@ -55,8 +56,9 @@ def channel(name: str, n: int, seed: int, *, weights: bool = True) -> Channel:
         starts_of(np.concatenate([[0], runs, [1]]), rows),
         rng.uniform(0.5, 2, n) if weights else np.ones(n),
         rng.normal(size=n),
-        rng.normal(size=(n, K)),
-        columns,
+        rng.normal(size=(n + 2, K)),
+        0.1 * np.eye(K),
+        Design(name, columns, n + 2),
     )
 
 
@@ -152,7 +154,7 @@ def test_many_residuals_at_once_are_the_same_as_one_by_one() -> None:
     for place in range(5):
         alone = Channel(
             item.name, item.scale, item.rows, item.starts, item.weights, made[:, place] / item.weights,
-            item.directions, item.columns,
+            item.slopes, item.moves, item.design,
         )  # fmt: skip
         case = reduced(products_of(alone, [Setting(0.6)]), [30], K)
         assert_allclose(together.total_g[:, place], case.total_g[:, 0], rtol=1e-9, atol=1e-9)
@@ -283,22 +285,23 @@ def test_batches_hold_every_explanation_once() -> None:
 def test_what_the_tolerances_leave_has_the_inner_products_of_the_marginal_covariance() -> None:
     rng = np.random.default_rng(10)
     columns, directions = rng.normal(size=(15, 3)), rng.normal(size=(15, 4)) * 2
-    left = visible(columns, directions)
+    both = np.concatenate([directions, columns], axis=1)
     marginal = columns.T @ np.linalg.solve(np.eye(15) + directions @ directions.T, columns)
-    assert_allclose(left.T @ left, marginal, rtol=1e-10)
-    assert_allclose(visible(columns, np.zeros((15, 0))), columns)
+    assert_allclose(visible(both.T @ both, 4), marginal, rtol=1e-10)
+    assert_allclose(visible(columns.T @ columns, 0), columns.T @ columns)
 
 
 def test_collinear_inputs_are_few_directions_with_the_same_prior() -> None:
     rng = np.random.default_rng(11)
     curves = rng.normal(size=(200, 2))
     slopes = curves @ np.array([[1.0, 2.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]]) + 1e-4 * rng.normal(size=(200, 4))
-    found = directions_of(slopes)
+    gram = slopes.T @ slopes
+    found = directions_of(gram, 200)
     assert found.shape == (4, 2)
     assert_allclose(found.T @ found, np.eye(2), atol=1e-12)
     assert_allclose(slopes @ found @ found.T @ slopes.T, slopes @ slopes.T, atol=0.02)
-    assert directions_of(np.zeros((5, 0))).shape == (0, 0)
-    assert directions_of(1e-3 * slopes).shape == (4, 0)  # a thousandth of the noise moves nothing
+    assert directions_of(np.zeros((0, 0)), 5).shape == (0, 0)
+    assert directions_of(1e-6 * gram, 200).shape == (4, 0)  # a thousandth of the noise moves nothing
 
 
 def test_simulations_carry_over_a_little_more_than_was_fitted() -> None:

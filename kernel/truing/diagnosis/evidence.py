@@ -6,12 +6,15 @@ the library of shapes. Rows are taken in blocks of whole pieces of runs, so memo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from hashlib import blake2b
 from typing import TYPE_CHECKING
 
-from truing.diagnosis.noise import SETTINGS, Setting, colour, whiten
+from truing.diagnosis.columns import Column, Design
+from truing.diagnosis.filtered import grams_of, mixture, parts_of
+from truing.diagnosis.noise import SETTINGS, Setting, colour
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,14 +23,8 @@ if TYPE_CHECKING:
     Matrix = NDArray[np.float64]
 
 LONGEST = 4096
-
-
-@dataclass(frozen=True)
-class Column:
-    """One column of the search: parts by measured result, shape (n,) over the rows of all records, SI."""
-
-    parts: Mapping[str, Matrix]
-    per: float = 1.0
+ROUNDING = 1e-13
+"""What is left of a sum of squares below this share is rounding: no explanation is better than another by it."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +32,8 @@ class Channel:
     """One measured result on the rows where it was measured, in units of its noise.
 
     ``rows`` are places among the records; ``starts`` marks where the noise filter starts anew; ``weights`` is one over
-    the relative standard deviation of the noise. ``residual`` has shape (n,), ``directions`` (n, K).
+    the relative standard deviation of the noise. ``residual`` has shape (n,). ``slopes`` are those of the tolerated
+    inputs on all rows of the records, ``moves`` (inputs, K) how the directions move them.
     """
 
     name: str
@@ -44,26 +42,37 @@ class Channel:
     starts: NDArray[np.bool_]
     weights: Matrix
     residual: Matrix
-    directions: Matrix
-    columns: Sequence[Column]
+    slopes: Matrix
+    moves: Matrix
+    design: Design
 
     def __len__(self) -> int:
         return len(self.rows)
 
-    def block(self, rows: slice) -> Matrix:
-        """Return residual, directions and columns of some rows, weighted, shape (rows, 1 + K + m)."""
+    @property
+    def columns(self) -> Sequence[Column]:
+        """All columns of the search."""
+        return self.design.columns
+
+    @property
+    def directions(self) -> Matrix:
+        """What the directions of the tolerated inputs change, (n, K), in units of the noise."""
+        return self.directions_at(slice(None))
+
+    def directions_at(self, rows: slice) -> Matrix:
+        """Return the directions at some rows, not weighted, shape (rows, K)."""
         import numpy as np
 
-        places = self.rows[rows]
-        k = self.directions.shape[1]
-        made = np.zeros((len(places), 1 + k + len(self.columns)))
-        made[:, 0] = self.residual[rows]
-        made[:, 1 : 1 + k] = self.directions[rows]
-        for place, column in enumerate(self.columns, start=1 + k):
-            part = column.parts.get(self.name)
-            if part is not None:
-                made[:, place] = part[places] * (column.per / self.scale)
-        made *= self.weights[rows, None]
+        return np.asarray(self.slopes[self.rows[rows]] @ (self.moves / self.scale))
+
+    def moved(self, rows: slice) -> Matrix:
+        """Return the weighted directions at some rows, shape (K, rows)."""
+        return self.directions_at(rows).T * self.weights[rows]
+
+    def block(self, rows: slice) -> Matrix:
+        """Return the columns that act on this result at some rows, weighted, shape (active, rows)."""
+        made = self.design.block(self.rows[rows])
+        made *= self.weights[rows] / self.scale
         return made
 
     @cached_property
@@ -99,28 +108,64 @@ def starts_of(run_of: NDArray[np.intp], rows: NDArray[np.intp]) -> NDArray[np.bo
 
 @dataclass(frozen=True)
 class Products:
-    """Inner products of one channel under one noise filter: matrix (1 + K + m) squared, and the filter's constant."""
+    """Inner products of one channel under one noise filter: matrix (1 + K + m) squared, and the filter's constant.
+
+    ``least`` is the smallest sum of squares that is more than rounding.
+    """
 
     matrix: Matrix
     constant: float
+    least: float = 0.0
 
 
 def products_of(channel: Channel, settings: Sequence[Setting] = SETTINGS) -> list[Products]:
     """Return the inner products of all columns of a channel, one matrix per noise filter."""
     import numpy as np
 
-    size = 1 + channel.directions.shape[1] + len(channel.columns)
-    found = [np.zeros((size, size)) for _ in settings]
+    every, mixed = len(channel.columns), mixture(settings)
+    first = 1 + channel.moves.shape[1]
+    own = np.zeros((mixed.shape[1], first, first))
+    cross = np.zeros((mixed.shape[1], len(channel.design.active), first))
     for rows in channel.blocks:
-        block, starts = channel.block(rows), channel.starts[rows]
-        for matrix, setting in zip(found, settings, strict=True):
-            white = whiten(block, starts, setting)
-            matrix += white.T @ white
+        few = np.concatenate([(channel.residual[rows] * channel.weights[rows])[None], channel.moved(rows)])
+        block = channel.block(rows)
+        for place, part in enumerate(parts_of(few, channel.starts[rows], settings)):
+            own[place] += few @ part.T
+            cross[place] += block @ part.T
+    at = first + channel.design.active
+    found = np.zeros((len(settings), first + every, first + every))
+    found[:, :first, :first] = np.tensordot(mixed, own, 1)
+    found[:, at, :first] = np.tensordot(mixed, cross, 1)
+    found[:, :first, at] = np.swapaxes(found[:, at, :first], 1, 2)
+    found[:, at[:, None], at] = _core(channel, settings) / channel.scale**2
     base = 2 * float(np.log(channel.weights).sum())
     runs = int(channel.starts.sum())
     paid = float(np.log(max(len(channel), 2)))
     constants = [base - runs * float(np.log(each.variance_ratio)) - paid * each.size for each in settings]
-    return [Products(matrix, constant) for matrix, constant in zip(found, constants, strict=True)]
+    least = ROUNDING * float(own[0, 0, 0])
+    return [Products(matrix, constant, least) for matrix, constant in zip(found, constants, strict=True)]
+
+
+def _core(channel: Channel, settings: Sequence[Setting]) -> Matrix:
+    """Return the inner products of the columns among themselves, SI, (filters, active, active).
+
+    They change with rows and weights alone, so they are kept for the next rounds of learning the noise.
+    """
+    import numpy as np
+
+    known = channel.design.known
+    used = (channel.rows, channel.starts, channel.weights, np.array([[each.rho, each.theta] for each in settings]))
+    key = b"".join(blake2b(np.ascontiguousarray(each).data).digest() for each in used)
+    if key not in known:
+        known.clear()
+        mixed = mixture(settings)
+        parts = np.zeros((mixed.shape[1], len(channel.design.active), len(channel.design.active)))
+        for rows in channel.blocks:
+            block = channel.block(rows) * channel.scale
+            for place, gram in enumerate(grams_of(block, channel.starts[rows], settings)):
+                parts[place] += gram
+        known[key] = np.tensordot(mixed, parts, 1)
+    return known[key]
 
 
 @dataclass(frozen=True)
@@ -153,19 +198,20 @@ def replicates_of(
     """Simulate residuals, with inputs drawn from their tolerances (K, B), and reduce them to inner products."""
     import numpy as np
 
-    count, k = inputs.shape[1], channel.directions.shape[1]
-    sizes = (k + len(channel.columns), count)
-    together = [np.zeros(sizes) for _ in settings]
-    own = [np.zeros(count) for _ in settings]
+    count, k, mixed = inputs.shape[1], inputs.shape[0], mixture(settings)
+    together = np.zeros((mixed.shape[1], k + len(channel.design.active), count))
+    own = np.zeros((mixed.shape[1], count))
     for rows in channel.blocks:
-        block, starts = channel.block(rows)[:, 1:], channel.starts[rows]
-        drawn = generator.choice(simulation.innovations, size=(len(block), count))
-        made = colour(drawn, starts, simulation.setting) + simulation.mean[rows, None] + block[:, :k] @ inputs
-        for place, setting in enumerate(settings):
-            white = whiten(made, starts, setting)
-            together[place] += whiten(block, starts, setting).T @ white
-            own[place] += np.einsum("ij,ij->j", white, white)
-    return [Replicates(first, second) for first, second in zip(together, own, strict=True)]
+        starts, moved = channel.starts[rows], channel.moved(rows)
+        drawn = generator.choice(simulation.innovations, size=(len(starts), count))
+        made = colour(drawn, starts, simulation.setting).T + simulation.mean[rows] + inputs.T @ moved
+        block = np.concatenate([moved, channel.block(rows)])
+        for place, part in enumerate(parts_of(made, starts, settings)):
+            together[place] += block @ part.T
+            own[place] += np.einsum("ij,ij->i", made, part)
+    with_all = np.zeros((len(settings), k + len(channel.columns), count))
+    with_all[:, [*range(k), *(k + channel.design.active)]] = np.tensordot(mixed, together, 1)
+    return [Replicates(first, second) for first, second in zip(with_all, mixed @ own, strict=True)]
 
 
 def combined(counts: Sequence[int]) -> Iterator[tuple[int, ...]]:
@@ -189,6 +235,7 @@ class Reduced:
     own: tuple[Matrix, ...]
     constant: float
     rows: tuple[float, ...]
+    least: tuple[float, ...]
 
     @cached_property
     def total_h(self) -> Matrix:
@@ -230,10 +277,10 @@ def reduced(
         ub = [item.with_all[:k] for item in replicates]
         cb = [item.with_all[k:] for item in replicates]
         own = [item.own for item in replicates]
-    constant = sum(item.constant for item in products)
+    constant, least = sum(item.constant for item in products), tuple(item.least for item in products)
     if k == 0:
         nothing = np.zeros_like(cc[0]), np.zeros_like(cb[0]), np.zeros_like(own[0])
-        return Reduced((*cc, nothing[0]), (*cb, nothing[1]), (*own, nothing[2]), constant, tuple(rows))
+        return Reduced((*cc, nothing[0]), (*cb, nothing[1]), (*own, nothing[2]), constant, tuple(rows), least)
     factor = cho_factor(_sum(uu) + np.eye(k))
     gamma = cho_solve(factor, _sum(uc))
     start = cho_solve(factor, _sum(ub))
@@ -249,7 +296,7 @@ def reduced(
     ]
     constant -= 2 * float(np.log(np.diag(factor[0])).sum())
     prior = gamma.T @ start, np.einsum("ij,ij->j", start, start)
-    return Reduced((*h, prior_h), (*g, prior[0]), (*left, prior[1]), constant, tuple(rows))
+    return Reduced((*h, prior_h), (*g, prior[0]), (*left, prior[1]), constant, tuple(rows), least)
 
 
 def _sum(matrices: Sequence[Matrix]) -> Matrix:

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from truing.diagnosis.columns import MANY, in_blocks, times
 from truing.diagnosis.records import Records
 from truing.gauge import one_machine, read_by_gauge
 from truing.setup import Setup
@@ -57,7 +58,7 @@ class Machine:
         import numpy as np
 
         means = np.array([item.mean / item.sd for item in self.inputs])
-        return {name: slopes @ means for name, slopes in self.slopes.items()}
+        return {name: times(slopes, means) for name, slopes in self.slopes.items()}
 
 
 def predict(setup: Setup, records: Records) -> Predicted:
@@ -97,11 +98,14 @@ def machine_of(setup: Setup, records: Records) -> Machine:
     start = one_machine(setup)
     base = predict(start, records)
     inputs = tolerated_inputs(setup, records)
-    slopes = {name: np.zeros((len(records), len(inputs))) for name in records.measured}
+    kind = np.float32 if len(records) > MANY else np.float64
+    slopes: dict[str, Any] = {
+        name: np.zeros((len(records), len(inputs)), dtype=kind, order="F") for name in records.measured
+    }
     by_name: dict[str, Predicted] = {}
     for place, item in enumerate(inputs):
         if item.name not in by_name:
-            by_name[item.name] = _slope(start, records, item)
+            by_name = {item.name: _slope(start, records, item)}
         for name, slope in by_name[item.name].items():
             here = slice(None) if item.file < 0 else records.file_of == item.file
             slopes[name][here, place] = slope[here]
@@ -122,29 +126,30 @@ def _slope(start: Setup, records: Records, item: Tolerated) -> dict[str, NDArray
     return found
 
 
-def visible(columns: NDArray[np.float64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return what the tolerances leave of columns: inner products of the answer are those the data can see.
-
-    ``columns`` has shape (n, m), ``directions`` (n, K) with unit prior, both in units of the noise; the answer has
-    shape (n + K, m). With D the directions its inner product is ``a' (1 + D D')^-1 b``.
-    """
+def gram_of(slopes: NDArray[np.float64], rows: NDArray[np.intp] | None = None) -> NDArray[np.float64]:
+    """Return the inner products of columns over some rows, block by block in double precision."""
     import numpy as np
 
-    k = directions.shape[1]
-    taken = np.linalg.solve(directions.T @ directions + np.eye(k), directions.T @ columns)
-    return np.concatenate([columns - directions @ taken, taken])
+    total = np.zeros((slopes.shape[1], slopes.shape[1]))
+    for block in in_blocks(len(slopes) if rows is None else len(rows)):
+        part = slopes[block if rows is None else rows[block]].astype(float)
+        total += part.T @ part
+    return total
 
 
-def directions_of(slopes: NDArray[np.float64], faintest: float = FAINTEST) -> NDArray[np.float64]:
+def directions_of(gram: NDArray[np.float64], rows: int, faintest: float = FAINTEST) -> NDArray[np.float64]:
     """Return the combinations of inputs that the data can see, shape (inputs, K), columns of unit length.
 
-    ``slopes`` has shape (n, inputs), in units of the noise. Kept are singular values above a hundredth of the noise
-    per row; with a prior of one standard deviation on every input, each direction has the same prior.
+    ``gram`` holds the inner products of the slopes over ``rows`` values, in units of the noise. Kept are singular
+    values above a hundredth of the noise per row; with a prior of one standard deviation on every input, each
+    direction has the same prior.
     """
     import numpy as np
 
-    if slopes.shape[1] == 0:
+    if len(gram) == 0:
         return np.zeros((0, 0))
-    values, vectors = np.linalg.eigh(slopes.T @ slopes)
-    kept = np.sqrt(np.maximum(values, 0) / max(len(slopes), 1)) > faintest
-    return np.ascontiguousarray(vectors[:, kept][:, ::-1])
+    values, vectors = np.linalg.eigh(gram)
+    kept = np.sqrt(np.maximum(values, 0) / max(rows, 1)) > faintest
+    vectors = vectors[:, kept][:, ::-1]
+    upright = np.sign(np.linspace(1, 2, len(vectors)) ** 2 @ vectors)  # eigenvectors have no sign of their own
+    return np.ascontiguousarray(vectors * np.where(upright == 0, 1.0, upright))

@@ -4,22 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import inf
-from typing import TYPE_CHECKING
 
-from truing.diagnosis.candidates import Candidate, Term, candidates_of, stacked, terms_of
-from truing.diagnosis.evidence import Column
+from truing.diagnosis.candidates import Candidate, Term, candidates_of, terms_of
+from truing.diagnosis.columns import Column, Design, Values, acting
 from truing.diagnosis.hypotheses import Piece, unbounded
-from truing.diagnosis.machine import Machine, directions_of, visible
+from truing.diagnosis.machine import Machine
 from truing.diagnosis.readings import followed_by
 from truing.diagnosis.shapes import Library, library_of
+from truing.diagnosis.sight import Sight
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-SAME_CURVE = 1e-4
-REPRODUCED = 0.98
 MANY_IN_PAIRS = 20
 FEW_IN_PAIRS = 6
 
@@ -45,15 +40,21 @@ class Problem:
     like: frozenset[tuple[int, int]]
     unexcited: tuple[str, ...]
 
+    @cached_property
+    def designs(self) -> Mapping[str, Design]:
+        """The columns by measured result."""
+        rows = len(self.machine.records)
+        return {name: Design(name, self.columns, rows) for name in self.machine.records.measured}
+
 
 def problem_of(machine: Machine, scales: Mapping[str, float]) -> Problem:
     """Lay out the search; ``scales`` holds a first estimate of the noise by result, SI."""
     every = candidates_of(machine)
-    variants = [terms_of(place, candidate, machine, scales) for place, candidate in enumerate(every)]
-    known = _Sight(machine, scales)
+    variants: list[Sequence[Term]] = [terms_of(at, candidate, machine, scales) for at, candidate in enumerate(every)]
+    library = library_of(machine.records, _registered_orders(every, variants), has_steps=_has_steps(every, variants))
+    known = Sight(machine, scales, variants, library)
     kept, same_as = _merged(every, variants, known)
     terms = [term for place in kept for term in variants[place]]
-    library = library_of(machine.records, _registered_orders(every, variants), has_steps=_has_steps(every, variants))
     made = _Columns()
     term_pieces = [made.term(place, term) for place, term in enumerate(terms)]
     input_pieces = made.inputs(machine, scales)
@@ -73,64 +74,39 @@ def problem_of(machine: Machine, scales: Mapping[str, float]) -> Problem:
         frozenset(),
         tuple(dict.fromkeys(candidate.name for candidate in every if candidate.name not in seen)),
     )
-    return replace(problem, like=_alike(problem, known))
-
-
-class _Sight:
-    """What the data can see of a curve once the tolerances have taken their part."""
-
-    def __init__(self, machine: Machine, scales: Mapping[str, float]) -> None:
-        self.scales = scales
-        slopes = stacked(machine.slopes, scales)
-        self.directions = slopes @ directions_of(slopes)
-
-    def of(self, columns: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the visible part of stacked columns, shape (n + K, m)."""
-        return visible(columns, self.directions)
-
-    def term(self, term: Term) -> NDArray[np.float64]:
-        """Return the visible part of the columns of a term."""
-        import numpy as np
-
-        return self.of(np.column_stack([stacked(curve, self.scales) for curve in term.curves]))
+    return replace(problem, like=known.reproduced(kept, shape_results))
 
 
 def _merged(
-    every: Sequence[Candidate], variants: Sequence[Sequence[Term]], known: _Sight
+    every: Sequence[Candidate], variants: list[Sequence[Term]], known: Sight
 ) -> tuple[list[int], dict[int, tuple[str, ...]]]:
     """Return the candidates that stay, and the names of those that are the same curve on this data.
 
-    Without this the prior mass of a curve with two names would be halved, and no verdict could be unique.
+    Without this the prior mass of a curve with two names would be halved, and no verdict could be unique. Of a
+    candidate with several whole numbers only the variant that is another's curve goes.
     """
-    import numpy as np
-
     order = sorted(
         (place for place in range(len(every)) if variants[place]), key=lambda place: every[place].weakest_first
     )
-    spaces: dict[int, NDArray[np.float64]] = {}
+    alone: list[int] = []
     same: dict[int, list[str]] = {}
     for place in order:
-        terms = variants[place]
-        if len(terms) > 1:
+        twins = [next((other for other in alone if known.is_same(own, other)), None) for own in known.terms[place]]
+        if len(twins) > 1:
             same[place] = []
-            continue
-        space = np.linalg.qr(known.term(terms[0]))[0]
-        twin = next((other for other, space_of in spaces.items() if _is_same(space, space_of)), None)
-        if twin is None:
-            spaces[place], same[place] = space, []
-        elif every[place].name != every[twin].name:
-            same[twin].append(every[place].name)
+            if any(shape.whole for shape in every[place].shapes):
+                for twin in twins:
+                    if twin is not None:
+                        same[twin].append(every[place].name)
+                left = [number for number, twin in enumerate(twins) if twin is None]
+                variants[place] = [variants[place][number] for number in left]
+                known.terms[place] = [known.terms[place][number] for number in left]
+        elif twins[0] is None:
+            alone.append(place)
+            same[place] = []
+        elif every[place].name != every[twins[0]].name:
+            same[twins[0]].append(every[place].name)
     return sorted(same), {place: tuple(dict.fromkeys(names)) for place, names in same.items()}
-
-
-def _is_same(first: NDArray[np.float64], second: NDArray[np.float64]) -> bool:
-    """Tell whether two column spaces coincide (sine squared of the largest angle below 1e-4)."""
-    import numpy as np
-
-    if first.shape[1] != second.shape[1]:
-        return False
-    cosine = np.linalg.svd(first.T @ second, compute_uv=False).min()
-    return bool(1 - cosine**2 < SAME_CURVE)
 
 
 def _registered_orders(every: Sequence[Candidate], variants: Sequence[Sequence[Term]]) -> dict[str, frozenset[int]]:
@@ -153,19 +129,16 @@ class _Columns:
     def __init__(self) -> None:
         self.columns: list[Column] = []
 
-    def add(self, parts: Mapping[str, NDArray[np.float64]], per: float) -> int:
+    def add(self, parts: Mapping[str, Values], per: float) -> int:
         """Return the place of a new column."""
         self.columns.append(Column(parts, per))
         return len(self.columns) - 1
 
     def term(self, place: int, term: Term) -> Piece:
         """Add the columns of one variant of a cause."""
-        import numpy as np
-
         columns = []
         for curve, per in zip(term.curves, term.per, strict=True):
-            parts = {name: np.nan_to_num(values) for name, values in curve.items() if np.any(values)}
-            columns.append(self.add(parts, per))
+            columns.append(self.add(acting(curve), per))
         return Piece("term", place, term.candidate, tuple(columns), term.size, term.low, term.high)
 
     def inputs(self, machine: Machine, scales: Mapping[str, float]) -> list[Piece]:
@@ -195,27 +168,6 @@ class _Columns:
                 pieces.append(Piece("shape", len(owners), len(owners), columns, size, *unbounded(columns)))
                 owners.append((place, group))
         return pieces, owners
-
-
-def _alike(problem: Problem, known: _Sight) -> frozenset[tuple[int, int]]:
-    """Return the pairs of a cause and a shape that reproduces it: the split between the two would be arbitrary."""
-    import numpy as np
-
-    found: set[tuple[int, int]] = set()
-    terms = [known.term(term) for term in problem.terms]
-    for owner, piece in enumerate(problem.shape_pieces):
-        columns = [problem.columns[place].parts for place in piece.columns]
-        names = list(known.scales)
-        rows = len(problem.machine.records)
-        filled = [{name: parts.get(name, np.zeros(rows)) for name in names} for parts in columns]
-        space = np.linalg.qr(
-            known.of(np.column_stack([stacked(parts, dict.fromkeys(names, 1.0)) for parts in filled]))
-        )[0]
-        for term, seen in zip(problem.terms, terms, strict=True):
-            covered = np.sum((space.T @ seen) ** 2, axis=0) / np.maximum(np.sum(seen**2, axis=0), 1e-300)
-            if covered.min() > REPRODUCED:
-                found.add((term.candidate, owner))
-    return frozenset(found)
 
 
 def terms_for_pairs(problem: Problem, favourites: frozenset[int] = frozenset(), *, sparse: bool = False) -> list[Piece]:

@@ -68,7 +68,7 @@ def batch_likelihood(case: Reduced, batch: Batch) -> Matrix:
             total -= left
             continue
         rows = case.rows[place]
-        left = np.maximum(left, FLOOR)
+        left = np.maximum(left, max(FLOOR, case.least[place]))
         total -= rows * np.log(left / rows)
         variance += left
     variance /= sum(case.rows)

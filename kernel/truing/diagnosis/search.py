@@ -17,7 +17,7 @@ from truing.diagnosis.evidence import (
     starts_of,
 )
 from truing.diagnosis.hypotheses import NOTHING, Batch, Hypothesis, batches_of
-from truing.diagnosis.machine import Machine, directions_of
+from truing.diagnosis.machine import Machine, directions_of, gram_of
 from truing.diagnosis.noise import (
     SETTINGS,
     Spread,
@@ -134,8 +134,9 @@ def evidence_of(problem: Problem, noise: NoiseModel, rows: NDArray[np.bool_]) ->
 
     machine = problem.machine
     places = {name: np.flatnonzero(rows & np.isfinite(noise.residuals[name])) for name in noise.scales}
-    slopes = np.concatenate([machine.slopes[name][places[name]] / noise.scales[name] for name in noise.scales])
-    directions = directions_of(slopes)
+    total = sum(len(here) for here in places.values())
+    gram = sum(gram_of(machine.slopes[name], here) / noise.scales[name] ** 2 for name, here in places.items())
+    directions = directions_of(np.asarray(gram), total)
     channels = []
     for name, scale in noise.scales.items():
         here = places[name]
@@ -147,8 +148,9 @@ def evidence_of(problem: Problem, noise: NoiseModel, rows: NDArray[np.bool_]) ->
                 starts_of(_pieces(machine, rows), here),
                 noise.weights[name][here],
                 noise.residuals[name][here] / scale,
-                machine.slopes[name][here] @ directions / scale,
-                problem.columns,
+                machine.slopes[name],
+                directions,
+                problem.designs[name],
             )
         )
     products = tuple(tuple(products_of(channel)) for channel in channels)
