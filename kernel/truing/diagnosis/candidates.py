@@ -148,7 +148,7 @@ def terms_of(place: int, candidate: Candidate, machine: Machine, scales: Mapping
         return []
     found: list[Term] = []
     for shape in shapes_of(candidate, machine):
-        found += _variants(place, candidate, machine, shape, scales)
+        found += variants_of(place, candidate, machine, shape, scales)
     return _refined(found, candidate, machine, scales)
 
 
@@ -174,7 +174,7 @@ def _refined(terms: list[Term], candidate: Candidate, machine: Machine, scales: 
             continue
         a, b = terms[place].shape[name], terms[place + 1].shape[name]
         between = (a * b) ** 0.5 if positive else (a + b) / 2
-        new = _variants(terms[place].candidate, candidate, machine, {name: between}, scales)
+        new = variants_of(terms[place].candidate, candidate, machine, {name: between}, scales)
         if not new:
             place += 1
         terms = [*terms[: place + 1], *new[:1], *terms[place + 1 :]]
@@ -231,7 +231,7 @@ def _cosine(first: Term, second: Term, scales: Mapping[str, float]) -> float:
     return float(np.linalg.svd(np.linalg.qr(a)[0].T @ np.linalg.qr(b)[0], compute_uv=False).min())
 
 
-def _variants(
+def variants_of(
     place: int, candidate: Candidate, machine: Machine, shape: Mapping[str, float], scales: Mapping[str, float]
 ) -> list[Term]:
     """Return the terms of one shape: one, or two where an amplitude acts otherwise upward than downward."""

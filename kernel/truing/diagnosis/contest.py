@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.hypotheses import NOTHING, Hypothesis, Piece, mixed, off_inputs, pairs, shapes, singles
-from truing.diagnosis.problem import Problem, near, terms_for_pairs
+from truing.diagnosis.problem import Problem, near, sharpened, terms_for_pairs
 from truing.diagnosis.search import (
     Evidence,
     Found,
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 ROUNDS = 3
 FAVOURITES = 8
 REFINED = 4
+SHARPENED = 3
 OUTSIDE = 3.0
 """An input is off its band beyond this many standard deviations of its tolerance."""
 SURELY = 3.0
@@ -59,14 +60,21 @@ def contest(
     *,
     rounds: int = ROUNDS,
     settings: Sequence[tuple[int, ...]] = (),
+    sharpen: bool = True,
 ) -> Contest:
-    """Search and learn the noise in turn, ``rounds`` times; ``settings`` are the noise filters to try, if known."""
+    """Search and learn the noise in turn, ``rounds`` times; ``settings`` are the noise filters to try, if known.
+
+    With ``sharpen`` the grids of shapes become finer about the best explanations from round to round.
+    """
     raw = dict(noise.residuals)
     for left in range(rounds - 1, -1, -1):
         evidence = evidence_of(problem, noise, rows)
         found, tried = _all_scored(problem, evidence, settings)
         if left:
             best = found.best()
+            if sharpen:
+                tops = [found.hypotheses[place] for place in found.ranked()[:SHARPENED]]
+                problem = sharpened(problem, [piece for hypothesis in tops for piece in hypothesis.pieces])
             noise = learned(problem, evidence, solve(evidence, found.hypotheses[best], found.setting[best]), raw, noise)
     return Contest(problem, noise, evidence, found, tuple(tried))
 

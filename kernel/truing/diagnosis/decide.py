@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-ANY_LEVEL = 0.02
+ANY_LEVEL = 0.025
 SECOND_LEVEL = 0.05
 CLOSE = 6.0
 """Explanations less far behind in score are not excluded (a Bayes factor of about 20)."""
@@ -43,6 +43,11 @@ class Decision:
 
 def _one_term(hypothesis: Hypothesis) -> bool:
     return hypothesis.kind in {"one", "shape", "input"}
+
+
+def best_alone(contest: Contest) -> int:
+    """Return the place of the best explanation with a single cause or shape, -1 where there is none."""
+    return contest.found.best(_one_term)
 
 
 def without_needless_inputs(contest: Contest) -> Contest:

@@ -340,6 +340,13 @@ def _amounts(full: Contest, settings: Mapping[str, Matrix], place: int) -> dict[
     }
 
 
+def _followed(full: Contest, names: Sequence[str]) -> set[str]:
+    """Return the conditions and inputs that the effects of two explanations follow."""
+    known = full.problem.machine.start.model.known_effects
+    effects = [known[each] for name in names for each in name.split(" + ") if each in known]
+    return {key for effect in effects for key in (*(need.name for need in effect.needs), *effect.reads)}
+
+
 def _why(full: Contest, settings: Mapping[str, Matrix], place: int, duel: _Duel) -> str:
     """Say what makes a setting worth measuring: where it leaves the record, and how far the two then differ."""
     import numpy as np
@@ -354,7 +361,10 @@ def _why(full: Contest, settings: Mapping[str, Matrix], place: int, duel: _Duel)
     unit = readable_unit(units.print_unit(name), channel.scale)
     words = f"{duel.names[0]} and {duel.names[1]} there differ by {in_unit(gaps[name] * channel.scale, unit)} in {name}"
     farthest, reach = "", 0.0
+    asked = _followed(full, duel.names)
     for key, values in settings.items():
+        if asked and key not in asked:
+            continue
         item = full.problem.machine.records.covariates[key]
         low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
         out = max(low - values[place], values[place] - high) / max(high - low, 1e-300)

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.contest import Contest, contest
-from truing.diagnosis.decide import Decision, alternatives, decide, without_needless_inputs
+from truing.diagnosis.decide import Decision, alternatives, best_alone, decide, without_needless_inputs
 from truing.diagnosis.design import next_points
 from truing.diagnosis.findings import wrong_of
-from truing.diagnosis.fit import Fit, fit, input_values
+from truing.diagnosis.fit import Fit, fit, input_values, may_be_zero
 from truing.diagnosis.gain import Nested, nested, sign_flip_p
 from truing.diagnosis.machine import machine_of
 from truing.diagnosis.naming import alternative_of, causes_of, extended_setup, remainder_of
@@ -52,12 +52,24 @@ def _diagnose(setup: Setup, records: Records, step: _Steps) -> Diagnosis:
     step.done("search")
     decision = decide(full, seed=setup.seed)
     step.done("significance")
-    best = fit(full, decision.winner)
+    best, decision = _certain(full, decision)
     step.done("fit")
+    problem = full.problem
     answer = _answer(problem, full, decision, best, raw)
     step.done("gain")
     extended = None if answer.extended is None else replace(answer.extended, inputs=setup.inputs)
     return replace(answer, setup=setup, extended=extended)
+
+
+def _certain(full: Contest, decision: Decision) -> tuple[Fit, Decision]:
+    """Fit the winner; of a pair in which one cause may as well be zero only the best single explanation is kept."""
+    best = fit(full, decision.winner)
+    pieces = best.hypothesis.pieces
+    doubtful = [place for place, piece in enumerate(pieces) if piece.kind == "term" and may_be_zero(best, place)]
+    alone = best_alone(full)
+    if len(pieces) < 2 or not doubtful or alone < 0:
+        return best, decision
+    return fit(full, alone), replace(decision, winner=alone)
 
 
 class _Steps:

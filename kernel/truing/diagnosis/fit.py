@@ -320,6 +320,13 @@ def interval(found: Fit, place: int) -> tuple[float, float]:
     return min(ends) * item.per, max(ends) * item.per
 
 
+def may_be_zero(found: Fit, piece: int) -> bool:
+    """Tell whether the 95 % interval of every amplitude of a cause contains zero."""
+    own = [place for place, item in enumerate(found.parameters) if item.piece == piece and not item.is_shape]
+    ends = [interval(found, place) for place in own]
+    return all(low <= 0 <= high for low, high in ends)
+
+
 def si_covariance(found: Fit, places: Sequence[int]) -> tuple[tuple[float, ...], ...]:
     """Return the covariance of some parameters in SI."""
     import numpy as np

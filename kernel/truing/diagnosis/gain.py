@@ -88,7 +88,7 @@ def nested(full: Contest, winner: int, thresholds: Thresholds, raw: NoiseModel) 
     folds = min(FOLDS, int(block_of.max()) + 1)
     for fold in range(folds):
         test = usable & (block_of % folds == fold)
-        again = contest(full.problem, raw, usable & ~test, rounds=ROUNDS, settings=full.settings)
+        again = contest(full.problem, raw, usable & ~test, rounds=ROUNDS, settings=full.settings, sharpen=False)
         again = without_needless_inputs(again)
         place = decide_again(again, thresholds)
         same += again.found.hypotheses[place].key == key

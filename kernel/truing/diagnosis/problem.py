@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
 
-from truing.diagnosis.candidates import Candidate, Term, candidates_of, terms_of
+from truing.diagnosis.candidates import Candidate, Term, candidates_of, terms_of, variants_of
 from truing.diagnosis.columns import Column, Design, Values, acting
 from truing.diagnosis.hypotheses import Piece, unbounded
 from truing.diagnosis.machine import Machine
@@ -16,6 +16,8 @@ from truing.diagnosis.shapes import Library, library_of
 from truing.diagnosis.sight import Sight
 
 MANY_IN_PAIRS = 20
+SHARES = (0.1, 0.25, 0.5, 0.75)
+FINEST = 1e-4
 FEW_IN_PAIRS = 6
 
 
@@ -28,6 +30,7 @@ class Problem:
     """
 
     machine: Machine
+    scales: Mapping[str, float]
     candidates: tuple[Candidate, ...]
     terms: tuple[Term, ...]
     library: Library
@@ -62,6 +65,7 @@ def problem_of(machine: Machine, scales: Mapping[str, float]) -> Problem:
     seen = {every[place].name for place in range(len(every)) if variants[place]}
     problem = Problem(
         machine,
+        scales,
         tuple(every),
         tuple(terms),
         library,
@@ -126,8 +130,8 @@ def _has_steps(every: Sequence[Candidate], variants: Sequence[Sequence[Term]]) -
 class _Columns:
     """Collects the columns of the search and the pieces that are made of them."""
 
-    def __init__(self) -> None:
-        self.columns: list[Column] = []
+    def __init__(self, columns: Sequence[Column] = ()) -> None:
+        self.columns: list[Column] = list(columns)
 
     def add(self, parts: Mapping[str, Values], per: float) -> int:
         """Return the place of a new column."""
@@ -202,4 +206,36 @@ def _by_owner(problem: Problem) -> dict[int, list[Piece]]:
     found: dict[int, list[Piece]] = {}
     for piece in problem.term_pieces:
         found.setdefault(piece.owner, []).append(piece)
+    for pieces in found.values():
+        pieces.sort(key=lambda piece: tuple(problem.terms[piece.place].shape.values()))
     return found
+
+
+def sharpened(problem: Problem, pieces: Sequence[Piece]) -> Problem:
+    """Return the problem with further values of a shape on both sides of those that fit best.
+
+    A grid is as fine as a moderate effect asks for; of a large one it leaves a residual that a second cause or a
+    wander of the noise would then explain.
+    """
+    made = _Columns(problem.columns)
+    terms, term_pieces = list(problem.terms), list(problem.term_pieces)
+    for piece in {(item.owner, item.place): item for item in pieces if item.kind == "term"}.values():
+        candidate = problem.candidates[piece.owner]
+        if len(candidate.shapes) != 1 or candidate.shapes[0].whole or candidate.shapes[0].along:
+            continue
+        for shape in _between(problem, piece, candidate.shapes[0].name):
+            for term in variants_of(piece.owner, candidate, problem.machine, shape, problem.scales):
+                terms.append(term)
+                term_pieces.append(made.term(len(terms) - 1, term))
+    return replace(problem, terms=tuple(terms), term_pieces=tuple(term_pieces), columns=tuple(made.columns))
+
+
+def _between(problem: Problem, piece: Piece, name: str) -> list[dict[str, float]]:
+    """Return values between a shape and its two neighbours on the grid."""
+    grid = sorted({problem.terms[each.place].shape[name] for each in _by_owner(problem)[piece.owner]})
+    at = grid.index(problem.terms[piece.place].shape[name])
+    values = []
+    for near_by in (grid[at - 1] if at else None, grid[at + 1] if at + 1 < len(grid) else None):
+        if near_by is not None and abs(near_by - grid[at]) > FINEST * abs(grid[at]):
+            values += [grid[at] + (near_by - grid[at]) * share for share in SHARES]
+    return [{name: value} for value in values]

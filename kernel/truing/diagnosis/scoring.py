@@ -86,7 +86,7 @@ def _is_possible(case: Reduced, batch: Batch, solved: Matrix, variance: Matrix) 
         low, high = batch.low[bounded, column, None], batch.high[bounded, column, None]
         value = solved[bounded, column]
         curvature = case.curvature[batch.index[bounded, column], None]
-        slack = BOUND_SLACK * np.sqrt(variance[bounded] / curvature)
+        slack = BOUND_SLACK * np.sqrt(variance[bounded]) / np.sqrt(curvature)
         inside = (value >= np.where(low == 0, 0.0, low - slack)) & (value <= np.where(high == 0, 0.0, high + slack))
         possible[bounded] &= inside
     return possible
