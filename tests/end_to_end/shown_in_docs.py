@@ -9,7 +9,7 @@ Marks stand in an HTML comment right above a fenced block:
 
 In a ``console`` block every line that begins with ``$`` is a command; what follows is compared with what it prints.
 A line ``...`` stands for any lines, ``...`` within a line for any text. ``python tests/end_to_end/shown_in_docs.py
-PAGE...`` writes the present output into pages whose blocks do not match; where a page shows a part, the lines most
+[PAGE...]`` writes the present output into pages (all, where none is named) whose blocks do not match; where a page shows a part, the lines most
 like those shown.
 """
 
@@ -267,6 +267,7 @@ def rewrite(page: Path, desk: Desk) -> int:
 if __name__ == "__main__":
     import tempfile
 
-    for argument in sys.argv[1:]:
+    every = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    for argument in map(Path, sys.argv[1:] or every):
         with tempfile.TemporaryDirectory() as name:
-            print(argument, rewrite(Path(argument).resolve(), desk_in(Path(name))))
+            print(argument, rewrite(argument.resolve(), desk_in(Path(name))))
