@@ -270,13 +270,10 @@ def reduced(
     uc = [matrix[1 : 1 + k, 1 + k :] for matrix in matrices]
     cc = [matrix[1 + k :, 1 + k :] for matrix in matrices]
     if replicates is None:
-        ub = [matrix[1 : 1 + k, :1] for matrix in matrices]
-        cb = [matrix[1 + k :, :1] for matrix in matrices]
-        own = [matrix[:1, 0] for matrix in matrices]
-    else:
-        ub = [item.with_all[:k] for item in replicates]
-        cb = [item.with_all[k:] for item in replicates]
-        own = [item.own for item in replicates]
+        replicates = [Replicates(matrix[1:, :1], matrix[:1, 0]) for matrix in matrices]
+    ub = [item.with_all[:k] for item in replicates]
+    cb = [item.with_all[k:] for item in replicates]
+    own = [item.own for item in replicates]
     constant, least = sum(item.constant for item in products), tuple(item.least for item in products)
     if k == 0:
         nothing = np.zeros_like(cc[0]), np.zeros_like(cb[0]), np.zeros_like(own[0])

@@ -63,7 +63,7 @@ def _wrong(full: Contest, best: Fit, null: Null, place: int, units: Mapping[str,
         *_structure(full, null, place, unit),
         *_of_noise(full, best, place),
     ]
-    noise = _noise(full, best, after, place, floor, unit)
+    noise = _noise(full, best, after, place, floor=floor, unit=unit)
     if noise.outliers:
         text = f"{len(noise.outliers)} suspected outliers, beyond four standard deviations of the noise"
         found.append(
@@ -242,7 +242,7 @@ def _of_noise(full: Contest, best: Fit, place: int) -> Iterator[Finding]:
         yield Finding("autocorrelation", "", None, words)
 
 
-def _noise(full: Contest, best: Fit, after: Matrix, place: int, floor: float, unit: str) -> Noise:
+def _noise(full: Contest, best: Fit, after: Matrix, place: int, *, floor: float, unit: str) -> Noise:
     """Describe the noise of one result, with the rows that lie beyond four standard deviations of it."""
     import numpy as np
 

@@ -69,7 +69,9 @@ class _Maker:
             self.bases.append(Basis(expression, values))
         return self.places[expression]
 
-    def add(self, kind: Kind, on: Sequence[str], columns: Sequence[int], detail: float = 0.0, extra: int = 0) -> None:
+    def add(
+        self, kind: Kind, on: Sequence[str], columns: Sequence[int], *, detail: float = 0.0, extra: int = 0
+    ) -> None:
         """Add a shape of those columns that are not combinations of the ones before."""
         kept = self._independent(columns)
         shape = Shape(kind, tuple(on), tuple(kept), detail, extra)
