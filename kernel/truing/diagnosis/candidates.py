@@ -12,6 +12,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.sources import Effect, Unknown
+from truing.diagnosis.columns import stored
 from truing.diagnosis.machine import Machine, predict
 from truing.diagnosis.readings import gauged, reading_curve
 from truing.setup import SwitchedOn
@@ -346,7 +347,7 @@ def _term(
     return [
         Term(
             candidate=place,
-            curves=tuple(column.curve for column, _ in kept),
+            curves=tuple({name: stored(values) for name, values in column.curve.items()} for column, _ in kept),
             unknowns=tuple(column.unknown for column, _ in kept),
             files=tuple(column.file for column, _ in kept),
             per=tuple(1 / size for _, size in kept),

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 MANY = 200_000
 """More rows than this are stored in single precision."""
+FEW = 20_000
+"""Up to so many rows a column that could be made anew is kept."""
 HELD = 4_000_000
 """Columns of fewer values than this are made once and kept."""
 BLOCK = 8192
@@ -50,6 +52,11 @@ class Made:
 Values: TypeAlias = "Matrix | Made"
 
 
+def when_asked(of: Callable[[Rows], Matrix], size: int) -> Values:
+    """Return values that follow from others: at once where they are few, else when a block of rows asks for them."""
+    return of(slice(None)) if size <= FEW else Made(of, size)
+
+
 @dataclass(frozen=True)
 class Column:
     """One column of the search: parts by measured result, shape (n,) over the rows of all records, SI."""
@@ -65,9 +72,11 @@ def stored(values: Matrix) -> Matrix:
     """
     import numpy as np
 
+    if not np.any(values):
+        return np.broadcast_to(0.0, np.shape(values))
     if not np.isfinite(values).all():
         values = np.nan_to_num(values)
-    if len(values) <= MANY or values.strides == (0,):
+    if len(values) <= MANY:
         return values
     kept: Any = values.astype(np.float32)
     if bool(((kept == 0) | (kept == 1)).all()):

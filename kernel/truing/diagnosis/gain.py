@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from math import inf, log, pi, sqrt
 from typing import TYPE_CHECKING
 
+from truing.diagnosis.columns import times
 from truing.diagnosis.contest import Contest, contest
 from truing.diagnosis.decide import Thresholds, decide_again, without_needless_inputs
 from truing.diagnosis.noise import SETTINGS, Setting
@@ -61,13 +62,11 @@ def blocks_of(full: Contest, setting: tuple[int, ...]) -> NDArray[np.intp]:
     runs = full.problem.machine.records.run_of
     reach = max(_correlation_rows(SETTINGS[place]) for place in setting)
     length = int(max(SHORTEST_BLOCK, len(runs) // BLOCKS, min(3 * reach, len(runs) // (2 * FOLDS))))
-    found = np.zeros(len(runs), dtype=np.intp)
-    number = -1
-    for run in np.unique(runs):
-        rows = np.flatnonzero(runs == run)
-        found[rows] = number + 1 + np.arange(len(rows)) // length
-        number = int(found[rows[-1]])
-    return found
+    first = np.flatnonzero(np.append(True, runs[1:] != runs[:-1]))
+    sizes = np.diff(np.append(first, len(runs)))
+    blocks = -(-sizes // length)
+    within = (np.arange(len(runs)) - np.repeat(first, sizes)) // length
+    return np.asarray(np.repeat(np.cumsum(blocks) - blocks, sizes) + within, dtype=np.intp)
 
 
 def _correlation_rows(setting: Setting) -> float:
@@ -137,7 +136,7 @@ def linear_prediction(again: Contest, solution: Solution, name: str) -> Matrix:
 
     machine = again.problem.machine
     u = solution.directions
-    made = machine.slopes[name] @ (again.evidence.directions @ u) if len(u) else np.zeros(len(machine.records))
+    made = times(machine.slopes[name], again.evidence.directions @ u) if len(u) else np.zeros(len(machine.records))
     for column, value in zip(solution.hypothesis.columns, solution.coefficients, strict=True):
         item = again.problem.columns[column]
         if name in item.parts:

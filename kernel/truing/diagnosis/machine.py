@@ -7,7 +7,7 @@ Collinear inputs are carried as few directions, each with unit prior.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -20,8 +20,12 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from truing.measurements import RowsFile
+
 Predicted = Mapping[str, "NDArray[np.float64]"]
 STEP = 0.5
+AT_ONCE = 65_536
+"""So many rows are one call of the model."""
 FAINTEST = 0.01
 
 
@@ -63,7 +67,21 @@ class Machine:
 
 def predict(setup: Setup, records: Records) -> Predicted:
     """Return what the gauge would show of every measured result, SI, shape (n,)."""
-    return read_by_gauge(setup, records.rows, wanted=tuple(records.measured)).results
+    wanted, rows = tuple(records.measured), records.rows
+    if len(records) <= AT_ONCE or rows.series:
+        return read_by_gauge(setup, rows, wanted=wanted).results
+    import numpy as np
+
+    blocks = [slice(begin, begin + AT_ONCE) for begin in range(0, len(records), AT_ONCE)]
+    parts = [read_by_gauge(setup, _part(rows, block), wanted=wanted).results for block in blocks]
+    return {name: np.concatenate([part[name] for part in parts]) for name in wanted}
+
+
+def _part(rows: RowsFile, block: slice) -> RowsFile:
+    """Return some rows of a file without series."""
+    columns = {name: values[block] for name, values in rows.columns.items()}
+    axes = {name: values[block] for name, values in rows.axes.items()}
+    return replace(rows, columns=columns, axes=axes, lines=rows.lines[block], runs=rows.runs[block])
 
 
 def tolerated_inputs(setup: Setup, records: Records) -> list[Tolerated]:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 TAILS = {3.0: 1.9, 4.0: 2.1, 6.0: 2.5, 10.0: 3.0, 30.0: 4.5, inf: 4.5}
 """Degrees of freedom of Student's t, and where innovations are clipped, in standard deviations."""
 SMALL = 0.05
+AT_ONCE = 16_384
 LARGEST_EXPONENT = 2.5
 SPREAD_LEVEL = 0.002
 
@@ -143,16 +144,20 @@ def tails_of(innovations: NDArray[np.float64]) -> Tails:
 
     scale = robust_sd(innovations) or float(np.std(innovations)) or 1.0
     u = innovations / scale
-    factors = np.exp(np.linspace(-0.6, 0.6, 25))[:, None]
+    factors = np.exp(np.linspace(-0.6, 0.6, 25))
+    totals = np.zeros((len(TAILS), len(factors)))
+    for begin in range(0, len(u), AT_ONCE):
+        z2 = (u[begin : begin + AT_ONCE] / factors[:, None]) ** 2
+        for place, freedom in enumerate(TAILS):
+            if freedom == inf:
+                logs = -0.5 * z2 - 0.5 * np.log(2 * np.pi)
+            else:
+                norm = gammaln((freedom + 1) / 2) - gammaln(freedom / 2) - 0.5 * np.log(freedom * np.pi)
+                logs = norm - (freedom + 1) / 2 * np.log1p(z2 / freedom)
+            totals[place] += logs.sum(axis=1)
     best, chosen = -inf, inf
-    for freedom in TAILS:
-        z2 = (u / factors) ** 2
-        if freedom == inf:
-            logs = -0.5 * z2 - 0.5 * np.log(2 * np.pi)
-        else:
-            norm = gammaln((freedom + 1) / 2) - gammaln(freedom / 2) - 0.5 * np.log(freedom * np.pi)
-            logs = norm - (freedom + 1) / 2 * np.log1p(z2 / freedom)
-        total = float(np.max(logs.sum(axis=1) - len(u) * np.log(factors[:, 0])))
+    for freedom, sums in zip(TAILS, totals, strict=True):
+        total = float(np.max(sums - len(u) * np.log(factors)))
         if total > best + 1e-9:
             best, chosen = total, freedom
     limit = TAILS[chosen]

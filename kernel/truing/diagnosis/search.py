@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import TYPE_CHECKING
 
+from truing.diagnosis.columns import in_blocks
 from truing.diagnosis.evidence import (
     Channel,
     Products,
@@ -340,24 +341,34 @@ def first_noise(machine: Machine) -> NoiseModel:
 
     raw = residuals_of(machine)
     scales = {}
-    covariates = [item for item in machine.records.covariates.values() if not item.is_constant]
-    powers = [standardised(item.values) ** power for item in covariates for power in (1, 2)]
-    columns = np.column_stack([np.ones(len(machine.records)), *powers])
+    drivers = [standardised(item.values) for item in machine.records.covariates.values() if not item.is_constant]
     for name, values in raw.items():
-        here = np.isfinite(values) & ~machine.records.held_out
-        design = np.column_stack([machine.slopes[name][here], columns[here]])
-        size = np.sqrt(np.mean(design**2, axis=0))
-        design = design[:, size > 0] / size[size > 0]
-        left, singular, _ = np.linalg.svd(design, full_matrices=False)
-        left = left[:, singular > 1e-6 * singular[0]] if len(singular) else left
-        left = left[:, : max(1, int(here.sum()) // 3)]
-        rest = values[here] - left @ (left.T @ values[here])
-        sd = float(np.sqrt(rest @ rest / max(int(here.sum()) - left.shape[1], 1)))
+        here = np.flatnonzero(np.isfinite(values) & ~machine.records.held_out)
+        triangle = np.zeros((0, machine.slopes[name].shape[1] + 2 * len(drivers) + 2))
+        for block in in_blocks(len(here)):
+            rows = here[block]
+            powers = [driver[rows] ** power for driver in drivers for power in (1, 2)]
+            made = np.column_stack([machine.slopes[name][rows], np.ones(len(rows)), *powers, values[rows]])
+            triangle = np.asarray(np.linalg.qr(np.concatenate([triangle, made]), mode="r"))
+        sd = _unexplained(triangle, len(here))
         floor = SMALLEST_SHARE * float(np.sqrt(np.mean(values[here] ** 2)))
         scales[name] = max(sd, floor, 1e-300)
     given = {name: _stated(machine, name) for name in raw}
     nothing = {name: Tails(inf, 4.5, 0.0) for name in raw}
     return NoiseModel(given, scales, given, raw, {name: Spread() for name in raw}, nothing)
+
+
+def _unexplained(triangle: Matrix, rows: int) -> float:
+    """Return the standard deviation that columns leave of the last one, of the triangle of their QR decomposition."""
+    import numpy as np
+
+    size = np.sqrt(np.sum(triangle[:, :-1] ** 2, axis=0))
+    design = triangle[:, :-1][:, size > 0] / size[size > 0]
+    left, singular, _ = np.linalg.svd(design, full_matrices=False)
+    left = left[:, singular > 1e-6 * singular[0]] if len(singular) else left
+    left = left[:, : max(1, rows // 3)]
+    rest = triangle[:, -1] - left @ (left.T @ triangle[:, -1])
+    return float(np.sqrt(rest @ rest / max(rows - left.shape[1], 1)))
 
 
 def _stated(machine: Machine, name: str) -> Matrix:

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import combinations
 from math import pi
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
+from truing.diagnosis.columns import Values, when_asked
 from truing.diagnosis.records import Covariate, Records
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from truing.diagnosis.columns import Rows
+
+    Matrix = NDArray[np.float64]
+    Of: TypeAlias = Callable[[Rows], Matrix]
 
 Kind = Literal["trend", "product", "order", "cycle", "step"]
 DEGREE = 4
@@ -27,7 +34,7 @@ class Basis:
     """One column of a shape: how to compute it from covariates in SI, as a Python expression too."""
 
     expression: str
-    values: NDArray[np.float64]
+    values: Values
 
 
 @dataclass(frozen=True)
@@ -55,18 +62,19 @@ class Library:
 
 
 class _Maker:
-    """Collects columns, each once."""
+    """Collects columns over ``rows`` rows, each once."""
 
-    def __init__(self) -> None:
+    def __init__(self, rows: int) -> None:
+        self.rows = rows
         self.bases: list[Basis] = []
         self.places: dict[str, int] = {}
         self.shapes: list[Shape] = []
 
-    def column(self, expression: str, values: NDArray[np.float64]) -> int:
-        """Return the place of a column, adding it where it is new."""
+    def column(self, expression: str, of: Of) -> int:
+        """Return the place of a column, adding it where it is new; ``of`` makes its values at some rows."""
         if expression not in self.places:
             self.places[expression] = len(self.bases)
-            self.bases.append(Basis(expression, values))
+            self.bases.append(Basis(expression, when_asked(of, self.rows)))
         return self.places[expression]
 
     def add(
@@ -84,7 +92,7 @@ class _Maker:
         kept: list[int] = []
         basis: list[NDArray[np.float64]] = []
         for place in columns:
-            rest = self.bases[place].values
+            rest = self.bases[place].values[:]
             size = float(np.sqrt(rest @ rest))
             for _ in range(2):
                 for vector in basis:
@@ -102,10 +110,9 @@ def library_of(records: Records, registered: Mapping[str, frozenset[int]], *, ha
     ``registered`` holds the orders of each angle that an effect of the kernel looks for already; ``has_steps`` says
     that steps in time are looked for already.
     """
-    import numpy as np
-
-    maker = _Maker()
-    one = maker.column("1", np.ones(len(records)))
+    rows = len(records)
+    maker = _Maker(rows)
+    one = maker.column("1", partial(_ones, rows))
     moved = [item for item in records.covariates.values() if not item.is_constant]
     mains = {item.name: list(_main_terms(maker, item)) for item in moved}
     for item in moved:
@@ -125,14 +132,52 @@ def library_of(records: Records, registered: Mapping[str, frozenset[int]], *, ha
     return Library(tuple(maker.bases), tuple(maker.shapes))
 
 
-def _scaled(item: Covariate) -> tuple[str, NDArray[np.float64]]:
+def _ones(count: int, rows: Rows) -> Matrix:
+    import numpy as np
+
+    return np.asarray(np.broadcast_to(1.0, (count,))[rows])
+
+
+def _from_middle(values: Matrix, middle: float, half: float, rows: Rows) -> Matrix:
+    import numpy as np
+
+    here = values[rows]
+    return np.asarray((np.where(np.isfinite(here), here, middle) - middle) / half)
+
+
+def _known(values: Matrix, rows: Rows) -> Matrix:
+    import numpy as np
+
+    return np.nan_to_num(values[rows])
+
+
+def _power(of: Of, power: int, rows: Rows) -> Matrix:
+    return of(rows) ** power
+
+
+def _wave(name: Literal["sin", "cos"], factor: float, of: Of, rows: Rows) -> Matrix:
+    import numpy as np
+
+    return np.asarray((np.sin if name == "sin" else np.cos)(factor * of(rows)))
+
+
+def _product(left: Values, right: Values, rows: Rows) -> Matrix:
+    return left[rows] * right[rows]
+
+
+def _since(values: Matrix, place: float, rows: Rows) -> Matrix:
+    import numpy as np
+
+    return (np.nan_to_num(values[rows]) >= place).astype(float)
+
+
+def _scaled(item: Covariate) -> tuple[str, Of]:
     """Return a covariate brought to -1..1, missing values in the middle."""
     import numpy as np
 
     low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
     middle, half = (low + high) / 2, (high - low) / 2
-    values = (np.where(np.isfinite(item.values), item.values, middle) - middle) / half
-    return f"(({item.name} - {middle!r}) / {half!r})", values
+    return f"(({item.name} - {middle!r}) / {half!r})", partial(_from_middle, item.values, middle, half)
 
 
 def _turns(item: Covariate) -> bool:
@@ -144,17 +189,19 @@ def _turns(item: Covariate) -> bool:
 
 def _main_terms(maker: _Maker, item: Covariate) -> Iterator[int]:
     """Give the columns of one covariate: powers, or waves for an angle that goes round."""
-    import numpy as np
-
     if _turns(item):
-        angle = np.nan_to_num(item.values)
         for order in (1, 2):
-            yield maker.column(f"np.sin({order} * {item.name})", np.sin(order * angle))
-            yield maker.column(f"np.cos({order} * {item.name})", np.cos(order * angle))
+            yield from _waves(maker, order, item.name, partial(_known, item.values))
         return
     text, values = _scaled(item)
     for power in range(1, DEGREE + 1):
-        yield maker.column(text if power == 1 else f"{text}**{power}", values**power)
+        yield maker.column(text if power == 1 else f"{text}**{power}", partial(_power, values, power))
+
+
+def _waves(maker: _Maker, factor: float, text: str, of: Of) -> list[int]:
+    """Return the columns of a sine and a cosine."""
+    names: tuple[Literal["sin", "cos"], ...] = ("sin", "cos")
+    return [maker.column(f"np.{name}({factor!r} * {text})", partial(_wave, name, factor, of)) for name in names]
 
 
 def _products(
@@ -167,7 +214,7 @@ def _products(
     yield from pairs[1]
     for a, b in ((0, 0), (1, 0), (0, 1)):
         left, right = maker.bases[pairs[0][a]], maker.bases[pairs[1][b]]
-        yield maker.column(f"{left.expression} * {right.expression}", left.values * right.values)
+        yield maker.column(f"{left.expression} * {right.expression}", partial(_product, left.values, right.values))
 
 
 def _bilinear(first: Covariate, second: Covariate) -> tuple[int, ...]:
@@ -193,31 +240,20 @@ def highest_order(angle: NDArray[np.float64]) -> int:
 
 
 def _add_orders(maker: _Maker, item: Covariate, registered: frozenset[int]) -> None:
-    import numpy as np
-
-    angle = np.nan_to_num(item.values)
     limit = highest_order(item.values)
     lowest = 1 if not registered else ORDERS.start
     for order in range(lowest, ORDERS.stop):
         if order in registered or order > limit:
             continue
-        waves = [
-            maker.column(f"np.{name}({order} * {item.name})", wave(order * angle))
-            for name, wave in (("sin", np.sin), ("cos", np.cos))
-        ]
+        waves = _waves(maker, order, item.name, partial(_known, item.values))
         maker.add("order", [item.name], waves, detail=order, extra=1)
 
 
 def _add_cycles(maker: _Maker, item: Covariate) -> None:
     """Add waves of one and a half to twelve cycles per record."""
-    import numpy as np
-
     text, values = _scaled(item)
     for cycles in CYCLES:
-        waves = [
-            maker.column(f"np.{name}({cycles * pi!r} * {text})", wave(cycles * pi * values))
-            for name, wave in (("sin", np.sin), ("cos", np.cos))
-        ]
+        waves = _waves(maker, cycles * pi, text, values)
         maker.add("cycle", [item.name], waves, detail=cycles, extra=1)
 
 
@@ -228,5 +264,5 @@ def _add_steps(maker: _Maker, item: Covariate) -> None:
     values = np.nan_to_num(item.values)
     places = np.unique(np.quantile(values, np.linspace(0.02, 0.98, PLACES), method="lower"))
     for place in places[places > values.min()]:
-        step = maker.column(f"({item.name} >= {float(place)!r})", (values >= place).astype(float))
+        step = maker.column(f"({item.name} >= {float(place)!r})", partial(_since, item.values, float(place)))
         maker.add("step", [item.name], [step], detail=float(place), extra=1)

@@ -30,7 +30,6 @@ FIRST_DRAWS = 99
 HOPELESS = 12
 """So many simulated maxima above the measured one, of the first draws, settle that it is nothing."""
 LARGEST_RHO = 0.985
-BATCH_VALUES = 4_000_000
 
 
 @dataclass(frozen=True)
@@ -95,10 +94,9 @@ def null_of(
     generator = np.random.Generator(np.random.SFC64(seed))
     simulations = [simulation_of(contest, place, null, cleaned) for place in range(len(contest.evidence.channels))]
     maxima: list[Matrix] = []
-    per_batch = int(max(1, min(DRAWS, BATCH_VALUES // max(contest.evidence.rows, 1))))
     while (done := sum(len(each) for each in maxima)) < DRAWS:
         goal = FIRST_DRAWS if done < FIRST_DRAWS else DRAWS
-        count = min(per_batch, goal - done)
+        count = goal - done
         maxima.append(_maxima(contest, simulations, simple, rich, count=count, generator=generator))
         above = sum(int((each >= excess).sum()) for each in maxima)
         if done + count >= FIRST_DRAWS and above >= HOPELESS:
