@@ -8,9 +8,10 @@ Marks stand in an HTML comment right above a fenced block:
 - ``<!-- not run -->``: the block is not run.
 
 In a ``console`` block every line that begins with ``$`` is a command; what follows is compared with what it prints.
-A line ``...`` stands for any lines, ``...`` within a line for any text. ``python tests/end_to_end/shown_in_docs.py
-[PAGE...]`` writes the present output into pages (all, where none is named) whose blocks do not match; where a page shows a part, the lines most
-like those shown.
+A line ``...`` stands for any lines, ``...`` within a line for any text.
+
+``python tests/end_to_end/shown_in_docs.py [PAGE...]`` writes the present output into pages (all, where none is named)
+whose blocks do not match; where a page shows a part, the lines most like those shown.
 """
 
 from __future__ import annotations
