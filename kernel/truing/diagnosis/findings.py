@@ -60,7 +60,7 @@ def _wrong(full: Contest, best: Fit, null: Null, place: int, units: Mapping[str,
     share = max(0.0, 1 - floor**2 / rmse**2) if rmse > 0 and best.hypothesis.pieces else 0.0
     found = [
         *_bias(full, place, raw[rows], unit),
-        *_structure(full, null, place, unit),
+        *_with_named(full, best, null, place, list(_structure(full, null, place, unit))),
         *_of_noise(full, best, place),
     ]
     noise = _noise(full, best, after, place, floor=floor, unit=unit)
@@ -112,6 +112,22 @@ def _structure(full: Contest, null: Null, place: int, unit: str) -> Iterator[Fin
         kept += 1
         if kept <= LARGEST_COUNT:
             yield _finding(full, number, null.p_of(excess), name, unit)
+
+
+def _with_named(full: Contest, best: Fit, null: Null, place: int, found: list[Finding]) -> list[Finding]:
+    """Add what the named causes follow, where no shape has shown it: a cause is a sharper eye than any shape."""
+    name, problem = full.evidence.channels[place].name, full.problem
+    excess = float(full.found.score[full.found.hypotheses.index(best.hypothesis)] - full.found.score[0])
+    for piece in best.hypothesis.pieces:
+        if piece.kind != "term" or not any(name in problem.columns[column].parts for column in piece.columns):
+            continue
+        candidate = problem.candidates[piece.owner]
+        follows = [*(need.name for need in candidate.effect.needs), *candidate.effect.reads]
+        for covariate in follows:
+            if not any(covariate in finding.covariate.split(" and ") for finding in found):
+                text = f"follows {covariate}, as {candidate.name} would"
+                found.append(Finding("trend", covariate, null.p_of(excess), text))
+    return found
 
 
 def _constant_score(full: Contest, name: str) -> float:

@@ -76,9 +76,15 @@ def problem_of(machine: Machine, scales: Mapping[str, float]) -> Problem:
         tuple(shape_results),
         same_as,
         frozenset(),
-        tuple(dict.fromkeys(candidate.name for candidate in every if candidate.name not in seen)),
+        tuple(dict.fromkeys(item.name for item in every if item.name not in seen and _could_move(item, machine))),
     )
     return replace(problem, like=known.reproduced(kept, shape_results))
+
+
+def _could_move(candidate: Candidate, machine: Machine) -> bool:
+    """Tell whether it is worth saying that a candidate was not excited: not of a fixed input that is no column."""
+    name = followed_by(candidate) if candidate.is_kernel else ""
+    return not name or name in machine.records.covariates
 
 
 def _merged(
