@@ -194,7 +194,6 @@ def test_a_record_along_an_axis_with_a_series_as_input(desk: Path) -> None:
 # Effects that strangers declare
 
 
-@pytest.mark.xfail(strict=True, reason="a shape between two values of its grid is taken for autocorrelated noise")
 def test_a_strangers_own_effect_is_named_with_its_shape(desk: Path) -> None:
     """Running-in: 9 um in the first 1.4 km and Archard's law by hand; a drift or an offset would be the vaguer word."""
     rng = np.random.default_rng(4)
