@@ -175,20 +175,36 @@ def matches(shown: str, said: str) -> bool:
 
 
 def refreshed(shown: str, said: str) -> str:
-    """Return what a page should show: all of it, or in its order the lines most like those that it showed in part."""
+    """Return what a page should show: the parts between its lines ``...`` anew, shortened lines shortened again.
+
+    A part runs from the line most like its first to the one most like its last.
+    """
     lines = [line.rstrip() for line in said.strip("\n").splitlines()]
-    if "..." not in shown:
-        return "".join(line + "\n" for line in lines)
     found: list[str] = []
-    for line in shown.strip("\n").splitlines():
-        if "..." in line or not lines:
-            found.append(line)
+    for number, part in enumerate(re.split(r"^\.\.\.\n", shown.strip("\n") + "\n", flags=re.MULTILINE)):
+        kept = part.splitlines()
+        found += ["..."] if number else []
+        if not kept:
             continue
-        likeness = [difflib.SequenceMatcher(None, line, other, autojunk=False).ratio() for other in lines]
-        best = likeness.index(max(likeness))
-        found.append(lines[best])
-        lines = lines[best + 1 :]
+        first = _most_like(kept[0], lines) if number or "..." in shown else 0
+        last = first + _most_like(kept[-1], lines[first:]) if "..." in shown else len(lines) - 1
+        shortened = [line for line in kept if "..." in line]
+        found += [
+            next((short for short in shortened if matches(short, line)), line) for line in lines[first : last + 1]
+        ]
+        lines = lines[last + 1 :]
     return "".join(line + "\n" for line in found)
+
+
+def _most_like(line: str, others: list[str]) -> int:
+    """Return the place of the line that is most like one that may be shortened."""
+    if not others:
+        return 0
+    alike = [
+        2.0 if matches(line, other) else difflib.SequenceMatcher(None, line, other, autojunk=False).ratio()
+        for other in others
+    ]
+    return alike.index(max(alike))
 
 
 def grown(before: str, step: str) -> str:

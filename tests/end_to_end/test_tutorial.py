@@ -67,6 +67,8 @@ def test_output_is_compared_line_by_line(shown: str, said: str, same: bool) -> N
         ("...\nrate 1 mm\n...\n", "first\nrate 2 mm\nforce 3 N\n", "...\nrate 2 mm\n...\n"),
         ("rate 1 mm\n...\nrate 5 mm\n", "rate 2 mm\nforce 3 N\nrate 6 mm\n", "rate 2 mm\n...\nrate 6 mm\n"),
         ("took ... s\nrate 1 mm\n", "took 3 s\nrate 2 mm\n", "took ... s\nrate 2 mm\n"),
+        ("a 1\nb 1 ...\nz 1\n", "a 2\nb 1 long\nnew\nz 2\n", "a 2\nb 1 ...\nnew\nz 2\n"),
+        ("...\nend of it\n", "first\nend of it all\n", "...\nend of it all\n"),
     ],
 )
 def test_what_a_page_shows_is_written_anew(shown: str, said: str, fresh: str) -> None:
