@@ -18,6 +18,8 @@ SECOND_LEVEL = 0.05
 CLOSE = 6.0
 """Explanations less far behind in score are not excluded (a Bayes factor of about 20)."""
 CLOSE_LIKELIHOOD = 4.0
+NEARLY = 4.0
+"""An addition to the winner that is less far behind in score may well be a second cause."""
 CERTAIN_SECOND = 45.0
 HELD = 0.98
 
@@ -122,7 +124,11 @@ def decide_again(contest: Contest, thresholds: Thresholds) -> int:
 
 
 def alternatives(contest: Contest, winner: int) -> list[int]:
-    """Return the explanations that this data does not exclude: no larger, not the winner with something added."""
+    """Return the explanations that this data does not exclude.
+
+    They are no larger than the winner, and not the winner with something added, unless the addition is nearly worth
+    its parameters: then a second cause may well be there.
+    """
     found = contest.found
     chosen = found.hypotheses[winner]
     if chosen.kind == "none":
@@ -130,9 +136,13 @@ def alternatives(contest: Contest, winner: int) -> list[int]:
     kept = []
     for place in found.ranked():
         rival = found.hypotheses[place]
-        if rival.kind == "none" or rival.key == chosen.key or len(rival.pieces) > len(chosen.pieces):
+        if rival.kind == "none" or rival.key == chosen.key:
             continue
-        if set(chosen.key) < set(rival.key) or not _is_close(contest, winner, place):
+        if set(chosen.key) < set(rival.key):
+            if found.score[winner] - found.score[place] < NEARLY:
+                kept.append(place)
+            continue
+        if len(rival.pieces) > len(chosen.pieces) or not _is_close(contest, winner, place):
             continue
         if not _contains(contest, rival, chosen):
             kept.append(place)
