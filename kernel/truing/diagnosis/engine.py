@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 RANKED = 8
 FITTED = 4
+LEAST_REDUCIBLE = 0.03
+"""Less than this share of the noise is not told from it, so there is nothing to remove."""
 STAGES = 5
 
 
@@ -188,7 +190,7 @@ def _gains(full: Contest, best: Fit, judged: Nested, units: Mapping[str, str], *
         floor2 = float(left @ left) / max(len(left) - used, 1.0)
         before2, after2 = (float(np.nanmean(errors**2)) for errors in (item.before, item.after))
         reducible = before2 - floor2
-        removed = (before2 - after2) / reducible if has_cause and reducible > 0 else 0.0
+        removed = (before2 - after2) / reducible if has_cause and reducible > LEAST_REDUCIBLE * floor2 else 0.0
         p_value = sign_flip_p(item.gain, judged.block_of, seed=full.problem.machine.start.seed + place)
         found.append(
             Gain(

@@ -32,6 +32,7 @@ NOTICEABLE = 0.1
 BIASED = 3.0
 SHOWN_DIGITS = 2
 BETTER = 6.0
+SHADOW = 0.3
 
 
 def in_unit(value: float, unit: str) -> str:
@@ -90,7 +91,10 @@ def _bias(full: Contest, place: int, residual: Matrix, unit: str) -> Iterator[Fi
 
 
 def _structure(full: Contest, null: Null, place: int, unit: str) -> Iterator[Finding]:
-    """Say what the residual of the calibrated model depends on; every p-value has paid for the whole search."""
+    """Say what the residual of the calibrated model depends on; every p-value has paid for the whole search.
+
+    Shapes that explain little beside the best explanation are its shadows (a jump has waves of every order).
+    """
     found = full.found
     name = full.evidence.channels[place].name
     plain = max(float(found.score[0]), _constant_score(full, name))
@@ -105,8 +109,11 @@ def _structure(full: Contest, null: Null, place: int, unit: str) -> Iterator[Fin
     singles = {label[1]: excess for label, (excess, _) in best.items() if len(label) == 2}
     ranked = sorted(best.items(), key=lambda item: -item[1][0])
     kept = 0
+    least = SHADOW * float(max(found.score) - plain)
     for label, (excess, number) in ranked:
         is_product = len(label) == 3
+        if excess < least:
+            continue
         if is_product and excess < max(singles.get(each, -float("inf")) for each in label[1:]) + BETTER:
             continue
         kept += 1

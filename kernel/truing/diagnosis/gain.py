@@ -89,7 +89,7 @@ def nested(full: Contest, winner: int, thresholds: Thresholds, raw: NoiseModel) 
         test = usable & (block_of % folds == fold)
         again = contest(full.problem, raw, usable & ~test, rounds=ROUNDS, settings=full.settings, sharpen=False)
         again = without_needless_inputs(again)
-        place = decide_again(again, thresholds)
+        place = decide_again(again, thresholds) if winner else 0
         same += again.found.hypotheses[place].key == key
         base = again.base()
         extended = again.solution(place) if place else base
