@@ -141,15 +141,16 @@ def test_whole_numbers_and_places_of_steps_do_not_become_finer(tmp_path: Path) -
     assert sharpened(problem, pieces) == problem
 
 
-HUGE = pytest.mark.xfail(strict=True, reason="of an effect of 500 times the noise the first grid leaves too much")
+NOT_WHITE = pytest.mark.xfail(strict=True, reason="named, but what its grid leaves still looks like a wander")
+NOT_NAMED = pytest.mark.xfail(strict=True, reason="grids of causes that unregistered shapes outdo do not become finer")
 
 
 @pytest.mark.parametrize(
     ("time_constant", "rise"),
     [
         *((hours, 100.0) for hours in (0.14, 0.23, 1.7, 6.2, 12.0)),
-        pytest.param(0.23, 500.0, marks=HUGE),
-        pytest.param(6.2, 500.0, marks=HUGE),
+        pytest.param(0.23, 500.0, marks=NOT_WHITE),
+        pytest.param(6.2, 500.0, marks=NOT_NAMED),
     ],
 )
 def test_a_large_effect_between_two_values_of_its_grid_is_named_alone(
@@ -254,7 +255,7 @@ def test_the_first_order_of_a_gauge_goes_by_the_name_of_the_models_own(tmp_path:
 
 
 def test_a_gauge_that_is_off_by_millimetres_does_not_drive_inputs_out_of_their_tolerances(tmp_path: Path) -> None:
-    """A load of one sign makes an offset look like a soft contact: by least squares a hundred deviations of it."""
+    """A load of one sign makes an offset look like a soft contact: by least squares one off by dozens."""
     begin = start_of(tmp_path, read(5000, replace(BENCH, load=np.abs(BENCH.load) + 1)))
     full = contest(begin.problem, begin.noise, begin.rows)
     freely = full.evidence.directions @ full.solution(0).directions
