@@ -226,21 +226,23 @@ class Reduced:
     """The columns with the tolerated inputs eliminated, under one noise filter per channel.
 
     For coefficients b of some columns the sum of squares of channel o is ``own[o] - 2 b g[o] + b h[o] b``; the last
-    entry of the three is the prior of the inputs. ``rows`` counts the independent rows by channel: those clipped say
-    less. B residuals at once.
+    entry of the three is the prior of the inputs, which move by ``start - gamma b``. ``total_h`` is the sum of h, the
+    normal matrix (m, m). ``rows`` counts the independent rows by channel: those clipped say less. B residuals at once.
     """
 
-    h: tuple[Matrix, ...]
+    forms: tuple[Matrix, ...]
+    total_h: Matrix
+    gamma: Matrix
     g: tuple[Matrix, ...]
     own: tuple[Matrix, ...]
     constant: float
     rows: tuple[float, ...]
     least: tuple[float, ...]
 
-    @cached_property
-    def total_h(self) -> Matrix:
-        """Normal matrix of the columns, (m, m)."""
-        return _sum(self.h)
+    @property
+    def h(self) -> tuple[Matrix, ...]:
+        """The quadratic form of every channel, and that of the prior."""
+        return (*self.forms, self.gamma.T @ self.gamma)
 
     @cached_property
     def curvature(self) -> Matrix:
@@ -275,17 +277,13 @@ def reduced(
     cb = [item.with_all[k:] for item in replicates]
     own = [item.own for item in replicates]
     constant, least = sum(item.constant for item in products), tuple(item.least for item in products)
-    if k == 0:
-        nothing = np.zeros_like(cc[0]), np.zeros_like(cb[0]), np.zeros_like(own[0])
-        return Reduced((*cc, nothing[0]), (*cb, nothing[1]), (*own, nothing[2]), constant, tuple(rows), least)
-    factor = cho_factor(_sum(uu) + np.eye(k))
-    gamma = cho_solve(factor, _sum(uc))
-    start = cho_solve(factor, _sum(ub))
-    total = _sum(cc) - gamma.T @ _sum(uc)
-    prior_h = gamma.T @ gamma
-    halves = [gamma.T @ (a - 0.5 * (u @ gamma)) for a, u in zip(uc[:-1], uu[:-1], strict=True)]
-    h = [c - half - half.T for c, half in zip(cc, halves, strict=False)]
-    h.append(total - prior_h - _sum(h) if h else total - prior_h)
+    factor = cho_factor(_sum(uu) + np.eye(k)) if k else (np.zeros((0, 0)), False)
+    gamma, start = (cho_solve(factor, right) if k else right for right in (_sum(uc), _sum(ub)))
+    total = _less(cc, gamma, _sum(uc))
+    forms = []
+    for c, a, u in zip(cc, uc, uu, strict=True):
+        half = a - 0.5 * (u @ gamma)
+        forms.append(_less([c], np.concatenate([gamma, half]), np.concatenate([half, gamma])))
     g = [b - gamma.T @ v - (a - u @ gamma).T @ start for b, v, a, u in zip(cb, ub, uc, uu, strict=True)]
     left = [
         r - 2 * np.einsum("ij,ij->j", start, v) + np.einsum("ij,ij->j", start, u @ start)
@@ -293,7 +291,20 @@ def reduced(
     ]
     constant -= 2 * float(np.log(np.diag(factor[0])).sum())
     prior = gamma.T @ start, np.einsum("ij,ij->j", start, start)
-    return Reduced((*h, prior_h), (*g, prior[0]), (*left, prior[1]), constant, tuple(rows), least)
+    return Reduced(tuple(forms), total, gamma, (*g, prior[0]), (*left, prior[1]), constant, tuple(rows), least)
+
+
+def _less(matrices: Sequence[Matrix], left: Matrix, right: Matrix) -> Matrix:
+    """Return a sum of square matrices less ``left' right``, in as few passes as there can be."""
+    import numpy as np
+    from scipy.linalg.blas import dgemm
+
+    made = np.array(matrices[0].T, order="F")  # they are symmetric
+    for other in matrices[1:]:
+        made += other.T
+    if len(left):
+        made = dgemm(-1.0, left, right, beta=1.0, c=made, trans_a=True, overwrite_c=True)
+    return np.asarray(made.T)
 
 
 def _sum(matrices: Sequence[Matrix]) -> Matrix:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
 from math import inf, log
@@ -34,6 +34,11 @@ class Piece:
     low: tuple[float, ...]
     high: tuple[float, ...]
 
+    @cached_property
+    def tag(self) -> tuple[str, int]:
+        """The explanation itself, whatever the variant."""
+        return self.kind, self.owner
+
 
 @dataclass(frozen=True)
 class Hypothesis:
@@ -56,7 +61,13 @@ class Hypothesis:
     @cached_property
     def key(self) -> tuple[tuple[str, int], ...]:
         """The explanation itself, whatever the variant."""
-        return tuple(sorted((piece.kind, piece.owner) for piece in self.pieces))
+        return _key(self.pieces)
+
+
+def _key(pieces: tuple[Piece, ...]) -> tuple[tuple[str, int], ...]:
+    if len(pieces) == 1:
+        return (pieces[0].tag,)
+    return tuple(sorted([piece.tag for piece in pieces]))
 
 
 NOTHING = Hypothesis("none", (), log(MASSES["none"]))
@@ -64,7 +75,7 @@ NOTHING = Hypothesis("none", (), log(MASSES["none"]))
 
 def _members(kind: Kind, pieces: Sequence[tuple[Piece, ...]]) -> list[Hypothesis]:
     """Share the mass of a class among its explanations."""
-    keys = {tuple(sorted((piece.kind, piece.owner) for piece in each)) for each in pieces}
+    keys = {_key(each) for each in pieces}
     share = log(MASSES[kind]) - log(max(len(keys), 1))
     return [Hypothesis(kind, each, share) for each in pieces]
 
@@ -107,14 +118,21 @@ class Batch:
     low: NDArray[np.float64]
     high: NDArray[np.float64]
     penalty: NDArray[np.float64]
+    squares: dict[int, NDArray[np.intp]] = field(default_factory=dict, compare=False, repr=False)
 
     @cached_property
-    def bounded(self) -> list[NDArray[np.intp]]:
-        """By column, the hypotheses whose coefficient has a bound."""
+    def bounded(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Hypotheses and their columns whose coefficient has a bound, in order."""
         import numpy as np
 
-        finite = np.isfinite(self.low) | np.isfinite(self.high)
-        return [np.flatnonzero(finite[:, column]) for column in range(self.index.shape[1])]
+        places, columns = np.nonzero(np.isfinite(self.low) | np.isfinite(self.high))
+        return places, columns
+
+    def square(self, size: int) -> NDArray[np.intp]:
+        """Return where the normal matrices of the hypotheses stand in one of ``size`` columns, flat, (n, k, k)."""
+        if size not in self.squares:
+            self.squares[size] = self.index[:, :, None] * size + self.index[:, None, :]
+        return self.squares[size]
 
 
 def batches_of(hypotheses: Sequence[Hypothesis], rows: int, largest: int = 4000) -> list[Batch]:

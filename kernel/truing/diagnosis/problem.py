@@ -101,16 +101,19 @@ def _merged(
     alone: list[int] = []
     same: dict[int, list[str]] = {}
     for place in order:
-        twins = [next((other for other in alone if known.is_same(own, other)), None) for own in known.terms[place]]
-        if len(twins) > 1:
+        is_grid = len(variants[place]) > 1
+        if is_grid and not any(shape.whole for shape in every[place].shapes):
             same[place] = []
-            if any(shape.whole for shape in every[place].shapes):
-                for twin in twins:
-                    if twin is not None:
-                        same[twin].append(every[place].name)
-                left = [number for number, twin in enumerate(twins) if twin is None]
-                variants[place] = [variants[place][number] for number in left]
-                known.terms[place] = [known.terms[place][number] for number in left]
+            continue
+        twins = [next((other for other in alone if known.is_same(own, other)), None) for own in known.terms[place]]
+        if is_grid:
+            same[place] = []
+            for twin in twins:
+                if twin is not None:
+                    same[twin].append(every[place].name)
+            left = [number for number, twin in enumerate(twins) if twin is None]
+            variants[place] = [variants[place][number] for number in left]
+            known.terms[place] = [known.terms[place][number] for number in left]
         elif twins[0] is None:
             alone.append(place)
             same[place] = []

@@ -40,13 +40,20 @@ def base_likelihood(case: Reduced) -> Matrix:
 
 def coefficients(case: Reduced, batch: Batch) -> Matrix:
     """Solve every hypothesis of a batch, shape (n, k, B)."""
+    return _solved(case, batch)[0]
+
+
+def _solved(case: Reduced, batch: Batch) -> tuple[Matrix, Matrix]:
+    """Return the coefficients (n, k, B), and by how much they lower the sum of all squares (n, B)."""
     import numpy as np
 
-    index = batch.index
-    normal = case.total_h[index[:, :, None], index[:, None, :]].copy()
+    normal = np.take(case.total_h, batch.square(len(case.total_h)), mode="clip")
     diagonal = np.einsum("nii->ni", normal)
-    diagonal += RIDGE * np.maximum(diagonal, 1e-300) + 1e-300
-    return np.asarray(np.linalg.solve(normal, case.total_g[index]))
+    ridge = RIDGE * np.maximum(diagonal, 1e-300) + 1e-300
+    diagonal += ridge
+    right = case.total_g[batch.index]
+    solved = np.asarray(np.linalg.solve(normal, right))
+    return solved, np.einsum("nkb,nkb->nb", solved, right + ridge[:, :, None] * solved)
 
 
 def batch_likelihood(case: Reduced, batch: Batch) -> Matrix:
@@ -57,20 +64,19 @@ def batch_likelihood(case: Reduced, batch: Batch) -> Matrix:
     """
     import numpy as np
 
-    solved = coefficients(case, batch)
-    index = batch.index
-    total = np.full((len(index), solved.shape[2]), case.constant)
+    solved, lowered = _solved(case, batch)
+    total = np.full((len(batch.index), solved.shape[2]), case.constant)
     variance = np.zeros_like(total)
-    for place, (h, g, own) in enumerate(zip(case.h, case.g, case.own, strict=True)):
-        part = h[index[:, :, None], index[:, None, :]]
-        left = own[None, :] + np.einsum("nkb,nkb->nb", solved, part @ solved - 2 * g[index])
-        if place == len(case.rows):
-            total -= left
-            continue
+    prior = case.own[-1] - lowered
+    for place, (h, g, own) in enumerate(zip(case.forms, case.g, case.own, strict=False)):
+        part = np.take(h, batch.square(len(h)), mode="clip")
+        change = np.einsum("nkb,nkb->nb", solved, part @ solved - 2 * g[batch.index])
         rows = case.rows[place]
-        left = np.maximum(left, max(FLOOR, case.least[place]))
+        left = np.maximum(own + change, max(FLOOR, case.least[place]))
         total -= rows * np.log(left / rows)
         variance += left
+        prior -= change
+    total -= np.maximum(prior, 0.0)
     variance /= sum(case.rows)
     return np.where(_is_possible(case, batch, solved, variance), total, -np.inf)
 
@@ -80,15 +86,16 @@ def _is_possible(case: Reduced, batch: Batch, solved: Matrix, variance: Matrix) 
     import numpy as np
 
     possible = np.ones((solved.shape[0], solved.shape[2]), dtype=bool)
-    for column, bounded in enumerate(batch.bounded):
-        if not len(bounded):
-            continue
-        low, high = batch.low[bounded, column, None], batch.high[bounded, column, None]
-        value = solved[bounded, column]
-        curvature = case.curvature[batch.index[bounded, column], None]
-        slack = BOUND_SLACK * np.sqrt(variance[bounded]) / np.sqrt(curvature)
-        inside = (value >= np.where(low == 0, 0.0, low - slack)) & (value <= np.where(high == 0, 0.0, high + slack))
-        possible[bounded] &= inside
+    bounded, column = batch.bounded
+    if not len(bounded):
+        return possible
+    low, high = batch.low[bounded, column, None], batch.high[bounded, column, None]
+    value = solved[bounded, column]
+    curvature = case.curvature[batch.index[bounded, column], None]
+    slack = BOUND_SLACK * np.sqrt(variance[bounded]) / np.sqrt(curvature)
+    inside = (value >= np.where(low == 0, 0.0, low - slack)) & (value <= np.where(high == 0, 0.0, high + slack))
+    first = np.flatnonzero(np.append(True, bounded[1:] != bounded[:-1]))
+    possible[bounded[first]] = np.logical_and.reduceat(inside, first, axis=0)
     return possible
 
 
