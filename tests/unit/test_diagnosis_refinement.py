@@ -142,7 +142,6 @@ def test_whole_numbers_and_places_of_steps_do_not_become_finer(tmp_path: Path) -
 
 
 NOT_WHITE = pytest.mark.xfail(strict=True, reason="named, but what its grid leaves still looks like a wander")
-NOT_NAMED = pytest.mark.xfail(strict=True, reason="grids of causes that unregistered shapes outdo do not become finer")
 
 
 @pytest.mark.parametrize(
@@ -150,7 +149,7 @@ NOT_NAMED = pytest.mark.xfail(strict=True, reason="grids of causes that unregist
     [
         *((hours, 100.0) for hours in (0.14, 0.23, 1.7, 6.2, 12.0)),
         pytest.param(0.23, 500.0, marks=NOT_WHITE),
-        pytest.param(6.2, 500.0, marks=NOT_NAMED),
+        (6.2, 500.0),
     ],
 )
 def test_a_large_effect_between_two_values_of_its_grid_is_named_alone(

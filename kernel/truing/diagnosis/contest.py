@@ -74,7 +74,8 @@ def contest(
             best = found.best()
             if sharpen:
                 tops = [found.hypotheses[place] for place in found.ranked()[:SHARPENED]]
-                problem = sharpened(problem, [piece for hypothesis in tops for piece in hypothesis.pieces])
+                pieces = [piece for hypothesis in tops for piece in hypothesis.pieces]
+                problem = sharpened(problem, [*pieces, *best_terms(found, SHARPENED)])
             noise = learned(problem, evidence, solve(evidence, found.hypotheses[best], found.setting[best]), raw, noise)
     return Contest(problem, noise, evidence, found, tuple(tried))
 
