@@ -24,12 +24,12 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np  # noqa: E402
 import pytest  # noqa: E402
+from pytest_benchmark.fixture import BenchmarkFixture  # noqa: E402
+
 from hidden_effects.asking import INPUTS, press_offer, table  # noqa: E402
 from hidden_effects.designs import Noise, wide  # noqa: E402
 from hidden_effects.press_machine import POSITION, SCATTER, TILT, Array, shown  # noqa: E402
 from hidden_effects.press_machine import Rows as Setting  # noqa: E402
-from pytest_benchmark.fixture import BenchmarkFixture  # noqa: E402
-
 from truing.diagnosis.candidates import candidates_of  # noqa: E402
 from truing.diagnosis.engine import diagnose  # noqa: E402
 from truing.diagnosis.machine import machine_of, predict  # noqa: E402
