@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import re
+import subprocess
+import sys
 import tracemalloc
 from collections.abc import Callable
 from dataclasses import replace
@@ -261,3 +265,24 @@ def test_a_slow_model_is_called_twice_per_unknown_however_many_pairs_there_are(
     assert calls[0] < 60
     monkeypatch.setattr(contest_module, "pairs", lambda terms: [])
     assert [calls_of(tmp_path, extra) for extra in (0, 10)] == [calls[0], calls[2]]
+
+
+def test_every_linear_algebra_has_one_thread_in_a_fresh_process() -> None:
+    """Small matrices on several threads cost ten times the processor, and numpy and scipy each bring their own."""
+    code = """
+from threadpoolctl import threadpool_info
+from truing.diagnosis import engine
+engine._check_options = lambda setup: None
+engine._diagnose = lambda *given: [(pool["internal_api"], pool["num_threads"]) for pool in threadpool_info()]
+held = engine.diagnose(None, None)
+import scipy.linalg
+print(held, len(threadpool_info()))
+"""
+    several = {"OMP_NUM_THREADS": "2", "OPENBLAS_NUM_THREADS": "2", "MKL_NUM_THREADS": "2"}
+    said = subprocess.run(
+        [sys.executable, "-c", code], env={**os.environ, **several}, check=True, capture_output=True, text=True
+    ).stdout
+    pools = re.findall(r"\('(\w+)', (\d+)\)", said)
+    assert pools
+    assert {threads for _, threads in pools} == {"1"}
+    assert f" {len(pools)}\n" in said
