@@ -79,7 +79,6 @@ def diagnosed(case: Case) -> Answer:
     from time import perf_counter
 
     from truing.diagnosis.engine import diagnose
-
     from truing.diagnosis.reading import read_records
     from truing.inputs_file import read_setup
     from truing.runs.diagnosis_document import diagnosis_document
