@@ -145,20 +145,15 @@ def test_columns_of_many_rows_are_made_when_asked_for() -> None:
 def test_curves_of_many_rows_are_stored_in_few_bytes() -> None:
     curve = np.random.default_rng(3).normal(size=MANY + 1)
     assert stored(curve[:-1]) is not None
-    assert np.asarray(stored(curve[:-1])).dtype == np.float64
+    assert stored(curve[:-1]).dtype == np.float64
     kept = stored(curve)
-    assert isinstance(kept, np.ndarray)
     assert kept.nbytes == 4 * len(curve)
     assert_allclose(kept, curve, rtol=6e-8)
-    switch = stored((curve > 0).astype(float))
-    assert isinstance(switch, Made)
-    assert_array_equal(np.asarray(switch), curve > 0)
-    assert_array_equal(switch[11:23], (curve > 0)[11:23])
-    assert_array_equal(switch[np.array([3, MANY])], (curve > 0)[[3, MANY]])
+    assert_array_equal(stored((curve > 0).astype(float)), curve > 0)
+    assert stored((curve > 0).astype(float)).nbytes == len(curve)
     gap = np.where(np.arange(5) == 2, np.nan, 1.5)
-    assert np.asarray(stored(gap)).tolist() == [1.5, 1.5, 0, 1.5, 1.5]
+    assert stored(gap).tolist() == [1.5, 1.5, 0, 1.5, 1.5]
     nothing = stored(np.zeros(MANY + 1))
-    assert isinstance(nothing, np.ndarray)
     assert nothing.strides == (0,)
     assert not np.any(nothing)
 
