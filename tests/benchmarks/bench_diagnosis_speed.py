@@ -17,6 +17,7 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
@@ -30,12 +31,13 @@ from hidden_effects.asking import INPUTS, press_offer, table  # noqa: E402
 from hidden_effects.designs import Noise, wide  # noqa: E402
 from hidden_effects.press_machine import POSITION, SCATTER, TILT, Array, shown  # noqa: E402
 from hidden_effects.press_machine import Rows as Setting  # noqa: E402
+from truing.diagnosis import contest, machine  # noqa: E402
 from truing.diagnosis.candidates import candidates_of  # noqa: E402
 from truing.diagnosis.engine import diagnose  # noqa: E402
 from truing.diagnosis.machine import machine_of, predict  # noqa: E402
 from truing.diagnosis.reading import read_records  # noqa: E402
 from truing.diagnosis.records import Covariate, Records, Role  # noqa: E402
-from truing.gauge import one_machine  # noqa: E402
+from truing.gauge import one_machine, read_by_gauge  # noqa: E402
 from truing.inputs_file import read_setup  # noqa: E402
 from truing.measurements import RowsFile  # noqa: E402
 from truing.setup import Setup  # noqa: E402
@@ -133,6 +135,23 @@ def ratio(results: tuple[str, ...], seed: int = 1) -> tuple[float, float]:
     return min(first for first, _ in pairs), min(second for _, second in pairs)
 
 
+def model_calls(results: tuple[str, ...], *, with_pairs: bool) -> int:
+    """How often a diagnosis of 300 rows calls the model, with all pairs of causes or with none."""
+    calls = 0
+
+    def counting(*held: Any, **known: Any) -> Any:
+        nonlocal calls
+        calls += 1
+        return read_by_gauge(*held, **known)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(machine, "read_by_gauge", counting)
+        if not with_pairs:
+            patch.setattr(contest, "pairs", lambda terms: [])
+        diagnose(press_setup(), in_memory(300, results))
+    return calls
+
+
 def peak_mebibytes(rows: int, results: tuple[str, ...], maker: str) -> tuple[float, float, str]:
     """Most memory of a fresh process that diagnoses so many rows, the seconds it took, and what it said."""
     code = f"import sys; sys.path[:0] = {sys.path!r}; import bench_diagnosis_speed as b; "
@@ -178,6 +197,13 @@ def test_a_diagnosis_costs_at_most_eight_gaussian_processes(results: tuple[str, 
 def counted(results: tuple[str, ...]) -> str:
     many = len(candidates_of(machine_of(press_setup(), in_memory(300, results))))
     return f"300 rows, {len(results)} result(s), {many} candidates"
+
+
+@pytest.mark.parametrize("results", [ALONE, BOTH], ids=["position", "position and tilt"])
+def test_pairs_of_causes_cost_no_call_of_the_model(results: tuple[str, ...]) -> None:
+    all_pairs, no_pairs = (model_calls(results, with_pairs=with_pairs) for with_pairs in (True, False))
+    print(f"\n{counted(results)}: {all_pairs} calls of the model, {no_pairs} without pairs")
+    assert all_pairs == no_pairs
 
 
 def test_cost_is_linear_in_rows() -> None:

@@ -12,7 +12,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.sources import Effect, Unknown
-from truing.diagnosis.columns import stored
+from truing.diagnosis.columns import Values, stored
 from truing.diagnosis.machine import Machine, predict
 from truing.diagnosis.readings import gauged, reading_curve
 from truing.setup import SwitchedOn
@@ -62,7 +62,7 @@ class Term:
     """
 
     candidate: int
-    curves: tuple[Curve, ...]
+    curves: tuple[Mapping[str, Values], ...]
     unknowns: tuple[str, ...]
     files: tuple[int, ...]
     per: tuple[float, ...]
@@ -217,11 +217,11 @@ def _densified(terms: list[Term], name: str, scales: Mapping[str, float], *, is_
     return [*made, terms[-1]]
 
 
-def stacked(curve: Curve, scales: Mapping[str, float]) -> NDArray[np.float64]:
+def stacked(curve: Mapping[str, Values], scales: Mapping[str, float]) -> NDArray[np.float64]:
     """Return a curve of all results one below the other, in units of the noise."""
     import numpy as np
 
-    return np.concatenate([np.nan_to_num(curve[name]) / scales[name] for name in scales])
+    return np.concatenate([np.nan_to_num(np.asarray(curve[name])) / scales[name] for name in scales])
 
 
 def _cosine(first: Term, second: Term, scales: Mapping[str, float]) -> float:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ class Column:
     per: float = 1.0
 
 
-def stored(values: Matrix) -> Matrix:
+def stored(values: Matrix) -> Values:
     """Return values as they are kept: missing ones as 0; of many rows, a switch as bits, all else in single precision.
 
     Numbers of single precision are exact to 6e-8, far below what a model or a gauge is.
@@ -78,10 +78,21 @@ def stored(values: Matrix) -> Matrix:
         values = np.nan_to_num(values)
     if len(values) <= MANY:
         return values
-    kept: Any = values.astype(np.float32)
-    if bool(((kept == 0) | (kept == 1)).all()):
-        kept = kept.astype(bool)
-    return np.asarray(kept)
+    if bool(((values == 0) | (values == 1)).all()):
+        return Made(partial(_switched, np.packbits(values.astype(bool)), len(values)), len(values))
+    single: Any = values.astype(np.float32)
+    return np.asarray(single)
+
+
+def _switched(bits: NDArray[np.uint8], size: int, rows: Rows) -> Matrix:
+    """Return some of the values of a switch, 0 or 1."""
+    import numpy as np
+
+    if isinstance(rows, slice):
+        rows = np.arange(*rows.indices(size), dtype=np.intp)
+    elif rows.dtype == bool:
+        rows = np.flatnonzero(rows)
+    return np.asarray((bits[rows >> 3] >> (7 - (rows & 7))) & 1, dtype=np.float64)
 
 
 def acting(curve: Mapping[str, Values]) -> dict[str, Values]:

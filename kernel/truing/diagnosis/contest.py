@@ -77,6 +77,7 @@ def contest(
                 pieces = [piece for hypothesis in tops for piece in hypothesis.pieces]
                 problem = sharpened(problem, [*pieces, *best_terms(found, SHARPENED)])
             noise = learned(problem, evidence, solve(evidence, found.hypotheses[best], found.setting[best]), raw, noise)
+    evidence.known.clear()  # few of the filters are asked for again
     return Contest(problem, noise, evidence, found, tuple(tried))
 
 
@@ -93,10 +94,11 @@ def _all_scored(
         search(evidence, pairs(terms), settings),
         search(evidence, mixed(favourites, problem.shape_pieces, problem.like), settings),
     ]
+    finer = [hypothesis for each in two for hypothesis in _finer(problem, each)]
     found = [
         first,
         *two,
-        *(search(evidence, finer, settings) for each in two if (finer := _finer(problem, each))),
+        *([search(evidence, finer, settings)] if finer else []),
         _outside(evidence, search(evidence, off_inputs(problem.input_pieces), settings)),
     ]
     return _together(found), settings

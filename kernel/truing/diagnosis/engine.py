@@ -38,6 +38,7 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
 
     The same records, setup and seed give the same answer. Raises UsageError where an option names what is not there.
     """
+    import scipy.linalg  # noqa: F401  # it brings a linear algebra of its own, which must be there to be limited
     from threadpoolctl import threadpool_limits
 
     _check_options(setup)

@@ -8,6 +8,7 @@ from math import exp, log, sqrt
 from typing import TYPE_CHECKING, Any
 
 from truing.diagnosis.candidates import Term, si_bounds
+from truing.diagnosis.columns import MANY, in_blocks
 from truing.diagnosis.contest import Contest
 from truing.diagnosis.hypotheses import Hypothesis, Piece
 from truing.diagnosis.machine import Predicted, predict
@@ -25,6 +26,8 @@ STEP = 1e-4
 LEVEL = 0.975
 LARGEST_LEVERAGE = 0.95
 STEEPEST = 1e-12
+SPARING: Mapping[str, Any] = {"tr_solver": "lsmr", "tr_options": {"atol": 1e-13, "btol": 1e-13}}
+"""Of many rows the fit makes no copies of its derivatives."""
 
 
 @dataclass(frozen=True)
@@ -190,8 +193,11 @@ def fit(contest: Contest, place: int) -> Fit:
     high = np.array([item.high for item in fitter.parameters] + [np.inf] * (len(start) - p))
     inside = np.clip(start, low, high)
     jacobian = _Jacobian(contest, fitter, setting, residual)
-    found = least_squares(residual, inside, jac=jacobian, bounds=(low, high), x_scale="jac", xtol=1e-10, ftol=1e-12)
-    covariance, freedom = _covariance(contest, found.fun, jacobian(found.x), setting)
+    way = SPARING if contest.evidence.rows > MANY else {}
+    found = least_squares(
+        residual, inside, jac=jacobian, bounds=(low, high), x_scale="jac", xtol=1e-10, ftol=1e-12, **way
+    )
+    covariance, freedom = _covariance(contest, found.fun, np.asarray(found.jac), setting)
     left = _split(contest, found.fun)
     predicted = fitter.predicted(found.x[:p], found.x[p:])
     return Fit(hypothesis, setting, fitter.parameters, found.x[:p], found.x[p:], covariance, freedom, predicted, left)
@@ -290,15 +296,19 @@ def _covariance(contest: Contest, residual: Matrix, jacobian: Matrix, setting: t
     rows = contest.evidence.rows
     inverse = np.linalg.pinv(jacobian.T @ jacobian)
     k = contest.evidence.directions.shape[1]
-    used = float(np.trace(inverse @ jacobian[:rows].T @ jacobian[:rows]))
+    used = float(np.trace(inverse @ (jacobian[:rows].T @ jacobian[:rows])))
     sigma2 = float(np.sum(residual[:rows] ** 2)) / max(rows - used, 1.0)
     plain = inverse * sigma2
-    leverage = np.minimum(np.einsum("ij,jk,ik->i", jacobian[:rows], inverse, jacobian[:rows]), LARGEST_LEVERAGE)
-    scores = jacobian[:rows] * (residual[:rows] / (1 - leverage))[:, None]
+    spread = np.zeros_like(inverse)
+    for block in in_blocks(rows):
+        own = jacobian[block]
+        leverage = np.minimum(np.einsum("ij,ij->i", own @ inverse, own), LARGEST_LEVERAGE)
+        scores = own * (residual[block] / (1 - leverage))[:, None]
+        spread += scores.T @ scores
     prior = np.zeros_like(inverse)
     if k:
         prior[-k:, -k:] = np.eye(k)
-    sandwich = inverse @ (scores.T @ scores + sigma2 * prior) @ inverse
+    sandwich = inverse @ (spread + sigma2 * prior) @ inverse
     ratio = np.sqrt(np.maximum(np.diag(sandwich) / np.maximum(np.diag(plain), 1e-300), 1.0))
     clipped = max(contest.noise.tails[channel.name].clipped for channel in contest.evidence.channels)
     shares = [SETTINGS[place].independent_share for place in setting]

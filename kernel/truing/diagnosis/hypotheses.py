@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import combinations
 from math import inf, log
 from typing import TYPE_CHECKING, Literal
@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 Kind = Literal["none", "one", "two", "shape", "mixed", "input"]
 MASSES: Mapping[Kind, float] = {"none": 0.50, "one": 0.30, "two": 0.12, "shape": 0.06, "mixed": 0.02, "input": 0.02}
 """Prior mass of every class, shared equally by its members: a class with many members does not win by numbers."""
+
+REMEMBERED = 8
+"""So many lists of each class are made once: the folds of a cross-validation ask for the same."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +62,16 @@ class Hypothesis:
         return sum(piece.size for piece in self.pieces)
 
     @cached_property
+    def low(self) -> tuple[float, ...]:
+        """Lower bounds of all coefficients."""
+        return tuple(value for piece in self.pieces for value in piece.low)
+
+    @cached_property
+    def high(self) -> tuple[float, ...]:
+        """Upper bounds of all coefficients."""
+        return tuple(value for piece in self.pieces for value in piece.high)
+
+    @cached_property
     def key(self) -> tuple[tuple[str, int], ...]:
         """The explanation itself, whatever the variant."""
         return _key(self.pieces)
@@ -73,36 +86,53 @@ def _key(pieces: tuple[Piece, ...]) -> tuple[tuple[str, int], ...]:
 NOTHING = Hypothesis("none", (), log(MASSES["none"]))
 
 
-def _members(kind: Kind, pieces: Sequence[tuple[Piece, ...]]) -> list[Hypothesis]:
+def _members(kind: Kind, pieces: Sequence[tuple[Piece, ...]]) -> tuple[Hypothesis, ...]:
     """Share the mass of a class among its explanations."""
     keys = {_key(each) for each in pieces}
     share = log(MASSES[kind]) - log(max(len(keys), 1))
-    return [Hypothesis(kind, each, share) for each in pieces]
+    return tuple(Hypothesis(kind, each, share) for each in pieces)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _alone(kind: Kind, pieces: tuple[Piece, ...]) -> tuple[Hypothesis, ...]:
+    return _members(kind, [(piece,) for piece in pieces])
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _paired(terms: tuple[Piece, ...]) -> tuple[Hypothesis, ...]:
+    return _members("two", [(a, b) for a, b in combinations(terms, 2) if a.owner != b.owner])
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _beside(
+    terms: tuple[Piece, ...], groups: tuple[Piece, ...], like: frozenset[tuple[int, int]]
+) -> tuple[Hypothesis, ...]:
+    return _members("mixed", [(a, b) for a in terms for b in groups if (a.owner, b.owner) not in like])
 
 
 def singles(terms: Sequence[Piece]) -> list[Hypothesis]:
     """Return one hypothesis per variant of every cause."""
-    return _members("one", [(term,) for term in terms])
+    return list(_alone("one", tuple(terms)))
 
 
 def pairs(terms: Sequence[Piece]) -> list[Hypothesis]:
     """Return every pair of variants of two different causes."""
-    return _members("two", [(a, b) for a, b in combinations(terms, 2) if a.owner != b.owner])
+    return list(_paired(tuple(terms)))
 
 
 def shapes(groups: Sequence[Piece]) -> list[Hypothesis]:
     """Return one hypothesis per unregistered shape."""
-    return _members("shape", [(group,) for group in groups])
+    return list(_alone("shape", tuple(groups)))
 
 
 def off_inputs(inputs: Sequence[Piece]) -> list[Hypothesis]:
     """Return one hypothesis per input that may lie outside its band."""
-    return _members("input", [(item,) for item in inputs])
+    return list(_alone("input", tuple(inputs)))
 
 
 def mixed(terms: Sequence[Piece], groups: Sequence[Piece], like: frozenset[tuple[int, int]]) -> list[Hypothesis]:
     """Return every cause beside every shape, but for shapes that reproduce the cause (``like``: owner, shape)."""
-    return _members("mixed", [(a, b) for a in terms for b in groups if (a.owner, b.owner) not in like])
+    return list(_beside(tuple(terms), tuple(groups), like))
 
 
 @dataclass(frozen=True)
@@ -147,8 +177,7 @@ def batches_of(hypotheses: Sequence[Hypothesis], rows: int, largest: int = 4000)
         for begin in range(0, len(every), largest):
             places = every[begin : begin + largest]
             chosen = [hypotheses[place] for place in places]
-            low = [[value for piece in each.pieces for value in piece.low] for each in chosen]
-            high = [[value for piece in each.pieces for value in piece.high] for each in chosen]
+            low, high = [each.low for each in chosen], [each.high for each in chosen]
             shape = (len(places), count)
             found.append(
                 Batch(
