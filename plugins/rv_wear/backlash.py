@@ -1,0 +1,43 @@
+"""Backlash at the output: equation 21 with the sixteen factors of Table 2, all to first order."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rv_wear.quantities import Reducer
+from truing import Float
+
+ECCENTRICITY_SHARE = 1.6e-4  # of factor 14: the normal stands across the crank, so only the printed index is left
+
+
+@dataclass(frozen=True)
+class Shares:
+    """Backlash by where it comes from, rad."""
+
+    involute: Float
+    gearing: Float
+    wear: Float
+    bearing: Float
+
+
+def backlash_of(reducer: Reducer, felt_wear: Float) -> Shares:
+    """The four shares of the backlash; ``felt_wear`` (m) acts like an equidistant modification on both flanks."""
+    short_width = reducer.eccentricity * reducer.pin_count / reducer.pin_circle_radius
+    root = np.sqrt(1.0 - short_width**2)
+    arm = reducer.eccentricity * (reducer.pin_count - 1)
+    involute = 2.0 * np.sin(reducer.pressure_angle) * (reducer.gear_runout + reducer.centre_distance_error)
+    radial = reducer.equidistant_modification + reducer.equidistant_error - reducer.pin_radius_error
+    circle = (
+        reducer.pin_circle_error
+        - reducer.shift_modification
+        - reducer.shift_error
+        + ECCENTRICITY_SHARE * reducer.eccentricity_error
+    )
+    along = short_width * (2.0 * reducer.pin_position_error - reducer.disc_pitch_error)
+    gearing = 2.0 * radial + 2.0 * root * circle + reducer.pin_fit_clearance + 0.5 * reducer.disc_runout + along
+    return Shares(
+        involute=(involute - reducer.base_tangent_error) / (reducer.sun_radius * reducer.total_ratio),
+        gearing=gearing / arm,
+        wear=2.0 * felt_wear / arm,
+        bearing=reducer.bearing_clearance / reducer.centre_distance,
+    )

@@ -1,0 +1,122 @@
+"""What the reducer calculation is told: every quantity with unit, symbol, bounds and source."""
+
+from typing import Literal
+
+from truing import Float, given, inputs
+
+PAPER = "section 1.5 of the paper"
+INDICES = "chosen so that the sensitivity indices of the paper's Table 2 follow; Table 1 is lost"
+CATALOGUE = "known of reducers of this size; the paper's Table 1 is lost"
+CALIBRATED = "chosen so that the paper's wear of 3.127 um after 6000 h follows"
+ZONE = "middle of its zone; the zones are chosen so that the printed mean, reliability and cost follow"
+
+
+def length(value: float, unit: Literal["mm", "um"], symbol: str, note: str, source: str) -> float:
+    """Declare a size of the gearing, above zero."""
+    declared: float = given(value, unit, symbol=symbol, note=note, source=source, above=0)
+    return declared
+
+
+def deviation(value: float, symbol: str, note: str) -> float:
+    """Declare an error factor of the backlash at the middle of its zone; no part is off by a millimetre."""
+    declared: float = given(value, "um", symbol=symbol, note=note, source=ZONE, at_least=-1000, at_most=1000)
+    return declared
+
+
+@inputs
+class Reducer:
+    """Gearing, load and lubricant, the sixteen error factors, and what is asked of the backlash."""
+
+    # The gearing
+    pin_count: int = given(40, symbol="z_p", note="pins; the disc has one tooth less", source=INDICES, at_least=4)
+    pin_circle_radius: Float = length(114.5, "mm", "r_p", "circle of the pin centres", INDICES)
+    pin_radius: Float = length(5.0, "mm", "r_rp", "pin", CATALOGUE)
+    eccentricity: Float = length(2.2, "mm", "e", "throw of the crank", INDICES)
+    disc_width: Float = length(20.0, "mm", "B", "loaded width of one disc", CATALOGUE)
+    equidistant_modification: Float = given(
+        -26.0,
+        "um",
+        symbol="Delta r_rp",
+        note="grinding with another pin radius; above 0 the tooth becomes thinner",
+        source=PAPER,
+        at_least=-1000,
+        at_most=1000,
+    )
+    shift_modification: Float = given(
+        -30.0,
+        "um",
+        symbol="Delta r_p",
+        note="grinding on another pin circle; below 0 the tooth becomes thinner",
+        source=PAPER,
+        at_least=-1000,
+        at_most=1000,
+    )
+    sun_radius: Float = length(18.0, "mm", "r_1", "pitch circle of the sun gear", INDICES)
+    centre_distance: Float = length(63.0, "mm", "a", "sun to planet, and circle of the cranks", INDICES)
+    total_ratio: Float = given(101.0, "", symbol="i_H", note="input turns per output turn", source=INDICES, above=1)
+    pressure_angle: Float = given(
+        20.0, "deg", symbol="alpha_n", note="involute gears", source=INDICES, above=0, below=45
+    )
+    # Load and material
+    output_torque: Float = given(3136.0, "N*m", symbol="T_z", note="at the output", source=PAPER, above=0)
+    output_speed: Float = given(15.0, "r/min", symbol="n", note="at the output", source=PAPER, above=0)
+    working_time: Float = given(6000.0, "h", symbol="T", note="of this set of discs; rated life 6000 h", source=PAPER,
+                                at_least=0)  # fmt: skip
+    torque_share: Float = given(0.55, "", symbol="kappa_T", note="of the output torque on the worse of two discs",
+                                source="Chinese practice for cycloid drives", above=0, at_most=1)  # fmt: skip
+    young_modulus: Float = given(2.06e5, "MPa", symbol="E", note="steel, disc and pins", source="literature", above=0)
+    poisson_ratio: Float = given(0.3, "", symbol="nu", note="steel, disc and pins", source="literature", at_least=0,
+                                 below=0.5)  # fmt: skip
+    pressure_viscosity: Float = given(2.2e-8, "1/Pa", symbol="alpha", note="pressure-viscosity coefficient of the base oil",
+                                      source="mineral oil 1.5e-8 to 2.4e-8", above=0)  # fmt: skip
+    composite_roughness: Float = length(0.694, "um", "R_q", "root mean square of both surfaces", CALIBRATED)
+    # How it is calculated
+    load_sharing: Literal["linear", "hertz"] = given(
+        "linear", note="forces in proportion to the approach as in the paper, or by Hertz at every pin"
+    )
+    wear_coefficient: Literal["pointwise", "pitch_point"] = given(
+        "pointwise", note="regression with the force of every point, or once with that at the pitch point"
+    )
+    reconstruction_depth: Float = length(0.05, "um", "epsilon", "new wear after which forces are found again",
+                                         "0.4 % from convergence")  # fmt: skip
+    phases: int = given(8, note="positions of the disc within one pin pitch", at_least=1, at_most=64)
+    # The error factors of the backlash, by their number in the paper's Table 2
+    base_tangent_error: Float = deviation(-15.0, "Delta E_bn", "1: mean base tangent length of the involute gears")
+    gear_runout: Float = deviation(5.0, "F_r", "2: radial runout of the involute gears")
+    centre_distance_error: Float = deviation(0.0, "f_a", "3: distance of sun and planet")
+    pin_circle_error: Float = deviation(0.0, "delta r_p", "6: radius of the pin circle")
+    pin_radius_error: Float = deviation(-2.0, "delta r_rp", "7: radius of the pins")
+    pin_fit_clearance: Float = deviation(8.5, "delta_J", "8: fit of the pins in their holes")
+    disc_runout: Float = deviation(3.275, "F_rc", "9: radial runout of the cycloid toothing")
+    pin_position_error: Float = deviation(0.6, "delta_t", "10: pin holes along the circumference")
+    disc_pitch_error: Float = deviation(0.0, "F_pc", "11: cumulative pitch of the cycloid disc")
+    equidistant_error: Float = deviation(0.0, "delta Delta r_rp", "12: equidistant modification as ground")
+    shift_error: Float = deviation(0.0, "delta Delta r_p", "13: shift modification as ground")
+    eccentricity_error: Float = deviation(0.0, "delta e", "14: throw of the crank")
+    bearing_clearance: Float = deviation(11.1, "delta_b", "16: clearance of the crank bearings")
+    # What is asked
+    permitted_backlash: Float = given(1.0, "arcmin", symbol="Delta phi_per", note="permitted", source=PAPER, above=0)
+    required_reliability: Float = given(0.95, "", symbol="R_per", note="at the working time", source=PAPER, above=0,
+                                        below=1)  # fmt: skip
+    permitted_pressure: Float = given(2000.0, "MPa", symbol="p_per", note="mean contact pressure up to which this holds",
+                                      source="elastic contact of hardened steel", above=0)  # fmt: skip
+    # Neutral inputs: effects reach the calculation through them
+    wear_rate_factor: Float = given(1.0, "", symbol="f_k", note="neutral 1: multiplies the wear coefficient", above=0)
+    sliding_factor: Float = given(
+        1.0, "", symbol="f_s", note="neutral 1: share of the sliding that is left", at_least=0
+    )
+    ageing_rate: Float = given(0.0, "1/h", symbol="a_L", note="neutral 0: growth of the wear coefficient with time",
+                               at_least=0)  # fmt: skip
+    film_factor: Float = given(0.0, "", symbol="f_Lambda", note="neutral 0: film thickness over that of Dowson",
+                               at_least=0)  # fmt: skip
+    oil_viscosity: Float = given(
+        0.2, "Pa*s", symbol="eta", note="of the base oil at work; acts only with a film", above=0
+    )
+    depth_factor: Float = given(1.0, "", symbol="f_h", note="neutral 1: multiplies the wear depth", at_least=0)
+    extra_wear: Float = given(0.0, "um", symbol="h_0", note="neutral 0: depth lost beside the law of wear")
+    loaded_share: Float = given(1.0, "", symbol="f_T", note="neutral 1: share of the working time in which a flank of the "
+                                "backlash was loaded", at_least=0, at_most=1)  # fmt: skip
+    lost_motion_share: Float = given(1.0, "", symbol="kappa_w", note="neutral 1: share of the largest wear that is felt",
+                                     at_least=0)  # fmt: skip
+    pin_wear_ratio: Float = given(0.0, "", symbol="kappa_p", note="neutral 0: wear of the pins over that of the disc",
+                                  at_least=0)  # fmt: skip
