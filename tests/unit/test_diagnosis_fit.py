@@ -103,6 +103,19 @@ def test_inputs_are_calibrated_by_their_prior(tmp_path: Path) -> None:
     assert_allclose([value / UM, of_its_sd], [3 + 0.09 * joined[1], joined[1]], rtol=1e-5)
 
 
+def test_an_earlier_calibration_is_no_nominal_of_the_extended_model(tmp_path: Path) -> None:
+    """A machine diagnosed again keeps the contact of its drawing; what was fitted stays a calibration."""
+    bench = wide(40, seed=21)
+    contact = np.sign(bench.load) * np.abs(bench.load) ** (2 / 3)
+    error = 0.15 * contact + 0.03 * bench.travel + np.random.default_rng(22).normal(0, 1, 40)
+    asked = Asked(drive_model(tolerances={"contact": "3 %"}))
+    again = replace(asked.setup, calibrated={"contact": 3.1 * UM})
+    done = diagnose(again, asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error)))
+    assert done.extended is not None
+    assert done.setup.inputs.contact == done.extended.inputs.contact == again.inputs.contact != 3.1 * UM
+    assert_allclose(done.extended.calibrated["contact"] / UM, 3.15, atol=0.06)
+
+
 def test_a_fit_of_an_effect_that_is_not_linear_is_exact(tmp_path: Path) -> None:
     bench = wide(80, seed=21)
     error = gauge(1.3 * bench.load, bench.travel) - gauge(bench.load, bench.travel)

@@ -23,7 +23,6 @@ from truing.diagnosis.records import Covariate, Slip
 from truing.diagnosis.result import Alternative, Amount, Cause, Diagnosis, Finding, FittedUnknown, NextPoint, Seen
 from truing.report.context import FigureView, TableView
 from truing.report.diagnosis_figures import main_covariates, thinned
-from truing.report.diagnosis_run import as_asked
 from truing.report.diagnosis_sheet import (
     DiagnosisSheet,
     diagnosis_html,
@@ -395,18 +394,6 @@ def test_bad_words_are_answered_in_a_sentence(
     assert answer.out == ""
     assert sentence in answer.err
     assert "fault of the program" not in answer.err
-
-
-def test_an_earlier_calibration_is_no_nominal_of_the_extended_model() -> None:
-    """A machine diagnosed again keeps the radius of its drawing (80 mm); what was fitted stays a calibration."""
-    made = named()
-    assert made.extended is not None
-    asked = replace(made.setup, calibrated={"radius": 0.0801})
-    moved = asked.changed(asked.calibrated)
-    done = as_asked(replace(made, setup=moved, extended=replace(made.extended, inputs=moved.inputs)), asked)
-    assert done.extended is not None
-    assert done.setup.inputs.radius == done.extended.inputs.radius == pytest.approx(0.08)
-    assert done.extended.calibrated["radius"] == pytest.approx(0.080012)
 
 
 @pytest.mark.parametrize("sample", [none_found, unknown])

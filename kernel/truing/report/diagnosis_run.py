@@ -46,16 +46,9 @@ def perform_diagnosis(setup: Setup, offer: Offer, order: DiagnosisOrder, progres
     from truing.diagnosis.reading import read_records
 
     started = time.time()
-    diagnosis = as_asked(diagnose(setup, read_records(order.data, offer, setup), progress=progress), setup)
+    diagnosis = diagnose(setup, read_records(order.data, offer, setup), progress=progress)
     document, note = write_all(diagnosis, order, started)
     return Diagnosed(diagnosis, document, note)
-
-
-def as_asked(diagnosis: Diagnosis, setup: Setup) -> Diagnosis:
-    """Return the diagnosis of the setup as it was read: what was calibrated before is no nominal of the design."""
-    extended = diagnosis.extended
-    kept = None if extended is None else replace(extended, inputs=setup.inputs)
-    return replace(diagnosis, setup=setup, extended=kept)
 
 
 def write_all(diagnosis: Diagnosis, order: DiagnosisOrder, started: float) -> tuple[dict[str, Any], str]:
