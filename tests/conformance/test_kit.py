@@ -324,6 +324,28 @@ def test_a_condition_may_be_a_switch_whose_reference_is_one_of_its_states() -> N
     assert "although 'load' stays at its reference" in unheeded["references are neutral"]
 
 
+def lit(it: Spring, *, loss: Float, angle: Float) -> Spring:
+    return replace(it, lost=it.lost + loss * np.cos(angle))
+
+
+def test_a_condition_may_say_where_an_effect_acts_and_not_whether() -> None:
+    needs, unknowns = [Condition("angle", "deg")], [Unknown("loss", -1, 1, "mm")]
+    undeclared = failures(good(errors=[Effect("lit", on_inputs=lit, needs=needs, unknowns=unknowns)]))
+    assert "although 'angle' stays at its reference" in undeclared["references are neutral"]
+    stated = Effect("lit", on_inputs=lit, needs=needs, unknowns=unknowns, acts_at_reference=True)
+    assert failures(good(errors=[stated])) == {}
+
+
+def between(it: Spring, *, growth: Float, inside: Float, outside: Float) -> Spring:
+    return replace(it, lost=it.lost + growth * (inside - outside))
+
+
+def test_an_effect_may_follow_the_difference_of_two_conditions() -> None:
+    needs = [Condition(name, "degC", reference=20) for name in ("inside", "outside")]
+    unknowns = [Unknown("growth", -1, 1, "um/K")]
+    assert failures(good(errors=[Effect("between", on_inputs=between, needs=needs, unknowns=unknowns)])) == {}
+
+
 def test_effects_whose_order_matters_are_named() -> None:
     both = [
         Effect("losing", on_inputs=losing, unknowns=LOSS),

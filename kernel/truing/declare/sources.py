@@ -180,6 +180,7 @@ class Effect(Generic[I, R]):
     without them all unknowns are one cause. The limit of three and the need of an amplitude hold for each part; a part
     of which nothing is stated is off: a function with ``**unknowns`` is called without it, any other with 0.
     ``reads`` names inputs or axes of results, beside the conditions, that a place ``along`` may lie on.
+    ``acts_at_reference``: its conditions say where it acts (an angle) or temper it, and do not take it away.
     """
 
     name: str
@@ -188,6 +189,7 @@ class Effect(Generic[I, R]):
     needs: tuple[Condition, ...]
     parts: tuple[tuple[str, ...], ...]
     reads: tuple[str, ...]
+    acts_at_reference: bool
     looks_like: str
     why: str
     source: str
@@ -203,6 +205,7 @@ class Effect(Generic[I, R]):
         needs: Sequence[Condition] = (),
         parts: Sequence[Sequence[str]] = (),
         reads: Sequence[str] = (),
+        acts_at_reference: bool = False,
         looks_like: str = "",
         why: str = "",
         source: str = "",
@@ -211,7 +214,7 @@ class Effect(Generic[I, R]):
         values = {
             "name": name, "actions": actions, "unknowns": tuple(unknowns), "needs": tuple(needs),
             "parts": tuple(tuple(part) for part in parts), "reads": tuple(reads),
-            "looks_like": looks_like, "why": why, "source": source,
+            "acts_at_reference": acts_at_reference, "looks_like": looks_like, "why": why, "source": source,
         }  # fmt: skip
         for key, value in values.items():
             object.__setattr__(self, key, value)

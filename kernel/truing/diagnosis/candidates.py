@@ -154,6 +154,8 @@ def terms_of(place: int, candidate: Candidate, machine: Machine, scales: Mapping
 
 
 def _stands_still(candidate: Candidate, machine: Machine) -> bool:
+    if candidate.effect.acts_at_reference:
+        return False
     covariates = machine.records.covariates
     names = [*(need.name for need in candidate.effect.needs), *candidate.effect.reads]
     return bool(names) and all(name not in covariates or covariates[name].is_constant for name in names)

@@ -64,10 +64,10 @@ def zero_is_the_base(subject: Subject) -> None:
 
 
 def references_are_neutral(subject: Subject) -> None:
-    """An effect changes nothing while all conditions it needs stay at their references, unless they only switch it."""
+    """An effect changes nothing while all conditions it needs are at their references, unless it says or switches so."""
     base = _answers(subject.setup)
     for effect in subject.model.effects.values():
-        if not effect.needs:
+        if not effect.needs or effect.acts_at_reference:
             continue
         setup = _switched(subject.setup, effect)
         changed = _changed(_answers(setup), base) if setup is not None else []
@@ -201,10 +201,14 @@ def _with(setup: Setup, effect: Effect[Any, Any], values: Mapping[str, float]) -
 
 
 def _off_reference(setup: Setup, steps: float = 10) -> Setup:
-    """Move every condition off its reference, by so many of its units."""
+    """Move every condition off its reference, by so many of its units and a little more from one to the next.
+
+    An effect of the difference of two conditions would not be seen if both moved alike.
+    """
     from truing.units import unit_factor
 
-    moved = {name: item.zero + steps * unit_factor(item.unit) for name, item in setup.model.conditions.items()}
+    conditions = enumerate(setup.model.conditions.values())
+    moved = {item.name: item.zero + steps * (1 + 0.1 * place) * unit_factor(item.unit) for place, item in conditions}
     return replace(setup, conditions={**setup.conditions, **moved})
 
 
