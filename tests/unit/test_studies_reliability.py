@@ -168,6 +168,7 @@ def test_conditions_scatter_and_effects_carry_it():
     on = SwitchedOn(CHAIN.effects["grow"], {"strain": 1e-4})
     odds = odds_of(replace(setup_of(model), effects=(on,)), Reliability(draws=400_000))
     assert odds.first_sd["gap"] == pytest.approx(sqrt(0.13**2 + 0.01**2) * 1e-3, rel=1e-6)
+    assert odds.first_mean["gap"] == pytest.approx(10e-3, rel=1e-9)
     assert odds.sd["gap"] == pytest.approx(sqrt(0.13**2 + 0.01**2) * 1e-3, rel=0.005)
 
 

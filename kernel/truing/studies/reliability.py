@@ -72,6 +72,7 @@ class Reliability:
             demands=tuple(wanted),
             units={demand.result: setup.print_unit(demand.result) for demand in wanted},
             analytic=analytic,
+            first_mean={demand.name: straight[demand.name].mean for demand in wanted},
             first_sd={demand.name: straight[demand.name].sd for demand in wanted},
             form=self._form(machines, wanted, nominal),
             tally=tally,
@@ -189,6 +190,7 @@ class Odds:
     units: Mapping[str, str]
     analytic: Mapping[str, Any]
     first_sd: Mapping[str, Any]
+    first_mean: Mapping[str, Any] = field(default_factory=dict)
     form: Mapping[str, Form] = field(default_factory=dict)
     tally: Tally | None = None
     curve: Curve | None = None

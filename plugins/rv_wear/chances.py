@@ -1,0 +1,154 @@
+"""What the studies give as results: histories, indices and chances, each known once per run and never per draw."""
+
+from dataclasses import replace
+from math import nan
+from typing import TYPE_CHECKING
+
+from rv_wear.backlash import backlash_of
+from rv_wear.quantities import Reducer
+from truing import Float, Odds, Sensitivities, Swept, axis, found, results
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+STEP = 1e-6  # m; equation 21 is linear, so any step gives its derivatives
+COUNTED = "counted among the machines that were drawn, equation 23"
+FACTORS: dict[int, str] = {
+    1: "base_tangent_error", 2: "gear_runout", 3: "centre_distance_error", 4: "equidistant_modification",
+    5: "shift_modification", 6: "pin_circle_error", 7: "pin_radius_error", 8: "pin_fit_clearance", 9: "disc_runout",
+    10: "pin_position_error", 11: "disc_pitch_error", 12: "equidistant_error", 13: "shift_error",
+    14: "eccentricity_error", 15: "backlash_wear", 16: "bearing_clearance",
+}  # fmt: skip
+REFERENCE = 6
+AT_SAME_WEAR = (4, 5)
+
+
+@results
+class History:
+    """Wear and backlash over the working time, from new."""
+
+    history_time: Float = axis("h", symbol="T", note="working time")
+    wear_history: Float = found("um", symbol="h_max", along="history_time", note="deepest wear",
+                                method="equations 13 to 16 up to each time")  # fmt: skip
+    backlash_history: Float = found("arcmin", symbol="Delta phi", along="history_time", note="backlash",
+                                    method="equation 21 with the wear at each time")  # fmt: skip
+
+
+def index(number: int, what: str) -> float:
+    """Declare the sensitivity index of one factor."""
+    declared: float = found(
+        "", symbol=f"s_{number}", note=f"{number}: {what}", source="equation 24",
+        method="derivative of equation 21, divided by that of factor 6",
+    )  # fmt: skip
+    return declared
+
+
+@results
+class Indices:
+    """The sixteen sensitivity indices of Table 2: how much backlash each error gives, against the pin circle radius."""
+
+    index_1: Float = index(1, "base tangent length of the involute gears")
+    index_2: Float = index(2, "radial runout of the involute gears")
+    index_3: Float = index(3, "centre distance")
+    index_4: Float = index(4, "equidistant modification, the wear unchanged")
+    index_5: Float = index(5, "shift modification, the wear unchanged")
+    index_6: Float = index(6, "radius of the pin circle, the reference")
+    index_7: Float = index(7, "radius of the pins")
+    index_8: Float = index(8, "fit of the pins in their holes")
+    index_9: Float = index(9, "radial runout of the cycloid toothing")
+    index_10: Float = index(10, "pin holes along the circumference")
+    index_11: Float = index(11, "cumulative pitch of the cycloid disc")
+    index_12: Float = index(12, "equidistant modification as ground")
+    index_13: Float = index(13, "shift modification as ground")
+    index_14: Float = index(14, "throw of the crank")
+    index_15: Float = index(15, "wear")
+    index_16: Float = index(16, "clearance of the crank bearings")
+
+
+@results
+class Chances:
+    """How often the backlash stays within its limit, and the normal distribution beside it."""
+
+    accuracy_reliability: Float = found("%", symbol="R_T", note="share of machines within the permitted backlash",
+                                        method=COUNTED)  # fmt: skip
+    normal_reliability: Float = found(
+        "%", symbol="R_N", note="the same for a normal distribution", method="first order; equation 21 is linear",
+        formula="Phi((permitted_backlash - backlash_mean) / backlash_sd)",
+    )  # fmt: skip
+    backlash_mean: Float = found("arcmin", symbol="mu", note="mean of the machines", method="first order")
+    backlash_sd: Float = found("arcmin", symbol="sigma", note="standard deviation of the machines",
+                               method="first order")  # fmt: skip
+    sampled_mean: Float = found("arcmin", symbol="mu_d", note="mean of the machines drawn", method="Monte Carlo")
+    sampled_sd: Float = found("arcmin", symbol="sigma_d", note="standard deviation of the machines drawn",
+                              method="Monte Carlo")  # fmt: skip
+    largest_backlash: Float = found("arcmin", symbol="Delta phi_d", note="largest among the machines drawn",
+                                    method="Monte Carlo")  # fmt: skip
+    reliability_time: Float = axis("h", symbol="T", note="working time")
+    reliability_history: Float = found("%", symbol="R_T", along="reliability_time",
+                                       note="share within the permitted backlash", method=COUNTED)  # fmt: skip
+
+
+def history(swept: Swept) -> History:
+    """Deepest wear and backlash along the working time."""
+    return History(
+        history_time=swept.axis,
+        wear_history=swept.results["max_wear"],
+        backlash_history=swept.results["backlash"],
+    )
+
+
+def indices(found: Sensitivities) -> Indices:
+    """The derivatives of equation 21 over that by the pin circle radius; the modifications at the same wear."""
+    slopes = dict(found.derivatives.get("backlash", {}))
+    slopes.update(slopes_at_same_wear(found.inputs))
+    reference = slopes.get(FACTORS[REFERENCE], nan)
+    return Indices(**{f"index_{number}": slopes.get(name, nan) / reference for number, name in FACTORS.items()})
+
+
+def slopes_at_same_wear(reducer: Reducer) -> dict[str, float]:
+    """Derivatives of equation 21 by what also moves the wear, and by the wear itself, rad/m."""
+    slopes = {}
+    for number in AT_SAME_WEAR:
+        name = FACTORS[number]
+        value = getattr(reducer, name)
+        up, down = (replace(reducer, **{name: value + step}) for step in (STEP, -STEP))
+        slopes[name] = (total(up, 0.0) - total(down, 0.0)) / (2 * STEP)
+    slopes[FACTORS[15]] = (total(reducer, STEP) - total(reducer, -STEP)) / (2 * STEP)
+    return slopes
+
+
+def total(reducer: Reducer, felt_wear: float) -> float:
+    """The backlash of equation 21 for a stated wear, rad."""
+    shares = backlash_of(reducer, felt_wear)
+    return float(shares.involute + shares.gearing + shares.wear + shares.bearing)
+
+
+def chances(odds: Odds) -> Chances:
+    """Reliability, mean and spread of the backlash; the reliability over the working time where it was asked for."""
+    limit = float(odds.inputs.permitted_backlash)
+    moves = {demand.name: bool(demand.moving) for demand in odds.demands}
+    mean = odds.first_mean.get("backlash", nan) + (limit if moves.get("backlash") else 0.0)
+    drawn = odds.moments.get("backlash")
+    time, curve = over_time(odds)
+    return Chances(
+        accuracy_reliability=odds.probability.get("backlash", nan),
+        normal_reliability=odds.analytic.get("backlash", nan),
+        backlash_mean=mean,
+        backlash_sd=odds.first_sd.get("backlash", nan),
+        sampled_mean=drawn.mean if drawn else nan,
+        sampled_sd=drawn.sd if drawn else nan,
+        largest_backlash=drawn.largest if drawn else nan,
+        reliability_time=time,
+        reliability_history=curve,
+    )
+
+
+def over_time(odds: Odds) -> "tuple[NDArray[np.float64], NDArray[np.float64]]":
+    """Working times and reliabilities; empty where the study did not run over the working time."""
+    import numpy as np
+
+    curve = odds.curve
+    if curve is None or curve.over != "working_time" or "backlash" not in curve.probability:
+        return np.empty(0), np.empty(0)
+    return curve.axis, curve.probability["backlash"]
