@@ -8,6 +8,7 @@ from dataclasses import replace
 from itertools import combinations
 from typing import Any
 
+from truing.declare.goals import prices_in
 from truing.declare.scope import formula_scope
 from truing.declare.sources import Effect, Unknown
 from truing.errors import InfeasibleError, TruingError
@@ -36,8 +37,9 @@ def spreads_resolve(subject: Subject) -> None:
                 fail(f"{subject.model.name}: tolerance '{tolerance.name}' on '{name}': {error}")
             if found is not None and not found.sd > 0:
                 fail(f"{subject.model.name}: tolerance '{tolerance.name}' on '{name}' does not scatter; write off()")
-            if found is not None and tolerance.price is not None:
-                _priced(subject, tolerance.name, tolerance.price, found.width)
+            if found is not None:
+                for price in prices_in(tolerance.price):
+                    _priced(subject, tolerance.name, price, found.width)
 
 
 def _priced(subject: Subject, tolerance: str, price: Any, width: float) -> None:
@@ -64,7 +66,7 @@ def zero_is_the_base(subject: Subject) -> None:
 
 
 def references_are_neutral(subject: Subject) -> None:
-    """An effect changes nothing while all conditions it needs are at their references, unless it says or switches so."""
+    """An effect changes nothing while the conditions it needs are at their references, unless it says or switches so."""
     base = _answers(subject.setup)
     for effect in subject.model.effects.values():
         if not effect.needs or effect.acts_at_reference:
