@@ -2,17 +2,41 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 from truing.declare.checks import TOTAL_PRICE
-from truing.declare.goals import Price
+from truing.declare.goals import Price, PriceByChoice
+from truing.declare.sources import Tolerance
 from truing.setup import Setup
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+def price_of(setup: Setup, tolerance: Tolerance) -> Price | None:
+    """Return the price of a tolerance, settled where it follows a choice; None where it has none."""
+    price = tolerance.price
+    return price.chosen(str(setup.nominal(price.chooser))) if isinstance(price, PriceByChoice) else price
 
 
 def price_at(price: Price, width: float) -> float:
     """Return what a full width in SI costs, in the unit of the price."""
+    return float(_evaluated(price, width))
+
+
+def prices_at(price: Price, widths: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return what full widths (n,) in SI cost, in the unit of the price."""
+    import numpy as np
+
+    return np.broadcast_to(np.asarray(_evaluated(price, widths), dtype=float), widths.shape)
+
+
+def _evaluated(price: Price, width: Any) -> Any:
     from truing.formulas import evaluate, parse
     from truing.units import from_si
 
-    return float(evaluate(parse(price.formula), {"width": float(from_si(width, price.width))}))
+    return evaluate(parse(price.formula), {"width": from_si(width, price.width)})
 
 
 def total_price(setup: Setup) -> float | None:
@@ -24,7 +48,7 @@ def total_price(setup: Setup) -> float | None:
 
     if TOTAL_PRICE not in setup.model.result_fields:
         return None
-    prices = {name: item.price for name, item in setup.model.tolerances.items() if item.price is not None}
+    prices = {name: price_of(setup, item) for name, item in setup.model.tolerances.items()}
     paid = [
         price_at(price, next(iter(inner.values())).width)
         for name, inner in setup.distributions().items()

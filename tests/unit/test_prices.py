@@ -2,19 +2,46 @@
 
 from __future__ import annotations
 
+import json
+import math
 from dataclasses import replace
+from typing import Literal
 
+import numpy as np
 import pytest
 from pin_wear import PIN_WEAR
 
-from truing import Price, Require, Tolerance, normal, off, plus_minus
+from truing import (
+    Allocation,
+    Float,
+    Model,
+    Price,
+    Require,
+    Tolerance,
+    by_choice,
+    found,
+    given,
+    grade,
+    inputs,
+    normal,
+    off,
+    plus_minus,
+    results,
+)
 from truing.calculation import calculate
 from truing.cases import run_cases
+from truing.declare.goals import PriceByChoice
+from truing.describe import description
+from truing.errors import DeclarationError
 from truing.executors import open_executor
+from truing.fits import tolerance
 from truing.measurements import Case
+from truing.prices import price_at, price_of, prices_at
 from truing.runs.documents import results_document
 from truing.runs.provenance import provenance_of
 from truing.setup import default_setup
+from truing.testing.sources import spreads_resolve
+from truing.testing.subject import Subject
 
 PAID = Price("40 * width**-0.5", width="N", unit="EUR")
 LIMITED = replace(
@@ -74,3 +101,103 @@ def test_a_model_without_prices_has_no_such_result() -> None:
     plain = replace(LIMITED, errors=[Tolerance("load", normal(sd="3 %"))], objectives=[])
     assert "tolerance_price" not in plain.result_fields
     assert "tolerance_price" not in calculate(default_setup(plain)).answers
+
+
+# A price that follows a choice
+
+
+@inputs
+class Form:
+    """A length, and the cost law that holds."""
+
+    length: Float = given(50.0, "mm")
+    cost_form: Literal["power", "exponential"] = given("power")
+
+
+@results
+class Same:
+    """What comes out."""
+
+    double: Float = found("mm")
+
+
+def doubled(form: Form) -> Same:
+    """Twice the length."""
+    return Same(double=2 * form.length)
+
+
+BOTH = by_choice(
+    "cost_form",
+    power=Price("16 * width**-0.5", width="mm", unit="EUR"),
+    exponential=Price("5 * exp(-2 * width)", width="mm", unit="EUR"),
+)
+CHOSEN: Model[Form, Same] = Model(
+    name="chosen", title="Two laws of cost", function=doubled,
+    errors=[Tolerance("length", plus_minus("0.125 mm"), price=BOTH)],
+)  # fmt: skip
+PRICES = {"power": 32.0, "exponential": 5 * math.exp(-0.5)}  # EUR for a band of 0.25 mm
+
+
+@pytest.mark.parametrize(("form", "price"), PRICES.items())
+def test_a_price_follows_the_choice(form: str, price: float) -> None:
+    setup = default_setup(CHOSEN, cost_form=form)
+    assert calculate(setup).answers["tolerance_price"] == pytest.approx(price, rel=1e-14)
+    settled = price_of(setup, CHOSEN.tolerances["length"])
+    assert settled is not None
+    assert price_at(settled, 0.25e-3) == pytest.approx(price, rel=1e-14)
+    assert prices_at(settled, np.array([0.25e-3, 0.25e-3])) == pytest.approx([price, price], rel=1e-14)
+
+
+def test_every_case_has_the_price_of_its_choice() -> None:
+    cases = [Case(n, n + 1, form, {"cost_form": form}) for n, form in enumerate(PRICES)]
+    with open_executor("serial") as executor:
+        _, table = run_cases(default_setup(CHOSEN), cases, executor=executor)
+    assert [case.answers["tolerance_price"] for case in table.cases] == pytest.approx(list(PRICES.values()), rel=1e-14)
+
+
+def test_describe_tells_both_prices() -> None:
+    (said,) = description(Subject(CHOSEN).offer)["tolerances"]
+    assert said["price"]["chooser"] == "cost_form"
+    assert said["price"]["prices"]["power"] == {"formula": "16 * width**-0.5", "width": "mm", "unit": "EUR"}
+    json.dumps(said)
+
+
+def test_an_allocation_buys_at_the_price_of_the_choice() -> None:
+    graded = Tolerance("length", grade("IT8"), price=BOTH)
+    model = replace(CHOSEN, errors=[graded], objectives=[Require("double", within="20 um", reliability=0.9)])
+    for form, law in (("power", lambda w: 16 * w**-0.5), ("exponential", lambda w: 5 * math.exp(-2 * w))):
+        setup = replace(default_setup(model, cost_form=form), studies=(Allocation(draws=10),))
+        allotted = calculate(setup).outcomes["allocation"]
+        width = tolerance(allotted.tolerances["length"], 0.05) * 1e3
+        assert allotted.cost == pytest.approx(law(width), rel=1e-12)
+
+
+def test_the_kit_checks_every_price_of_a_choice() -> None:
+    free = replace(BOTH.prices["power"], formula="-3 * width")
+    both = by_choice("cost_form", power=BOTH.prices["power"], exponential=free)
+    mistaken = Tolerance("length", plus_minus("0.125 mm"), price=both)
+    with pytest.raises(AssertionError, match=r"the price of tolerance .length. is -0\.75 at its declared width"):
+        spreads_resolve(Subject(replace(CHOSEN, errors=[mistaken])))
+
+
+EUR = Price("1 / width", width="mm", unit="EUR")
+WRONG = [
+    (by_choice("cost_from", power=EUR, exponential=EUR), "names 'cost_from', which is no input.*cost_form"),
+    (by_choice("length", power=EUR, exponential=EUR), "is chosen by 'length', which offers no choices"),
+    (by_choice("cost_form", power=EUR), "has a price for power, but 'cost_form' offers power, exponential"),
+    (by_choice("cost_form", power=EUR, exponential=replace(EUR, unit="yuan")), "the prices are in EUR and yuan"),
+    (by_choice("cost_form", power=EUR, exponential=replace(EUR, formula="1 / with")), "names with; it is a formula"),
+]
+
+
+@pytest.mark.parametrize(("price", "words"), WRONG)
+def test_a_price_that_cannot_be_chosen_is_refused(price: PriceByChoice, words: str) -> None:
+    with pytest.raises(DeclarationError, match=words):
+        replace(CHOSEN, errors=[Tolerance("length", plus_minus("0.1 mm"), price=price)])
+
+
+def test_spreads_and_prices_are_not_mixed() -> None:
+    with pytest.raises(DeclarationError, match="takes a spread for each choice, or a price for each"):
+        by_choice("cost_form", power=EUR, exponential=off())  # type: ignore[call-overload]
+    with pytest.raises(DeclarationError, match="takes a spread for each choice, or a price for each"):
+        by_choice("cost_form")

@@ -9,7 +9,7 @@ from inspect import signature
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.fields import hints_of
-from truing.declare.goals import Maximise, Minimise, Require, Vary
+from truing.declare.goals import Maximise, Minimise, PriceByChoice, Require, Vary, prices_in
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Condition, Effect, Tolerance
 from truing.declare.specs import Axis, Found
@@ -83,7 +83,7 @@ def _of_errors(model: Model[Any, Any]) -> Iterator[str]:
                     yield f"the condition '{condition.name}' is declared in two ways"
         else:
             yield f"{source!r} is neither a Tolerance nor an Effect"
-    units = sorted({item.price.unit for item in model.tolerances.values() if item.price is not None})
+    units = sorted({price.unit for item in model.tolerances.values() for price in prices_in(item.price)})
     if len(units) > 1:
         yield f"the prices are in {' and '.join(units)}; give all of them in one unit, so that they can be added"
 
@@ -120,26 +120,38 @@ def of_tolerance(source: Tolerance, model: Model[Any, Any]) -> Iterator[str]:
             yield f"tolerance '{source.name}' is on '{name}', which cannot scatter: only a Float can"
     for fault in _of_spread(source.spread, model):
         yield f"tolerance '{source.name}' {fault}"
-    names = _names_in(source.price.formula) if source.price else frozenset({"width"})
-    if isinstance(names, str):
-        yield f"the price of tolerance '{source.name}': {names}"
-    elif names != {"width"}:
-        named = ", ".join(sorted(names)) or "nothing"
-        yield f"the price of tolerance '{source.name}' names {named}; it is a formula in width"
+    yield from _of_price(source, model)
+
+
+def _of_price(source: Tolerance, model: Model[Any, Any]) -> Iterator[str]:
+    what = f"the price of tolerance '{source.name}'"
+    if isinstance(source.price, PriceByChoice):
+        for fault in _of_choices(source.price.chooser, source.price.prices, "price", model):
+            yield f"{what} {fault}"
+    for price in prices_in(source.price):
+        names = _names_in(price.formula)
+        if isinstance(names, str):
+            yield f"{what}: {names}"
+        elif names != {"width"}:
+            yield f"{what} names {', '.join(sorted(names)) or 'nothing'}; it is a formula in width"
+
+
+def _of_choices(chooser: str, branches: Mapping[str, Any], what: str, model: Model[Any, Any]) -> Iterator[str]:
+    """Say why an input cannot choose among these branches."""
+    item = model.input_fields.get(chooser)
+    if item is None:
+        yield f"names '{chooser}', which is no input.{near_miss(chooser, model.input_fields)}"
+    elif not item.choices:
+        yield f"is chosen by '{chooser}', which offers no choices"
+    elif set(item.choices) != set(branches):
+        yield f"has a {what} for {', '.join(branches)}, but '{chooser}' offers {', '.join(item.choices)}"
 
 
 def _of_spread(spread: Spread, model: Model[Any, Any]) -> Iterator[str]:
     if not hasattr(spread, "resolve"):
         yield f"has the spread {spread!r}; write normal(...), plus_minus(...), grade(...) or another of the words"
     elif isinstance(spread, ByChoice):
-        chooser = model.input_fields.get(spread.chooser)
-        if chooser is None:
-            yield f"names '{spread.chooser}', which is no input.{near_miss(spread.chooser, model.input_fields)}"
-        elif not chooser.choices:
-            yield f"is chosen by '{spread.chooser}', which offers no choices"
-        elif set(chooser.choices) != set(spread.spreads):
-            offered = ", ".join(chooser.choices)
-            yield f"has a spread for {', '.join(spread.spreads)}, but '{chooser.name}' offers {offered}"
+        yield from _of_choices(spread.chooser, spread.spreads, "spread", model)
         for inner in spread.spreads.values():
             yield from _of_spread(inner, model)
     name = spread.size if isinstance(spread, Grade) else spread.at_radius if isinstance(spread, Band) else ""
@@ -180,7 +192,7 @@ def of_objective(objective: Any, inputs: Mapping[str, InputField], results: Mapp
 def _of_vary(objective: Vary, inputs: Mapping[str, InputField]) -> Iterator[str]:
     if objective.input not in inputs:
         yield f"Vary names '{objective.input}', which is no input.{near_miss(objective.input, inputs)}"
-    elif not inputs[objective.input].varies:
+    elif not inputs[objective.input].varies and inputs[objective.input].kind != "integer":
         yield f"Vary names '{objective.input}', which is no number that may vary"
     names = _names_in(objective.by) if objective.by else frozenset()
     if isinstance(names, str):

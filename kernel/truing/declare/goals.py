@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -17,6 +18,32 @@ class Price:
     formula: str
     width: str
     unit: str
+
+
+@dataclass(frozen=True)
+class PriceByChoice:
+    """Another price for each value of an input that offers choices; all of them in one currency."""
+
+    chooser: str
+    prices: Mapping[str, Price]
+
+    @property
+    def unit(self) -> str:
+        """The unit of the prices."""
+        return next(price.unit for price in self.prices.values())
+
+    def chosen(self, value: str) -> Price:
+        """Return the price for this value of the choosing input."""
+        if value not in self.prices:
+            raise DeclarationError(f"no price is declared for {self.chooser} = '{value}'")
+        return self.prices[value]
+
+
+def prices_in(price: Price | PriceByChoice | None) -> tuple[Price, ...]:
+    """Return every price that a tolerance may have: one, one per choice, or none."""
+    if price is None:
+        return ()
+    return (price,) if isinstance(price, Price) else tuple(price.prices.values())
 
 
 @dataclass(frozen=True)

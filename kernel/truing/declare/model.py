@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, Literal, Protocol, TypeVar
 
 from truing.declare.checks import TOTAL_PRICE, check_model
 from truing.declare.fields import InputField, ResultField, hints_of, in_si, input_fields, make, read, result_fields
-from truing.declare.goals import Objective
+from truing.declare.goals import Objective, prices_in
 from truing.declare.near_miss import near_miss
 from truing.declare.published import Finding, Published
 from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance
@@ -164,7 +164,7 @@ class Model(Generic[I, R]):
 
     def _price_field(self) -> dict[str, ResultField]:
         """Return the sum of the prices as a result, where any tolerance has one."""
-        units = [item.price.unit for item in self.tolerances.values() if item.price is not None]
+        units = [price.unit for item in self.tolerances.values() for price in prices_in(item.price)]
         if not units:
             return {}
         note, method = "price of all tolerances in force", "sum of their prices, each at its full width"

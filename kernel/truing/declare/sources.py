@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Concatenate, Generic, Literal, TypeAlias, TypeVar
 
-from truing.declare.goals import Price
+from truing.declare.goals import Price, PriceByChoice
 from truing.declare.near_miss import near_miss
 from truing.declare.spreads import Spread
 from truing.errors import DeclarationError
@@ -37,7 +37,7 @@ class Tolerance:
     spread: Spread
     on: tuple[str, ...]
     why: str
-    price: Price | None
+    price: Price | PriceByChoice | None
     source: str
 
     def __init__(
@@ -47,7 +47,7 @@ class Tolerance:
         on: Sequence[str] | None = None,
         *,
         why: str = "",
-        price: Price | None = None,
+        price: Price | PriceByChoice | None = None,
         source: str = "",
     ) -> None:
         values = {

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol, overload
 
+from truing.declare.goals import Price, PriceByChoice
 from truing.errors import DeclarationError, UnitError
 
 if TYPE_CHECKING:
@@ -282,9 +283,19 @@ def off() -> Off:
     return Off()
 
 
-def by_choice(chooser: str, /, **spreads: Spread) -> ByChoice:
-    """Scatter as the value of the input ``chooser`` says."""
-    return ByChoice(chooser, spreads)
+@overload
+def by_choice(chooser: str, /, **branches: Spread) -> ByChoice: ...
+@overload
+def by_choice(chooser: str, /, **branches: Price) -> PriceByChoice: ...
+def by_choice(chooser: str, /, **branches: Any) -> ByChoice | PriceByChoice:
+    """Scatter, or cost, as the value of the input ``chooser`` says: a spread for each choice, or a price for each.
+
+    Raises DeclarationError where spreads and prices are mixed, and where there is no branch at all.
+    """
+    priced = [isinstance(branch, Price) for branch in branches.values()]
+    if not priced or any(priced) != all(priced):
+        raise DeclarationError(f"by_choice('{chooser}') takes a spread for each choice, or a price for each")
+    return PriceByChoice(chooser, branches) if all(priced) else ByChoice(chooser, branches)
 
 
 def drawn(function: Callable[[Any, int], Mapping[str, Any]]) -> Drawn:

@@ -11,7 +11,7 @@ from truing.declare.sources import Tolerance
 from truing.declare.spreads import Grade
 from truing.errors import TruingError, UsageError
 from truing.fits import GRADES
-from truing.prices import price_at
+from truing.prices import price_at, price_of
 from truing.setup import Setup
 from truing.studies.chances import Straight
 from truing.studies.demands import Demand, normal_chance
@@ -91,7 +91,7 @@ def open_shop(
         raise UsageError(
             f'{setup.model.name} has no tolerance that is a grade, such as grade("IT7"): nothing to allocate'
         )
-    price_unit = _price_unit(graded)
+    price_unit = _price_unit(setup, graded)
     parts = {
         tolerance.name: _part(setup, tolerance, straight, (finest, loosen), price_unit is not None)
         for tolerance in graded
@@ -138,7 +138,7 @@ def _choice(
         name: sum((float(line.slopes[column]) * sd) ** 2 for column, sd in sds.items())
         for name, line in straight.items()
     }
-    return Choice(spread.grade, width, cost_of(tolerance.price if priced else None, width), variances)
+    return Choice(spread.grade, width, cost_of(price_of(setup, tolerance) if priced else None, width), variances)
 
 
 def cost_of(price: Price | None, width: float) -> float:
@@ -149,9 +149,9 @@ def cost_of(price: Price | None, width: float) -> float:
     return 1e-3 / width if price is None else price_at(price, width)
 
 
-def _price_unit(graded: Sequence[Tolerance]) -> str | None:
+def _price_unit(setup: Setup, graded: Sequence[Tolerance]) -> str | None:
     """Return the unit of the prices when every part has one (a model has them all in one); None: the reciprocal law."""
-    units = [tolerance.price.unit for tolerance in graded if tolerance.price is not None]
+    units = [price.unit for tolerance in graded if (price := price_of(setup, tolerance)) is not None]
     return units[0] if units and len(units) == len(graded) else None
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from truing.declare.fields import InputField, ResultField
-from truing.declare.goals import Require, Vary
+from truing.declare.goals import Require, Vary, prices_in
 from truing.declare.specs import Given
 from truing.errors import InputError, TruingError
 from truing.testing.subject import Subject, fail
@@ -54,9 +54,9 @@ def _units(subject: Subject) -> Iterator[tuple[str, str]]:
         for unknown in effect.unknowns:
             yield f"unknown '{unknown.name}' of effect '{effect.name}'", unknown.unit
     for tolerance in model.tolerances.values():
-        if tolerance.price is not None:
-            yield f"the width of tolerance '{tolerance.name}'", tolerance.price.width
-            yield f"the price of tolerance '{tolerance.name}'", tolerance.price.unit
+        for price in prices_in(tolerance.price):
+            yield f"the width of tolerance '{tolerance.name}'", price.width
+            yield f"the price of tolerance '{tolerance.name}'", price.unit
 
 
 def defaults_keep_their_bounds(subject: Subject) -> None:
