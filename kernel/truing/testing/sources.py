@@ -66,7 +66,7 @@ def zero_is_the_base(subject: Subject) -> None:
 
 
 def references_are_neutral(subject: Subject) -> None:
-    """An effect changes nothing while all its conditions are at their references, unless they switch or only place it."""
+    """An effect changes nothing while its conditions are at their references, unless they switch or place it."""
     base = _answers(subject.setup)
     for effect in subject.model.effects.values():
         if not effect.needs or effect.acts_at_reference:
