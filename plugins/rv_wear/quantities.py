@@ -8,18 +8,19 @@ PAPER = "section 1.5 of the paper"
 INDICES = "chosen so that the sensitivity indices of the paper's Table 2 follow; Table 1 is lost"
 CATALOGUE = "known of reducers of this size; the paper's Table 1 is lost"
 CALIBRATED = "chosen so that the paper's wear of 3.127 um after 6000 h follows"
+LARGEST = 1000.0  # mm or um: no reducer has a metre, no deviation or wear a millimetre
 ZONE = "middle of its zone; the zones are chosen so that the printed mean, reliability and cost follow"
 
 
 def length(value: float, unit: Literal["mm", "um"], symbol: str, note: str, source: str) -> float:
-    """Declare a size of the gearing, above zero."""
-    declared: float = given(value, unit, symbol=symbol, note=note, source=source, above=0)
+    """Declare a size, above zero; a thousand of its unit was meant in another one."""
+    declared: float = given(value, unit, symbol=symbol, note=note, source=source, above=0, below=LARGEST)
     return declared
 
 
 def deviation(value: float, symbol: str, note: str) -> float:
     """Declare an error factor of the backlash at the middle of its zone; no part is off by a millimetre."""
-    declared: float = given(value, "um", symbol=symbol, note=note, source=ZONE, at_least=-1000, at_most=1000)
+    declared: float = given(value, "um", symbol=symbol, note=note, source=ZONE, at_least=-LARGEST, at_most=LARGEST)
     return declared
 
 
@@ -39,8 +40,8 @@ class Reducer:
         symbol="Delta r_rp",
         note="grinding with another pin radius; above 0 the tooth becomes thinner",
         source=PAPER,
-        at_least=-1000,
-        at_most=1000,
+        at_least=-LARGEST,
+        at_most=LARGEST,
     )
     shift_modification: Float = given(
         -30.0,
@@ -48,8 +49,8 @@ class Reducer:
         symbol="Delta r_p",
         note="grinding on another pin circle; below 0 the tooth becomes thinner",
         source=PAPER,
-        at_least=-1000,
-        at_most=1000,
+        at_least=-LARGEST,
+        at_most=LARGEST,
     )
     sun_radius: Float = length(18.0, "mm", "r_1", "pitch circle of the sun gear", INDICES)
     centre_distance: Float = length(63.0, "mm", "a", "sun to planet, and circle of the cranks", INDICES)
@@ -67,7 +68,7 @@ class Reducer:
     young_modulus: Float = given(2.06e5, "MPa", symbol="E", note="steel, disc and pins", source="literature", above=0)
     poisson_ratio: Float = given(0.3, "", symbol="nu", note="steel, disc and pins", source="literature", at_least=0,
                                  below=0.5)  # fmt: skip
-    pressure_viscosity: Float = given(2.2e-8, "1/Pa", symbol="alpha", note="pressure-viscosity coefficient of the base oil",
+    pressure_viscosity: Float = given(2.2e-8, "1/Pa", symbol="alpha", note="pressure viscosity of the base oil",
                                       source="mineral oil 1.5e-8 to 2.4e-8", above=0)  # fmt: skip
     composite_roughness: Float = length(0.694, "um", "R_q", "root mean square of both surfaces", CALIBRATED)
     # How it is calculated
@@ -96,10 +97,19 @@ class Reducer:
     bearing_clearance: Float = deviation(11.1, "delta_b", "16: clearance of the crank bearings")
     # What is asked
     permitted_backlash: Float = given(1.0, "arcmin", symbol="Delta phi_per", note="permitted", source=PAPER, above=0)
-    required_reliability: Float = given(0.95, "", symbol="R_per", note="at the working time", source=PAPER, above=0,
-                                        below=1)  # fmt: skip
-    permitted_pressure: Float = given(2000.0, "MPa", symbol="p_per", note="mean contact pressure up to which this holds",
+    required_reliability: Float = given(
+        0.95, "", symbol="R_per", note="at the working time; the paper's 100 % is read as 0.999", source=PAPER,
+        above=0, at_most=1,
+    )  # fmt: skip
+    permitted_pressure: Float = given(2000.0, "MPa", symbol="p_per", note="mean contact pressure up to which it holds",
                                       source="elastic contact of hardened steel", above=0)  # fmt: skip
+    design_clearance: Float = given(
+        4.0, "um", symbol="Delta r_0", note="radial clearance that an optimisation of the modifications keeps",
+        source="difference of the paper's two modifications", at_least=0, at_most=LARGEST,
+    )  # fmt: skip
+    cost_form: Literal["power", "exponential", "process"] = given(
+        "power", note="reading of the paper's lost cost functions; only power gives its total of 1402 yuan"
+    )
     # Neutral inputs: effects reach the calculation through them
     wear_rate_factor: Float = given(1.0, "", symbol="f_k", note="neutral 1: multiplies the wear coefficient", above=0)
     sliding_factor: Float = given(
@@ -113,10 +123,14 @@ class Reducer:
         0.2, "Pa*s", symbol="eta", note="of the base oil at work; acts only with a film", above=0
     )
     depth_factor: Float = given(1.0, "", symbol="f_h", note="neutral 1: multiplies the wear depth", at_least=0)
-    extra_wear: Float = given(0.0, "um", symbol="h_0", note="neutral 0: depth lost beside the law of wear")
-    loaded_share: Float = given(1.0, "", symbol="f_T", note="neutral 1: share of the working time in which a flank of the "
-                                "backlash was loaded", at_least=0, at_most=1)  # fmt: skip
-    lost_motion_share: Float = given(1.0, "", symbol="kappa_w", note="neutral 1: share of the largest wear that is felt",
-                                     at_least=0)  # fmt: skip
+    extra_wear: Float = given(0.0, "um", symbol="h_0", note="neutral 0: depth lost beside the law of wear",
+                              at_least=-LARGEST, at_most=LARGEST)  # fmt: skip
+    loaded_share: Float = given(
+        1.0, "", symbol="f_T", at_least=0, at_most=1,
+        note="neutral 1: share of the working time in which a flank of the backlash was loaded",
+    )  # fmt: skip
+    lost_motion_share: Float = given(
+        1.0, "", symbol="kappa_w", note="neutral 1: share of the largest wear that is felt", at_least=0
+    )
     pin_wear_ratio: Float = given(0.0, "", symbol="kappa_p", note="neutral 0: wear of the pins over that of the disc",
                                   at_least=0)  # fmt: skip
