@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from truing.studies.bench import Bench, Check
     from truing.studies.reliability import Odds, Reliability
     from truing.studies.sensitivity import Sensitivities, Sensitivity
+    from truing.studies.surrogate import Emulated, Surrogate
     from truing.studies.sweep import Sweep, Swept
 
 _HOMES = {
@@ -40,6 +41,7 @@ _HOMES = {
     "truing.studies.bench": ("Bench", "Check"),
     "truing.studies.reliability": ("Odds", "Reliability"),
     "truing.studies.sensitivity": ("Sensitivities", "Sensitivity"),
+    "truing.studies.surrogate": ("Emulated", "Surrogate"),
     "truing.studies.sweep": ("Sweep", "Swept"),
 }  # fmt: skip
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
@@ -53,6 +55,7 @@ __all__ = [  # noqa: RUF022  # in the order of a plugin's story
     "Model", "Section", "Record", "Study", "Published", "Finding",
     "Words", "Table", "Drawing", "Block",
     "Sweep", "Swept", "Sensitivity", "Sensitivities", "Reliability", "Odds", "Allocation", "Allotted",
+    "Surrogate", "Emulated",
     "Bench", "Check",
     "hookimpl", "hookspec", "Kernel", "TruingError",
 ]  # fmt: skip

@@ -15,7 +15,19 @@ from typing import Any
 import pytest
 
 import truing
-from truing import Allocation, Kernel, Record, Reliability, Sensitivity, Sweep, Table, errors, hookspecs
+from truing import (
+    Allocation,
+    Emulated,
+    Kernel,
+    Record,
+    Reliability,
+    Sensitivity,
+    Surrogate,
+    Sweep,
+    Table,
+    errors,
+    hookspecs,
+)
 from truing.declare.sources import HISTORIES, SINCE_START
 from truing.errors import TruingError, UnitError
 from truing.evaluate import evaluate
@@ -37,7 +49,7 @@ HOOKS = sorted(
     name for name, item in vars(hookspecs).items() if name.startswith("truing_") and inspect.isfunction(item)
 )
 STUDIES: dict[type[Any], type[Any]] = {
-    Sweep: Swept, Sensitivity: Sensitivities, Reliability: Odds, Allocation: Allotted,
+    Sweep: Swept, Sensitivity: Sensitivities, Reliability: Odds, Allocation: Allotted, Surrogate: Emulated,
 }  # fmt: skip
 
 
