@@ -1,4 +1,4 @@
-"""What the reducer calculation answers for every machine that is drawn; what is known once per run comes from studies."""
+"""What the reducer calculation answers for every machine; what is known once per run comes from studies."""
 
 from truing import Float, found, results
 
@@ -15,13 +15,18 @@ class Wear:
                         formula="sqrt(1 - short_width**2)")  # fmt: skip
     radial_clearance: Float = found("um", symbol="Delta r", note="between disc and pins before the disc is turned",
                                     formula="equidistant_modification - shift_modification")  # fmt: skip
+    equidistant_high: Float = found("um", symbol="Delta r_rp,max", note="above it disc and pins interfere",
+                                    formula="radial_clearance / (1 - root)", source="equation 17")  # fmt: skip
+    equidistant_low: Float = found("um", symbol="Delta r_rp,min", source="equation 17",
+                                   note="below it the disc has more than twice the radial clearance somewhere",
+                                   method="largest clearance over the phase angle")  # fmt: skip
     disc_torque: Float = found("N*m", symbol="T_c", note="on the worse of the two discs",
                                formula="torque_share * output_torque")  # fmt: skip
     start_force: Float = found("N", symbol="F_max,0", note="largest force without any clearance",
                                formula="4 * disc_torque / (short_width * (pin_count - 1) * pin_circle_radius)",
                                source="equation 1")  # fmt: skip
     max_force: Float = found("N", symbol="F_max", note="force at the longest arm, unworn, the worst position",
-                             method="torque balance of all loaded pins, equations 1b to 4, solved together")  # fmt: skip
+                             method="torque balance of all loaded pins, equations 1b to 4")  # fmt: skip
     approach: Float = found("um", symbol="delta_max", note="of disc and pin under that force",
                             method="line contact, equation 1b")  # fmt: skip
     largest_force: Float = found("N", symbol="F_i", note="largest force on a pin, unworn", method="equation 2")

@@ -12,11 +12,15 @@ def rv_wear(reducer: Reducer) -> Wear:
     """Forces, wear and backlash of one reducer or of a batch; every Float is a number or an array (n,), SI."""
     found: Worn = worn(reducer)
     short_width = reducer.eccentricity * reducer.pin_count / reducer.pin_circle_radius
+    root = np.sqrt(1.0 - short_width**2)
+    radial_clearance = reducer.equidistant_modification - reducer.shift_modification
     shares = backlash_of(reducer, found.felt)
     return Wear(
         short_width=short_width,
-        root=np.sqrt(1.0 - short_width**2),
-        radial_clearance=reducer.equidistant_modification - reducer.shift_modification,
+        root=root,
+        radial_clearance=radial_clearance,
+        equidistant_high=radial_clearance / (1.0 - root),
+        equidistant_low=found.equidistant_low,
         disc_torque=found.disc_torque,
         start_force=found.start_force,
         max_force=found.max_force,

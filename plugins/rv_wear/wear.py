@@ -3,9 +3,20 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from rv_wear import coefficient
+from rv_wear.courses import Unworn, all_histories, all_unworn, read
+from rv_wear.feasibility import holding, refuse
+from rv_wear.history import MOST_STEPS
+from rv_wear.mesh import Array, Mesh, distinct, mesh_of, some_of
 from rv_wear.quantities import Reducer
-from truing import Float
+from truing import Float, feasible
+
+TOO_FAR = (
+    f"the wear needs more than {MOST_STEPS} reconstructions of the profile: check pressure_viscosity, "
+    "composite_roughness (um, not mm) and working_time, or enlarge reconstruction_depth"
+)
 
 
 @dataclass(frozen=True)
@@ -19,6 +30,7 @@ class Worn:
     largest_force: Float
     loaded_pins: Float
     max_pressure: Float
+    equidistant_low: Float
     mesh_period: Float
     coefficient: Float
     depth: Float
@@ -26,15 +38,93 @@ class Worn:
     felt: Float
 
 
+@dataclass(frozen=True)
+class Meshes:
+    """The distinct meshes that can be calculated, and for every row its place among them (-1: none, None: all one)."""
+
+    mesh: Mesh
+    count: int
+    place: NDArray[np.intp] | None
+
+    def to_rows(self, values: Array) -> Float:
+        """Give every row the value of its mesh; NaN where it has none."""
+        if self.place is None:
+            return np.float64(values[0]) if self.count else np.float64(np.nan)
+        return np.append(values, np.nan)[self.place]
+
+
 def worn(reducer: Reducer) -> Worn:
-    """Wear the disc: provisional power law until the mesh is in place."""
-    torque = reducer.torque_share * reducer.output_torque
-    short_width = reducer.eccentricity * reducer.pin_count / reducer.pin_circle_radius
-    start = 4.0 * torque / (short_width * (reducer.pin_count - 1) * reducer.pin_circle_radius)
-    depth = 3.129e-6 * (reducer.working_time / 2.16e7) ** 0.77 * np.ones_like(start)
-    nothing = 0.0 * depth
+    """Forces of the new mesh and wear of the disc, every Float a number or an array (n,), in any mixture."""
+    meshes = meshes_of(reducer)
+    new = all_unworn(meshes.mesh, meshes.count)
+    oil = oil_part(reducer)
+    full = exposure_of(reducer, oil, reducer.working_time)
+    depth, angle = depth_at(meshes, new, full)
+    loaded = depth
+    if not (np.ndim(reducer.loaded_share) == 0 and reducer.loaded_share == 1.0):
+        part = exposure_of(reducer, oil, reducer.working_time * reducer.loaded_share)
+        loaded, _ = depth_at(meshes, new, part)
+    feasible(~np.isnan(depth) | np.isnan(full), TOO_FAR)
+    share = reducer.lost_motion_share * (1.0 + reducer.pin_wear_ratio)
     return Worn(
-        disc_torque=torque, start_force=start, max_force=1.7 * start, approach=nothing, largest_force=start,
-        loaded_pins=nothing + 10, max_pressure=nothing, mesh_period=1.0 / (reducer.output_speed * reducer.pin_count),
-        coefficient=nothing, depth=depth, angle=nothing, felt=depth,
-    )  # fmt: skip
+        disc_torque=reducer.torque_share * reducer.output_torque,
+        start_force=mesh_of(reducer).start_force,
+        max_force=meshes.to_rows(new.scale),
+        approach=meshes.to_rows(new.approach),
+        largest_force=meshes.to_rows(new.largest_force),
+        loaded_pins=meshes.to_rows(new.loaded_pins),
+        max_pressure=meshes.to_rows(new.pressure),
+        equidistant_low=meshes.to_rows(new.lowest_equidistant),
+        mesh_period=1.0 / (reducer.output_speed * reducer.pin_count),
+        coefficient=oil * meshes.to_rows(new.contact_part),
+        depth=reducer.depth_factor * depth + reducer.extra_wear,
+        angle=angle,
+        felt=share * (reducer.depth_factor * loaded + reducer.extra_wear),
+    )
+
+
+def meshes_of(reducer: Reducer) -> Meshes:
+    """Find the distinct meshes of a call and refuse, by row, those that cannot be."""
+    mesh, of_row = distinct(mesh_of(reducer))
+    good, broken = holding(mesh)
+    if not broken:
+        return Meshes(mesh, len(good), of_row)
+    refuse(broken, of_row)
+    kept = np.flatnonzero(good)
+    places = np.where(good, np.cumsum(good) - 1, -1)
+    return Meshes(some_of(mesh, kept), len(kept), None if of_row is None else places[of_row])
+
+
+def oil_part(reducer: Reducer) -> Float:
+    """What oil, surfaces and the neutral factor do to the wear coefficient of every contact alike, m^1.589/Pa."""
+    modulus = reducer.young_modulus / (1.0 - reducer.poisson_ratio**2)
+    part = coefficient.lubricant_part(modulus, reducer.pressure_viscosity, reducer.composite_roughness)
+    return part * reducer.wear_rate_factor
+
+
+def exposure_of(reducer: Reducer, oil: Float, time: Float) -> Float:
+    """Number of meshings in a time (s), times all that multiplies wear at every contact alike.
+
+    Ageing makes the momentary coefficient k (1 + a t), so a time T counts as T (1 + a T / 2).
+    """
+    meshings = time * (1.0 + 0.5 * reducer.ageing_rate * time) * reducer.output_speed * reducer.pin_count
+    return oil * (meshings * reducer.sliding_factor)
+
+
+def depth_at(meshes: Meshes, new: Unworn, exposure: Float) -> tuple[Float, Float]:
+    """Largest wear (m) and its phase angle at an exposure of every row; NaN where a row has no mesh or goes too far."""
+    single = np.ndim(exposure) == 0 and meshes.place is None
+    rows = np.atleast_1d(np.asarray(exposure, dtype=float))
+    place = np.zeros(rows.shape, dtype=np.intp) if meshes.place is None else meshes.place
+    rows = np.broadcast_to(rows, place.shape)
+    depth, angle = np.full(rows.shape, np.nan), np.full(rows.shape, np.nan)
+    reach = np.zeros(meshes.count)
+    used = np.where(np.isfinite(rows), rows, 0.0)
+    np.maximum.at(reach, place[place >= 0], used[place >= 0])
+    for places, history in all_histories(meshes.mesh, reach, new.first_step):
+        column = np.full(meshes.count + 1, -1)
+        column[places] = np.arange(len(places))
+        of_row = column[place]
+        mine = np.flatnonzero(of_row >= 0)
+        depth[mine], angle[mine] = read(history, of_row[mine], rows[mine])
+    return (np.float64(depth[0]), np.float64(angle[0])) if single else (depth, angle)

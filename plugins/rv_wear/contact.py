@@ -1,0 +1,57 @@
+"""Line contact of disc and pin: half width, approach, and the force that an approach needs; SI, arrays welcome.
+
+Roark's formulas for two cylinders of equal elastic constants; the pins lie in half-round grooves and do not bend.
+"""
+
+import numpy as np
+
+from rv_wear.mesh import Mesh
+from truing import Float
+
+NEWTON = 60
+CLOSE = 1e-15
+
+
+def compliance(mesh: Mesh) -> Float:
+    """2 (1 - nu^2) / (pi E B): approach per force before the logarithm, m/N."""
+    return 2.0 / (np.pi * mesh.equivalent_modulus * mesh.width)
+
+
+def half_width(mesh: Mesh, force: Float, relative_radius: Float) -> Float:
+    """Half width b of the contact, sqrt(8 F R' (1 - nu^2) / (pi E B))."""
+    return np.sqrt(4.0 * compliance(mesh) * force * relative_radius)
+
+
+def depth_number(mesh: Mesh, profile_radius: Float, relative_radius: Float) -> Float:
+    """What equation 1b is without the force: 2/3 + ln(16 r_rp |rho| F / c^2) with the full width c = 2 b."""
+    radius = np.minimum(np.abs(profile_radius), mesh.pin_circle_radius)  # no body is deeper than the disc
+    return 2.0 / 3.0 + np.log(mesh.pin_radius * radius / (compliance(mesh) * relative_radius))
+
+
+def approach(mesh: Mesh, force: Float, number: Float) -> Float:
+    """Approach of disc and pin under a force, equation 1b; ``number`` is that of ``depth_number``."""
+    return compliance(mesh) * force * (number - np.log(force))
+
+
+def force_of(mesh: Mesh, approached: Float, number: Float) -> Float:
+    """Force that an approach needs: equation 1b solved by Newton's rule; 0 where nothing is approached.
+
+    Valid while the force stays far below exp(number - 1), where the formula ends (about 1e9 N for steel of this size).
+    """
+    each = compliance(mesh)
+    wanted = np.maximum(approached, 1e-30) / each
+    force = wanted / np.maximum(number - np.log(wanted / number), 2.0)
+    moving = np.ones(np.shape(force), dtype=bool)
+    for _ in range(NEWTON):
+        slope = np.maximum(number - np.log(force) - 1.0, 1.0)
+        step = (wanted - force * (number - np.log(force))) / slope
+        force = np.where(moving, np.maximum(force + step, 0.5 * force), force)
+        moving = moving & (np.abs(step) > CLOSE * force)
+        if not moving.any():
+            break
+    return np.where(approached > 0.0, force, 0.0)
+
+
+def mean_pressure(mesh: Mesh, force: Float, relative_radius: Float) -> Float:
+    """Force over the area of the contact, equation 5; 0 without force."""
+    return np.sqrt(np.maximum(force, 0.0) / (16.0 * compliance(mesh) * relative_radius)) / mesh.width
