@@ -88,7 +88,8 @@ def lowest_equidistant(mesh: Mesh, largest: Float | None = None, points: int = 2
     example the approach under load. Found at *points* phase angles, refined by a parabola through the best three.
     """
     limit = 2.0 * mesh.radial_clearance if largest is None else largest
-    angle = np.linspace(0.0, np.pi, points)[1:-1].reshape(-1, *([1] * np.ndim(mesh.short_width)))
+    axes = max(np.ndim(mesh.short_width), np.ndim(limit))
+    angle = np.linspace(0.0, np.pi, points)[1:-1].reshape(-1, *([1] * axes))
     sine, cosine, distance = np.sin(angle), np.cos(angle), pin_distance(mesh, angle)
     by_equidistant = 1.0 - sine / distance
     by_shift = (1.0 - mesh.short_width * cosine - mesh.root * sine) / distance
