@@ -4,7 +4,7 @@ Curves over the phase angle have the shape (n, k), those over the time (n, t); n
 """
 
 from dataclasses import dataclass, fields, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -117,7 +117,7 @@ def _in_rows(reducer: Reducer) -> Reducer:
     if not arrays:
         return reducer
     rows = max(len(value) for value in arrays)
-    wide = {
+    wide: dict[str, Any] = {
         name: np.broadcast_to(value, (rows,))
         for name, value in values.items()
         if isinstance(value, float | np.ndarray | np.floating)
