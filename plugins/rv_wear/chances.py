@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from rv_wear.curves import Flank
+
 STEP = 1e-6  # m; equation 21 is linear, so any step gives its derivatives
 COUNTED = "counted among the machines that were drawn, equation 23"
 FACTORS: dict[int, str] = {
@@ -26,8 +28,18 @@ AT_SAME_WEAR = (4, 5)
 
 @results
 class History:
-    """Wear and backlash over the working time, from new."""
+    """Forces and wear along the flank; wear and backlash over the working time, from new."""
 
+    phase_angle: Float = axis("deg", symbol="psi", note="phase angle of a pin, from the crank line")
+    normal_force: Float = found("N", symbol="F", along="phase_angle", note="force on a pin, unworn",
+                                method="equation 2 at every position of the disc")  # fmt: skip
+    worn_force: Float = found("N", symbol="F_T", along="phase_angle", note="force on a pin after the working time",
+                              method="equation 2 with the worn profile")  # fmt: skip
+    wear_depth: Float = found("um", symbol="h", along="phase_angle", note="wear after the working time",
+                              method="equations 13 to 16")  # fmt: skip
+
+    wear_place: Float = found("%", symbol="x_h", note="place of the deepest wear in the loaded part of the flank",
+                              method="0 where the contact of the new mesh begins, 100 % where it ends")  # fmt: skip
     history_time: Float = axis("h", symbol="T", note="working time")
     wear_history: Float = found("um", symbol="h_max", along="history_time", note="deepest wear",
                                 method="equations 13 to 16 up to each time")  # fmt: skip
@@ -90,12 +102,33 @@ class Chances:
 
 
 def history(swept: Swept) -> History:
-    """Deepest wear and backlash along the working time."""
+    """The flank after its working time; wear and backlash over the time, empty if another input is swept."""
+    import numpy as np
+
+    from rv_wear.curves import flank
+
+    reducer: Reducer = swept.inputs
+    new, worn = flank(reducer), flank(reducer, float(reducer.working_time))
+    wear = worn.wear[0]
+    along_time = swept.over == "working_time"
+    nothing = np.empty(0)
     return History(
-        history_time=swept.axis,
-        wear_history=swept.results["max_wear"],
-        backlash_history=swept.results["backlash"],
+        phase_angle=new.angle,
+        normal_force=new.force[0],
+        worn_force=worn.force[0],
+        wear_depth=np.where(wear > 0.0, reducer.depth_factor * wear + reducer.extra_wear, 0.0),
+        wear_place=place_of_wear(new, wear),
+        history_time=swept.axis if along_time else nothing,
+        wear_history=swept.results["max_wear"] if along_time else nothing,
+        backlash_history=swept.results["backlash"] if along_time else nothing,
     )
+
+
+def place_of_wear(new: "Flank", wear: "NDArray[np.float64]") -> float:
+    """Where the wear is deepest: 0 where the contact of the new mesh begins, 1 where it ends."""
+    loaded = new.angle[new.force[0] > 0.0]
+    span = float(loaded[-1] - loaded[0])
+    return float(new.angle[wear.argmax()] - loaded[0]) / span if span else nan
 
 
 def indices(found: Sensitivities) -> Indices:

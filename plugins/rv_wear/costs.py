@@ -6,9 +6,12 @@ Industry 116 (1994) 199. Every formula is in the width of the zone in mm and giv
 printed total of 1402 yuan.
 """
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from truing import Price
+from truing import Price, by_choice
+
+if TYPE_CHECKING:
+    from truing.declare.goals import PriceByChoice
 
 Kind = Literal["size", "place", "runout"]
 FORMS = ("power", "exponential", "process")
@@ -33,6 +36,11 @@ FORMULAS: dict[str, dict[Kind, str]] = {
 }
 
 
-def price(kind: Kind, form: str = "power") -> Price:
+def price(kind: Kind, form: str) -> Price:
     """Return the price of a tolerance of this kind in one form."""
     return Price(FORMULAS[form][kind], width="mm", unit="yuan")
+
+
+def prices(kind: Kind) -> "PriceByChoice":
+    """Return the price of a tolerance of this kind in the form that the inputs state."""
+    return by_choice("cost_form", **{form: price(kind, form) for form in FORMS})

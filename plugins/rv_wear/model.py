@@ -1,11 +1,15 @@
 """The reducer as truing knows it: function, error sources, goals, studies and sheet."""
 
+from pathlib import Path
+
 from rv_wear.bill import Costs, cost
 from rv_wear.calculation import rv_wear
 from rv_wear.chances import chances, history, indices
 from rv_wear.effects import EFFECTS
+from rv_wear.modifications import Modifications, trend
 from rv_wear.tolerances import TOLERANCES
-from truing import Minimise, Model, Reliability, Require, Sensitivity, Sweep
+from rv_wear.validity import Validity
+from truing import Minimise, Model, Reliability, Require, Sensitivity, Sweep, Vary
 
 LITERATURE = [
     "The paper: Liu Jiang, Xiao Zhengming, Zhang Longlong, Liu Weibiao (劉江, 肖正明, 張龍隆, 劉衛標), Transmission "
@@ -19,18 +23,23 @@ RV_WEAR = Model(
     function=rv_wear,
     errors=[*TOLERANCES, *EFFECTS],
     objectives=[
+        Vary("equidistant_modification", "-0.045 mm", "0.004 mm"),
+        Vary("shift_modification", by="equidistant_modification - design_clearance"),
         Minimise("tolerance_price"),
         Minimise("max_wear"),
         Require("backlash", at_most="permitted_backlash", reliability="required_reliability"),
         Require("max_pressure", at_most="permitted_pressure"),
     ],
     studies=[
+        Validity(),
+        Modifications(gives=trend),
         Sweep(over="working_time", at="0..6000 h", points=25, gives=history),
         Sensitivity(of="backlash", gives=indices),
         Reliability(over="working_time", at="0..6000 h", points=25, gives=chances),
         Costs(gives=cost),
     ],
     cites=LITERATURE,
+    example=Path(__file__).with_name("example.toml"),
     summary="How far does the cycloid disc of an RV reducer wear, what becomes of its backlash, and which tolerances "
     "and modifications keep it within its limit at the least cost?",
 )

@@ -7,7 +7,7 @@ standard deviations wide; the inputs hold the middles.
 
 from typing import Literal
 
-from rv_wear.costs import Kind, price
+from rv_wear.costs import Kind, prices
 from truing import Tolerance, normal, zone
 
 # Which cost function holds for which zone; the paper names the functions, not the features they are for.
@@ -33,7 +33,7 @@ def factor(
     """A zone of an error factor, ``half`` to either side of its middle; one that grows up keeps its lower end."""
     return Tolerance(
         name, zone(f"-{half}", half, grows=grows), on=on or (name,), why=why, source=SOURCE,
-        price=price(PRICED[name]) if name in PRICED else None,
+        price=prices(PRICED[name]) if name in PRICED else None,
     )  # fmt: skip
 
 
