@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import pickle
+import threading
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import lru_cache
@@ -12,7 +14,10 @@ from truing.declare.fields import Part, spec_of
 from truing.declare.model import Model
 from truing.errors import PluginError
 from truing.kernel import Kernel, Origin, kernel_for
+from truing.kernel.source import code_hash
 from truing.setup import Setup, SwitchedOn
+
+_LOADING = threading.Lock()  # a worker may have several threads, and a plugin is loaded once
 
 
 @dataclass(frozen=True)
@@ -23,6 +28,8 @@ class Packed:
     plugin: str
     model: str
     content: bytes
+    code: str = ""
+    """The hash of a plugin in one file: a worker may find another one there, or have loaded it before it changed."""
 
 
 def pack(setup: Setup) -> Packed:
@@ -36,12 +43,27 @@ def pack(setup: Setup) -> Packed:
         "calibrated": dict(setup.calibrated),
         "seed": setup.seed,
     }
-    return Packed(setup.origin.ref, setup.origin.name, setup.model.name, pickle.dumps(content, protocol=5))
+    origin = setup.origin
+    return Packed(origin.ref, origin.name, setup.model.name, _plain(content), _file_hash(origin.ref))
+
+
+def _plain(content: Any) -> bytes:
+    """Pickle so that equal contents are equal bytes: nothing is referred to by where it lies in memory."""
+    stream = io.BytesIO()
+    pickler = pickle.Pickler(stream, protocol=5)
+    pickler.fast = True
+    pickler.dump(content)
+    return stream.getvalue()
 
 
 def unpack(packed: Packed) -> Setup:
     """Make the setup again from the plugin that ``ref`` names. Raises PluginError where it offers no such model."""
-    model, origin = _model(packed.ref, packed.plugin, packed.model)
+    with _LOADING:
+        if packed.code != _loaded_hash(packed.ref):
+            raise PluginError(
+                f"a worker has another {packed.ref.partition(':')[2]}; bring the same file there and start it again"
+            )
+        model, origin = _model(packed.ref, packed.plugin, packed.model)
     content = pickle.loads(packed.content)  # after the plugin was loaded: its classes can be found now
     spreads = {name: tolerance.spread for name, tolerance in model.tolerances.items()}
     values = {model.input_fields[name].path: value for name, value in content["inputs"].items()}
@@ -73,6 +95,17 @@ def made(cls: type[Any], values: Mapping[tuple[str, ...], Any]) -> Any:
 
 def _plain_effect(item: SwitchedOn) -> tuple[str, dict[str, float], dict[str, float], tuple[tuple[float, ...], ...]]:
     return item.effect.name, dict(item.values), dict(item.sds), item.covariance
+
+
+def _file_hash(ref: str) -> str:
+    kind, _, path = ref.partition(":")
+    return code_hash(path) if kind == "file" else ""
+
+
+@lru_cache(maxsize=8)
+def _loaded_hash(ref: str) -> str:
+    """Return the hash of a plugin's file as it was when this process loaded it."""
+    return _file_hash(ref)
 
 
 @lru_cache(maxsize=8)

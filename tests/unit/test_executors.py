@@ -90,7 +90,7 @@ def test_workers_that_die_again_and_again_end_the_run():
     "address", ["", "parallel", "processes", "processes:0", "processes:-1", "processes:two", "dask:x"]
 )
 def test_an_unknown_place_is_one_sentence(address):
-    with pytest.raises(UsageError, match="write serial or processes:4"):
+    with pytest.raises(UsageError, match="write serial, processes:4 or dask:tcp://host:8786"):
         open_executor(address)
 
 

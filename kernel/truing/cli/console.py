@@ -99,8 +99,8 @@ def verb(function: Callable[P, int]) -> Callable[P, None]:
         except BrokenPipeError:
             close_output()
             code = 0
-        except KeyboardInterrupt:
-            say(INTERRUPTED)
+        except KeyboardInterrupt as end:
+            say(str(end) or INTERRUPTED)
             code = 130
         except Exception as error:
             if settings.traceback:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,9 +13,10 @@ from truing.cli.console import Settings, one_line, out, out_json, progress_bar, 
 from truing.cli.load import find_offer, read_or_example
 from truing.cli.run_printed import lines_of
 from truing.cli.words import AsJson, Changed, Plugin
+from truing.errors import UsageError
 
 if TYPE_CHECKING:
-    from truing.report.run import Done
+    from truing.report.run import Done, RunOrder
 
 
 @verb
@@ -26,7 +29,13 @@ def run(
     changed: Changed = None,
     cases: Annotated[Path | None, typer.Option("--cases", help="A CSV file: every row is a case.")] = None,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")] = None,
-    workers: Annotated[int, typer.Option("--workers", min=1, help="Processes that share the work.")] = 1,
+    workers: Annotated[int | None, typer.Option("--workers", min=1, help="Processes that share the work.")] = None,
+    cluster: Annotated[
+        str, typer.Option("--cluster", metavar="ADDRESS", help="A dask scheduler, tcp://HOST:PORT, that shares it out.")
+    ] = "",
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Keep finished batches, and take up those of an interrupted run.")
+    ] = False,
     pdf: Annotated[bool, typer.Option("--pdf", help="Print the sheet to PDF with an installed browser.")] = False,
     as_json: AsJson = False,
 ) -> int:
@@ -35,11 +44,13 @@ def run(
     from truing.report.run import RunOrder, perform
 
     settings = settings_of(context)
+    if cluster and workers is not None:
+        raise UsageError("--cluster and --workers exclude each other: a cluster has its own workers")
     offer = find_offer(plugin, settings)
     setup = read_or_example(offer, inputs, changed or (), word=plugin, settings=settings)
     folder = output or Path("runs") / (inputs.stem if inputs else offer.name)
-    order = RunOrder(folder=folder, cases=cases, workers=workers, pdf=pdf)
-    with progress_bar(settings) as progress, told_by_line(setup):
+    order = RunOrder(folder, cases, workers=workers or 1, cluster=cluster, resume=resume, pdf=pdf)
+    with progress_bar(settings) as progress, told_by_line(setup), _told_what_is_kept(order):
         done = perform(setup, offer, order, progress)
     _say_beside(done, settings)
     if as_json:
@@ -49,9 +60,24 @@ def run(
     return 0 if done.passed else 1
 
 
+@contextmanager
+def _told_what_is_kept(order: RunOrder) -> Iterator[None]:
+    """Say of an interrupt whether finished batches are kept."""
+    from truing.runs.partial import partial_folder
+
+    try:
+        yield
+    except KeyboardInterrupt:
+        if order.resume and (kept := partial_folder(order.folder)).is_dir():
+            raise KeyboardInterrupt(
+                f"calc: interrupted; finished batches are kept in {kept}, the same command goes on from there"
+            ) from None
+        raise
+
+
 def _say_beside(done: Done, settings: Settings) -> None:
     """Say what is no result: warnings, cases that failed, how the printing went."""
-    for warning in done.calculation.warnings:
+    for warning in (*done.calculation.warnings, *done.remarks):
         settings.say(f"warning: {one_line(warning)}")
     if done.cases is not None:
         for case in done.cases.cases:

@@ -6,6 +6,7 @@ import platform
 import time
 from collections.abc import Mapping
 from concurrent.futures import Executor
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,13 +14,14 @@ from typing import Any
 from truing.calculation import Calculation, calculate
 from truing.cases import CasesTable, run_cases
 from truing.errors import OutputError
-from truing.executors import open_executor
+from truing.executors import BatchLog, KeptExecutor, Place, open_executor
 from truing.kernel import Offer
 from truing.published import compare_published
 from truing.report.pdf import pdf_bytes
 from truing.report.render import html_of, markdown_of
 from truing.report.sheet import make_sheet
 from truing.runs.folder import demand_place, write_run
+from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
 from truing.studies.bench import Progress
@@ -32,17 +34,30 @@ class RunOrder:
     folder: Path
     cases: Path | None = None
     workers: int = 1
+    cluster: str = ""
+    resume: bool = False
     pdf: bool = False
+
+    @property
+    def place(self) -> str:
+        """Where it is computed, as ``open_executor`` reads it."""
+        if self.cluster:
+            return f"dask:{self.cluster}"
+        return "serial" if self.workers == 1 else f"processes:{self.workers}"
 
 
 @dataclass(frozen=True)
 class Done:
-    """A finished run: its calculation (of the governing case), results.json, and what is to be said of the printing."""
+    """A finished run: its calculation (of the governing case), results.json, and what is to be said of the printing.
+
+    ``remarks`` say what befell the workers, which is no part of the results.
+    """
 
     calculation: Calculation
     document: Mapping[str, Any]
     cases: CasesTable | None = None
     note: str = ""
+    remarks: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -51,12 +66,24 @@ class Done:
 
 
 def perform(setup: Setup, offer: Offer, order: RunOrder, progress: Progress) -> Done:
-    """Run and write the folder; it is complete or absent, whatever happens."""
+    """Run and write the folder; it is complete or absent, whatever happens.
+
+    With ``resume`` finished batches are kept beside it until then, and those of an interrupted run are taken up.
+    """
     demand_place(order.folder)
+    with kept_batches(order.folder, identity_of(setup, code_of(setup))) if order.resume else nullcontext() as log:
+        return _perform(setup, offer, order, progress=progress, log=log)
+
+
+def _perform(setup: Setup, offer: Offer, order: RunOrder, *, progress: Progress, log: BatchLog | None) -> Done:
     started = time.time()
-    with open_executor("serial" if order.workers == 1 else f"processes:{order.workers}") as executor:
+    with open_executor(order.place) as place:
+        if order.cluster:
+            place.compare(code_of(setup))
+        executor = place if log is None else KeptExecutor(place, log)
         calculation, cases = _calculate(setup, offer, order, executor=executor, progress=progress)
-        lost = int(getattr(executor, "losses", 0))
+        place.settle()
+        computed = _computed(executor)
     verified = compare_published(offer, progress=progress, known=calculation)
     provenance = provenance_of(calculation.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
     sheet = make_sheet(calculation, provenance=provenance, verified=verified, cases=cases)
@@ -67,11 +94,20 @@ def perform(setup: Setup, offer: Offer, order: RunOrder, progress: Progress) -> 
         calculation,
         offer,
         provenance=provenance,
-        run_info=run_info(started, order.workers, lost),
+        run_info={**run_info(started), **computed},
         sheets=sheets,
         cases=cases,
     )
-    return Done(calculation, document, cases, note)
+    return Done(calculation, document, cases, note, tuple(computed["warnings"]))
+
+
+def _computed(place: Place) -> dict[str, Any]:
+    """Return what run.json says of where it was computed: workers, what befell them, batches that were taken up."""
+    return {
+        "workers": {"count": place.workers, "lost": place.losses, "where": place.where},
+        "resumed": place.resumed if isinstance(place, KeptExecutor) else 0,
+        "warnings": place.remarks(),
+    }
 
 
 def add_pdf(sheets: dict[str, str | bytes], folder: Path) -> str:
@@ -93,7 +129,7 @@ def _calculate(
     return run_cases(setup, read_cases(order.cases, offer, setup), executor=executor, progress=progress)
 
 
-def run_info(started: float, workers: int = 1, lost: int = 0) -> dict[str, Any]:
+def run_info(started: float) -> dict[str, Any]:
     """Return what may differ between two equal runs: date, duration, machine, user, workers."""
     import getpass
 
@@ -107,5 +143,5 @@ def run_info(started: float, workers: int = 1, lost: int = 0) -> dict[str, Any]:
         "machine": platform.node(),
         "system": platform.platform(),
         "user": user,
-        "workers": {"count": workers, "lost": lost},
+        "workers": {"count": 1, "lost": 0, "where": "serial"},
     }

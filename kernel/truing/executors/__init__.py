@@ -1,0 +1,36 @@
+"""Where batches are computed: here, in worker processes, or on a cluster. The answer never depends on which."""
+
+from __future__ import annotations
+
+from truing.errors import UsageError
+from truing.executors.kept import BatchLog, KeptExecutor
+from truing.executors.ordered import in_order
+from truing.executors.places import Place, SerialExecutor
+from truing.executors.processes import ProcessExecutor
+
+__all__ = [
+    "BatchLog",
+    "KeptExecutor",
+    "Place",
+    "ProcessExecutor",
+    "SerialExecutor",
+    "in_order",
+    "open_executor",
+]
+
+
+def open_executor(address: str) -> Place:
+    """Open "serial", "processes:N" or "dask:tcp://HOST:PORT"; a ``with`` block closes it.
+
+    Raises UsageError for any other address, and where no cluster answers.
+    """
+    kind, _, rest = address.partition(":")
+    if address == "serial":
+        return SerialExecutor()
+    if kind == "processes" and rest.isascii() and rest.isdigit() and int(rest) > 0:
+        return ProcessExecutor(int(rest))
+    if kind == "dask" and "://" in rest:
+        from truing.executors.cluster import ClusterExecutor
+
+        return ClusterExecutor(rest)
+    raise UsageError(f"'{address}' is no place to compute; write serial, processes:4 or dask:tcp://host:8786")

@@ -1,0 +1,217 @@
+"""A cluster: everything is left to dask.distributed, but for sentences, and a count of the workers that were lost."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import CancelledError, Future
+from contextlib import suppress
+from importlib import import_module
+from typing import Any
+
+from truing.errors import TruingError, UsageError
+from truing.executors.places import Place
+from truing.executors.versions import differences, versions_here
+
+CONNECT_SECONDS = 15
+WORKER_SECONDS = 30
+EMPTY_SECONDS = 60
+PATIENCE = 5.0
+MOST_RENEWALS = 3
+
+
+class ClusterExecutor(Place):
+    """The workers of a dask scheduler; dask hands out again what a lost worker had, ``losses`` counts such workers.
+
+    Raises UsageError where dask.distributed is missing, where no scheduler answers in 15 s, or no worker is there in
+    30 s; TruingError later, where the scheduler is lost, where no worker is left for 60 s, or where one batch has ended
+    several workers.
+    """
+
+    patience = PATIENCE
+
+    def __init__(self, address: str) -> None:
+        self.where = address
+        self._dask = _dask()
+        self._lock = threading.Lock()
+        self._seen: set[str] = set()
+        self._gone: list[str] = []
+        self._retired: set[str] = set()
+        self._warnings: dict[str, None] = {}
+        self._code: tuple[str, ...] = ()
+        self._renewals = 0
+        self._empty_since: float | None = None
+        self._grown = False
+        self._levels = _silenced()
+        try:
+            self._open()
+        except BaseException:
+            self._unsilence()
+            raise
+
+    def _open(self) -> None:
+        self._client = _connected(self._dask, self.where)
+        try:
+            _demand_worker(self._client, self.where)
+            self._client.subscribe_topic("all", self._heard)
+            self._executor = self._client.get_executor(pure=False)
+            self._present()
+        except BaseException:
+            self._client.close()
+            raise
+
+    @property
+    def losses(self) -> int:  # type: ignore[override]
+        """How many workers were lost: those that the scheduler says are gone and did not take their leave."""
+        with self._lock:
+            return len(self._gone)
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Hand a call to the scheduler."""
+        if self._grown:
+            self._present()
+        answer: Future[Any] = self._executor.submit(function, *args, **kwargs)
+        return answer
+
+    def compare(self, code: tuple[str, ...]) -> None:
+        """Compare versions, and the code of these packages or files, with those of all workers; note what differs."""
+        self._code = code
+        said = self._client.run(versions_here, code, on_error="return")
+        without = sorted(address for address, versions in said.items() if isinstance(versions, ModuleNotFoundError))
+        if without:
+            raise UsageError(f"worker {without[0]} of {self.where} has no truing; install it where the worker runs")
+        workers = {address: versions for address, versions in said.items() if isinstance(versions, dict)}
+        for sentence in differences(versions_here(code), workers):
+            self._warnings.setdefault(sentence)
+
+    def is_loss(self, error: BaseException) -> bool:
+        """Tell whether the cluster, and not the job, failed."""
+        lost = (CancelledError, self._dask.KilledWorker, self._dask.comm.core.CommClosedError)
+        return isinstance(error, lost) or self._client.status == "closed"
+
+    def renew(self, error: BaseException) -> None:
+        """Connect again, for work that was cancelled with the connection. Raises TruingError where that fails."""
+        if isinstance(error, self._dask.KilledWorker):
+            times = error.allowed_failures + 1
+            raise TruingError(
+                f"{times} workers of {self.where} ended over the same batch; their logs say why (memory, most often)"
+            )
+        self._renewals += 1
+        if self._renewals > MOST_RENEWALS:
+            raise TruingError(f"the work was cancelled {self._renewals} times at {self.where}; is it restarted again?")
+        with suppress(Exception):
+            self._client.close(timeout=1)
+        try:
+            self._open()
+        except UsageError as lost:
+            raise TruingError(f"the cluster was lost: {lost}") from None
+
+    def look_after(self) -> None:
+        """See whether there is still a worker. Raises TruingError where there has been none for a minute."""
+        try:
+            present = self._present()
+        except Exception:  # a lost scheduler cancels what is under way, which is seen to there
+            return
+        if present:
+            self._empty_since = None
+            return
+        self._empty_since = self._empty_since or time.monotonic()
+        if time.monotonic() - self._empty_since > EMPTY_SECONDS:
+            raise TruingError(f"no worker has been left at {self.where} for {EMPTY_SECONDS} s; start one and run again")
+
+    def remarks(self) -> list[str]:
+        """Say how many workers were lost, and whose versions are others."""
+        words = list(self._warnings)
+        lost = self.losses
+        if lost:
+            were = "1 worker was" if lost == 1 else f"{lost} workers were"
+            words.append(
+                f"{were} lost at {self.where}; what was under way there was computed again, the results are the same"
+            )
+        return words
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Count once more, and take leave of the cluster; what is still under way there is cancelled."""
+        with suppress(Exception):
+            self._count_absent()
+        with suppress(Exception):
+            self._client.close(timeout=5)
+        self._unsilence()
+
+    def settle(self) -> None:
+        """At the end of the work: compare the workers that joined later too, and count those that are not there."""
+        with suppress(Exception):
+            self.compare(self._code)
+            self._count_absent()
+
+    def _present(self) -> dict[str, int]:
+        """Ask who is there now, and how much they do at once."""
+        self._grown = False
+        threads: dict[str, int] = self._client.nthreads()
+        with self._lock:
+            self._seen |= set(threads)
+        self.workers = max(self.workers, len(threads))
+        self.slots = max(1, sum(threads.values()))
+        return threads
+
+    def _heard(self, event: tuple[float, Any]) -> None:
+        """Hear what the scheduler says of its workers."""
+        message = event[1]
+        if not isinstance(message, dict):
+            return
+        with self._lock:
+            if message.get("action") == "remove-worker":
+                address = str(message.get("worker", ""))
+                (self._retired.add if message.get("expected") else self._gone.append)(address)
+            elif message.get("action") == "add-worker":
+                self._seen.add(str(message.get("worker", "")))
+                self._grown = True
+
+    def _unsilence(self) -> None:
+        for name, level in self._levels.items():
+            logging.getLogger(name).setLevel(level)
+
+    def _count_absent(self) -> None:
+        """Count workers that have gone without a word of the scheduler."""
+        present = set(self._client.nthreads())
+        with self._lock:
+            self._gone += sorted(self._seen - present - self._retired - set(self._gone))
+
+
+def _dask() -> Any:
+    """Import dask.distributed, which takes a second."""
+    try:
+        return import_module("distributed")
+    except ImportError:
+        raise UsageError('a cluster needs dask.distributed; install it with: pip install "truing[cluster]"') from None
+
+
+def _silenced() -> dict[str, int]:
+    """Silence the library: what it has to say of losses is said in our words. Return the levels there were."""
+    names = [name for name in logging.root.manager.loggerDict if name.partition(".")[0] == "distributed"]
+    levels = {name: logging.getLogger(name).level for name in names}
+    for name in names:
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+    return levels
+
+
+def _connected(dask: Any, address: str) -> Any:
+    try:
+        return dask.Client(address, timeout=CONNECT_SECONDS, set_as_default=False, name="truing")
+    except (OSError, TimeoutError):
+        raise UsageError(
+            f"no scheduler answers at {address} within {CONNECT_SECONDS} s; is dask scheduler running there?"
+        ) from None
+    except ValueError as error:
+        raise UsageError(f"'{address}' is no address of a scheduler, like tcp://host:8786: {error}") from None
+
+
+def _demand_worker(client: Any, address: str) -> None:
+    try:
+        client.wait_for_workers(1, timeout=WORKER_SECONDS)
+    except TimeoutError:
+        raise UsageError(
+            f"the scheduler at {address} has had no worker for {WORKER_SECONDS} s; start one: dask worker {address}"
+        ) from None

@@ -1,0 +1,199 @@
+"""Finished batches kept in a file, so that an interrupted run does not compute them again."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import pickle
+import struct
+import threading
+import time
+import zlib
+from collections.abc import Callable
+from concurrent.futures import Future
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from truing.executors.places import Place
+
+MAGIC = b"TRB1"
+HEAD = struct.Struct(">4s32sQI")
+SYNC_SECONDS = 1.0
+
+
+class BatchLog:
+    """Answers by key in one file that only grows: each record has a length and a checksum, a torn end is cut off.
+
+    What was put is safe when this process is killed; when the power fails, but for the last second.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._file = open(path, "r+b" if path.exists() else "x+b", buffering=0)  # noqa: SIM115
+        self._lock = threading.Lock()
+        self._places: dict[bytes, tuple[int, int]] = {}
+        self._end = 0
+        self._synced = time.monotonic()
+        self.fault = ""
+        """Why no more batches can be kept (a full disk), or nothing."""
+        self._read()
+
+    def __len__(self) -> int:
+        return len(self._places)
+
+    def __contains__(self, key: bytes) -> bool:
+        return key in self._places
+
+    def keys(self) -> frozenset[bytes]:
+        """Return the keys of all answers."""
+        return frozenset(self._places)
+
+    def get(self, key: bytes) -> Any:
+        """Return the answer kept under a key."""
+        start, length = self._places[key]
+        with self._lock:
+            self._file.seek(start)
+            content = self._file.read(length)
+        return pickle.loads(content)
+
+    def put(self, key: bytes, answer: Any) -> None:
+        """Keep an answer. Where that fails, say so in ``fault`` and keep no more: the run itself goes on."""
+        content = pickle.dumps(answer, protocol=5)
+        record = memoryview(HEAD.pack(MAGIC, key, len(content), zlib.crc32(content, zlib.crc32(key))) + content)
+        with self._lock:
+            if self.fault or self._file.closed or key in self._places:
+                return
+            try:
+                self._append(record)
+            except OSError as error:
+                self.fault = error.strerror or str(error)
+                return
+            self._places[key] = (self._end + HEAD.size, len(content))
+            self._end += len(record)
+
+    def close(self) -> None:
+        """Write everything to the disk and close the file."""
+        with self._lock:
+            if not self._file.closed:
+                if not self.fault:
+                    os.fsync(self._file.fileno())
+                self._file.close()
+
+    def _append(self, record: memoryview) -> None:
+        self._file.seek(self._end)
+        while record:
+            record = record[self._file.write(record) or 0 :]
+        if time.monotonic() - self._synced > SYNC_SECONDS:
+            os.fsync(self._file.fileno())
+            self._synced = time.monotonic()
+
+    def _read(self) -> None:
+        """Find all whole records, and cut off what comes behind the last of them."""
+        size = self._file.seek(0, io.SEEK_END)
+        while self._end + HEAD.size <= size:
+            self._file.seek(self._end)
+            magic, key, length, checksum = HEAD.unpack(self._file.read(HEAD.size))
+            if magic != MAGIC or self._end + HEAD.size + length > size:
+                break
+            if zlib.crc32(self._file.read(length), zlib.crc32(key)) != checksum:
+                break
+            self._places[key] = (self._end + HEAD.size, length)
+            self._end += HEAD.size + length
+        self._file.truncate(self._end)
+
+
+class KeptExecutor(Place):
+    """Takes answers from a log where it holds them, else computes them elsewhere and keeps them."""
+
+    def __init__(self, inner: Place, log: BatchLog) -> None:
+        self._inner = inner
+        self._log = log
+        self._earlier = log.keys()
+        self._taken: set[bytes] = set()
+
+    @property
+    def resumed(self) -> int:
+        """How many batches of an earlier run were taken up."""
+        return len(self._taken)
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Return the answer that is kept, or compute and keep it."""
+        key = key_of(function, args, kwargs)
+        if key in self._log:
+            if key in self._earlier:
+                self._taken.add(key)
+            future: Future[Any] = Future()
+            future.set_result(self._log.get(key))
+            return future
+        future = self._inner.submit(function, *args, **kwargs)
+        future.add_done_callback(partial(self._keep, key))
+        return future
+
+    def _keep(self, key: bytes, future: Future[Any]) -> None:
+        if not future.cancelled() and future.exception() is None:
+            self._log.put(key, future.result())
+
+    @property
+    def where(self) -> str:  # type: ignore[override]
+        """Where the other batches are computed."""
+        return self._inner.where
+
+    @property
+    def workers(self) -> int:  # type: ignore[override]
+        """How many workers compute them."""
+        return self._inner.workers
+
+    @property
+    def slots(self) -> int:  # type: ignore[override]
+        """How many are computed at once."""
+        return self._inner.slots
+
+    @property
+    def losses(self) -> int:  # type: ignore[override]
+        """How many workers were lost."""
+        return self._inner.losses
+
+    @property
+    def patience(self) -> float | None:  # type: ignore[override]
+        """How long an answer is waited for."""
+        return self._inner.patience
+
+    def is_loss(self, error: BaseException) -> bool:
+        """Tell whether a worker was lost."""
+        return self._inner.is_loss(error)
+
+    def renew(self, error: BaseException) -> None:
+        """Make the place fit again."""
+        self._inner.renew(error)
+
+    def look_after(self) -> None:
+        """See whether an answer can still come."""
+        self._inner.look_after()
+
+    def remarks(self) -> list[str]:
+        """Say what befell the workers, and where batches could not be kept."""
+        words = self._inner.remarks()
+        if self._log.fault:
+            words.append(f"finished batches are no longer kept for --resume: {self._log.fault}")
+        return words
+
+
+class _Plain(pickle.Pickler):
+    """Writes equal values as equal bytes: nothing is referred to by where it lies in memory, sets are sorted."""
+
+    def __init__(self, stream: io.BytesIO) -> None:
+        super().__init__(stream, protocol=5)
+        self.fast = True
+
+    def reducer_override(self, item: Any) -> Any:
+        if isinstance(item, (set, frozenset)):
+            return type(item), (sorted(item, key=repr),)
+        return NotImplemented
+
+
+def key_of(function: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any] | None = None) -> bytes:
+    """Return the SHA-256 of what is asked: the function by its name, and its arguments as plain data."""
+    stream = io.BytesIO()
+    _Plain(stream).dump((function, args, kwargs or {}))
+    return hashlib.sha256(stream.getvalue()).digest()

@@ -1,0 +1,174 @@
+"""DIR.partial: the finished batches of a run that is not complete, and of which run they are."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import IO, Any
+
+from truing.errors import OutputError
+from truing.executors.kept import BatchLog
+from truing.kernel.source import code_hash
+from truing.runs.folder import json_text
+from truing.runs.provenance import provenance_of
+from truing.setup import Setup
+
+PARTIAL_SCHEMA = "truing.partial/1"
+HEADER, FRESH, BATCHES, LOCK = OURS = ("partial.json", "partial.json.new", "batches.log", "lock")
+
+
+def partial_folder(folder: Path) -> Path:
+    """Return where the finished batches of a run at ``folder`` are kept."""
+    plain = folder.name not in {"", ".."} and not folder.is_symlink()
+    target = folder if plain else folder.resolve()
+    return target.with_name(f"{target.name}.partial")
+
+
+def code_of(setup: Setup) -> tuple[str, ...]:
+    """Name the packages and files whose code decides the results: ours, the plugin's, and those of its guests."""
+    file = Path(setup.origin.file)
+    own = file.parent.name if file.name == "__init__.py" else str(file.resolve())
+    functions = [setup.model.function, *(effect.function for effect in setup.model.known_effects.values())]
+    modules = {sys.modules.get(function.__module__.partition(".")[0]) for function in functions}
+    guests = {module.__name__ for module in modules if module is not None and _file(module) != file.resolve()}
+    beside = set()
+    if file.name != "__init__.py":  # modules that a single file imports from its folder
+        beside = {
+            str(path)
+            for module in list(sys.modules.values())
+            if (path := _file(module)).parent == file.resolve().parent
+        }
+    return tuple(sorted({"truing", own, *guests, *beside}))
+
+
+def _file(module: Any) -> Path:
+    name = getattr(module, "__file__", None)
+    return Path(name).resolve() if isinstance(name, str) else Path()
+
+
+def identity_of(setup: Setup, code: tuple[str, ...]) -> dict[str, Any]:
+    """Say what a batch may depend on: inputs, seed, versions, and the source of these packages or files."""
+    origin = provenance_of(setup)
+    return {
+        "schema": PARTIAL_SCHEMA,
+        "plugin": origin.plugin,
+        "model": setup.model.name,
+        "input_hash": origin.input_hash,
+        "seed": origin.seed,
+        "versions": {
+            "truing": origin.kernel,
+            "python": origin.python,
+            **origin.packages,
+            **{name: version for _, name, version in origin.added},
+            origin.plugin: origin.plugin_version,
+        },
+        "code": {Path(place).name: code_hash(place) for place in code},
+    }
+
+
+@contextmanager
+def kept_batches(folder: Path, identity: Mapping[str, Any]) -> Iterator[BatchLog]:
+    """Give the log of finished batches beside a run folder.
+
+    It is removed when the block is complete, and stays where the block ends early, unless it is empty. Raises
+    OutputError where the batches there are of other inputs, seed, versions or code, where another run uses them, or
+    where nothing can be written.
+    """
+    place = partial_folder(folder)
+    missing = [parent for parent in (place.parent, *place.parent.parents) if not parent.exists()]
+    try:
+        lock, log = _opened(place, identity)
+    except OSError as error:
+        raise OutputError(f"{place}: cannot keep finished batches: {error.strerror or error}") from error
+    complete = False
+    try:
+        yield log
+        complete = True
+    finally:
+        log.close()
+        lock.close()
+        if complete or not len(log):
+            shutil.rmtree(place, ignore_errors=True)
+            for parent in missing:
+                with suppress(OSError):
+                    parent.rmdir()
+
+
+def _opened(place: Path, identity: Mapping[str, Any]) -> tuple[IO[bytes], BatchLog]:
+    """Take hold of the folder for this process alone; the system lets go of it however the process ends."""
+    place.mkdir(parents=True, exist_ok=True)
+    _demand_ours(place)
+    lock = open(place / LOCK, "a+b")  # noqa: SIM115
+    try:
+        try:
+            _lock(lock)
+        except OSError:
+            raise OutputError(f"{place}: is in use by another run; wait for it, or name another --output") from None
+        _demand_same(place, identity)
+        return lock, BatchLog(place / BATCHES)
+    except BaseException:
+        lock.close()
+        raise
+
+
+def _lock(file: IO[bytes]) -> None:
+    if os.name == "nt":
+        import msvcrt
+
+        file.seek(0)
+        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined,unused-ignore]
+    else:
+        import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def _demand_ours(place: Path) -> None:
+    """Refuse a folder of that name that is somebody else's."""
+    strange = sorted(item.name for item in place.iterdir() if item.name not in OURS)
+    if strange:
+        raise OutputError(f"{place}: holds '{strange[0]}', so it is none of ours; name another --output")
+
+
+def _demand_same(place: Path, identity: Mapping[str, Any]) -> None:
+    """Refuse batches of another run; write whose they are where there are none yet."""
+    header = place / HEADER
+    if not header.exists():
+        (place / BATCHES).unlink(missing_ok=True)
+        fresh = place / FRESH
+        fresh.write_text(json_text(dict(identity)), encoding="utf-8")
+        os.replace(fresh, header)
+        return
+    try:
+        found = json.loads(header.read_text(encoding="utf-8"))
+    except ValueError:
+        found = None
+    if not isinstance(found, dict) or found.get("schema") != PARTIAL_SCHEMA:
+        raise OutputError(f"{header}: says not whose batches these are; remove the folder")
+    if found != identity:
+        raise OutputError(
+            f"{place}: holds finished batches of a run with {_difference(found, identity)}; "
+            "run that one again, or remove the folder"
+        )
+
+
+def _difference(found: Mapping[str, Any], wanted: Mapping[str, Any]) -> str:
+    """Say in what two runs differ, the most telling first."""
+    for name, words in (("plugin", "plugin"), ("model", "calculation"), ("seed", "seed")):
+        if found.get(name) != wanted[name]:
+            return f"another {words} ({found.get(name)}, now {wanted[name]})"
+    if found.get("input_hash") != wanted["input_hash"]:
+        return "other inputs"
+    for kind in ("versions", "code"):
+        then, now = dict(found.get(kind) or {}), wanted[kind]
+        for name in sorted({*then, *now}):
+            if then.get(name) != now.get(name):
+                if kind == "code":
+                    return f"other code of {name}"
+                return f"another version of {name} ({then.get(name) or 'none'}, now {now.get(name) or 'none'})"
+    return "other contents"
