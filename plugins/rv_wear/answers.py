@@ -13,27 +13,27 @@ class Wear:
                                formula="eccentricity * pin_count / pin_circle_radius")  # fmt: skip
     root: Float = found("", symbol="q", note="sine of the phase angle of the longest arm",
                         formula="sqrt(1 - short_width**2)")  # fmt: skip
-    radial_clearance: Float = found("um", symbol="Delta r", note="between disc and pins before the disc is turned",
+    radial_clearance: Float = found("um", symbol="Delta r", note="gap between disc and pins all around",
                                     formula="equidistant_modification - shift_modification")  # fmt: skip
     equidistant_high: Float = found("um", symbol="Delta r_rp,max", note="above it disc and pins interfere",
                                     formula="radial_clearance / (1 - root)", source="equation 17")  # fmt: skip
     equidistant_low: Float = found("um", symbol="Delta r_rp,min", source="equation 17",
                                    note="below it the disc has more than twice the radial clearance somewhere",
                                    method="largest clearance over the phase angle")  # fmt: skip
-    disc_torque: Float = found("N*m", symbol="T_c", note="on the worse of the two discs",
+    disc_torque: Float = found("N*m", symbol="T_c", note="torque on the worse of the two discs",
                                formula="torque_share * output_torque")  # fmt: skip
     start_force: Float = found("N", symbol="F_max,0", note="largest force without any clearance",
                                formula="4 * disc_torque / (short_width * (pin_count - 1) * pin_circle_radius)",
                                source="equation 1")  # fmt: skip
     max_force: Float = found("N", symbol="F_max", note="force at the longest arm, unworn, the worst position",
                              method="torque balance of all loaded pins, equations 1b to 4")  # fmt: skip
-    approach: Float = found("um", symbol="delta_max", note="of disc and pin under that force",
+    approach: Float = found("um", symbol="delta_max", note="approach of disc and pin under that force",
                             method="line contact, equation 1b")  # fmt: skip
     largest_force: Float = found("N", symbol="F_i", note="largest force on a pin, unworn", method="equation 2")
     loaded_pins: Float = found("", symbol="N_p", note="most pins loaded at once, unworn", method="equation 2", digits=3)
     max_pressure: Float = found("MPa", symbol="p_i", note="largest mean contact pressure, unworn",
                                 method="equation 5: force over the area of the contact")  # fmt: skip
-    mesh_period: Float = found("s", symbol="t", note="in which every tooth meshes once",
+    mesh_period: Float = found("s", symbol="t", note="time in which every tooth meshes once",
                                formula="1 / (output_speed * pin_count)", source="equation 14")  # fmt: skip
     coefficient: Float = found("1/Pa", symbol="k", note="wear coefficient at the largest force, unworn",
                                method="regression of Janakiraman, Li and Kahraman, equations 9 and 10")  # fmt: skip
@@ -43,26 +43,26 @@ class Wear:
     backlash_wear: Float = found("um", symbol="h_phi", note="wear that is felt at a flank as lost motion",
                                  method="deepest wear, with the shares that the inputs state")  # fmt: skip
     backlash_involute: Float = found(
-        "arcmin", symbol="Delta phi_1", note="of the involute stage, factors 1 to 3", source=EQUATION_21,
+        "arcmin", symbol="Delta phi_1", note="backlash of the involute stage, factors 1 to 3", source=EQUATION_21,
         formula="(2 * sin(pressure_angle) * (gear_runout + centre_distance_error) - base_tangent_error)"
         " / (sun_radius * total_ratio)",
     )  # fmt: skip
     backlash_gearing: Float = found(
-        "arcmin", symbol="Delta phi_2", note="of disc and pins as made, factors 4 to 14", source=EQUATION_21,
+        "arcmin", symbol="Delta phi_2", note="backlash of disc and pins as made, factors 4 to 14", source=EQUATION_21,
         formula="(2 * (equidistant_modification + equidistant_error - pin_radius_error)"
         " + 2 * root * (pin_circle_error - shift_modification - shift_error + 1.6e-4 * eccentricity_error)"
         " + pin_fit_clearance + disc_runout / 2 + short_width * (2 * pin_position_error - disc_pitch_error))"
         " / (eccentricity * (pin_count - 1))",
     )  # fmt: skip
     backlash_of_wear: Float = found(
-        "arcmin", symbol="Delta phi_3", note="of wear, factor 15", source=EQUATION_21,
+        "arcmin", symbol="Delta phi_3", note="backlash of wear, factor 15", source=EQUATION_21,
         formula="2 * backlash_wear / (eccentricity * (pin_count - 1))",
     )  # fmt: skip
     backlash_bearing: Float = found(
-        "arcmin", symbol="Delta phi_4", note="of the crank bearings, factor 16", source=EQUATION_21,
+        "arcmin", symbol="Delta phi_4", note="backlash of the crank bearings, factor 16", source=EQUATION_21,
         formula="bearing_clearance / centre_distance",
     )  # fmt: skip
     backlash: Float = found(
-        "arcmin", symbol="Delta phi", note="at the output", source=EQUATION_21,
+        "arcmin", symbol="Delta phi", note="backlash at the output", source=EQUATION_21,
         formula="backlash_involute + backlash_gearing + backlash_of_wear + backlash_bearing",
     )  # fmt: skip

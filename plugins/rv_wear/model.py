@@ -6,7 +6,10 @@ from rv_wear.bill import Costs, cost
 from rv_wear.calculation import rv_wear
 from rv_wear.chances import chances, history, indices
 from rv_wear.effects import EFFECTS
+from rv_wear.findings import FINDINGS
 from rv_wear.modifications import Modifications, trend
+from rv_wear.published import PUBLISHED
+from rv_wear.sections import SECTIONS
 from rv_wear.tolerances import TOLERANCES
 from rv_wear.validity import Validity
 from truing import Minimise, Model, Reliability, Require, Sensitivity, Sweep, Vary
@@ -38,6 +41,9 @@ RV_WEAR = Model(
         Reliability(over="working_time", at="0..6000 h", points=25, gives=chances),
         Costs(gives=cost),
     ],
+    sheet=SECTIONS,
+    published=PUBLISHED,
+    findings=FINDINGS,
     cites=LITERATURE,
     example=Path(__file__).with_name("example.toml"),
     summary="How far does the cycloid disc of an RV reducer wear, what becomes of its backlash, and which tolerances "

@@ -5,11 +5,11 @@ from typing import Literal
 from truing import Float, given, inputs
 
 PAPER = "section 1.5 of the paper"
-INDICES = "chosen so that the sensitivity indices of the paper's Table 2 follow; Table 1 is lost"
-CATALOGUE = "known of reducers of this size; the paper's Table 1 is lost"
-CALIBRATED = "chosen so that the paper's wear of 3.127 um after 6000 h follows"
+INDICES = "follows from the indices of Table 2; Table 1 is lost"
+CATALOGUE = "known of reducers of this size; Table 1 is lost"
+CALIBRATED = "chosen so that 3.127 um after 6000 h follow"
 LARGEST = 1000.0  # mm or um: no reducer has a metre, no deviation or wear a millimetre
-ZONE = "middle of its zone; the zones are chosen so that the printed mean, reliability and cost follow"
+ZONE = "middle of its zone; the zones were chosen to fit"
 
 
 def length(value: float, unit: Literal["mm", "um"], symbol: str, note: str, source: str) -> float:
@@ -30,8 +30,8 @@ class Reducer:
 
     # The gearing
     pin_count: int = given(40, symbol="z_p", note="pins; the disc has one tooth less", source=INDICES, at_least=4)
-    pin_circle_radius: Float = length(114.5, "mm", "r_p", "circle of the pin centres", INDICES)
-    pin_radius: Float = length(5.0, "mm", "r_rp", "pin", CATALOGUE)
+    pin_circle_radius: Float = length(114.5, "mm", "r_p", "radius of the circle of the pin centres", INDICES)
+    pin_radius: Float = length(5.0, "mm", "r_rp", "radius of the pins", CATALOGUE)
     eccentricity: Float = length(2.2, "mm", "e", "throw of the crank", INDICES)
     disc_width: Float = length(20.0, "mm", "B", "loaded width of one disc", CATALOGUE)
     equidistant_modification: Float = given(
@@ -56,21 +56,23 @@ class Reducer:
     centre_distance: Float = length(63.0, "mm", "a", "sun to planet, and circle of the cranks", INDICES)
     total_ratio: Float = given(101.0, "", symbol="i_H", note="input turns per output turn", source=INDICES, above=1)
     pressure_angle: Float = given(
-        20.0, "deg", symbol="alpha_n", note="involute gears", source=INDICES, above=0, below=45
+        20.0, "deg", symbol="alpha_n", note="pressure angle of the involute gears", source=INDICES, above=0, below=45
     )
     # Load and material
-    output_torque: Float = given(3136.0, "N*m", symbol="T_z", note="at the output", source=PAPER, above=0)
-    output_speed: Float = given(15.0, "r/min", symbol="n", note="at the output", source=PAPER, above=0)
-    working_time: Float = given(6000.0, "h", symbol="T", note="of this set of discs; rated life 6000 h", source=PAPER,
-                                at_least=0)  # fmt: skip
-    torque_share: Float = given(0.55, "", symbol="kappa_T", note="of the output torque on the worse of two discs",
+    output_torque: Float = given(3136.0, "N*m", symbol="T_z", note="torque at the output", source=PAPER, above=0)
+    output_speed: Float = given(15.0, "r/min", symbol="n", note="speed of the output", source=PAPER, above=0)
+    working_time: Float = given(6000.0, "h", symbol="T", source=PAPER, at_least=0,
+                                note="working time of this set of discs; rated life 6000 h")  # fmt: skip
+    torque_share: Float = given(0.55, "", symbol="kappa_T", note="share of the output torque on the worse of two discs",
                                 source="Chinese practice for cycloid drives", above=0, at_most=1)  # fmt: skip
-    young_modulus: Float = given(2.06e5, "MPa", symbol="E", note="steel, disc and pins", source="literature", above=0)
-    poisson_ratio: Float = given(0.3, "", symbol="nu", note="steel, disc and pins", source="literature", at_least=0,
+    young_modulus: Float = given(2.06e5, "MPa", symbol="E", note="modulus of steel", source="literature", above=0)
+    poisson_ratio: Float = given(0.3, "", symbol="nu", note="Poisson ratio of steel", source="literature", at_least=0,
                                  below=0.5)  # fmt: skip
     pressure_viscosity: Float = given(2.2e-8, "1/Pa", symbol="alpha", note="pressure viscosity of the base oil",
                                       source="mineral oil 1.5e-8 to 2.4e-8", above=0)  # fmt: skip
-    composite_roughness: Float = length(0.694, "um", "R_q", "root mean square of both surfaces", CALIBRATED)
+    composite_roughness: Float = length(
+        0.694, "um", "R_q", "roughness of both surfaces together, root mean square", CALIBRATED
+    )
     # How it is calculated
     load_sharing: Literal["linear", "hertz"] = given(
         "linear", note="forces in proportion to the approach as in the paper, or by Hertz at every pin"
@@ -96,9 +98,11 @@ class Reducer:
     eccentricity_error: Float = deviation(0.0, "delta e", "14: throw of the crank")
     bearing_clearance: Float = deviation(11.1, "delta_b", "16: clearance of the crank bearings")
     # What is asked
-    permitted_backlash: Float = given(1.0, "arcmin", symbol="Delta phi_per", note="permitted", source=PAPER, above=0)
+    permitted_backlash: Float = given(
+        1.0, "arcmin", symbol="Delta phi_per", note="permitted backlash", source=PAPER, above=0
+    )
     required_reliability: Float = given(
-        0.95, "", symbol="R_per", note="at the working time; the paper's 100 % is read as 0.999", source=PAPER,
+        0.95, "", symbol="R_per", note="share of machines within it; the paper's 100 % is read as 0.999", source=PAPER,
         above=0, at_most=1,
     )  # fmt: skip
     permitted_pressure: Float = given(2000.0, "MPa", symbol="p_per", note="mean contact pressure up to which it holds",

@@ -19,7 +19,7 @@ PRICED: dict[str, Kind] = {
     "disc_pitch_error": "place",
     "disc_runout": "runout",
 }
-SOURCE = "zone chosen so that the printed mean, reliability and cost follow; Table 3 is lost"
+SOURCE = "chosen to fit; Table 3 is lost"
 
 
 def factor(
