@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from truing.markers import hookimpl, hookspec
     from truing.studies.allocation import Allocation, Allotted
     from truing.studies.bench import Bench, Check
+    from truing.studies.optimise import Optimise, Optimum
     from truing.studies.reliability import Odds, Reliability
     from truing.studies.sensitivity import Sensitivities, Sensitivity
     from truing.studies.surrogate import Emulated, Surrogate
@@ -39,6 +40,7 @@ _HOMES = {
     "truing.markers": ("hookimpl", "hookspec"),
     "truing.studies.allocation": ("Allocation", "Allotted"),
     "truing.studies.bench": ("Bench", "Check"),
+    "truing.studies.optimise": ("Optimise", "Optimum"),
     "truing.studies.reliability": ("Odds", "Reliability"),
     "truing.studies.sensitivity": ("Sensitivities", "Sensitivity"),
     "truing.studies.surrogate": ("Emulated", "Surrogate"),
@@ -55,6 +57,7 @@ __all__ = [  # noqa: RUF022  # in the order of a plugin's story
     "Model", "Section", "Record", "Study", "Published", "Finding",
     "Words", "Table", "Drawing", "Block",
     "Sweep", "Swept", "Sensitivity", "Sensitivities", "Reliability", "Odds", "Allocation", "Allotted",
+    "Optimise", "Optimum",
     "Surrogate", "Emulated",
     "Bench", "Check",
     "hookimpl", "hookspec", "Kernel", "TruingError",

@@ -1,0 +1,212 @@
+"""The search: NSGA-II over places in the unit cube; a population is one array, and only the seed decides chance.
+
+Source: K. Deb, A. Pratap, S. Agarwal, T. Meyarivan, IEEE Trans. Evol. Comput. 6 (2002) 182. Whole variables sit at
+their steps; beside polynomial mutation they jump to any other step now and then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from truing.studies.optimise_problem import Answers, Problem, joined
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+FAILED = 1e6
+"""How far a design without an answer is counted beyond every limit: finite, and worse than any that has one."""
+
+Answering = Callable[["NDArray[np.float64]"], Answers]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How much is searched: designs per generation, generations, and the seed."""
+
+    population: int
+    generations: int
+    seed: int
+
+
+@dataclass(frozen=True)
+class Trail:
+    """What the search left: the designs (m, v) it ended with, their answers, and every generation's best objectives.
+
+    ``fronts`` hold what should be small (objectives, those to be large negated), of feasible designs no other beats.
+    """
+
+    designs: NDArray[np.float64]
+    answers: Answers
+    fronts: tuple[NDArray[np.float64], ...]
+    evaluations: int
+    failed: int
+
+
+def search(problem: Problem, plan: Plan, answer: Answering, done: Callable[[int, int], None]) -> Trail:
+    """Look for the designs that no other beats. ``answer(designs)`` is called once per generation."""
+    algorithm, shell = _algorithm(problem, plan)
+    kept: tuple[NDArray[np.float64], Answers] | None = None
+    fronts: list[NDArray[np.float64]] = []
+    evaluations = failed = 0
+    for generation in range(plan.generations):
+        asked = algorithm.ask()
+        if asked is None or not len(asked):
+            break
+        designs = problem.space.designs(asked.get("X"))
+        found = answer(designs)
+        evaluations, failed = evaluations + len(designs), failed + int(found.failed.sum())
+        _tell(algorithm, shell, asked, problem, found)
+        kept = _best(problem, kept, (designs, found), plan.population)
+        fronts.append(small(problem, kept[1]))
+        done(generation + 1, plan.generations)
+    assert kept is not None  # the first generation is never empty
+    return Trail(kept[0], kept[1], tuple(fronts), evaluations, failed)
+
+
+def small(problem: Problem, answers: Answers) -> NDArray[np.float64]:
+    """Return the objectives of feasible designs as numbers that should be small."""
+    import numpy as np
+
+    return np.asarray(answers.objectives[answers.feasible] * np.array([aim.sign for aim in problem.aims]))
+
+
+def _best(
+    problem: Problem,
+    kept: tuple[NDArray[np.float64], Answers] | None,
+    new: tuple[NDArray[np.float64], Answers],
+    most: int,
+) -> tuple[NDArray[np.float64], Answers]:
+    """Keep the feasible designs that no other beats, or while there is none the one that misses least.
+
+    At most ``most`` of them, chosen so that they spread along the front; the ends always stay.
+    """
+    import numpy as np
+
+    designs, answers = new if kept is None else (np.vstack([kept[0], new[0]]), joined([kept[1], new[1]]))
+    if not answers.feasible.any():
+        least = int(np.argmin(violation(answers)))
+        return designs[[least]], answers[[least]]
+    rows = np.flatnonzero(answers.feasible)
+    values = small(problem, answers)
+    chosen = rows[spread_out(values, non_dominated(values), most)]
+    return designs[chosen], answers[chosen]
+
+
+def violation(answers: Answers) -> NDArray[np.float64]:
+    """Return how far every design misses its limits together; finite where it has no answer."""
+    import numpy as np
+
+    missed = np.where(np.isfinite(answers.margins), np.maximum(-answers.margins, 0.0), FAILED).sum(axis=1)
+    return np.asarray(np.where(answers.failed, FAILED * (1 + answers.margins.shape[1]), missed))
+
+
+def non_dominated(values: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return the rows (of values that should be small) that no other row beats; of equal rows the first."""
+    import numpy as np
+
+    order = np.lexsort(values.T[::-1])
+    ranked = values[order]
+    left = np.arange(len(ranked))
+    front = []
+    while len(left):
+        first, rest = left[0], left[1:]
+        front.append(order[first])
+        left = rest[(ranked[rest] < ranked[first]).any(axis=1)]
+    return np.array(front, dtype=np.intp)
+
+
+def spread_out(values: NDArray[np.float64], front: NDArray[np.intp], most: int) -> NDArray[np.intp]:
+    """Thin a front to ``most`` rows by leaving out, one by one, the most crowded; ends have no neighbour and stay."""
+    import numpy as np
+
+    while len(front) > most:
+        found = values[front]
+        span = np.ptp(found, axis=0)
+        scaled = (found - found.min(axis=0)) / np.where(span > 0, span, 1.0)
+        room = np.zeros(len(front))
+        for column in scaled.T:
+            order = np.argsort(column, kind="stable")
+            room[order[1:-1]] += column[order[2:]] - column[order[:-2]]
+            room[order[[0, -1]]] = np.inf
+        front = np.delete(front, int(np.argmin(room)))
+    return front
+
+
+def _tell(algorithm: Any, shell: Any, asked: Any, problem: Problem, found: Answers) -> None:
+    """Hand the answers back; a design without one is finite and worse than any other."""
+    import numpy as np
+    from pymoo.core.evaluator import Evaluator
+    from pymoo.problems.static import StaticProblem
+
+    signs = np.array([aim.sign for aim in problem.aims])
+    objectives = np.where(found.failed[:, None], FAILED, found.objectives * signs)
+    missing = np.where(found.failed, FAILED, -1.0)
+    limits = np.where(found.failed[:, None], FAILED, -found.margins)
+    Evaluator().eval(StaticProblem(shell, F=objectives, G=np.column_stack([limits, missing])), asked)
+    algorithm.tell(infills=asked)
+
+
+def _algorithm(problem: Problem, plan: Plan) -> tuple[Any, Any]:
+    """Set up the algorithm of the literature with the first population."""
+    import numpy as np
+    from pymoo.config import Config
+
+    Config.warnings["not_compiled"] = False
+    from pymoo.algorithms.moo.nsga2 import NSGA2
+    from pymoo.core.problem import Problem as Shell
+
+    count = len(problem.space.variables)
+    shell = Shell(
+        n_var=count,
+        n_obj=len(problem.aims),
+        n_ieq_constr=len(problem.bounds) + 1,
+        xl=np.zeros(count),
+        xu=np.ones(count),
+    )
+    mutation, repair = _operators(problem)
+    algorithm = NSGA2(pop_size=plan.population, sampling=_first(problem, plan), mutation=mutation, repair=repair)
+    algorithm.setup(shell, termination=("n_gen", plan.generations), seed=plan.seed, verbose=False)
+    return algorithm, shell
+
+
+def _first(problem: Problem, plan: Plan) -> NDArray[np.float64]:
+    """Return the first population: the stated design, it with every width at its ends, and a Latin hypercube."""
+    import numpy as np
+
+    space = problem.space
+    start = space.units(space.start[None, :])[0]
+    widths = np.array([not variable.is_input for variable in space.variables])
+    ends = [start, np.where(widths, 0.0, start), np.where(widths, 1.0, start)] if widths.any() else [start]
+    ends = ends[: plan.population]
+    rest = plan.population - len(ends)
+    rng = np.random.default_rng([plan.seed, rest])
+    strata = np.array([rng.permutation(rest) for _ in space.variables]).reshape(len(start), rest).T
+    return np.vstack([*ends, (strata + rng.random((rest, len(start)))) / max(rest, 1)])
+
+
+def _operators(problem: Problem) -> tuple[Any, Any]:
+    """Return the mutation and the repair that know whole variables."""
+    import numpy as np
+    from pymoo.core.repair import Repair
+    from pymoo.operators.mutation.pm import PM
+
+    space = problem.space
+    discrete = np.flatnonzero([variable.discrete for variable in space.variables])
+
+    class Mutation(PM):  # type: ignore[misc]  # pymoo has no types
+        def _do(self, shell: Any, places: Any, *args: Any, random_state: Any = None, **kwargs: Any) -> Any:
+            changed = super()._do(shell, places, *args, random_state=random_state, **kwargs)
+            if len(discrete):
+                jumps = random_state.random((len(changed), len(discrete))) < 1 / len(space.variables)
+                anywhere = random_state.random(jumps.shape)
+                changed[:, discrete] = np.where(jumps, anywhere, changed[:, discrete])
+            return changed
+
+    class ToSteps(Repair):  # type: ignore[misc]
+        def _do(self, shell: Any, places: Any, **kwargs: Any) -> Any:
+            return space.units(space.designs(np.asarray(places, dtype=float)))
+
+    return Mutation(eta=20), ToSteps()
