@@ -484,3 +484,20 @@ def test_a_curve_needs_input_and_range(options):
 
 def test_the_condition_of_the_models_is_what_the_tests_think():
     assert WARMTH.zero == pytest.approx(293.15)
+
+
+@pytest.mark.parametrize(("draws", "warned"), [(19, True), (20, False), (1000, False)])
+def test_fewer_draws_than_one_miss_may_be_among_are_a_warning(draws, warned):
+    """A reliability of 0.95 allows one miss in 1 / (1 - 0.95) = 20 machines."""
+    model = replace(STRENGTH, objectives=[Require("total", at_most="5", reliability=0.95)])
+    words = odds_of(setup_of(model), Reliability(draws=draws)).warnings()
+    said = "study 'reliability': draws = 19 cannot show a reliability of 0.95 of 'total'; ask for 20 or more"
+    assert any(text.startswith(said) for text in words) is warned
+
+
+def test_a_reliability_of_one_cannot_be_shown():
+    """It may come from an input; how many machines were drawn is said."""
+    model = replace(STRENGTH, objectives=[Require("total", at_most="100", reliability="y")])
+    odds = odds_of(setup_of(model, y="1"), Reliability(draws=50))
+    assert odds.checks()[0].passed
+    assert "no number of draws shows a reliability of 1 of 'total'" in " ".join(odds.warnings())

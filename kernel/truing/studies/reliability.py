@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from math import ceil
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.blocks import Block
@@ -76,7 +77,7 @@ class Reliability:
             first_sd={demand.name: straight[demand.name].sd for demand in wanted},
             form=self._form(machines, wanted, nominal),
             tally=tally,
-            remarks=(*found.warnings, *_still(machines)),
+            remarks=(*found.warnings, *_still(machines), *_few_draws(self, wanted)),
             inputs=acting_inputs(setup),
             nominal={demand.result: answers[demand.result] for demand in wanted},
         )
@@ -130,6 +131,28 @@ def _check_options(study: Reliability) -> None:
         raise UsageError("draws and batch are at least 1")
     if not 2 <= study.points <= 1000:
         raise UsageError(f"points = {study.points}, but a curve has 2 to 1000 points")
+
+
+def _few_draws(study: Reliability, wanted: Sequence[Demand]) -> tuple[str, ...]:
+    """Say where so few machines are drawn that a goal would be met only if not one of them misses it."""
+    if "monte_carlo" not in study.method:
+        return ()
+    words = []
+    for demand in wanted:
+        goal = demand.goal
+        if goal is None:
+            continue
+        if goal >= 1:
+            words.append(
+                f"no number of draws shows a reliability of 1 of '{demand.name}'; it counts as reached when none of "
+                f"{study.draws} machines misses"
+            )
+        elif study.draws < (needed := ceil(round(1 / (1 - goal), 6))):
+            words.append(
+                f"draws = {study.draws} cannot show a reliability of {goal:g} of '{demand.name}'; ask for {needed} or "
+                "more, better a hundred times as many"
+            )
+    return tuple(words)
 
 
 def _still(machines: Machines) -> tuple[str, ...]:
