@@ -19,6 +19,7 @@ from truing import (
     Allocation,
     Emulated,
     Kernel,
+    Optimise,
     Record,
     Reliability,
     Sensitivity,
@@ -35,6 +36,7 @@ from truing.kernel.loading import load_file
 from truing.setup import SwitchedOn, default_setup
 from truing.studies.allocation import Allotted
 from truing.studies.checks import plain_checks
+from truing.studies.optimise import Optimum
 from truing.studies.reliability import Curve, Odds
 from truing.studies.sensitivity import Sensitivities
 from truing.studies.sweep import Swept
@@ -50,6 +52,7 @@ HOOKS = sorted(
 )
 STUDIES: dict[type[Any], type[Any]] = {
     Sweep: Swept, Sensitivity: Sensitivities, Reliability: Odds, Allocation: Allotted, Surrogate: Emulated,
+    Optimise: Optimum,
 }  # fmt: skip
 
 

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 FAILED = 1e6
 """How far a design without an answer is counted beyond every limit: finite, and worse than any that has one."""
 
+ROOM = 4
+"""How many times its population a search remembers of what it has found on the way."""
+
 Answering = Callable[["NDArray[np.float64]"], Answers]
 
 
@@ -59,11 +62,12 @@ def search(problem: Problem, plan: Plan, answer: Answering, done: Callable[[int,
         found = answer(designs)
         evaluations, failed = evaluations + len(designs), failed + int(found.failed.sum())
         _tell(algorithm, shell, asked, problem, found)
-        kept = _best(problem, kept, (designs, found), plan.population)
+        kept = _best(problem, kept, (designs, found), ROOM * plan.population)
         fronts.append(small(problem, kept[1]))
         done(generation + 1, plan.generations)
     assert kept is not None  # the first generation is never empty
-    return Trail(kept[0], kept[1], tuple(fronts), evaluations, failed)
+    designs, answers = _best(problem, None, kept, plan.population)
+    return Trail(designs, answers, tuple(fronts), evaluations, failed)
 
 
 def small(problem: Problem, answers: Answers) -> NDArray[np.float64]:
@@ -108,13 +112,15 @@ def non_dominated(values: NDArray[np.float64]) -> NDArray[np.intp]:
     import numpy as np
 
     order = np.lexsort(values.T[::-1])
-    ranked = values[order]
-    left = np.arange(len(ranked))
+    if values.shape[1] <= 2:  # sorted by the first, a row stays where the last falls below all before it
+        last = values[order, -1]
+        lowest = np.minimum.accumulate(np.concatenate([[np.inf], last[:-1]]))
+        return np.asarray(order[last < lowest])
     front = []
-    while len(left):
-        first, rest = left[0], left[1:]
-        front.append(order[first])
-        left = rest[(ranked[rest] < ranked[first]).any(axis=1)]
+    while len(order):
+        first, rest = order[0], order[1:]
+        front.append(first)
+        order = rest[(values[rest] < values[first]).any(axis=1)]
     return np.array(front, dtype=np.intp)
 
 
