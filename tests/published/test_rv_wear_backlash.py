@@ -1,0 +1,296 @@
+"""Backlash of the RV reducer: equation 21 written a second time, its derivatives, its machines and their price.
+
+Sixteen factors with their coefficients in the backlash, in arc minutes per millimetre, worked out by hand from the
+geometry: q = sqrt(1 - K_1^2), K_1 = e z_p / r_p, and the arms r_1 i_H (involute), e z_c (cycloid), a (crank bearings).
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import erf, exp, pi, sin, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rv_wear.calculation import rv_wear
+from rv_wear.chances import FACTORS
+from rv_wear.model import RV_WEAR
+from rv_wear.quantities import Reducer
+from truing.calculation import Calculation, calculate
+from truing.declare.spreads import Off
+from truing.setup import Setup, default_setup
+from truing.studies.reliability import Reliability
+from truing.studies.sensitivity import Sensitivity
+
+ARCMIN = pi / 180 / 60
+MM = 1e-3
+E, PINS, CIRCLE, SUN, RATIO, CENTRES, ALPHA = 2.2, 40, 114.5, 18.0, 101.0, 63.0, 20 * pi / 180
+K1 = E * PINS / CIRCLE
+Q = sqrt(1 - K1**2)
+
+# Factor: (numerator, arm in mm) of the sixteen lines of Table 2.
+LINES: dict[int, tuple[float, float]] = {
+    1: (-1, SUN * RATIO), 2: (2 * sin(ALPHA), SUN * RATIO), 3: (2 * sin(ALPHA), SUN * RATIO),
+    4: (2, E * 39), 5: (-2 * Q, E * 39), 6: (2 * Q, E * 39), 7: (-2, E * 39), 8: (1, E * 39), 9: (0.5, E * 39),
+    10: (2 * K1, E * 39), 11: (-K1, E * 39), 12: (2, E * 39), 13: (-2 * Q, E * 39), 14: (1.6e-4 * 2 * Q, E * 39),
+    15: (2, E * 39), 16: (1, CENTRES),
+}  # fmt: skip
+COEFFICIENTS = {number: numerator / arm / ARCMIN for number, (numerator, arm) in LINES.items()}  # arcmin per mm
+
+# Middle and width of every zone, mm.
+ZONES = {
+    1: (-0.015, 0.010), 2: (0.005, 0.010), 3: (0.0, 0.020), 6: (0.0, 0.0012), 7: (-0.002, 0.001), 8: (0.0085, 0.0016),
+    9: (0.003275, 0.00655), 10: (0.0006, 0.0012), 11: (0.0, 0.002), 12: (0.0, 0.0012), 13: (0.0, 0.0012),
+    14: (0.0, 0.004), 16: (0.0111, 0.0012),
+}  # fmt: skip
+MODIFICATIONS = {4: -0.026, 5: -0.030}
+PRINTED = {
+    1: -0.037, 2: 0.025, 3: 0.025, 4: 1.56, 5: -1.0, 6: 1.0, 7: -1.56, 8: 0.78, 9: 0.39, 10: 1.20, 11: -0.60, 12: 1.56,
+    13: -1.0, 14: 0.00016, 15: 1.56, 16: 1.06,
+}  # fmt: skip
+
+
+def normal_probability(z: float) -> float:
+    """The normal distribution."""
+    return 0.5 * (1 + erf(z / sqrt(2)))
+
+
+def mean_backlash(wear: float) -> float:
+    """Equation 21 with every factor in the middle of its zone, arcmin; wear in mm."""
+    values = {**{number: middle for number, (middle, _) in ZONES.items()}, **MODIFICATIONS, 15: wear}
+    return sum(COEFFICIENTS[number] * value for number, value in values.items())
+
+
+def variance_of_zones() -> float:
+    """Square of the standard deviation of the backlash without the scatter of wear, arcmin^2."""
+    return sum((COEFFICIENTS[number] * width / 6) ** 2 for number, (_, width) in ZONES.items())
+
+
+def run(setup: Setup, *studies: Any) -> Calculation:
+    return calculate(replace(setup, studies=studies))
+
+
+def still(setup: Setup, *, but: tuple[str, ...] = ()) -> Setup:
+    """The same with every tolerance off, except for some."""
+    return replace(setup, spreads={name: each if name in but else Off() for name, each in setup.spreads.items()})
+
+
+def study(name: str) -> Any:
+    return next(each for each in RV_WEAR.studies if each.name == name)
+
+
+@pytest.fixture(scope="module")
+def new() -> Calculation:
+    """The reducer before it has worked, with 400 000 machines."""
+    setup = default_setup(RV_WEAR, working_time="0 h")
+    drawn = replace(study("reliability"), draws=400_000, over="", at="")
+    return run(setup, Sensitivity(of="backlash", gives=study("sensitivity").gives), drawn)
+
+
+def test_the_new_reducer_has_the_backlash_of_equation_21_in_the_middle_of_all_zones(new: Calculation) -> None:
+    assert new.answers["backlash"] / ARCMIN == pytest.approx(mean_backlash(0.0), rel=1e-12)
+    assert new.answers["backlash"] / ARCMIN == pytest.approx(0.698, abs=5e-4)
+
+
+def test_the_worn_reducer_has_the_deepest_wear_on_both_flanks_more() -> None:
+    worn = rv_wear(Reducer())
+    wear = float(worn.max_wear) / MM
+    assert float(worn.backlash) / ARCMIN == pytest.approx(mean_backlash(wear), rel=1e-12)
+    assert float(worn.backlash) / ARCMIN == pytest.approx(0.949, abs=5e-4)
+    assert 2 * wear / (E * 39) / ARCMIN == pytest.approx(80.13 * wear, rel=1e-4)
+
+
+@pytest.mark.parametrize("number", [number for number in LINES if number not in (4, 5, 15)])
+def test_each_error_of_a_part_moves_the_backlash_by_its_coefficient(number: int) -> None:
+    """Central differences of the whole calculation, 0.1 um to either side; no part error moves the wear."""
+    name, step = FACTORS[number], 0.1e-6
+    middle = getattr(Reducer(), name)
+    up, down = (rv_wear(replace(Reducer(), **{name: middle + by})) for by in (step, -step))
+    slope = (float(up.backlash) - float(down.backlash)) / (2 * step) / ARCMIN * MM
+    assert slope == pytest.approx(COEFFICIENTS[number], rel=1e-8, abs=1e-8)
+    assert float(up.max_wear) == float(down.max_wear)
+
+
+def test_the_coefficients_are_those_of_the_reference_list() -> None:
+    """Arc minutes per millimetre, rounded as listed."""
+    listed = {
+        1: -1.891, 2: 1.293, 3: 1.293, 4: 80.13, 5: -51.27, 6: 51.27, 7: -80.13, 8: 40.07, 9: 20.03, 10: 61.59,
+        11: -30.79, 12: 80.13, 13: -51.27, 14: 0.008, 15: 80.13, 16: 54.57,
+    }  # fmt: skip
+    for number, value in listed.items():
+        assert COEFFICIENTS[number] == pytest.approx(value, abs=6e-3 if abs(value) > 2 else 6e-4), number
+
+
+@pytest.mark.parametrize("number", PRINTED)
+def test_each_index_is_the_coefficient_over_that_of_the_pin_circle_and_the_printed_one(
+    new: Calculation, number: int
+) -> None:
+    ours = new.answers[f"index_{number}"]
+    assert ours == pytest.approx(COEFFICIENTS[number] / COEFFICIENTS[6], rel=1e-7)
+    digits = {1: 3, 2: 3, 3: 3, 14: 5}.get(number, 2)
+    assert ours == pytest.approx(PRINTED[number], abs=0.51 * 10.0**-digits)
+
+
+def test_the_influential_factors_are_those_that_the_paper_names(new: Calculation) -> None:
+    """4 to 13, 15 and 16; the paper names no bound, all of them lie above 0.39."""
+    influential = [number for number in PRINTED if abs(new.answers[f"index_{number}"]) >= 0.39]
+    assert influential == [*range(4, 14), 15, 16]
+
+
+def test_machines_that_are_drawn_have_the_mean_and_spread_of_the_sum(new: Calculation) -> None:
+    """Within four standard errors; of a standard deviation it is sd / sqrt(2 n)."""
+    mean, sd, draws = mean_backlash(0.0), sqrt(variance_of_zones()), 400_000
+    assert new.answers["sampled_mean"] / ARCMIN == pytest.approx(mean, abs=4 * sd / sqrt(draws))
+    assert new.answers["sampled_sd"] / ARCMIN == pytest.approx(sd, abs=4 * sd / sqrt(2 * draws))
+    assert new.answers["backlash_mean"] / ARCMIN == pytest.approx(mean, rel=1e-9)
+    assert new.answers["backlash_sd"] / ARCMIN == pytest.approx(sd, rel=1e-6)
+    assert new.answers["accuracy_reliability"] == 1.0
+
+
+@pytest.mark.parametrize("hours", [4000, 5000, 6000])
+def test_the_count_of_machines_agrees_with_the_normal_distribution(hours: int) -> None:
+    found = run(default_setup(RV_WEAR, working_time=f"{hours} h"), replace(study("reliability"), over="", at=""))
+    mean = mean_backlash(found.answers["max_wear"] / MM)
+    scatter = 2 * wear_scatter(hours) / (E * 39 * MM) / ARCMIN
+    expected = normal_probability((1 - mean) / sqrt(variance_of_zones() + scatter**2))
+    assert found.answers["normal_reliability"] == pytest.approx(expected, abs=2e-5)
+    assert abs(found.answers["accuracy_reliability"] - expected) < 4 * sqrt(expected * (1 - expected) / 100_000)
+
+
+def wear_scatter(hours: float) -> float:
+    """Standard deviation of the wear, m: how it follows the roughness, whose standard deviation is 1.26 %."""
+    low, high = (
+        rv_wear(replace(Reducer(), working_time=hours * 3600, composite_roughness=0.694e-6 * factor))
+        for factor in (0.99, 1.01)
+    )
+    return float(high.max_wear - low.max_wear) / 0.02 * 0.0126
+
+
+def test_after_6000_hours_the_printed_reliability_follows_within_one_percent() -> None:
+    found = run(default_setup(RV_WEAR), replace(study("reliability"), over="", at=""))
+    assert found.answers["normal_reliability"] == pytest.approx(0.893, abs=1.5e-3)
+    assert found.answers["accuracy_reliability"] == pytest.approx(0.887, rel=1e-2)
+
+
+def test_the_reliability_never_rises_with_the_working_time() -> None:
+    found = run(default_setup(RV_WEAR), replace(study("reliability"), draws=20_000, points=13))
+    curve = np.asarray(found.answers["reliability_history"])
+    assert found.answers["reliability_time"][-1] == 6000 * 3600
+    assert (np.diff(curve) <= 0).all()
+    assert curve[0] == 1.0
+    assert curve[-1] < 0.91
+
+
+@pytest.mark.parametrize(("limit", "chance"), [("0.9485 arcmin", 0.0), ("0.9495 arcmin", 1.0)])
+def test_zones_without_width_leave_a_reliability_of_0_or_1(limit: str, chance: float) -> None:
+    """0.949 arcmin lies between both limits."""
+    setup = still(default_setup(RV_WEAR, permitted_backlash=limit))
+    found = run(setup, Reliability(draws=100, method=("first_order", "monte_carlo"), gives=study("reliability").gives))
+    assert (found.answers["accuracy_reliability"], found.answers["normal_reliability"]) == (chance, chance)
+
+
+def test_both_ground_modifications_are_drawn_for_themselves() -> None:
+    """One band and one price, but two errors: their variances add up, and do not partly cancel each other."""
+    setup = still(default_setup(RV_WEAR, working_time="0 h"), but=("modification_error",))
+    found = run(setup, replace(study("reliability"), over="", at=""))
+    apart = sqrt(COEFFICIENTS[12] ** 2 + COEFFICIENTS[13] ** 2) * 0.0012 / 6
+    assert found.answers["sampled_sd"] / ARCMIN == pytest.approx(apart, rel=0.01)
+
+
+# ---- cost ---------------------------------------------------------------------------------------------------------
+
+SIZE = (16.140, 0.324, 0.217, 0.013, 2.845)
+PLACE = (4.862, 0.483, 0.877, 1.020)
+RUNOUT = (23.729, 0.682)
+
+
+def by_power(kind: str, width: float) -> float:
+    if kind == "size":
+        a1, a2, a3, a4, a5 = SIZE
+        return a1 * width**-a2 + a3 * exp(-a4 * width) + a5
+    if kind == "place":
+        b1, b2, b3, b4 = PLACE
+        return b1 * width**-b2 + b3 * exp(-b4 * width)
+    return RUNOUT[0] * width ** -RUNOUT[1]
+
+
+def by_exponential(kind: str, width: float) -> float:
+    if kind == "size":
+        a1, a2, a3, a4, a5 = SIZE
+        return a1 * exp(-a2 * width) + a3 * exp(-a4 * width) + a5
+    if kind == "place":
+        b1, b2, b3, b4 = PLACE
+        return b1 * exp(-b2 * width) + b3 * exp(-b4 * width)
+    return RUNOUT[0] * exp(-RUNOUT[1] * width)
+
+
+def by_process(kind: str, width: float) -> float:
+    if kind == "size":
+        a1, a2, a3, a4, a5 = SIZE
+        return a1 * exp(-a2 * width) + width / (a3 * width + a4) + a5
+    if kind == "place":
+        b1, b2, b3, b4 = PLACE
+        return b1 * exp(-b2 * width) + width / (b3 * width + b4)
+    return RUNOUT[0] * exp(-RUNOUT[1] * width)
+
+
+FORMS = {"power": by_power, "exponential": by_exponential, "process": by_process}
+PRICED = {
+    "pin_circle_error": ("size", 6), "pin_radius_error": ("size", 7), "modification_error": ("size", 12),
+    "pin_position_error": ("place", 10), "disc_pitch_error": ("place", 11), "disc_runout": ("runout", 9),
+}  # fmt: skip
+
+
+def costs(**values: str) -> Mapping[str, Any]:
+    return run(default_setup(RV_WEAR, **values), study("costs")).answers
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_the_cost_is_the_sum_of_six_functions_in_each_form(form: str) -> None:
+    expected = sum(FORMS[form](kind, ZONES[number][1]) for kind, number in PRICED.values())
+    found = costs(cost_form=form)
+    assert found["manufacturing_cost"] == pytest.approx(expected, rel=1e-9)
+    assert found["tolerance_price"] == found["manufacturing_cost"]
+
+
+def test_the_power_form_gives_the_printed_total() -> None:
+    assert costs()["manufacturing_cost"] == pytest.approx(1402, rel=1e-3)
+    assert costs()["manufacturing_cost"] == pytest.approx(146 + 154 + 146 + 126 + 99 + 732, abs=2.5)
+
+
+def test_the_bill_shows_every_form_of_every_zone() -> None:
+    bill = run(default_setup(RV_WEAR), study("costs")).outcomes["costs"].as_json()
+    for name, (kind, number) in PRICED.items():
+        line = bill["tolerances"][name]
+        assert line["width"]["value"] == pytest.approx(1000 * ZONES[number][1], rel=1e-9)
+        for form, function in FORMS.items():
+            assert line["prices"][form] == pytest.approx(function(kind, ZONES[number][1]), rel=1e-9)
+    assert set(bill["tolerances"]) == set(PRICED)
+
+
+@pytest.mark.parametrize("form", ["power", "exponential"])
+@pytest.mark.parametrize("name", PRICED)
+def test_a_wider_zone_always_costs_less(name: str, form: str) -> None:
+    from truing import zone
+
+    setup = default_setup(RV_WEAR, cost_form=form)
+    half = 500 * ZONES[PRICED[name][1]][1]
+    found = []
+    for factor in (0.5, 1.0, 1.5, 2.0, 4.0):
+        spread = zone(f"-{half * factor} um", f"{half * factor} um")
+        changed = replace(setup, spreads={**setup.spreads, name: spread})
+        found.append(run(changed, study("costs")).answers["manufacturing_cost"])
+    assert (np.diff(found) < 0).all()
+
+
+def test_a_zone_that_grows_up_keeps_its_lower_end_at_nothing() -> None:
+    """Runout and pin position start at 0: doubled, their mean is what their width was."""
+    from truing.declare.widths import with_width
+
+    setup = default_setup(RV_WEAR)
+    for name, (middle, width) in {"disc_runout": ZONES[9], "pin_position_error": ZONES[10]}.items():
+        target = setup.target(name)
+        wide = with_width(RV_WEAR.tolerances[name].spread, target, 2 * width * MM).resolve(target)
+        assert wide is not None
+        assert wide.mean == pytest.approx(2 * middle * MM, rel=1e-9)
+        assert wide.sd == pytest.approx(2 * width * MM / 6, rel=1e-9)
