@@ -13,7 +13,7 @@ from rv_wear.mesh import Array, Choices, Film, Mesh, columns_of, some_of, with_c
 from rv_wear.sharing import shared, start_scale
 from rv_wear.teeth import teeth_of
 
-CHUNK = 128  # meshes at a time: their contacts stay in the cache of a core
+CHUNK = 256  # meshes at a time: their contacts stay in the cache of a core
 FEW = 8  # so many meshes are looked for among the remembered ones
 REMEMBERED = 64
 FINENESS = 4  # a history reaches to the next power of two ^ (1 / 4), so that batches ask for the same one

@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from rv_wear import coefficient, sliding
 from rv_wear.mesh import Array
 from rv_wear.sharing import Loads, shared, start_scale
-from rv_wear.teeth import Teeth
+from rv_wear.teeth import Teeth, part_of
 
 MOST_STEPS = 4000
+SLIGHT = 1e-6  # N; a smaller force does not wear
 NEVER = 1e200  # exposure of a step in which nothing wears
 
 Rate = Callable[[Array], Array]
@@ -26,12 +27,20 @@ Rate = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class State:
-    """The disc at one moment: exposure (m,), wear and its growth per exposure (pins, phases, m), forces."""
+    """The disc at the beginning of a step: exposure (m,), wear and its growth (pins, phases, m), how long it lasts.
 
+    ``teeth`` holds the pins that bear, and the arrays hold the same; the others have no wear yet. ``lasts`` is an
+    exposure (m,), ``grown`` and ``after`` what wears in the step and what is worn at its end.
+    """
+
+    teeth: Teeth
+    loads: Loads
     exposure: Array
     wear: Array
     rate: Array
-    loads: Loads
+    lasts: Array
+    grown: Array
+    after: Array
 
 
 @dataclass(frozen=True)
@@ -68,8 +77,15 @@ def growth(teeth: Teeth, unworn: Loads) -> Rate:
 
 
 def _times(factor: Array, power: float) -> Rate:
+    if power == 1.0:
+        return lambda force: factor * force
+    lowest = np.full(8, SLIGHT) ** power
+
     def plain(force: Array) -> Array:
-        return factor * (force if power == 1.0 else force**power)
+        rate = np.maximum(force, np.full_like(force, SLIGHT)) ** power  # a power of 0 takes three times as long
+        rate -= lowest[0]
+        rate *= factor
+        return rate
 
     return plain
 
@@ -84,70 +100,114 @@ def _at_pitch_point(teeth: Teeth, unworn: Loads) -> Array:
     return np.asarray(coefficient.contact_part(mesh.equivalent_modulus, line_load, radius))
 
 
-def states(teeth: Teeth) -> Iterator[tuple[State, Array]]:
-    """The disc at the beginning of every step, and the exposure (m,) that the step lasts; without end."""
-    guess = start_scale(teeth)
-    loads = shared(teeth, teeth.slack, guess)
-    rate_of = growth(teeth, loads)
-    wear = np.zeros_like(teeth.slack)
-    exposure = np.zeros(teeth.count)
-    threshold = np.asarray(teeth.mesh.threshold)
+def states(teeth: Teeth) -> Iterator[State]:
+    """The disc at the beginning of every step, without end."""
+    unworn = shared(teeth, teeth.slack, start_scale(teeth))
+    part, clear = around(teeth, unworn.force)
+    rate_of = growth(part, unworn)
+    wear, exposure, last = np.zeros_like(part.slack), np.zeros(teeth.count), unworn.scale
+    loads = Loads(unworn.scale, unworn.approach, unworn.taken, unworn.force[part.pins])
     while True:
         rate = rate_of(loads.force)
-        fastest = rate.max(axis=(0, 1))
-        lasts = np.where(fastest > 0.0, threshold / np.where(fastest > 0.0, fastest, 1.0), NEVER)
-        yield State(exposure, wear, rate, loads), lasts
-        wear = wear + rate * lasts
+        lasts = _lasts(teeth, rate)
+        grown = rate * lasts
+        after = wear + grown
+        yield State(part, loads, exposure, wear, rate, lasts, grown, after)
+        wear = after
         exposure = exposure + lasts
-        loads = shared(teeth, teeth.slack + wear / teeth.relative_arm, loads.scale)
+        guess, last = np.maximum(2.0 * loads.scale - last, 0.5 * loads.scale), loads.scale
+        loads = shared(part, part.slack + wear * part.per_arm, guess)
+        while np.any(clear - loads.taken <= loads.approach):
+            wider, clear = widened(teeth, part)
+            wear = _put(wear, part, wider)
+            part, rate_of = wider, growth(wider, unworn)
+            loads = shared(part, part.slack + wear * part.per_arm, loads.scale)
+
+
+def _lasts(teeth: Teeth, rate: Array) -> Array:
+    fastest = rate.max(axis=(0, 1))
+    return np.where(fastest > 0.0, teeth.mesh.threshold / np.where(fastest > 0.0, fastest, 1.0), NEVER)
+
+
+def around(teeth: Teeth, force: Array) -> tuple[Teeth, Array]:
+    """The pins that bear somewhere, and the least slack (phases, m) of the others, which stay as they are."""
+    bearing = np.flatnonzero((force > 0.0).any(axis=(1, 2)))
+    pins = slice(int(bearing[0]), int(bearing[-1]) + 1)
+    return part_of(teeth, pins), _least_outside(teeth, pins)
+
+
+def widened(teeth: Teeth, part: Teeth) -> tuple[Teeth, Array]:
+    """One pin more at either end, as far as there are any."""
+    pins = slice(max(part.pins.start - 1, 0), min(part.pins.stop + 1, len(teeth.angle)))
+    return part_of(teeth, pins), _least_outside(teeth, pins)
+
+
+def _least_outside(teeth: Teeth, pins: slice) -> Array:
+    outside = np.concatenate([teeth.slack[: pins.start], teeth.slack[pins.stop :]])
+    least: Array = outside.min(axis=0, initial=np.inf)
+    return least
+
+
+def _put(values: Array, part: Teeth, whole: Teeth) -> Array:
+    """Put what is known of a part of the pins among more of them; 0 elsewhere."""
+    wide = np.zeros_like(whole.slack)
+    start = part.first - whole.first
+    wide[start : start + len(values)] = values
+    return wide
 
 
 def histories(teeth: Teeth, reach: Array) -> Histories:
     """Histories of all meshes to an exposure (m,) each, or to the largest number of steps."""
     nodes: list[tuple[Array, Array, Array]] = []
-    for count, (state, lasts) in enumerate(states(teeth)):
-        if count == 0:
-            first = state.rate.reshape(-1, teeth.count).argmax(axis=0)
-            nodes.append((state.exposure, np.zeros(teeth.count), _angle(teeth, first)))
-        nodes.extend(_step(teeth, state, lasts, first))
-        first = (state.wear + state.rate * lasts).reshape(-1, teeth.count).argmax(axis=0)
-        if np.all(nodes[-1][0] >= reach) or count + 1 == MOST_STEPS:
+    deepest = np.zeros(0, dtype=np.intp)
+    for count, state in enumerate(states(teeth), 1):
+        if not nodes:
+            deepest = _flat(state.rate).argmax(axis=0) + state.teeth.first * teeth.angle.shape[1]
+            nodes.append((state.exposure, np.zeros(teeth.count), teeth.angle.reshape(-1)[deepest]))
+        deepest, added = _step(state, deepest, teeth.angle.reshape(-1))
+        nodes.extend(added)
+        if np.all(nodes[-1][0] >= reach) or count == MOST_STEPS:
             break
     exposure, depth, angle = (np.array(column) for column in zip(*nodes, strict=True))
     return Histories(exposure, depth, angle)
 
 
-def _step(teeth: Teeth, state: State, lasts: Array, leader: NDArray[np.intp]) -> list[tuple[Array, Array, Array]]:
-    """The two nodes of a step: where the deepest point is overtaken (else half way), and its end."""
-    before = state.wear.reshape(-1, teeth.count)
-    grown = (state.rate * lasts).reshape(-1, teeth.count)
-    after = before + grown
-    winner = after.argmax(axis=0)
-    start, lead = _at(before, leader), _at(grown, leader)
-    behind, gained = start - _at(before, winner), _at(grown, winner) - lead
-    overtaken = (winner != leader) & (gained > 0.0)
-    part = np.where(overtaken, behind / np.where(overtaken, gained, 1.0), 0.5)
-    part = np.clip(part, 0.0, 1.0)
-    middle = (state.exposure + part * lasts, start + part * lead, _angle(teeth, leader))
-    return [middle, (state.exposure + lasts, _at(after, winner), _angle(teeth, winner))]
+def _flat(values: Array) -> Array:
+    return values.reshape(-1, values.shape[-1])
 
 
-def _at(values: Array, place: NDArray[np.intp]) -> Array:
-    found: Array = np.take_along_axis(values, place[None], axis=0)[0]
-    return found
+def _step(
+    state: State, leader: NDArray[np.intp], angle: Array
+) -> tuple[NDArray[np.intp], list[tuple[Array, Array, Array]]]:
+    """The deepest point after a step, and the nodes where it is overtaken (else half way) and at the end of the step.
 
-
-def _angle(teeth: Teeth, place: NDArray[np.intp]) -> Array:
-    return teeth.angle.reshape(-1)[place]
+    Points are counted over all pins and positions.
+    """
+    before, grown, after = _flat(state.wear), _flat(state.grown), _flat(state.after)
+    meshes = np.arange(len(state.lasts))
+    offset = state.teeth.first * state.teeth.angle.shape[1]
+    old = leader - offset
+    start, lead, top = before[old, meshes], grown[old, meshes], after.max(axis=0)
+    part, new = np.full(len(meshes), 0.5), old
+    passed = np.flatnonzero(after[old, meshes] < top)
+    if len(passed):
+        new = old.copy()
+        new[passed] = after[:, passed].argmax(axis=0)
+        behind = start[passed] - before[new[passed], passed]
+        part[passed] = np.clip(behind / (grown[new[passed], passed] - lead[passed]), 0.0, 1.0)
+    middle = (state.exposure + part * state.lasts, start + part * lead, angle[leader])
+    return new + offset, [middle, (state.exposure + state.lasts, top, angle[new + offset])]
 
 
 def wear_at(teeth: Teeth, exposure: Array) -> Array:
     """Wear of the whole flank (pins, phases, m) at an exposure (m,) each, with the shortened last step of the paper."""
     found = np.zeros_like(teeth.slack)
-    for count, (state, lasts) in enumerate(states(teeth)):
+    for count, state in enumerate(states(teeth), 1):
         left = exposure - state.exposure
-        within = (left >= 0.0) & ((left < lasts) | (count + 1 == MOST_STEPS))
-        found = np.where(within, state.wear + state.rate * left, found)
-        if np.all(exposure < state.exposure + lasts) or count + 1 == MOST_STEPS:
+        within = (left >= 0.0) & ((left < state.lasts) | (count == MOST_STEPS))
+        if within.any():
+            here = np.where(within, state.wear + state.rate * left, 0.0)
+            found = np.where(within, _put(here, state.teeth, teeth), found)
+        if np.all(exposure < state.exposure + state.lasts) or count == MOST_STEPS:
             break
     return found

@@ -19,86 +19,114 @@ from rv_wear import contact, cycloid
 from rv_wear.mesh import Array, Truths
 from rv_wear.teeth import Teeth
 
-CLOSE = 1e-14
+CLOSE = 1e-8  # Newton's rule squares it with its last step
 ROUNDS = 100
 
 
 @dataclass(frozen=True)
 class Loads:
-    """Force at the longest arm and approach there (phases, m), slack after take-up and pin forces (pins, phases, m)."""
+    """Force at the longest arm, approach there and take-up (phases, m), forces of the pins (pins, phases, m)."""
 
     scale: Array
     approach: Array
-    slack: Array
+    taken: Array
     force: Array
 
 
 def start_scale(teeth: Teeth) -> Array:
     """Forces (phases, m) from which the first solution starts: those without clearance."""
-    return np.broadcast_to(np.asarray(teeth.mesh.start_force), (*teeth.angle.shape[1:2], teeth.count)).copy()
+    return np.broadcast_to(np.asarray(teeth.mesh.start_force), teeth.torque.shape).copy()
 
 
 def shared(teeth: Teeth, slack: Array, guess: Array) -> Loads:
-    """Forces of all pins for these slacks (pins, phases, m), by the sharing that the mesh was given."""
-    taken = slack - slack.min(axis=0)
-    solve = hertz if teeth.mesh.choices.load_sharing == "hertz" else linear
-    return solve(teeth, taken, guess)
+    """Forces of all pins for these slacks (pins, phases, m), by the sharing that the mesh was given.
+
+    *guess* are forces at the longest arm (phases, m), above 0.
+    """
+    taken = slack.min(axis=0)
+    if teeth.mesh.choices.load_sharing == "hertz":
+        scale, approach, force = hertz(teeth, slack - taken, guess)
+    else:
+        scale, approach, force = linear(teeth, slack, taken, guess)
+    return Loads(scale, approach, taken, force)
 
 
-def linear(teeth: Teeth, slack: Array, guess: Array) -> Loads:
-    """Forces in proportion to the approach, as in the paper; *guess* is a force at the longest arm (phases, m)."""
-    scale, stiffness = guess, np.zeros_like(guess)
+def linear(teeth: Teeth, slack: Array, taken: Array, guess: Array) -> tuple[Array, Array, Array]:
+    """Forces in proportion to the approach, as in the paper: scale, approach, pin forces."""
+    pins = len(slack)
+    line = np.stack([x.reshape(-1) for x in (teeth.compliance, teeth.depth_number, teeth.torque, taken)])
+    settled = _settled(teeth.weight.reshape(pins, -1), slack.reshape(pins, -1), line, guess.reshape(-1))
+    scale = settled.reshape(guess.shape)
+    approach = teeth.compliance * scale * (teeth.depth_number - np.log(scale))
+    force = (approach + taken) - slack
+    np.maximum(force, np.zeros_like(force), out=force)  # much faster than with the number 0
+    force *= teeth.relative_arm
+    force *= scale / approach
+    return scale, approach, force
+
+
+def _settled(weight: Array, slack: Array, line: Array, scale: Array) -> Array:
+    """Force at the longest arm (k,) of positions with pins (pins, k), all with the pins that then bear.
+
+    ``line`` holds compliance, depth number, torque and take-up of the positions. Where other pins bear than were
+    thought, those positions are solved again.
+    """
+    touching = _touching(slack, line, scale)
+    bearing = weight * touching
+    stiffness = _total(bearing)
+    bearing *= slack
+    scale = _balanced(stiffness, _total(bearing) - line[3] * stiffness, line, scale)
+    again = np.flatnonzero((_touching(slack, line, scale) != touching).any(axis=0))
+    if len(again):
+        scale[again] = _settled(weight[:, again], slack[:, again], line[:, again], scale[again])
+    return scale
+
+
+def _touching(slack: Array, line: Array, scale: Array) -> Truths:
+    """Which pins touch at this force."""
+    found: Truths = slack < line[0] * scale * (line[1] - np.log(scale)) + line[3]
+    return found
+
+
+def _total(values: Array) -> Array:
+    """Sum over the pins, in the same order however many positions there are."""
+    positions = values.shape[1]
+    wide = values if positions > 1 else np.repeat(values, 2, axis=1)  # of a single column numpy would add pairs
+    total: Array = wide.sum(axis=0)[:positions]
+    return total
+
+
+def _balanced(stiffness: Array, lost: Array, line: Array, scale: Array) -> Array:
+    """Force at which these pins hold the torque: F A - (F / delta) B = T, solved by Newton's rule."""
+    compliance, number, torque, _ = line
+    moving = np.ones(scale.shape, dtype=bool)
     for _ in range(ROUNDS):
-        bearing = teeth.weight * (slack < contact_approach(teeth, scale))
-        new = bearing.sum(axis=0)
-        moving = new != stiffness
-        if not moving.any():
-            break
-        stiffness = new
-        lost = (bearing * np.where(np.isfinite(slack), slack, 0.0)).sum(axis=0)
-        scale = _balanced(teeth, scale, stiffness, lost, moving)
-    approach = contact_approach(teeth, scale)
-    share = teeth.relative_arm * np.maximum(approach - slack, 0.0)
-    return Loads(scale, approach, slack, scale / approach * share)
-
-
-def contact_approach(teeth: Teeth, scale: Array) -> Array:
-    """Approach at the longest arm under a force there, equation 1b."""
-    return teeth.compliance * scale * (teeth.depth_number - np.log(scale))
-
-
-def _balanced(teeth: Teeth, scale: Array, stiffness: Array, lost: Array, moving: Truths) -> Array:
-    """Force at which the bearing pins hold the torque: F A - (F / delta) B = T, solved by Newton's rule."""
-    for _ in range(ROUNDS):
-        left = teeth.depth_number - np.log(scale)
-        secant = 1.0 / (teeth.compliance * left)  # F / delta
-        excess = scale * stiffness - secant * lost - teeth.torque
-        step = excess / (stiffness - lost * secant / (scale * left))
-        new = np.where(moving, np.maximum(scale - step, 0.1 * scale), scale)
+        left = number - np.log(scale)
+        reduced = lost / (compliance * left)  # (F / delta) B
+        step = (scale * stiffness - reduced - torque) / (stiffness - reduced / (scale * left))
+        scale = np.where(moving, np.maximum(scale - step, 0.1 * scale), scale)
         moving = moving & (np.abs(step) > CLOSE * scale)
-        scale = new
         if not moving.any():
             break
     return scale
 
 
-def hertz(teeth: Teeth, slack: Array, guess: Array) -> Loads:
-    """Forces by equation 1b at every pin with its own radii; *guess* is a force at the longest arm (phases, m)."""
-    profile_radius = np.asarray(cycloid.profile_radius(teeth.mesh, teeth.angle))
-    number = np.asarray(contact.depth_number(teeth.mesh, profile_radius, teeth.relative_radius))
-    approach = contact_approach(teeth, guess)
-    lever = np.where(teeth.bears, teeth.relative_arm * teeth.mesh.longest_arm, 0.0)
+def hertz(teeth: Teeth, slack: Array, guess: Array) -> tuple[Array, Array, Array]:
+    """Forces by equation 1b at every pin with its own radii: force at the longest arm, approach, pin forces."""
+    mesh = teeth.mesh
+    profile_radius = np.asarray(cycloid.profile_radius(mesh, teeth.angle))
+    number = np.asarray(contact.depth_number(mesh, profile_radius, teeth.relative_radius))
+    approach = teeth.compliance * guess * (teeth.depth_number - np.log(guess))
+    lever = teeth.weight / teeth.relative_arm
     moving = np.ones(approach.shape, dtype=bool)
     for _ in range(ROUNDS):
-        force = contact.force_of(teeth.mesh, teeth.relative_arm * (approach - slack), number)
+        force = np.asarray(contact.force_of(mesh, teeth.relative_arm * (approach - slack), number))
         soft = teeth.compliance * np.maximum(number - np.log(np.where(force > 0.0, force, 1.0)) - 1.0, 1.0)
-        slope = np.where(force > 0.0, lever * teeth.relative_arm / soft, 0.0).sum(axis=0)
+        slope = np.where(force > 0.0, teeth.weight / soft, 0.0).sum(axis=0)
         step = ((force * lever).sum(axis=0) - teeth.torque) / slope
-        new = np.where(moving, np.maximum(approach - step, 0.5 * approach), approach)
+        approach = np.where(moving, np.maximum(approach - step, 0.5 * approach), approach)
         moving = moving & (np.abs(step) > CLOSE * approach)
-        approach = new
         if not moving.any():
             break
-    force = contact.force_of(teeth.mesh, teeth.relative_arm * (approach - slack), number)
-    scale = contact.force_of(teeth.mesh, approach, teeth.depth_number)
-    return Loads(np.asarray(scale), approach, slack, np.asarray(force))
+    force = np.asarray(contact.force_of(mesh, teeth.relative_arm * (approach - slack), number))
+    return np.asarray(contact.force_of(mesh, approach, teeth.depth_number)), approach, force
