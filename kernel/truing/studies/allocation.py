@@ -1,4 +1,4 @@
-"""Which tolerance do I buy? The grade-by-grade rule of the paper, and beside it the least cost there is."""
+"""Which tolerance do I buy? Grades by the rule of the paper and by least cost; widths with a price at least cost."""
 
 from __future__ import annotations
 
@@ -20,20 +20,26 @@ from truing.studies.differences import slopes
 from truing.studies.grades import Shop, open_shop, with_grades
 from truing.studies.sampling import Budget, Machines, Tally, sample
 from truing.studies.scatter import scatter_of
-from truing.studies.synthesis import Plan, Step, by_rule, coefficients, least_cost
+from truing.studies.strips import priced_widths, with_widths
+from truing.studies.synthesis import Plan, Step, as_it_stands, by_rule, coefficients, least_cost
+from truing.studies.widths_bought import bought
 
 ALLOTTED = "with the grades after the allocation"
+BOUGHT = "with the tolerances after the allocation"
+BALANCED_TO = 1e-4
 GOAL_REACHED = "probability after the allocation over its goal, the smallest of all"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Allocation:
-    """Tighten ISO 286 grades until every Require with a reliability is met.
+    """Buy tolerances until every Require with a reliability is met: ISO 286 grades, and widths that have a price.
 
     ``balanced`` is the rule of precision balance: the coarsest grades first, among them the part whose coefficient of
     sensitivity and cost is smallest, never finer than ``finest``. ``of`` names the result whose sensitivities order the
     parts (empty: that of the first goal). ``weights`` are those of sensitivity and cost. ``loosen`` lets the least-cost
-    solution take coarser grades than those of the start. Both are verified by ``draws`` machines on the exact model.
+    solution take coarser grades than those of the start. A tolerance that is no grade but has a price is a width
+    between ``tightest`` and ``widest`` times the one in force; with the grades of a design chosen, its widths are those
+    of least cost. All designs are verified by ``draws`` machines on the exact model.
     """
 
     rule: Literal["balanced"] = "balanced"
@@ -41,6 +47,8 @@ class Allocation:
     finest: str = "IT5"
     weights: tuple[float, float] = (1.0, 1.0)
     loosen: bool = False
+    tightest: float = 0.25
+    widest: float = 4.0
     draws: int = 100_000
     batch: int = 2**14
     name: str = "allocation"
@@ -53,6 +61,10 @@ class Allocation:
             raise UsageError(f"'{self.finest}' is no tolerance grade; write IT1 to IT18")
         if len(self.weights) != 2 or min(self.weights) < 0 or not sum(self.weights) > 0:
             raise UsageError("weights are two numbers, not negative and not both 0")
+        if not 0 < self.tightest < self.widest < float("inf"):
+            raise UsageError(
+                f"tightest = {self.tightest:g} and widest = {self.widest:g}, but widths need a range above 0 that rises"
+            )
         if self.draws < 1 or self.batch < 1:
             raise UsageError("draws and batch are at least 1")
 
@@ -62,10 +74,12 @@ class Allocation:
         wanted = _goals(setup, bench.answers, self.name)
         machines = Machines(setup, scatter_of(setup))
         straight, found = straightened(machines, wanted, nominal_inputs(setup, wanted))
-        shop = open_shop(setup, wanted, straight, self.finest, loosen=self.loosen)
-        order = coefficients(shop, self._slopes(machines, wanted, shop), self.weights)
-        steps, rule = by_rule(shop, order, self.finest)
-        least = least_cost(shop)
+        shop = open_shop(setup, wanted, straight, self.finest, loosen=self.loosen, span=(self.tightest, self.widest))
+        order = coefficients(shop, self._slopes(machines, wanted, shop), self.weights) if shop.parts else {}
+        steps, ruled = by_rule(shop, order, self.finest) if shop.parts else ([], as_it_stands(shop))
+        rule = bought(shop, ruled)
+        least = _least(shop, ruled, rule)
+        designs = {"start": as_it_stands(shop), "rule": rule, "least": least}
         return Allotted(
             name=self.name,
             finest=self.finest,
@@ -74,8 +88,9 @@ class Allocation:
             rule=rule,
             least=least,
             coefficients=order,
-            sampled=self._verified(bench, wanted, {"start": shop.start, "rule": rule.grades, "least": least.grades}),
-            remarks=found.warnings,
+            sampled=self._verified(bench, wanted, designs),
+            texts={key: _texts(setup, shop, plan) for key, plan in designs.items()},
+            remarks=(*found.warnings, *_left_alone(setup, shop)),
             inputs=acting_inputs(setup),
         )
 
@@ -90,17 +105,15 @@ class Allocation:
         found = slopes(machines.setup, (of,), columns, machines.scatter).of[of]
         return {name: sum(abs(float(found[column])) for column in tolerances[name].on) for name in shop.parts}
 
-    def _verified(
-        self, bench: Bench, wanted: Sequence[Demand], designs: Mapping[str, Mapping[str, str]]
-    ) -> dict[str, Tally]:
+    def _verified(self, bench: Bench, wanted: Sequence[Demand], designs: Mapping[str, Plan]) -> dict[str, Tally]:
         """Draw the same machines for every design; equal designs are drawn once."""
         found: dict[str, Tally] = {}
-        for stage, (key, grades) in enumerate(designs.items()):
-            twin = next((other for other in found if designs[other] == grades), None)
+        for stage, (key, plan) in enumerate(designs.items()):
+            twin = next((other for other in found if designs[other].same_as(plan)), None)
             if twin is not None:
                 found[key] = found[twin]
                 continue
-            setup = with_grades(bench.setup, grades)
+            setup = with_plan(bench.setup, plan)
 
             def done(draws: int, total: int, stage: int = stage) -> None:
                 bench.progress(self.name, stage * total + draws, len(designs) * total)
@@ -108,6 +121,37 @@ class Allocation:
             budget = Budget(self.draws, self.batch, bench.executor, done)
             found[key] = sample(Machines(setup, scatter_of(setup)), wanted, bench.answers, budget)
         return found
+
+
+def with_plan(setup: Setup, plan: Plan) -> Setup:
+    """Return the setup with the grades and widths of a plan."""
+    return with_widths(with_grades(setup, plan.grades), plan.widths)
+
+
+def _least(shop: Shop, ruled: Plan, rule: Plan) -> Plan:
+    """Return the cheapest design: with widths the cheapest of three choices of grades, each with widths of its own."""
+    if not shop.parts:
+        return rule
+    if not shop.strips:
+        return least_cost(shop)
+    found = [bought(shop, least_cost(shop)), rule]
+    if ruled.grades != shop.start:
+        found.append(bought(shop, as_it_stands(shop)))
+    return min(found, key=lambda plan: (not plan.reached, plan.cost))
+
+
+def _texts(setup: Setup, shop: Shop, plan: Plan) -> dict[str, str]:
+    """Return by tolerance what an inputs file would say of this design."""
+    chosen = with_plan(setup, plan)
+    return {name: chosen.spread_of(name).text for name in (*shop.parts, *shop.strips)}
+
+
+def _left_alone(setup: Setup, shop: Shop) -> list[str]:
+    """Say which widths with a price were not chosen, since the grades beside them have none."""
+    names = [f"'{item.name}'" for item in priced_widths(setup) if item.name not in shop.strips]
+    if not names:
+        return []
+    return [f"the widths of {' and '.join(names)} stay: not every grade has a price, so costs cannot be compared"]
 
 
 def _goals(setup: Setup, answers: Mapping[str, Any], study: str) -> list[Demand]:
@@ -126,9 +170,10 @@ def _goals(setup: Setup, answers: Mapping[str, Any], study: str) -> list[Demand]
 
 @dataclass(frozen=True, kw_only=True)
 class Allotted:
-    """What the rule chose, step by step, and the least cost beside it.
+    """What the rule chose, step by step, and the least cost beside it; without grades both are the widths bought.
 
-    ``start`` and ``final`` are first-order probabilities by check; ``tolerances`` the grades that the rule ends with;
+    ``start`` and ``final`` are first-order probabilities by check; ``tolerances`` what the rule ends with, grades and
+    widths as an inputs file states them, ``texts[design]`` that of each;
     ``monte_carlo["start" | "rule" | "least"][check]`` the probabilities on the exact model.
     ``inputs`` are those of the run, as effects leave them.
     """
@@ -141,6 +186,7 @@ class Allotted:
     least: Plan
     coefficients: Mapping[str, float]
     sampled: Mapping[str, Tally] = field(default_factory=dict)
+    texts: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     inputs: Any = None
 
@@ -166,17 +212,17 @@ class Allotted:
 
     @property
     def tolerances(self) -> Mapping[str, str]:
-        """The grades that the rule ends with."""
-        return self.rule.grades
+        """The grades that the rule ends with, and the widths bought, as an inputs file states them."""
+        return self.texts.get("rule", self.rule.grades)
 
     @property
     def cost(self) -> float:
-        """The cost of these grades, in ``shop.unit``."""
+        """The cost of these tolerances, in ``shop.unit``."""
         return self.rule.cost
 
     @property
     def least_cost(self) -> Plan:
-        """The least-cost choice among the same grades."""
+        """The least-cost choice among the same grades and widths."""
         return self.least
 
     @property
@@ -193,8 +239,16 @@ class Allotted:
             for key, tally in self.sampled.items()
         }
 
+    @property
+    def spoken(self) -> dict[str, tuple[str, Plan]]:
+        """The designs that were adjusted, by key: what they are called, and the plan. Without grades there is one."""
+        if not self.shop.parts:
+            return {"least": ("the widths of least cost", self.least)}
+        what = "tolerances" if self.shop.strips else "grades"
+        return {"rule": (f"the rule's {what}", self.rule), "least": (f"the least-cost {what}", self.least)}
+
     def as_json(self) -> dict[str, Any]:
-        """Return steps, grades, cost and whether the goals are reached, of the rule and of the least cost."""
+        """Return steps, tolerances, cost and whether the goals are reached, of the rule and of the least cost."""
         from truing.studies.allotted_printed import allotted_json
 
         return allotted_json(self)
@@ -208,9 +262,9 @@ class Allotted:
     def checks(self) -> Sequence[Check]:
         """Compare the probability after the synthesis, first order, with each goal; and say whether all are reached."""
         goals = {demand.name: demand.goal for demand in self.shop.demands if demand.goal is not None}
+        note = BOUGHT if self.shop.strips else ALLOTTED
         each = [
-            chance_check(name, self.final[name], goal, method="first order", note=ALLOTTED)
-            for name, goal in goals.items()
+            chance_check(name, self.final[name], goal, method="first order", note=note) for name, goal in goals.items()
         ]
         worst = min(self.final[name] / goal if goal else 1.0 for name, goal in goals.items())
         return [*each, chance_check("goal reached", worst, 1.0, method="first order", note=GOAL_REACHED)]
@@ -222,34 +276,34 @@ class Allotted:
             missed = [demand for demand in self.shop.demands if self.final[demand.name] < (demand.goal or 0.0)]
             far = ", ".join(f"'{item.name}' comes to {self.final[item.name]:.4f} of {item.goal:g}" for item in missed)
             words.append(f"study '{self.name}': the goal is {self.rule.status}; {far}")
-        for key, plan in (("rule", self.rule), ("least", self.least)):
+        for key, (what, plan) in self.spoken.items():
+            if plan.residual is not None and plan.residual > BALANCED_TO:
+                words.append(f"study '{self.name}': {_not_a_minimum(what, plan)}")
             tally = self.sampled.get(key)
             if tally is not None and tally.failed:
-                words.append(f"study '{self.name}': {_without_answer(tally, key)}")
+                words.append(f"study '{self.name}': {_without_answer(tally, what)}")
             if tally is not None and plan.reached:
-                words += [f"study '{self.name}': {text}" for text in _contradicted(tally, self.shop.demands, key)]
+                words += [f"study '{self.name}': {text}" for text in _contradicted(tally, self.shop.demands, what)]
         return words
 
 
-SPOKEN = {"rule": "the rule's grades", "least": "the least-cost grades"}
+def _not_a_minimum(what: str, plan: Plan) -> str:
+    return f"{what} are no proven minimum of the cost: {plan.residual:.2g} of its gradient is not balanced"
 
 
-def _without_answer(tally: Tally, design: str) -> str:
+def _without_answer(tally: Tally, what: str) -> str:
     """Say how many machines of a design failed."""
     reason = next(iter(tally.reasons), "no reason was given")
-    return (
-        f"with {SPOKEN[design]} {tally.failed} of {tally.draws} machines have no answer and count as missed ({reason})"
-    )
+    return f"with {what} {tally.failed} of {tally.draws} machines have no answer and count as missed ({reason})"
 
 
-def _contradicted(tally: Tally, wanted: Sequence[Demand], design: str) -> list[str]:
+def _contradicted(tally: Tally, wanted: Sequence[Demand], what: str) -> list[str]:
     """Name the goals that first order reaches and the exact model misses beyond its sampling error."""
     words = []
     for demand in wanted:
         low, high = wilson(tally.hits[demand.name], tally.draws)
         if demand.goal is not None and high < demand.goal:
             words.append(
-                f"with {SPOKEN[design]} the exact model gives '{demand.name}' only {low:.4f} to {high:.4f} "
-                f"of {demand.goal:g}"
+                f"with {what} the exact model gives '{demand.name}' only {low:.4f} to {high:.4f} of {demand.goal:g}"
             )
     return words

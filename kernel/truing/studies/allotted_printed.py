@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.studies.demands import as_number, wilson
-from truing.studies.reading import spoken
+from truing.studies.reading import printed_step, spoken
 from truing.studies.sampling import Tally
+from truing.studies.strips import Strip
 from truing.studies.synthesis import Plan
 
 if TYPE_CHECKING:
@@ -46,16 +47,28 @@ def _start(allotted: Allotted) -> dict[str, Any]:
 
 def _design(allotted: Allotted, plan: Plan, key: str) -> dict[str, Any]:
     entry: dict[str, Any] = {
-        "tolerances": dict(plan.grades),
+        "tolerances": dict(allotted.texts.get(key, plan.grades)),
         "cost": {"value": plan.cost, "unit": allotted.shop.unit},
         "reached": plan.reached,
         "probabilities": dict(plan.chances),
     }
     if plan.status:
         entry["status"] = plan.status
+    if allotted.shop.strips:
+        entry["widths"] = {strip.name: _width(strip, plan) for strip in allotted.shop.strips.values()}
     if key in allotted.sampled:
         entry["monte_carlo"] = _sampled(allotted.sampled[key])
     return entry
+
+
+def _width(strip: Strip, plan: Plan) -> dict[str, Any]:
+    width = plan.widths.get(strip.name, strip.start)
+    return {
+        "from": printed_step(strip.start, strip.unit),
+        "to": printed_step(width, strip.unit),
+        "unit": strip.unit,
+        "price": {"from": strip.cost(strip.start), "to": strip.cost(width), "unit": strip.price.unit},
+    }
 
 
 def _sampled(tally: Tally) -> dict[str, Any]:
@@ -82,9 +95,13 @@ def allotted_blocks(allotted: Allotted) -> Sequence[Block]:
     if not allotted.reached:
         far = " and ".join(f"{spoken(name)} {100 * value:.2f} %" for name, value in allotted.final.items())
         blocks.append(Words(f"The goal is {allotted.rule.status}. It comes to {far}.", "finding"))
-    blocks.append(_steps(allotted))
+    if allotted.shop.parts:
+        blocks.append(_steps(allotted))
     blocks.append(_comparison(allotted))
-    blocks.append(_grades(allotted))
+    if allotted.shop.parts:
+        blocks.append(_grades(allotted))
+    if allotted.shop.strips:
+        blocks += [_widths(allotted, what, plan) for what, plan in allotted.spoken.values()]
     if allotted.steps:
         blocks.append(Drawing("Probability along the synthesis", _drawn(allotted)))
     return blocks
@@ -108,14 +125,14 @@ def _comparison(allotted: Allotted) -> Table:
     start = Plan(shop.start, shop.cost(shop.start), allotted.start, shop.reached(shop.start))
     designs: Mapping[str, tuple[Plan, str, int]] = {
         "start": (start, "start", 0),
-        "rule": (allotted.rule, "rule", allotted.adjustments),
+        **({"rule": (allotted.rule, "rule", allotted.adjustments)} if shop.parts else {}),
         "least cost": (allotted.least, "least", allotted.least_steps),
     }
     rows: list[list[Any]] = []
     for title, (plan, key, steps) in designs.items():
         sampled = allotted.monte_carlo.get(key, {})
         chances = [value for name in names for value in (100 * plan.chances[name], _percent(sampled.get(name)))]
-        rows.append([title, steps, plan.cost, *chances, plan.reached])
+        rows.append([title, *([steps] if shop.parts else []), plan.cost, *chances, plan.reached])
     pairs = [column for name in names for column in (name, "Monte Carlo")]
     unit = shop.unit
     note = (
@@ -124,8 +141,11 @@ def _comparison(allotted: Allotted) -> Table:
         else "Cost: the sum of 1/width over the tolerances, the reciprocal law; not every one has a price."
     )
     note += f" First order beside {_drawn_words(allotted)}" if allotted.sampled else ""
-    units = ("", "", unit, *("%" for _ in pairs), "")
-    return Table("Rule against least cost", ("design", "grades", "cost", *pairs, "reached"), rows, units, note)
+    counted = ("grades",) if shop.parts else ()
+    columns = ("design", *counted, "cost", *pairs, "reached")
+    units = ("", *("" for _ in counted), unit, *("%" for _ in pairs), "")
+    title = "Rule against least cost" if shop.parts else "In force and at least cost"
+    return Table(title, columns, rows, units, note)
 
 
 def _drawn_words(allotted: Allotted) -> str:
@@ -156,6 +176,24 @@ def _grades(allotted: Allotted) -> Table:
         for name, part in sorted(allotted.shop.parts.items(), key=lambda item: allotted.coefficients[item[0]])
     ]
     return Table("Grades", ("tolerance", "coefficient", "start", "rule", "least cost"), rows)
+
+
+def _widths(allotted: Allotted, what: str, plan: Plan) -> Table:
+    """Say what became of every width that has a price."""
+    from truing.units import unit_text
+
+    rows: list[list[Any]] = []
+    for strip in allotted.shop.strips.values():
+        width = plan.widths.get(strip.name, strip.start)
+        ends = {strip.low: "tightest", strip.high: "widest"}
+        at_end = next((word for end, word in ends.items() if abs(width / end - 1) < 1e-6), "")
+        pair = [printed_step(one, strip.unit) for one in (strip.start, width)]
+        prices = [strip.cost(strip.start), strip.cost(width)]
+        rows.append([strip.name, unit_text(strip.unit), *pair, width / strip.start, *prices, at_end])
+    unit = allotted.shop.unit
+    columns = ("tolerance", "unit", "in force", "bought", "times", "price in force", "price", "at the end")
+    note = "Full widths. Those at an end would go further if tightest and widest allowed it."
+    return Table(what[:1].upper() + what[1:], columns, rows, ("", "", "", "", "", unit, unit, ""), note)
 
 
 def _drawn(allotted: Allotted) -> Any:

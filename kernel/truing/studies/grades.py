@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from truing.declare.goals import Price
@@ -15,6 +15,7 @@ from truing.prices import price_at, price_of
 from truing.setup import Setup
 from truing.studies.chances import Straight
 from truing.studies.demands import Demand, normal_chance
+from truing.studies.strips import Strip, strips_of
 
 RECIPROCAL = "1/mm"
 
@@ -45,7 +46,10 @@ class Part:
 
 @dataclass(frozen=True)
 class Shop:
-    """All parts whose grade may be chosen, the scatter that stays as it is, and the goals to reach."""
+    """All parts whose grade may be chosen, strips whose width may be, what stays as it is, and the goals to reach.
+
+    ``fixed`` is the variance that no grade makes, with the widths in force. ``span`` is that of the widths over those.
+    """
 
     parts: Mapping[str, Part]
     demands: tuple[Demand, ...]
@@ -53,28 +57,56 @@ class Shop:
     fixed: Mapping[str, float]
     unit: str
     priced: bool
+    strips: Mapping[str, Strip] = field(default_factory=dict)
+    span: tuple[float, float] = (1.0, 1.0)
 
-    def variance(self, name: str, grades: Mapping[str, str]) -> float:
-        """Return the first-order variance of a demand's response with these grades."""
-        return self.fixed[name] + sum(part.choices[grades[key]].variances[name] for key, part in self.parts.items())
+    def variance(self, name: str, grades: Mapping[str, str], widths: Mapping[str, float] | None = None) -> float:
+        """Return the first-order variance of a demand's response with these grades and widths (those in force)."""
+        graded = sum(part.choices[grades[key]].variances[name] for key, part in self.parts.items())
+        moved = ((self.strips[key], width) for key, width in (widths or {}).items())
+        return max(
+            0.0,
+            self.fixed[name]
+            + graded
+            + sum(strip.variance(name, width) - strip.variances[name] for strip, width in moved),
+        )
 
-    def chances(self, grades: Mapping[str, str]) -> dict[str, float]:
-        """Return the first-order probability of every demand with these grades."""
+    def mean(self, name: str, widths: Mapping[str, float] | None = None) -> float:
+        """Return the first-order mean of a demand's response with these widths (those in force)."""
+        return self.means[name] + sum(self.strips[key].shift(name, width) for key, width in (widths or {}).items())
+
+    def chances(self, grades: Mapping[str, str], widths: Mapping[str, float] | None = None) -> dict[str, float]:
+        """Return the first-order probability of every demand with these grades and widths."""
         return {
             demand.name: normal_chance(
-                self.means[demand.name], self.variance(demand.name, grades) ** 0.5, demand.low, demand.high
+                self.mean(demand.name, widths),
+                self.variance(demand.name, grades, widths) ** 0.5,
+                demand.low,
+                demand.high,
             )
             for demand in self.demands
         }
 
-    def cost(self, grades: Mapping[str, str]) -> float:
-        """Return the sum of what these grades cost."""
-        return sum(part.choices[grades[key]].cost for key, part in self.parts.items())
+    def cost(self, grades: Mapping[str, str], widths: Mapping[str, float] | None = None) -> float:
+        """Return the sum of what these grades and widths cost."""
+        graded = sum(part.choices[grades[key]].cost for key, part in self.parts.items())
+        chosen = {**self.widths, **(widths or {})}
+        return graded + sum(strip.cost(chosen[key]) for key, strip in self.strips.items())
 
-    def reached(self, grades: Mapping[str, str]) -> bool:
+    def reached(self, grades: Mapping[str, str], widths: Mapping[str, float] | None = None) -> bool:
         """Say whether every goal is met to first order."""
-        chances = self.chances(grades)
-        return all(chances[demand.name] >= demand.goal for demand in self.demands if demand.goal is not None)
+        chances = self.chances(grades, widths)
+        return all(chances[demand.name] >= demand.goal for demand in self.goals if demand.goal is not None)
+
+    @property
+    def goals(self) -> tuple[Demand, ...]:
+        """The demands with a probability to reach."""
+        return tuple(demand for demand in self.demands if demand.goal is not None)
+
+    @property
+    def widths(self) -> dict[str, float]:
+        """The full widths (SI) before anything is adjusted."""
+        return {name: strip.start for name, strip in self.strips.items()}
 
     @property
     def start(self) -> dict[str, str]:
@@ -83,28 +115,37 @@ class Shop:
 
 
 def open_shop(
-    setup: Setup, wanted: Sequence[Demand], straight: Mapping[str, Straight], finest: str, *, loosen: bool
+    setup: Setup,
+    wanted: Sequence[Demand],
+    straight: Mapping[str, Straight],
+    finest: str,
+    *,
+    loosen: bool,
+    span: tuple[float, float] = (1.0, 1.0),
 ) -> Shop:
-    """Collect parts, grades and costs. Raises UsageError where no tolerance in force is a grade."""
+    """Collect parts, grades, widths and costs. Raises UsageError where no tolerance in force is a grade or has a price.
+
+    Widths can be bought only where every grade has a price too; otherwise they stay.
+    """
     graded = [item for item in setup.model.tolerances.values() if isinstance(setup.spread_of(item.name), Grade)]
-    if not graded:
-        raise UsageError(
-            f'{setup.model.name} has no tolerance that is a grade, such as grade("IT7"): nothing to allocate'
-        )
     price_unit = _price_unit(setup, graded)
-    parts = {
-        tolerance.name: _part(setup, tolerance, straight, (finest, loosen), price_unit is not None)
-        for tolerance in graded
-    }
+    priced = price_unit is not None
+    strips = strips_of(setup, straight, span) if priced or not graded else {}
+    if not graded and not strips:
+        raise UsageError(
+            f'{setup.model.name} has no tolerance that is a grade, such as grade("IT7"), and none with a price whose '
+            "width could be chosen: nothing to allocate"
+        )
+    parts = {tolerance.name: _part(setup, tolerance, straight, (finest, loosen), priced) for tolerance in graded}
     whole = {demand.name: float(straight[demand.name].variance) for demand in wanted}
     fixed = {
         name: max(0.0, variance - sum(part.first.variances[name] for part in parts.values()))
         for name, variance in whole.items()
     }
     means = {demand.name: float(straight[demand.name].mean) for demand in wanted}
-    return Shop(
-        parts, tuple(wanted), means, fixed, RECIPROCAL if price_unit is None else price_unit, price_unit is not None
-    )
+    units = [price_unit] if price_unit is not None else [strip.price.unit for strip in strips.values()]
+    unit = units[0] if units else RECIPROCAL
+    return Shop(parts, tuple(wanted), means, fixed, unit, priced or bool(strips), strips, span)
 
 
 def _part(

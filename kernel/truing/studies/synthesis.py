@@ -8,7 +8,7 @@ goal on the probability is a bound on that sum.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from truing.fits import GRADES
@@ -31,13 +31,22 @@ class Step:
 
 @dataclass(frozen=True)
 class Plan:
-    """Grades by tolerance, what they cost, the first-order chances, and whether every goal is reached."""
+    """Grades and full widths (SI) by tolerance, what they cost, first-order chances, and whether all goals are reached.
+
+    ``residual`` says how far the widths are from a minimum of the cost: 0 is one; None where none were found.
+    """
 
     grades: Mapping[str, str]
     cost: float
     chances: Mapping[str, float]
     reached: bool
     status: str = ""
+    widths: Mapping[str, float] = field(default_factory=dict)
+    residual: float | None = 0.0
+
+    def same_as(self, other: Plan) -> bool:
+        """Say whether two plans are one design."""
+        return self.grades == other.grades and self.widths == other.widths
 
 
 def coefficients(shop: Shop, slopes: Mapping[str, float], weights: tuple[float, float]) -> dict[str, float]:
@@ -73,6 +82,11 @@ def by_rule(shop: Shop, order: Mapping[str, float], finest: str) -> tuple[list[S
         widths = (shop.parts[name].choices[before].width, shop.parts[name].choices[after].width)
         steps.append(Step(len(steps) + 1, name, before, after, *widths, shop.chances(grades)))
     return steps, _plan(shop, grades, f"every tolerance is at {finest}")
+
+
+def as_it_stands(shop: Shop) -> Plan:
+    """Return the design before anything is adjusted."""
+    return _plan(shop, shop.start, "nothing is adjusted")
 
 
 def _plan(shop: Shop, grades: Mapping[str, str], shortfall: str) -> Plan:

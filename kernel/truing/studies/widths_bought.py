@@ -1,0 +1,235 @@
+"""Which widths? The least cost under all goals, where tolerances are no grades but widths with a price.
+
+To first order a goal on a probability is a bound on the standard deviation that moves with the mean, so the search is a
+smooth one in the logarithms of the widths, with exact derivatives. Sequential quadratic programming (D. Kraft, SLSQP,
+DFVLR-FB 88-28, 1988, as scipy has it) starts from several designs, always the same; what it ends with is judged by the
+conditions of Karush, Kuhn and Tucker.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+from truing.studies.demands import Demand
+from truing.studies.synthesis import Plan, largest_variance
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from truing.studies.grades import Shop
+
+    Values = NDArray[np.float64]
+
+MARGINS = (0.0, 1e-12, 1e-10, 1e-8, 1e-6)
+STARTS = 4
+FEASIBLE = 1e-9
+AT_END = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """The widths to choose, as logarithms over those in force, with these grades; goals in standard deviations."""
+
+    shop: Shop
+    grades: Mapping[str, str]
+
+    def widths(self, x: Values) -> dict[str, float]:
+        """Return the full widths (SI)."""
+        import numpy as np
+
+        return {
+            strip.name: float(strip.start * np.exp(value))
+            for strip, value in zip(self.shop.strips.values(), x, strict=True)
+        }
+
+    def ends(self) -> tuple[Values, Values]:
+        """Return the smallest and the largest logarithms."""
+        import numpy as np
+
+        strips = self.shop.strips.values()
+        low = np.log([strip.low / strip.start for strip in strips])
+        return low, np.log([strip.high / strip.start for strip in strips])
+
+    def cost(self, x: Values) -> tuple[float, Values]:
+        """Return the price of the widths and its gradient, both over the price of those in force."""
+        import numpy as np
+
+        strips = self.shop.strips.values()
+        whole = sum(abs(strip.cost(strip.start)) for strip in strips) or 1.0
+        widths = list(self.widths(x).values())
+        price = sum(strip.cost(width) for strip, width in zip(strips, widths, strict=True))
+        slopes = [strip.cost_slope(width) * width for strip, width in zip(strips, widths, strict=True)]
+        return price / whole, np.array(slopes) / whole
+
+    def slack(self, x: Values) -> tuple[Values, Values]:
+        """Return by goal how far it is kept (goals,), in standard deviations of the start, and the gradients."""
+        import numpy as np
+
+        found = [self._slack(demand, x) for demand in self.shop.goals]
+        return np.array([value for value, _ in found]), np.array([gradient for _, gradient in found])
+
+    def _slack(self, demand: Demand, x: Values) -> tuple[float, Values]:
+        import numpy as np
+
+        shop, name = self.shop, demand.name
+        widths = self.widths(x)
+        sd = max(shop.variance(name, self.grades, widths), 1e-300) ** 0.5
+        by_mean = np.array([strip.pulls[name] * widths[key] for key, strip in shop.strips.items()])
+        by_sd = np.array([strip.variance(name, widths[key]) / sd for key, strip in shop.strips.items()])
+        room, of_mean, of_sd = _room(demand, shop.mean(name, widths), sd)
+        scale = max(shop.variance(name, shop.start), 1e-300) ** 0.5
+        return room / scale, (of_mean * by_mean + of_sd * by_sd) / scale
+
+
+def _room(demand: Demand, mean: float, sd: float) -> tuple[float, float, float]:
+    """Return how far a goal is kept in the unit of the result, with its derivatives by mean and standard deviation."""
+    from scipy.special import ndtri
+
+    assert demand.goal is not None  # goals only
+    times = float(ndtri(demand.goal))
+    if demand.low == -inf:
+        return demand.high - mean - times * sd, -1.0, -times
+    if demand.high == inf:
+        return mean - demand.low - times * sd, 1.0, -times
+    if not demand.low < mean < demand.high:
+        beyond = mean - demand.high if mean >= demand.high else demand.low - mean
+        return -beyond - sd, -1.0 if mean >= demand.high else 1.0, -1.0
+    largest, slope = _largest_sd(demand, mean)
+    return largest - sd, slope, -1.0
+
+
+def _largest_sd(demand: Demand, mean: float) -> tuple[float, float]:
+    """Return the standard deviation up to which a goal between two limits is met, and its derivative by the mean."""
+    from math import exp
+
+    variance = largest_variance(demand, mean)
+    if variance is None:
+        return 0.0, 0.0
+    sd = variance**0.5
+    above, below = (demand.high - mean) / sd, (demand.low - mean) / sd
+    at_high, at_low = exp(-(above**2) / 2), exp(-(below**2) / 2)
+    return sd, -(at_high - at_low) / (above * at_high - below * at_low)
+
+
+def bought(shop: Shop, plan: Plan) -> Plan:
+    """Return the plan with the widths that meet all goals at the least cost; where none do, those that come nearest."""
+    if not shop.strips or any(demand.goal is not None and demand.goal >= 1.0 for demand in shop.demands):
+        return plan
+    search = Search(shop, plan.grades)
+    starts = list(_starts(search))
+    found = _cheapest(search, starts)
+    if found is None:
+        nearest = _nearest(search, starts)
+        found = _cheapest(search, [nearest])
+    if found is None:
+        return _with(shop, plan, search.widths(nearest), residual=None)
+    return _with(shop, plan, search.widths(found), residual=_residual(search, found))
+
+
+def _with(shop: Shop, plan: Plan, widths: Mapping[str, float], *, residual: float | None) -> Plan:
+    reached = shop.reached(plan.grades, widths)
+    status = "reached"
+    if not reached:
+        status = f"not reachable: no widths from {shop.span[0]:g} to {shop.span[1]:g} times those in force meet it"
+        status += ", and every grade is at its finest" if plan.grades else ""
+    chances = shop.chances(plan.grades, widths)
+    cost = shop.cost(plan.grades, widths)
+    return replace(plan, cost=cost, chances=chances, reached=reached, status=status, widths=widths, residual=residual)
+
+
+def _starts(search: Search) -> Iterator[Values]:
+    """Yield the widths in force, the narrowest, the widest, those between, and some by chance, always the same."""
+    import numpy as np
+
+    low, high = search.ends()
+    yield np.clip(np.zeros(len(low)), low, high)
+    yield from (low, high, (low + high) / 2)
+    rng = np.random.default_rng(0)
+    for _ in range(STARTS):
+        yield rng.uniform(low, high)
+
+
+def _cheapest(search: Search, starts: Sequence[Values]) -> Values | None:
+    """Return the least cost that was found; goals are held a little off until they are met exactly."""
+    for margin in MARGINS:
+        ends = [end for start in starts if (end := _descended(search, start, margin)) is not None]
+        if not ends:
+            return None
+        best = min(ends, key=lambda x: search.cost(x)[0])
+        if search.shop.reached(search.grades, search.widths(best)):
+            return best
+    return None
+
+
+def _descended(search: Search, start: Values, margin: float) -> Values | None:
+    """Follow one start to its minimum; None where it ends outside the goals."""
+    x = _solved(
+        search.cost,
+        start,
+        search.ends(),
+        {"fun": lambda x: search.slack(x)[0] - margin, "jac": lambda x: search.slack(x)[1]},
+    )
+    return x if x is not None and search.slack(x)[0].min() >= margin - FEASIBLE else None
+
+
+def _nearest(search: Search, starts: Sequence[Values]) -> Values:
+    """Return the widths whose worst goal is nearest to being met: the largest slack that all goals can have."""
+    import numpy as np
+
+    low, high = search.ends()
+    upward = np.append(np.zeros(len(low)), -1.0)
+    rising = -np.ones(len(search.shop.goals))
+    found = list(starts)
+    for start in starts:
+        ends = (np.append(low, -np.inf), np.append(high, np.inf))
+        y = _solved(
+            lambda y: (-y[-1], upward),
+            np.append(start, search.slack(start)[0].min()),
+            ends,
+            {
+                "fun": lambda y: search.slack(y[:-1])[0] - y[-1],
+                "jac": lambda y: np.column_stack([search.slack(y[:-1])[1], rising]),
+            },
+        )
+        found += [] if y is None else [y[:-1]]
+    return max(found, key=lambda x: float(search.slack(x)[0].min()))
+
+
+def _solved(objective: Any, start: Values, ends: tuple[Values, Values], constraint: Any) -> Values | None:
+    """Return where SLSQP ends, inside the bounds; None where it loses itself."""
+    import numpy as np
+    from scipy.optimize import Bounds, minimize
+
+    held: Any = {"type": "ineq", **constraint}
+    options: Any = {"ftol": 1e-13, "maxiter": 300}
+    answer = minimize(
+        objective, start, jac=True, method="SLSQP", bounds=Bounds(*ends), constraints=held, options=options
+    )
+    x = np.clip(np.asarray(answer.x, dtype=float), *ends)
+    return x if np.isfinite(x).all() else None
+
+
+def _residual(search: Search, x: Values) -> float:
+    """Return how far the end of a search is from a minimum: what no active goal or bound balances of the gradient.
+
+    0 is a minimum of Karush, Kuhn and Tucker; 1 is no balance at all.
+    """
+    import numpy as np
+    from scipy.optimize import nnls
+
+    low, high = search.ends()
+    slack, rows = search.slack(x)
+    forces = [row for row, room in zip(rows, slack, strict=True) if room <= AT_END]
+    unit = np.eye(len(x))
+    forces += [unit[place] for place in np.flatnonzero(x <= low + AT_END)]
+    forces += [-unit[place] for place in np.flatnonzero(x >= high - AT_END)]
+    gradient = search.cost(x)[1]
+    size = float(np.linalg.norm(gradient))
+    if not size:
+        return 0.0
+    left = float(nnls(np.array(forces).T, gradient)[1]) if forces else size
+    return left / size
