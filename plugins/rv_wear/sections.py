@@ -1,5 +1,6 @@
 """The sheet, in the order an engineer reads it."""
 
+from rv_wear import drawn
 from truing import Section
 
 SECTIONS = [
@@ -9,6 +10,7 @@ SECTIONS = [
         text="The disc rolls inside a ring of pins and carries with about half of those on one side. It is ground a "
         "little thinner than its theoretical profile, by another pin radius (equidistant) and on another circle "
         "(shift); their difference is the clearance that remains all around.",
+        blocks=drawn.geometry,
     ),
     Section(
         "Forces of the new mesh",
@@ -16,20 +18,23 @@ SECTIONS = [
         "phase_angle", "normal_force", "worn_force",
         text="A pin carries where the approach of disc and pin under load exceeds the clearance that grinding has "
         "left. The force at the longest arm follows from the balance of torques over all positions of the disc.",
+        blocks=drawn.forces,
     ),
     Section(
         "Wear of the disc",
         "mesh_period", "coefficient", "max_wear", "wear_angle", "wear_place", "wear_depth", "history_time",
         "wear_history",
-        text="Every meshing takes off the wear coefficient times force per width times sliding. After every 0.05 um "
-        "(the input reconstruction_depth) the profile is formed anew and the forces are found again; therefore "
-        "wear slows down.",
+        text="Every meshing takes off the wear coefficient times force per width times sliding. Each time "
+        "another reconstruction_depth is gone the profile is formed anew and the forces are found again. They move "
+        "to where less is worn; therefore the wear slows down.",
+        blocks=drawn.wear,
     ),
     Section(
         "Grinding the disc in other ways",
         "force_falls", "mesh_widens", "wear_falls",
         text="At the same radial clearance, over the whole range of the equidistant modification: the larger it is, "
         "the smaller are the gaps, the more pins carry, and the less the disc wears.",
+        blocks=drawn.other_discs,
     ),
     Section(
         "Backlash",
@@ -43,6 +48,7 @@ SECTIONS = [
         *(f"index_{number}" for number in range(1, 17)),
         text="How much backlash each error gives per micrometre, against that of the pin circle radius. Both "
         "modifications are taken at the same wear; that they also change the wear is not in these indices.",
+        blocks=drawn.influence,
     ),
     Section(
         "Reliability of the backlash",
@@ -50,11 +56,13 @@ SECTIONS = [
         "largest_backlash", "reliability_time", "reliability_history",
         text="Machines are drawn from the zones, and those within the permitted backlash are counted. Equation 21 is "
         "a sum, so the normal distribution stands beside the count as a check.",
+        blocks=drawn.reliability,
     ),
     Section(
         "Cost of the tolerances",
         "manufacturing_cost",
         text="Six zones are priced by their width, in the form of the cost functions that the inputs state. The "
         "errors of both modifications share one width and one price.",
+        blocks=drawn.costs,
     ),
 ]  # fmt: skip

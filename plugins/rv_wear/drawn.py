@@ -1,0 +1,127 @@
+"""The figures by section of the sheet: each is there where its study ran, and drawn when the sheet is written."""
+
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+from rv_wear.bill import Bill
+from rv_wear.chances import FACTORS
+from rv_wear.drawn_chances import costs_figure, indices_figure, machines_figure, reliability_figure
+from rv_wear.drawn_flank import (
+    clearance_figure,
+    difference_of_sharing,
+    history_figure,
+    modifications_figure,
+    sharing_figure,
+    wear_figure,
+)
+from rv_wear.drawn_look import acting, outcome_of, signed
+from rv_wear.drawn_mesh import mesh_figure
+from rv_wear.modifications import Ground
+from rv_wear.new_machines import Newborn
+from truing import Drawing, Odds, Sensitivities, Swept, Words
+
+if TYPE_CHECKING:
+    from rv_wear.drawn_look import Run
+    from truing import Block
+
+
+def geometry(record: "Run") -> "Sequence[Block]":
+    """The mesh to scale, and the clearance along the flank."""
+    reducer = acting(record)
+    mesh = (
+        "To scale, the crank to the right. Filled pins carry; each arrow is the force of a pin on the new disc, along "
+        "its line of action through the pitch point. ψ: phase angle of a pin. l: arm of its force about the centre of "
+        "the disc, longest where the line stands across the crank. Dotted: the circle of the longest arm."
+    )
+    gaps = (
+        "Normal clearance of the disc, turned until the first pin touches. A pin carries where the approach under load "
+        "exceeds the clearance (shaded); wear opens it most where force and sliding are large together."
+    )
+    return [
+        Drawing("Disc, pins and crank", partial(mesh_figure, reducer), mesh),
+        Drawing("Clearance along the flank", partial(clearance_figure, reducer), gaps),
+    ]
+
+
+def forces(record: "Run") -> "Sequence[Block]":
+    """Forces along the flank by both ways of sharing, and how far these are apart."""
+    reducer = acting(record)
+    largest, one = difference_of_sharing(reducer)
+    words = (
+        f"With Hertz at every pin the largest force of the new disc is {signed(100 * largest, '+.1f')} % off that in "
+        f"proportion to the approach; a single pin differs by up to {100 * one:.0f} % of the largest force. The input "
+        "load_sharing chooses."
+    )
+    caption = (
+        "Every pin on the loaded side passes through all phase angles. The dip of the Hertz curve is where the flank "
+        "turns from hollow to convex and is nearly straight."
+    )
+    return [Drawing("Force on a pin", partial(sharing_figure, reducer), caption), Words(words)]
+
+
+def wear(record: "Run") -> "Sequence[Block]":
+    """Wear along the flank, and over the working time."""
+    reducer = acting(record)
+    blocks: list[Block] = []
+    if float(reducer.working_time) > 0.0:
+        caption = "By the law of wear alone. Where the disc wears, the neighbours take over load: the worn part widens."
+        blocks.append(Drawing("Wear along the flank", partial(wear_figure, reducer), caption))
+    swept = outcome_of(record, Swept)
+    if swept is not None and swept.over == "working_time" and {"max_wear", "backlash"} <= set(swept.results):
+        caption = "Backlash of the reducer whose errors lie at the middle of their zones."
+        blocks.append(Drawing("Wear and backlash over the years", partial(history_figure, swept), caption))
+    return blocks
+
+
+def other_discs(record: "Run") -> "Sequence[Block]":
+    """The paper's Figs. 1 and 2."""
+    ground = outcome_of(record, Ground)
+    if ground is None:
+        return []
+    caption = "As Figs. 1 and 2 of the paper: new discs of one radial clearance, and their wear early in life."
+    draw = partial(modifications_figure, ground, acting(record))
+    return [Drawing("Forces and wear of discs ground in other ways", draw, caption)]
+
+
+def influence(record: "Run") -> "Sequence[Block]":
+    """The sixteen indices beside those of the paper's Table 2."""
+    if not isinstance(outcome_of(record, Sensitivities), Sensitivities):
+        return []
+    found = {number: float(record.answers[f"index_{number}"]) for number in FACTORS}
+    if not all(value == value for value in found.values()):
+        return []
+    caption = (
+        "Diamonds: what the paper prints. Its indices gave the lost sizes of the gearing; see the comparison below."
+    )
+    return [Drawing("How much backlash each error gives", partial(indices_figure, found), caption)]
+
+
+def reliability(record: "Run") -> "Sequence[Block]":
+    """The paper's Figs. 4 and 5."""
+    blocks: list[Block] = []
+    born = outcome_of(record, Newborn)
+    if born is not None:
+        caption = f"As Fig. 4 of the paper: {len(born.new)} machines, the first ones of the study 'reliability'."
+        found = born.as_json()["new"]
+        if "mean" in found:
+            caption += f" New: mean {found['mean']:.3f}′, standard deviation {found['sd']:.3f}′, largest "
+            caption += f"{found['largest']:.3f}′. The paper: about 0.7′, and all below 1′."
+        blocks.append(Drawing("Backlash of new machines", partial(machines_figure, born), caption))
+    odds = outcome_of(record, Odds)
+    if odds is not None and odds.curve is not None and odds.curve.over == "working_time":
+        caption = "As Fig. 5 of the paper. It says that the reliability begins to fall after 4000 h."
+        blocks.append(Drawing("Reliability over the working time", partial(reliability_figure, odds), caption))
+    return blocks
+
+
+def costs(record: "Run") -> "Sequence[Block]":
+    """What each zone costs, and what another width would."""
+    bill = outcome_of(record, Bill)
+    if bill is None or not bill.widths:
+        return []
+    form = str(record.inputs.cost_form)
+    caption = (
+        f"By the cost functions in the form '{form}'. Right: one zone of each function, from half to twice as wide."
+    )
+    return [Drawing("Price of the zones", partial(costs_figure, bill, form), caption)]
