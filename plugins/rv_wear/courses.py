@@ -1,4 +1,4 @@
-"""Forces and histories of many meshes: each distinct mesh is calculated once, a single one is remembered."""
+"""Forces and histories of many meshes, which each are calculated once; those of a few are remembered."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -71,7 +71,7 @@ def unworn(mesh: Mesh) -> Unworn:
             coefficient.contact_part(teeth.mesh.equivalent_modulus, largest / teeth.mesh.width, its_radius)
         ),
         lowest_equidistant=np.asarray(cycloid.lowest_equidistant(teeth.mesh)),
-        first_step=np.where(fastest > 0.0, teeth.mesh.threshold / np.where(fastest > 0.0, fastest, 1.0), NEVER),
+        first_step=np.where(fastest > 0.0, teeth.mesh.threshold / np.maximum(fastest, 1.0 / NEVER), NEVER),
     )
 
 
@@ -116,27 +116,3 @@ def all_histories(mesh: Mesh, reach: Array, first_step: Array) -> Iterator[tuple
     for start in range(0, len(order), CHUNK):
         places = order[start : start + CHUNK]
         yield places, histories(teeth_of(some_of(mesh, places)), reach[places])
-
-
-def read(history: Histories, column: NDArray[np.intp], exposure: Array) -> tuple[Array, Array]:
-    """Largest wear (m) and phase angle of the deepest point at exposures (n,), each on its column of a history.
-
-    Beyond the last node the wear is NaN.
-    """
-    if history.exposure.shape[1] == 1:
-        return _read_one(history, 0, exposure)
-    depth, angle = np.empty(exposure.shape), np.empty(exposure.shape)
-    order = np.argsort(column, kind="stable")
-    ends = np.searchsorted(column[order], np.arange(history.exposure.shape[1] + 1))
-    for place in range(history.exposure.shape[1]):
-        rows = order[ends[place] : ends[place + 1]]
-        if len(rows):
-            depth[rows], angle[rows] = _read_one(history, place, exposure[rows])
-    return depth, angle
-
-
-def _read_one(history: Histories, place: int, exposure: Array) -> tuple[Array, Array]:
-    nodes = history.exposure[:, place]
-    depth = np.interp(exposure, nodes, history.depth[:, place], right=np.nan)
-    at = np.minimum(np.searchsorted(nodes, exposure), len(nodes) - 1)
-    return np.asarray(depth), history.angle[at, place]

@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 
 from rv_wear import cycloid
 from rv_wear.mesh import Mesh
+from rv_wear.teeth import pitch_number
 from truing import feasible
 
 ROUNDING = 1e-12  # m; interference below it is rounding of the inputs
+LINE = 5.0  # depth number over the logarithm of the force above which the contact is narrow
 
 
 class Demand(NamedTuple):
@@ -22,6 +24,11 @@ class Demand(NamedTuple):
 
 def demands(mesh: Mesh) -> Iterator[Demand]:
     """What the geometry must satisfy, in the order in which it builds up; NaN does not hold."""
+    yield Demand(
+        _all_positive(mesh),
+        "pin_circle_radius, pin_radius, eccentricity, disc_width, output_torque, torque_share, young_modulus and "
+        "reconstruction_depth must be greater than zero and finite, with all effects that act on them",
+    )
     short_width = np.atleast_1d(np.asarray(mesh.short_width))
     yield Demand(
         (short_width > 0.0) & (short_width < 1.0),
@@ -48,12 +55,24 @@ def demands(mesh: Mesh) -> Iterator[Demand]:
         "reduce equidistant_modification, or shift_modification, until "
         "sqrt(1 - short_width^2) * equidistant_modification >= shift_modification",
     )
+    yield Demand(
+        np.atleast_1d(np.asarray(pitch_number(mesh) - np.log(mesh.start_force)) > LINE),
+        "the contact would be as wide as the pins: check the unit of output_torque, disc_width and young_modulus",
+    )
+
+
+def _all_positive(mesh: Mesh) -> NDArray[np.bool_]:
+    """Which meshes have sizes, load and modulus to calculate with."""
+    sizes = (mesh.pin_circle_radius, mesh.pin_radius, mesh.eccentricity, mesh.width)
+    good: NDArray[np.bool_] = np.atleast_1d(np.asarray(mesh.equidistant + mesh.shift + mesh.poisson_ratio) < np.inf)
+    for value in (*sizes, mesh.torque, mesh.young_modulus, mesh.threshold):
+        good = good & (np.asarray(value) > 0.0) & (np.asarray(value) < np.inf)
+    return good
 
 
 def holding(mesh: Mesh) -> tuple[NDArray[np.bool_], list[Demand]]:
     """Which meshes (m,) can be calculated, and the demands that some of them do not meet."""
-    count = np.broadcast_shapes(*(np.shape(np.atleast_1d(x)) for x in (mesh.short_width, mesh.shift, mesh.pin_radius)))
-    good = np.ones(count, dtype=bool)
+    good: NDArray[np.bool_] = np.ones(1, dtype=bool)
     broken = []
     with np.errstate(invalid="ignore", divide="ignore"):
         for demand in demands(mesh):

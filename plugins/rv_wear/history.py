@@ -121,12 +121,12 @@ def states(teeth: Teeth) -> Iterator[State]:
             wider, clear = widened(teeth, part)
             wear = _put(wear, part, wider)
             part, rate_of = wider, growth(wider, unworn)
-            loads = shared(part, part.slack + wear * part.per_arm, loads.scale)
+            loads = shared(part, part.slack + wear * part.per_arm, guess)
 
 
 def _lasts(teeth: Teeth, rate: Array) -> Array:
     fastest = rate.max(axis=(0, 1))
-    return np.where(fastest > 0.0, teeth.mesh.threshold / np.where(fastest > 0.0, fastest, 1.0), NEVER)
+    return np.where(fastest > 0.0, teeth.mesh.threshold / np.maximum(fastest, 1.0 / NEVER), NEVER)
 
 
 def around(teeth: Teeth, force: Array) -> tuple[Teeth, Array]:

@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rv_wear import coefficient
-from rv_wear.courses import Unworn, all_histories, all_unworn, read
+from rv_wear.courses import all_unworn
 from rv_wear.feasibility import holding, refuse
 from rv_wear.history import MOST_STEPS
-from rv_wear.mesh import Array, Mesh, distinct, mesh_of, some_of
+from rv_wear.mesh import distinct, mesh_of, some_of
 from rv_wear.quantities import Reducer
+from rv_wear.reading import Meshes, depth_at
 from truing import Float, feasible
 
 TOO_FAR = (
@@ -36,21 +36,6 @@ class Worn:
     depth: Float
     angle: Float
     felt: Float
-
-
-@dataclass(frozen=True)
-class Meshes:
-    """The distinct meshes that can be calculated, and for every row its place among them (-1: none, None: all one)."""
-
-    mesh: Mesh
-    count: int
-    place: NDArray[np.intp] | None
-
-    def to_rows(self, values: Array) -> Float:
-        """Give every row the value of its mesh; NaN where it has none."""
-        if self.place is None:
-            return np.float64(values[0]) if self.count else np.float64(np.nan)
-        return np.append(values, np.nan)[self.place]
 
 
 def worn(reducer: Reducer) -> Worn:
@@ -109,22 +94,3 @@ def exposure_of(reducer: Reducer, oil: Float, time: Float) -> Float:
     """
     meshings = time * (1.0 + 0.5 * reducer.ageing_rate * time) * reducer.output_speed * reducer.pin_count
     return oil * (meshings * reducer.sliding_factor)
-
-
-def depth_at(meshes: Meshes, new: Unworn, exposure: Float) -> tuple[Float, Float]:
-    """Largest wear (m) and its phase angle at an exposure of every row; NaN where a row has no mesh or goes too far."""
-    single = np.ndim(exposure) == 0 and meshes.place is None
-    rows = np.atleast_1d(np.asarray(exposure, dtype=float))
-    place = np.zeros(rows.shape, dtype=np.intp) if meshes.place is None else meshes.place
-    rows = np.broadcast_to(rows, place.shape)
-    depth, angle = np.full(rows.shape, np.nan), np.full(rows.shape, np.nan)
-    reach = np.zeros(meshes.count)
-    used = np.where(np.isfinite(rows), rows, 0.0)
-    np.maximum.at(reach, place[place >= 0], used[place >= 0])
-    for places, history in all_histories(meshes.mesh, reach, new.first_step):
-        column = np.full(meshes.count + 1, -1)
-        column[places] = np.arange(len(places))
-        of_row = column[place]
-        mine = np.flatnonzero(of_row >= 0)
-        depth[mine], angle[mine] = read(history, of_row[mine], rows[mine])
-    return (np.float64(depth[0]), np.float64(angle[0])) if single else (depth, angle)
