@@ -1,10 +1,12 @@
 """Small problems of choice with known answers, importable by worker processes."""
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
 from truing import (
+    Effect,
     Float,
     Maximise,
     Minimise,
@@ -13,20 +15,27 @@ from truing import (
     Price,
     Require,
     Tolerance,
+    Unknown,
     Vary,
+    axis,
     by_choice,
+    column,
+    drawn,
     feasible,
     found,
     given,
     grade,
     hookimpl,
     inputs,
+    lognormal,
     normal,
+    plus_minus,
     results,
+    uniform,
     zone,
 )
 from truing.kernel import Origin
-from truing.setup import Setup, default_setup
+from truing.setup import Setup, SwitchedOn, default_setup
 
 
 def setup_of(model, **values) -> Setup:
@@ -154,7 +163,8 @@ GEAR: Model[Gear, Stage] = Model(
     name="gear", title="A gear", function=gear,
     errors=[Tolerance("bore", grade("IT7"), price=Price("1 / width", width="mm", unit="EUR"))],
     objectives=[
-        Vary("teeth", "12", "60"), Vary("starts", "1", "4"), Vary("module", "1 mm", "4 mm"), Vary("face", by="10 * module"),
+        Vary("teeth", "12", "60"), Vary("starts", "1", "4"), Vary("module", "1 mm", "4 mm"),
+        Vary("face", by="10 * module"),
         Minimise("weight"), Minimise("tolerance_price"), Require("ratio", at_least="20"),
         Require("play", at_most="25 um", reliability=0.99),
     ],
@@ -162,7 +172,103 @@ GEAR: Model[Gear, Stage] = Model(
 )  # fmt: skip
 
 
+# Every kind of scatter at once, and limits of every kind: the arrays of a search against one design at a time.
+
+
+@inputs
+class Parts:
+    """Sizes of which some may be chosen, and what scatters about them."""
+
+    size: Float = given(50.0, "mm")
+    other: Float = given(30.0, "mm")
+    twin: Float = given(10.0, "mm")
+    radius: Float = given(200.0, "mm")
+    angle: Float = given(5.0, "deg")
+    force: Float = given(3.0, "kN", above=0)
+    strength: Float = given(5.0, "kN")
+    clearance: Float = given(0.0, "um")
+    deviation: Float = given(0.0, "mm")
+    left: Float = given(1.0, "")
+    right: Float = given(2.0, "")
+    count: int = given(3)
+    span: Float = given(0.05, "mm")
+
+
+@results
+class Sums:
+    """Results of different curvature."""
+
+    length: Float = found("mm")
+    stress: Float = found("MPa")
+    load: Float = found("kN")
+    place: Float = axis("mm")
+    course: Float = found("mm", along="place")
+
+
+def parts(one: Parts) -> Sums:
+    """Gentle curves in every input."""
+    feasible(one.force < 50e3, "the force tears it")
+    length = one.size + 0.5 * one.other - one.twin + one.clearance + one.deviation + 1e-3 * one.left * one.right
+    bent = one.radius * np.sin(one.angle)
+    place = np.array([0.0, 0.05, 0.1])
+    return Sums(
+        length=length + 0.01 * bent,
+        stress=one.force / (one.size * one.other) * (1 + 0.1 * one.count),
+        load=one.force * (1 + 0.02 * (one.left - 1)),
+        place=place,
+        course=column(length) * (1 + 3 * place) + column(one.deviation),
+    )
+
+
+def pair(rng, rows):
+    """Two numbers that scatter together, and not normally."""
+    common = rng.exponential(0.02, rows)
+    return {"left": common - 0.02, "right": -0.5 * common}
+
+
+def longer(one: Parts, *, strain: Float, offset: Float) -> Parts:
+    """Everything grows a little."""
+    return replace(one, size=one.size * (1 + strain), deviation=one.deviation + offset)
+
+
+EUR = {"width": "um", "unit": "EUR"}
+PARTS: Model[Parts, Sums] = Model(
+    name="parts", title="All kinds of scatter", function=parts,
+    errors=[
+        Tolerance("size", grade("IT8"), price=Price("300 / width", **EUR)),
+        Tolerance("both", normal(sd="0.1 %"), on=["other", "twin"], price=Price("200 / width**0.5", **EUR)),
+        Tolerance("angle", plus_minus("0.05 mm", at_radius="radius")),
+        Tolerance("force", lognormal(sd="8 %")),
+        Tolerance("strength", uniform("0.6 kN"), price=Price("900 / width", width="N", unit="EUR")),
+        Tolerance("clearance", zone("0 um", "12 um", grows="up"), price=Price("50 / width", **EUR)),
+        Tolerance("deviation", grade("IT6", size="size")),
+        Tolerance("again", plus_minus("5 um"), on=["deviation"]),
+        Tolerance("pair", drawn(pair), on=["left", "right"]),
+        Effect(
+            "longer", on_inputs=longer, unknowns=[Unknown("strain", -1e-3, 1e-3, ""), Unknown("offset", -1, 1, "mm")]
+        ),
+    ],
+    objectives=[
+        Vary("size", "35 mm", "75 mm"), Vary("force", "2 kN", "4 kN"), Vary("count", "1", "5"),
+        Vary("other", by="size * 0.6"), Vary("radius", by="other * 5 + 0.01"), Vary("span", "0.04 mm", "0.06 mm"),
+        Minimise("stress"), Minimise("tolerance_price"), Maximise("load"),
+        Require("stress", at_most="12 MPa"), Require("length", within="span"), Require("course", at_least="40 mm"),
+        Require("length", within="span", reliability=0.9), Require("load", at_most="strength", reliability=0.95),
+        Require("course", within="0.05 mm", reliability=0.5), Require("tolerance_price", at_most="300 EUR"),
+    ],
+)  # fmt: skip
+GROWN = SwitchedOn(
+    PARTS.effects["longer"], {"strain": 2e-4, "offset": 3e-6}, {"strain": 1e-4, "offset": 4e-6},
+    ((1e-8, 2e-10), (2e-10, 1.6e-11)),
+)  # fmt: skip
+
+
+def grown(**values) -> Setup:
+    """The parts, a little longer than they should be."""
+    return replace(setup_of(PARTS, **values), effects=(GROWN,))
+
+
 @hookimpl
 def truing_models() -> list[Model]:
     """Offer all of them."""
-    return [ZDT1, PAIR, GEAR]
+    return [ZDT1, PAIR, GEAR, PARTS]

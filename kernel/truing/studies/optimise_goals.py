@@ -140,12 +140,15 @@ def bounds_of(setup: Setup) -> tuple[Bound, ...]:
     """Return the limits on results of the function and on the sum of the prices, those by chance last."""
     requires = [item for item in setup.model.objectives if isinstance(item, Require)]
     known = {*setup.model.own_result_fields, TOTAL_PRICE}
-    found = [
-        Bound(check_name(item, requires), item, item.reliability is not None, setup.print_unit(item.result))
-        for item in requires
-        if item.result in known
-    ]
-    return tuple(sorted(found, key=lambda bound: bound.by_chance))
+    found: list[Bound] = []
+    for item in sorted(
+        (item for item in requires if item.result in known), key=lambda item: item.reliability is not None
+    ):
+        name, by_chance = check_name(item, requires), item.reliability is not None
+        taken = any(bound.name == name for bound in found)
+        name = f"{name} by chance" if taken and by_chance else name
+        found.append(Bound(name, item, by_chance, setup.print_unit(item.result)))
+    return tuple(found)
 
 
 def left_out(setup: Setup) -> tuple[str, ...]:

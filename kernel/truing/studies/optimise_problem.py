@@ -132,7 +132,11 @@ def answers_of(problem: Problem, designs: NDArray[np.float64], *, as_stated: boo
     plain = [margins(bound, world, count) for bound in problem.bounds if not bound.by_chance]
     chances = _chances(problem, Designs(world, spreads, count))
     goals = np.array([np.broadcast_to(world.goal(bound), (count,)) for bound in problem.by_chance]).reshape(-1, count).T
-    kept = np.column_stack([*plain, (chances - goals) / goals]) if problem.bounds else np.zeros((count, 0))
+    kept = (
+        np.column_stack([*plain, (chances - goals) / np.where(goals > 0, goals, 1.0)])
+        if problem.bounds
+        else np.zeros((count, 0))
+    )
     failed = ~(np.isfinite(objectives).all(axis=1) & np.isfinite(kept).all(axis=1))
     failed |= _without_spread(spreads, count)
     for values in world.results.values():

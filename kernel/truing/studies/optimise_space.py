@@ -11,12 +11,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
+from truing.declare.fields import InputField
 from truing.declare.goals import Vary
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Tolerance
 from truing.declare.spreads import Band, Distribution, Grade, Zone
 from truing.declare.widths import with_width
-from truing.errors import TruingError, UsageError
+from truing.errors import TruingError, UnitError, UsageError
 from truing.fits import GRADES
 from truing.prices import price_of
 from truing.setup import Setup
@@ -205,11 +206,9 @@ def _demand_known(setup: Setup, brief: Brief, known: set[str]) -> None:
 def _of_input(setup: Setup, vary: Vary, brief: Brief) -> Variable:
     from math import ceil, floor, isnan
 
-    from truing.units import read_quantity
-
     item = setup.model.input_fields[vary.input]
     what = f"study '{brief.study}': Vary('{vary.input}')"
-    low, high = (read_quantity(text, item.unit) for text in (vary.low, vary.high))
+    low, high = (_end(item, text, what) for text in (vary.low, vary.high))
     whole = item.kind in {"whole", "integer"}
     if whole:
         low, high = float(ceil(low)), float(floor(high))
@@ -219,6 +218,21 @@ def _of_input(setup: Setup, vary: Vary, brief: Brief) -> Variable:
     if isnan(start):
         raise UsageError(f"{what} has no value to start from; give '{vary.input}' in the inputs")
     return Variable(vary.input, "whole" if whole else "number", low, high, setup.print_unit(vary.input), start)
+
+
+def _end(item: InputField, text: str, what: str) -> float:
+    """Read one end of a range in SI. Raises UsageError for a text that is none, or beyond the bounds of the input."""
+    from truing.inputs_file.values import broken_bound
+    from truing.units import read_quantity
+
+    try:
+        value = read_quantity(text, item.unit)
+    except UnitError as error:
+        raise UsageError(f"{what}: {error}") from None
+    broken = "" if item.kind == "whole" else broken_bound(item, value)
+    if broken:
+        raise UsageError(f"{what}: {broken}")
+    return value
 
 
 def _of_tolerance(setup: Setup, tolerance: Tolerance, brief: Brief) -> Variable | None:

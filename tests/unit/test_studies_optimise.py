@@ -1,0 +1,638 @@
+"""Optimise: known fronts, least costs in closed form, and every array of the search against one design at a time."""
+
+import itertools
+import json
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import pytest
+from optimise_models import GEAR, PAIR, PARTS, ZDT1, grown, setup_of
+from scipy.stats import norm
+from study_models import PRICED
+
+from press_linkage.model import PRESS_LINKAGE
+from truing import (
+    Allocation,
+    Minimise,
+    Optimise,
+    Optimum,
+    Reliability,
+    Require,
+    Vary,
+    off,
+)
+from truing.calculation import Calculation, calculate
+from truing.errors import DeclarationError, UsageError
+from truing.evaluate import evaluate, evaluate_rows
+from truing.executors import open_executor
+from truing.fits import GRADES, tolerance
+from truing.prices import price_answers, total_price
+from truing.setup import Setup, default_setup
+from truing.studies.bench import Bench
+from truing.studies.chances import chance, straightened
+from truing.studies.checks import limits, margin_of, plain_checks
+from truing.studies.demands import demands, nominal_inputs, worst
+from truing.studies.optimise_front import REFERENCE, knee_of, volume_of
+from truing.studies.optimise_problem import ROWS, Problem, answers_of, make_problem
+from truing.studies.optimise_search import non_dominated, spread_out
+from truing.studies.optimise_space import Brief, open_space
+from truing.studies.sampling import Machines
+from truing.studies.scatter import Scatter, _gather, scatter_of
+
+SMALL = Optimise(population=20, generations=12, draws=600, verify=2000)
+
+
+def run(setup: Setup, study: Optimise | None = None) -> Calculation:
+    return calculate(setup if study is None else replace(setup, studies=(study,)))
+
+
+def optimum(setup: Setup, study: Optimise | None = None) -> Optimum:
+    found_ = run(setup, study).outcomes["optimise"]
+    assert isinstance(found_, Optimum)
+    return found_
+
+
+def values(best: Optimum, *names: str) -> np.ndarray:
+    return np.array([[design.objectives[name] for name in names] for design in best.front])
+
+
+# Known fronts
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_the_front_of_zdt1(seed: int) -> None:
+    best = optimum(replace(setup_of(ZDT1), seed=seed), Optimise(population=100, generations=200))
+    first, second = values(best, "first", "second").T
+    away = second - (1 - np.sqrt(first))  # Zitzler, Deb, Thiele 2000: the front is 1 - sqrt(f1)
+    assert len(best.front) == 100
+    assert away.min() > -1e-12
+    assert np.median(away) < 1e-4
+    assert away.max() < 5e-3
+    assert np.diff(np.sort(first)).max() < 0.05
+    assert best.evaluations == 20_000
+    # area below 1.1 above the curve, f1 from 0 to 1.1: 1.21 - (integral of 1 - sqrt(x) = 1/3)
+    assert best.volume is not None
+    assert best.volume.history[-1] == pytest.approx(1.21 - 1 / 3, abs=2e-3)
+    assert best.volume.settled
+    # on the curve the distance from the chord is largest where d(x + 1 - sqrt(x))/dx = 0: f1 = 1/4, f2 = 1/2
+    assert best.knee is not None
+    assert best.knee.objectives["first"] == pytest.approx(0.25, abs=0.05)
+    assert best.distance == pytest.approx(0.25 / math.sqrt(2), rel=2e-3)
+
+
+AMOUNTS = (1000.0, 300.0)  # of the prices, EUR times um or EUR times um^2
+BAND = 12e-6
+
+
+def least_cost(goal: float, law: str) -> float:
+    """Lagrange: with w1^2 + w2^2 = V the cost a1/w1 + a2/w2 is least for w^3 ~ a, a1/w1^2 + a2/w2^2 for w^4 ~ a."""
+    sd = 12.0 / norm.ppf((1 + goal) / 2)
+    whole = 36 * sd**2
+    if law == "square":
+        return sum(math.sqrt(amount) for amount in AMOUNTS) ** 2 / whole
+    return sum(amount ** (2 / 3) for amount in AMOUNTS) ** 1.5 / math.sqrt(whole)
+
+
+@pytest.mark.parametrize("law", ["reciprocal", "square"])
+def test_the_least_cost_of_two_tolerances_at_every_chance(law: str) -> None:
+    best = optimum(setup_of(PAIR, law=law))
+    assert len(best.front) == 60
+    for design in best.front:
+        goal = design.inputs["goal"]
+        least = least_cost(goal, law)
+        assert design.objectives["tolerance_price"] >= least * (1 - 1e-9)
+        assert design.objectives["tolerance_price"] == pytest.approx(least, rel=0.01)
+        assert design.chances["length"] >= goal - 1e-12
+    goals = [design.inputs["goal"] for design in best.front]
+    assert min(goals) < 0.62
+    assert max(goals) > 0.995
+
+
+@pytest.mark.parametrize("method", ["first_order", "draws"])
+def test_a_tighter_reliability_never_lowers_the_least_cost(method: str) -> None:
+    model = replace(
+        PAIR, objectives=[Minimise("tolerance_price"), Require("length", within="12 um", reliability="goal")]
+    )
+    study = Optimise(tightest=0.25, widest=4.0, chance=method, population=40, generations=60, draws=4000, verify=10)
+    costs = [optimum(setup_of(model, goal=goal), study).front[0].objectives["tolerance_price"] for goal in GOALS]
+    assert costs == sorted(costs)
+    for goal, cost in zip(GOALS, costs, strict=True):
+        # 4000 machines know the chance, and by its slope the cost, to some percent only
+        assert cost == pytest.approx(least_cost(goal, "reciprocal"), rel=1e-4 if method == "first_order" else 0.03)
+
+
+GOALS = (0.7, 0.8, 0.9, 0.95, 0.99)
+
+
+def test_grades_of_least_cost_against_trying_all() -> None:
+    model = replace(PRICED, objectives=[*PRICED.objectives, Minimise("tolerance_price")])
+    setup = default_setup(model)
+    best = optimum(setup, Optimise(chance="first_order", population=30, generations=30, verify=1000))
+    assert [variable.kind for variable in best.variables] == ["grade"] * 3
+    costs = []
+    names = {"large": (0.1, 1.0), "middle": (0.04, 1.5), "small": (0.01, 0.5)}
+    for grades in itertools.product(GRADES[GRADES.index("IT5") : GRADES.index("IT10") + 1], repeat=3):
+        widths = {name: tolerance(one, names[name][0]) for name, one in zip(names, grades, strict=True)}
+        sd = math.sqrt(sum((names[name][1] * width / 6) ** 2 for name, width in widths.items()))
+        if 2 * norm.cdf(15e-6 / sd) - 1 >= 0.95:
+            laws = {"large": (3, -0.6, 2), "middle": (9, -0.8, 0), "small": (1, -0.5, 1)}
+            costs.append(sum(a * (1e6 * widths[name]) ** b + c for name, (a, b, c) in laws.items()))
+    assert best.knee is not None
+    assert best.knee.objectives["tolerance_price"] == pytest.approx(min(costs), rel=1e-12)
+
+
+def press(**inputs: Any) -> Setup:
+    objectives = [*PRESS_LINKAGE.objectives, Minimise("tolerance_price")]
+    return default_setup(replace(PRESS_LINKAGE, objectives=objectives, studies=[], sheet=[], published=[]), **inputs)
+
+
+def test_the_press_costs_what_the_exact_program_of_the_allocation_finds() -> None:
+    setup = press(reading="printed")
+    best = optimum(setup, Optimise(chance="first_order", population=40, generations=30, verify=4000, widest=1.7))
+    exact = calculate(replace(setup, studies=(Allocation(loosen=True, draws=10),))).outcomes["allocation"].least  # type: ignore[attr-defined]
+    assert best.knee is not None
+    assert best.knee.tolerances == exact.grades
+    assert best.knee.objectives["tolerance_price"] == pytest.approx(exact.cost * 1e3, rel=1e-12)  # 1/mm in 1/m
+    assert best.knee.chances == pytest.approx(exact.chances, rel=1e-6)
+    assert not best.start.feasible
+
+
+# Whole numbers
+
+
+def test_whole_numbers_stay_whole_and_the_best_gear_is_found() -> None:
+    best = optimum(setup_of(GEAR))
+    assert best.knee is not None
+    gear = best.knee
+    assert gear.inputs["teeth"] == 35  # the bore of 30 mm and 5 mm of rim need just more than 35 mm
+    assert gear.inputs["module"] == pytest.approx(1e-3, rel=1e-3)
+    assert gear.inputs["face"] == 10 * gear.inputs["module"]
+    assert gear.inputs["starts"] == 1  # 35 / 2 is no ratio of 20
+    assert gear.objectives["weight"] == pytest.approx(35e-3**2 * 10e-3, rel=3e-3)
+    # 5 um of room over 9 um / 6 is 3.33 standard deviations; over IT6, 13 um / 6, it is 2.31 and 98.9 %
+    assert gear.tolerances == {"bore": "IT5"}
+    assert best.failed > 0
+    for design in best.front:
+        assert all(design.inputs[name] == round(design.inputs[name]) for name in ("teeth", "starts"))
+
+
+# One design at a time: what the arrays of the search must say too
+
+
+def problem_of(setup: Setup, **brief: Any) -> tuple[Problem, np.ndarray]:
+    problem = make_problem(setup, Brief("optimise", **brief))
+    places = np.random.default_rng(5).random((7, len(problem.space.variables)))
+    return problem, problem.space.designs(places)
+
+
+def columns_of(scatter: Scatter, problem: Problem) -> dict[str, Any]:
+    assert problem.cloud is not None
+    columns: dict[str, Any] = {}
+    for cause in scatter.causes:
+        standard = problem.cloud.standard[cause.name]
+        if cause.function is None:
+            _gather(columns, cause.from_standard(standard))
+        else:
+            pairs = enumerate(zip(cause.columns, cause.nominals, strict=True))
+            _gather(columns, iter([(name, nominal, nominal + standard[i]) for i, (name, nominal) in pairs]))
+    return columns
+
+
+def answers_at(setup: Setup) -> dict[str, Any]:
+    return {**setup.model.read_results(evaluate(setup)), **price_answers(setup)}
+
+
+def share(setup: Setup, problem: Problem) -> list[float]:
+    """The share of the same machines, by the functions of the other studies."""
+    answers, scatter = answers_at(setup), scatter_of(setup)
+    wanted = demands(setup, answers, with_goal=True)
+    columns = columns_of(scatter, problem)
+    rows = evaluate_rows(setup, columns, problem.brief.draws)
+    nominal = nominal_inputs(setup, wanted)
+    shares = []
+    for demand in wanted:
+        response = demand.response(rows.results, columns, nominal)
+        shares.append(worst(((response <= demand.high) & (response >= demand.low)).mean(axis=0)))
+    return shares
+
+
+def straight(setup: Setup) -> list[float]:
+    """First order, by the functions of the other studies."""
+    answers, machines = answers_at(setup), Machines(setup, scatter_of(setup))
+    wanted = demands(setup, answers, with_goal=True)
+    lines, _ = straightened(machines, wanted, nominal_inputs(setup, wanted))
+    return [worst(chance(demand, lines[demand.name])) for demand in wanted]
+
+
+SETUPS = [pytest.param(grown(), id="parts"), pytest.param(press(crank_angle="35 deg"), id="press")]
+
+
+@pytest.mark.parametrize("setup", SETUPS)
+def test_chances_by_draws_are_those_of_each_design_alone(setup: Setup) -> None:
+    problem, designs = problem_of(setup, draws=700)
+    assert answers_of(problem, designs).chances == pytest.approx(
+        np.array([share(problem.space.setup_of(design), problem) for design in designs]), abs=1e-12
+    )
+
+
+@pytest.mark.parametrize("setup", SETUPS)
+def test_chances_to_first_order_are_those_of_each_design_alone(setup: Setup) -> None:
+    problem, designs = problem_of(setup, chance="first_order")
+    assert answers_of(problem, designs).chances == pytest.approx(
+        np.array([straight(problem.space.setup_of(design)) for design in designs]), abs=1e-5
+    )
+
+
+@pytest.mark.parametrize("setup", SETUPS)
+def test_objectives_and_margins_are_those_of_each_design_alone(setup: Setup) -> None:
+    problem, designs = problem_of(setup, chance="first_order")
+    found_ = answers_of(problem, designs)
+    assert not found_.failed.any()
+    for row, design in enumerate(designs):
+        one = problem.space.setup_of(design)
+        answers = answers_at(one)
+        assert answers["tolerance_price"] == pytest.approx(total_price(one), rel=1e-14)
+        wanted = [answers[aim.name] for aim in problem.aims]
+        assert found_.objectives[row] == pytest.approx(wanted, rel=1e-12)
+        checks = plain_checks(one, answers)
+        plain = [bound.name for bound in problem.bounds if not bound.by_chance]
+        assert sorted(plain) == sorted(check.name for check in checks)
+        margins = dict(zip(plain, found_.margins[row], strict=False))
+        for check in checks:
+            assert margins[check.name] == pytest.approx(check.margin, rel=1e-9, abs=1e-12)
+        goals = [limit.goal for limit in limits(one, answers) if limit.goal is not None]
+        pairs = zip(found_.chances[row], goals, strict=True)
+        by_chance = [margin_of(value, goal, at_least=True) for value, goal in pairs]
+        assert found_.margins[row, len(plain) :] == pytest.approx(by_chance, abs=1e-12)
+
+
+def test_a_design_as_an_inputs_file_states_it() -> None:
+    problem, designs = problem_of(grown())
+    keys = [variable.key for variable in problem.space.variables]
+    assert keys[:4] == ["size", "force", "count", "span"]
+    assert keys[4:] == [f"tolerances.{name}" for name in ("size", "both", "strength", "clearance")]
+    setup = problem.space.setup_of(designs[0])
+    assert setup.inputs.size == designs[0, 0]
+    assert setup.inputs.other == setup.inputs.size * 0.6
+    assert setup.inputs.radius == pytest.approx(setup.inputs.other * 5 + 0.01, rel=1e-15)
+    assert setup.inputs.count == round(designs[0, 2])
+    assert type(setup.inputs.count) is int
+    assert setup.spreads["size"].text == GRADES[round(designs[0, 4])]
+    spread = setup.distributions()
+    assert spread["both"]["other"].width == pytest.approx(designs[0, 5], rel=1e-14)
+    # one drawing, a share of each nominal: the other input has its own width
+    assert spread["both"]["twin"].width == pytest.approx(designs[0, 5] * 0.010 / setup.inputs.other, rel=1e-12)
+    # a zone that grows up keeps its lower end
+    clearance = spread["clearance"]["clearance"]
+    assert clearance.mean - clearance.width / 2 == pytest.approx(0.0, abs=1e-18)
+
+
+def test_widths_run_from_tightest_to_widest_and_grades_from_finest() -> None:
+    space = open_space(setup_of(PARTS), Brief("optimise", tightest=0.5, widest=3.0, finest="IT6"))
+    ends = {variable.key: (variable.low, variable.high) for variable in space.variables}
+    assert ends["tolerances.clearance"] == pytest.approx((6e-6, 36e-6), rel=1e-14)
+    # 50 mm: IT8 is 39 um, IT10 100 um, IT11 160 um (ISO 286-1, table 1); 3 times 39 um is 117 um
+    assert ends["tolerances.size"] == (GRADES.index("IT6"), GRADES.index("IT10"))
+    start = {variable.key: variable.start for variable in space.variables}
+    assert start["tolerances.size"] == GRADES.index("IT8")
+    assert start["force"] == 3000
+
+
+def test_what_is_off_is_no_variable_and_costs_nothing() -> None:
+    setup = setup_of(PARTS)
+    setup = replace(setup, spreads={**setup.spreads, "clearance": off()})
+    space = open_space(setup, Brief("optimise"))
+    assert "tolerances.clearance" not in [variable.key for variable in space.variables]
+
+
+def test_vary_chooses_among_inputs_and_tolerances() -> None:
+    space = open_space(setup_of(PARTS), Brief("optimise", vary=("span", "both")))
+    assert [variable.key for variable in space.variables] == ["span", "tolerances.both"]
+    whole = open_space(setup_of(PARTS), Brief("optimise", vary=("size",)))  # an input and a tolerance of one name
+    assert [variable.key for variable in whole.variables] == ["size", "tolerances.size"]
+
+
+# Same seed, same front
+
+
+def written(best: Optimum) -> str:
+    return json.dumps(best.as_json(), allow_nan=False)
+
+
+def test_the_same_seed_gives_the_same_front_and_another_one_another() -> None:
+    setup = setup_of(PAIR)
+    study = replace(SMALL, tightest=0.25, widest=4.0)
+    once = written(optimum(replace(setup, seed=0), study))
+    np.random.seed(3)  # noqa: NPY002  # nobody may read the global state
+    state = np.random.get_state()[1]  # noqa: NPY002
+    assert written(optimum(replace(setup, seed=0), study)) == once
+    assert np.array_equal(np.random.get_state()[1], state)  # noqa: NPY002
+    assert written(optimum(replace(setup, seed=1), study)) != once
+
+
+@pytest.mark.parametrize("chance_", ["draws", "first_order"])
+def test_processes_give_the_same_bytes(chance_: Any) -> None:
+    study = replace(SMALL, tightest=0.25, chance=chance_)
+    setups = [replace(setup_of(PAIR), studies=(study,)), replace(grown(), studies=(study,))]
+    with open_executor("processes:2") as executor:
+        for setup in setups:
+            apart = calculate(setup, executor=executor).outcomes["optimise"]
+            assert written(apart) == written(calculate(setup).outcomes["optimise"])  # type: ignore[arg-type]
+
+
+def test_it_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:
+    optimum(setup_of(PAIR), SMALL)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_population_is_one_array(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Draws times designs in one call of the model, at most 2^16 rows at once."""
+    sizes: list[int] = []
+
+    def counted(setup: Setup, columns: Any, rows: int, **more: Any) -> Any:
+        sizes.append(rows)
+        return evaluate_rows(setup, columns, rows, **more)
+
+    monkeypatch.setattr("truing.studies.optimise_problem.evaluate_rows", counted)
+    optimum(setup_of(PAIR), replace(SMALL, population=40, generations=1, draws=4000))
+    drawn = [rows for rows in sizes if rows >= 4000]
+    assert sum(drawn) == 40 * 4000
+    assert max(drawn) <= ROWS
+    assert len(drawn) == 4
+
+
+# What the outcome says
+
+
+def test_the_knee_is_verified_by_other_machines() -> None:
+    best = optimum(setup_of(PAIR), replace(SMALL, tightest=0.25, widest=4.0, verify=40_000))
+    assert best.knee is not None
+    sd = math.hypot(*(best.knee.tolerances[name] for name in ("one", "other"))) / 6  # type: ignore[arg-type]
+    exact = 2 * norm.cdf(BAND / sd) - 1
+    low, high = best.interval["length"]
+    assert low - 1e-3 < exact < high + 1e-3
+    assert best.tally is not None
+    assert best.tally.draws == 40_000
+    assert best.verified["length"] != best.knee.chances["length"]
+
+
+def test_too_few_draws_end_in_a_knee_that_misses_and_the_sheet_says_so() -> None:
+    model = replace(PAIR, objectives=[Minimise("tolerance_price"), Require("length", within="12 um", reliability=0.95)])
+    seeds = [optimum(replace(setup_of(model), seed=seed), FEW) for seed in range(4)]
+    missed = [best for best in seeds if any("the knee misses 'length'" in text for text in best.warnings())]
+    for best in missed:
+        assert best.interval["length"][1] < 0.95
+    assert missed
+
+
+FEW = Optimise(tightest=0.25, widest=4.0, population=30, generations=30, draws=60, verify=40_000)
+
+
+def test_goals_that_so_few_machines_cannot_tell_are_named() -> None:
+    model = replace(
+        PAIR, objectives=[Minimise("tolerance_price"), Require("length", within="12 um", reliability=0.999)]
+    )
+    best = optimum(setup_of(model), SMALL)
+    assert "study 'optimise': 600 machines cannot tell 0.999 of 'length' from certainty" in best.warnings()
+
+
+def test_nothing_feasible_is_a_status_and_no_number() -> None:
+    goal = Require("length", within="0.01 um", reliability=0.99)
+    best = optimum(setup_of(replace(PAIR, objectives=[Minimise("tolerance_price"), goal])), SMALL)
+    assert (best.front, best.knee, best.volume, best.verified) == ((), None, None, {})
+    assert best.status.startswith("no design among 240 keeps every limit; the nearest misses 'length' by a margin of -")
+    assert list(best.warnings())[-1] == f"study 'optimise': {best.status}"
+    document = json.loads(written(best))
+    assert document["front"] == []
+    assert "knee" not in document
+    assert "hypervolume" not in document
+    assert [type(block).__name__ for block in best.blocks()] == ["Words", "Table"]
+
+
+def test_without_any_answer_it_says_so() -> None:
+    model = replace(GEAR, objectives=[Vary("module", "0.1 mm", "0.2 mm"), Minimise("weight")], studies=[])
+    best = optimum(setup_of(model, teeth=31), SMALL)
+    assert best.status == "no design among 240 keeps every limit: none has an answer"
+    assert best.failed == best.evaluations
+    assert math.isfinite(best.start.objectives["weight"])
+
+
+def test_it_makes_no_check_so_that_a_failing_design_stays_one() -> None:
+    setup = setup_of(PAIR, goal=0.99)
+    done = calculate(replace(setup, studies=(Reliability(draws=5000), replace(SMALL, tightest=0.25))))
+    (check,) = done.checks
+    assert check.name == "length"
+    assert not check.passed
+    assert done.outcomes["optimise"].checks() == ()
+    best = done.outcomes["optimise"]
+    assert isinstance(best, Optimum)
+    assert best.knee is not None
+    assert best.knee.feasible
+    assert not best.start.feasible
+
+
+def test_the_start_is_the_design_of_the_inputs_file() -> None:
+    setup = grown(size="50 mm", other="31 mm")  # 31 mm although it would follow as 30 mm
+    best = optimum(setup, SMALL)
+    assert best.start.inputs["other"] == pytest.approx(0.031)
+    assert best.start.tolerances["size"] == "IT8"
+    assert best.start.objectives["tolerance_price"] == pytest.approx(total_price(setup), rel=1e-14)
+    assert best.start.objectives["stress"] == pytest.approx(float(evaluate(setup).stress), rel=1e-14)
+
+
+def test_results_json_has_printed_units_and_no_nan() -> None:
+    setup = replace(grown(), units={"stress": "GPa"})
+    best = optimum(setup, SMALL)
+    document = json.loads(written(best))
+    first = best.front[0]
+    assert document["front"][0]["objectives"]["stress"] == pytest.approx(first.objectives["stress"] / 1e9)
+    assert document["front"][0]["inputs"]["size"] == pytest.approx(first.inputs["size"] * 1e3)
+    assert document["front"][0]["tolerances"]["strength"] == pytest.approx(first.tolerances["strength"])
+    assert document["variables"]["tolerances.size"] == {"kind": "grade", "finest": "IT5", "coarsest": "IT9"}
+    assert document["variables"]["count"] == {"kind": "whole", "low": 1, "high": 5, "unit": ""}
+    assert document["objectives"]["load"] == {"sense": "maximise", "unit": "kN"}
+    assert len(document["hypervolume"]["history"]) == 12
+    assert document["knee"]["place"] == best.knee_place
+    # one result with a limit on the design and one on its machines: two entries
+    assert {"length within", "length within by chance", "course at least", "course within"} <= set(first.margins)
+
+
+def test_the_front_is_sorted_feasible_and_nobody_is_beaten() -> None:
+    best = optimum(grown(), SMALL)
+    signs = np.array([aim.sign for aim in best.aims])
+    points = values(best, *(aim.name for aim in best.aims)) * signs
+    assert list(points[:, 0]) == sorted(points[:, 0])
+    assert all(design.feasible and min(design.margins.values()) >= 0 for design in best.front)
+    for one, other in itertools.permutations(points, 2):
+        assert not ((one <= other).all() and (one < other).any())
+
+
+def test_the_sheet_shows_the_front_and_both_figures() -> None:
+    for setup, study in ((grown(), SMALL), (setup_of(PAIR), None), (setup_of(GEAR), SMALL)):
+        best = optimum(setup, study)
+        for block in best.blocks():
+            if hasattr(block, "draw"):
+                block.draw().canvas.draw()
+            elif hasattr(block, "rows"):
+                assert all(len(row) == len(block.columns) for row in block.rows)
+                assert len(block.rows) <= 22
+    titles = [getattr(block, "title", "") for block in optimum(setup_of(PAIR)).blocks()]
+    assert titles == ["", "Start and knee", "Front", "Front, start and knee", "Hypervolume over the generations"]
+
+
+# Parts of the search
+
+
+@pytest.mark.parametrize("objectives", [1, 2, 3])
+def test_non_dominated_against_every_pair(objectives: int) -> None:
+    points = np.random.default_rng(8).integers(0, 7, (60, objectives)).astype(float)
+    kept = non_dominated(points)
+    wanted = {
+        tuple(point)
+        for point in points
+        if not any((other <= point).all() and (other < point).any() for other in points)
+    }
+    assert {tuple(points[row]) for row in kept} == wanted
+    assert len(kept) == len(wanted)
+
+
+def test_a_thinned_front_keeps_its_ends_and_drops_the_crowded() -> None:
+    points = np.array([[0.0, 1.0], [0.01, 0.97], [0.02, 0.95], [0.5, 0.5], [1.0, 0.0]])
+    assert sorted(spread_out(points, np.arange(5), 4)) in ([0, 1, 3, 4], [0, 2, 3, 4])
+    assert sorted(spread_out(points, np.arange(5), 3)) == [0, 3, 4]
+
+
+def test_the_knee_of_a_known_front() -> None:
+    front = np.array([[0.0, 10.0], [1.0, 4.0], [2.0, 2.0], [4.0, 0.0]])
+    place, distance = knee_of(front)  # normalised (0, 1), (1/4, 2/5), (1/2, 1/5), (1, 0)
+    assert place == 1
+    assert distance == pytest.approx((1 - 0.65) / math.sqrt(2), rel=1e-14)
+    assert knee_of(np.array([[3.0], [2.0], [5.0]])) == (1, 0.0)
+    assert knee_of(np.array([[3.0, 2.0]])) == (0, 0.0)
+
+
+def test_the_hypervolume_of_known_fronts() -> None:
+    last = np.array([[0.0, 1.0], [0.5, 0.5], [1.0, 0.0]])
+    found_ = volume_of([np.zeros((0, 2)), np.array([[0.5, 0.5]]), last])
+    # against (1.1, 1.1): nothing; a square of 0.6; and by strips 0.5*0.1 + 0.5*0.6 + 0.1*1.1
+    assert found_.history == pytest.approx((0.0, 0.36, 0.05 + 0.3 + 0.11), rel=1e-12)
+    assert (found_.ideal, found_.nadir) == ((0.0, 0.0), (1.0, 1.0))
+    one = volume_of([np.array([[4.0]]), np.array([[3.0]]), np.array([[2.0]])])
+    assert one.history == pytest.approx((REFERENCE - 1, REFERENCE - 0.5, REFERENCE), rel=1e-12)
+    cube = volume_of([np.array([[0.0, 0.5, 1.0], [0.5, 1.0, 0.0], [1.0, 0.0, 0.5]])])
+    points = np.random.default_rng(1).random((200_000, 3)) * REFERENCE
+    covered = (points[:, None, :] >= np.array([[0.0, 0.5, 1.0], [0.5, 1.0, 0.0], [1.0, 0.0, 0.5]])).all(axis=2)
+    counted = covered.any(axis=1).mean() * REFERENCE**3
+    assert cube.history[0] == pytest.approx(counted, abs=4e-3)
+
+
+# Surrogate on request
+
+
+@dataclass(frozen=True)
+class Known:
+    """Answers for the stress, a thousand times too small so that it is seen."""
+
+    of: tuple[str, ...] = ("stress",)
+    asked: list[int] = field(default_factory=list)
+
+    def predict(self, columns: Any) -> dict[str, Any]:
+        force, size, other, count = (np.asarray(columns[name]) for name in ("force", "size", "other", "count"))
+        self.asked.append(int(force.size))
+        return {"stress": 1e-3 * force / (size * other) * (1 + 0.1 * count)}
+
+    def as_json(self) -> dict[str, Any]:
+        return {}
+
+    def blocks(self) -> list[Any]:
+        return []
+
+    def checks(self) -> list[Any]:
+        return []
+
+    def warnings(self) -> list[str]:
+        return []
+
+
+@dataclass(frozen=True, kw_only=True)
+class Learnt:
+    """A study whose outcome can predict."""
+
+    outcome: Known = field(default_factory=Known)
+    name: str = "surrogate"
+    gives: None = None
+
+    def run(self, bench: Bench) -> Known:
+        return self.outcome
+
+
+def test_the_surrogate_answers_what_it_knows_and_the_knee_is_run_on_the_model() -> None:
+    learnt = Learnt()
+    done = calculate(replace(setup_of(PARTS), studies=(learnt, replace(SMALL, surrogate=True))))
+    best = done.outcomes["optimise"]
+    assert isinstance(best, Optimum)
+    assert best.knee is not None
+    assert sum(learnt.outcome.asked) >= best.evaluations
+    assert best.exact["stress"] == pytest.approx(1e3 * best.knee.objectives["stress"], rel=1e-9)
+    assert json.loads(written(best))["surrogate"] is True
+    assert "The surrogate answered" in best.blocks()[0].text  # type: ignore[union-attr]
+
+
+def test_a_surrogate_that_is_not_there_is_asked_for() -> None:
+    with pytest.raises(UsageError, match=r"^study 'optimise': surrogate = true, but no Surrogate ran before it"):
+        optimum(setup_of(PARTS), replace(SMALL, surrogate=True))
+
+
+# Bad input: one sentence
+
+
+WRONG = [
+    ({"objectives": [Vary("size", "1 mm", "2 mm")]}, {}, "parts says of no result of its function and of no price"),
+    ({"objectives": [Minimise("stress")], "errors": []}, {}, "parts has nothing to choose; add Vary"),
+    ({}, {"vary": ("spam",)}, "vary names 'spam', which parts may not choose. Did you mean 'span'"),
+    ({"objectives": [Vary("size", "2 mm", "1 mm"), Minimise("stress")]}, {}, "Vary('size') runs from 2 mm to 1 mm"),
+    ({"objectives": [Vary("size", "1 mm", "1e-3 m"), Minimise("stress")]}, {}, "Vary('size') runs from 1 mm to 1e-3 m"),
+    ({"objectives": [Vary("count", "1.2", "1.8"), Minimise("stress")]}, {}, "Vary('count') runs from 1.2 to 1.8"),
+    ({"objectives": [Vary("size", "1 kg", "2 kg"), Minimise("stress")]}, {}, "Vary('size'): '1 kg'"),
+    ({"objectives": [Vary("force", "0 kN", "2 kN"), Minimise("stress")]}, {}, "Vary('force'): force is 0 kN; it must"),
+    ({"objectives": [Vary("size", "1 mm", "2 mm"), Minimise("course")]}, {}, "objective 'course' runs along an axis"),
+    (
+        {"objectives": [Vary("size", by="2 * other"), Vary("other", by="size / 2"), Vary("span", "1 mm", "2 mm"),
+                        Minimise("stress")]},
+        {}, "'size' and 'other' follow each other by their formulas in a circle",
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("model", "options", "words"), WRONG)
+def test_what_cannot_be_searched_is_refused(model: dict[str, Any], options: dict[str, Any], words: str) -> None:
+    setup = setup_of(replace(PARTS, **model))
+    with pytest.raises(UsageError) as refused:
+        optimum(setup, replace(SMALL, **options))
+    assert str(refused.value).startswith("study 'optimise': ")
+    assert words in str(refused.value)
+
+
+def test_a_formula_that_names_what_there_is_not_is_refused_when_the_model_is_made() -> None:
+    with pytest.raises(DeclarationError, match="follows sise, which is no input"):
+        replace(PARTS, objectives=[Vary("other", by="2 * sise")])
+
+
+OPTIONS = [
+    ({"population": 3}, "population = 3, but a population has 4 to 10000 designs"),
+    ({"generations": 0}, "generations = 0, but a search has 1 to 100000 generations"),
+    ({"tightest": 2.0, "widest": 1.0}, "tightest = 2 and widest = 1, but widths run"),
+    ({"tightest": 0.0}, "tightest = 0 and widest = 2, but widths run"),
+    ({"finest": "IT19"}, "'IT19' is no tolerance grade"),
+    ({"draws": 0}, "draws, verify and batch are at least 1"),
+    ({"chance": "luck"}, "chance takes draws or first_order, not 'luck'"),
+    ({"algorithm": "annealing"}, "the algorithm 'annealing' is unknown; there is nsga2"),
+]
+
+
+@pytest.mark.parametrize(("options", "words"), OPTIONS)
+def test_options_that_make_no_sense_are_refused(options: dict[str, Any], words: str) -> None:
+    with pytest.raises(UsageError, match=words):
+        Optimise(**options)
