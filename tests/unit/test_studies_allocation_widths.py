@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from dataclasses import replace
 from typing import Any
@@ -35,7 +36,7 @@ from truing import (
 from truing.calculation import calculate
 from truing.declare.spreads import read_spread
 from truing.errors import UsageError
-from truing.fits import tolerance
+from truing.fits import GRADES, tolerance
 from truing.setup import Setup
 from truing.studies.strips import Strip
 
@@ -271,6 +272,24 @@ def test_grades_come_first_and_widths_are_bought_with_them() -> None:
         "Synthesis grade by grade", "Rule against least cost", "Grades", "The rule's tolerances",
         "The least-cost tolerances",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize("goal_um", [12, 15, 30])
+@pytest.mark.parametrize("loosen", [False, True])
+def test_the_least_cost_of_grades_and_widths_is_what_trying_everything_finds(goal_um: int, loosen: bool) -> None:
+    """All pairs of grades (ISO 286-1), each with the widest width that its goal leaves: wider is cheaper."""
+    model = limited(MIXED, Require("height", within=f"{goal_um} um", reliability=0.95))
+    answer = allotted(model, tightest=0.05, widest=4.0, loosen=loosen)
+    costs = []
+    for large, small in itertools.product(GRADES[4:] if loosen else GRADES[4:9], repeat=2):
+        widths = tolerance(large, 0.1), tolerance(small, 0.01)
+        left = (goal_um * 1e-6 / norm.ppf(0.975)) ** 2 - (widths[0] / 6) ** 2 - (0.5 * widths[1] / 6) ** 2
+        middle = min(6 * max(left, 0.0) ** 0.5 / 1.5, 4 * 62e-6)
+        if middle >= 0.05 * 62e-6:
+            um = [1e6 * width for width in (*widths, middle)]
+            costs.append(3 * um[0] ** -0.6 + 2 + um[1] ** -0.5 + 1 + 9 * um[2] ** -0.8)
+    assert answer.least_cost.reached
+    assert answer.least_cost.cost == pytest.approx(min(costs), rel=1e-6)
 
 
 def test_widths_stay_where_grades_have_no_price() -> None:

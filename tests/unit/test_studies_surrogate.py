@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import itertools
 import json
+import os
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -212,6 +216,25 @@ def test_the_same_seed_gives_the_same_numbers_wherever_it_is_computed() -> None:
     assert texts[0] == texts[1] == texts[2]
     other = calculate(replace(setup, seed=1)).outcomes["surrogate"]
     assert json.dumps(other.as_json()) != texts[0]
+
+
+def test_the_number_of_threads_changes_nothing() -> None:
+    """In fresh processes: linear algebra of a surrogate and of widths that are bought, to the last digit."""
+    code = (
+        "import json; from test_studies_surrogate import *; from test_studies_allocation_widths import GROWING, allotted\n"
+        "found = [emulated(HILL, STUDY).as_json(), allotted(GROWING, draws=10).as_json()]\n"
+        "print(json.dumps(found))"
+    )
+    here = Path(__file__).parent
+    path = os.pathsep.join([str(here), str(here.parent), *sys.path])
+    said = []
+    for threads in ("1", "2"):
+        names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+        settings = {**os.environ, "PYTHONPATH": path, **dict.fromkeys(names, threads)}
+        answer = subprocess.run([sys.executable, "-c", code], env=settings, capture_output=True, text=True, check=True)
+        said.append(answer.stdout)
+    assert said[0] == said[1]
+    assert json.loads(said[0])[1]["reached"]
 
 
 def test_times_are_on_the_sheet_and_in_no_results() -> None:

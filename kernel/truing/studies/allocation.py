@@ -22,7 +22,7 @@ from truing.studies.sampling import Budget, Machines, Tally, sample
 from truing.studies.scatter import scatter_of
 from truing.studies.strips import priced_widths, with_widths
 from truing.studies.synthesis import Plan, Step, as_it_stands, by_rule, coefficients, least_cost
-from truing.studies.widths_bought import bought
+from truing.studies.widths_bought import bettered, bought
 
 ALLOTTED = "with the grades after the allocation"
 BOUGHT = "with the tolerances after the allocation"
@@ -129,7 +129,7 @@ def with_plan(setup: Setup, plan: Plan) -> Setup:
 
 
 def _least(shop: Shop, ruled: Plan, rule: Plan) -> Plan:
-    """Return the cheapest design: with widths the cheapest of three choices of grades, each with widths of its own."""
+    """Return the cheapest design. With widths too it is sought by steps of one grade from three choices of grades."""
     if not shop.parts:
         return rule
     if not shop.strips:
@@ -137,7 +137,7 @@ def _least(shop: Shop, ruled: Plan, rule: Plan) -> Plan:
     found = [bought(shop, least_cost(shop)), rule]
     if ruled.grades != shop.start:
         found.append(bought(shop, as_it_stands(shop)))
-    return min(found, key=lambda plan: (not plan.reached, plan.cost))
+    return min((bettered(shop, plan) for plan in found), key=lambda plan: (not plan.reached, plan.cost))
 
 
 def _texts(setup: Setup, shop: Shop, plan: Plan) -> dict[str, str]:

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from truing.evaluate import Rows
 from truing.studies.demands import Z95
+from truing.studies.threads import one_thread
 
 if TYPE_CHECKING:
     import numpy as np
@@ -74,15 +74,6 @@ def _in_parts(predict: Any, places: NDArray[np.float64], answers: int = 1) -> ND
             rows = usable[start : start + ROWS]
             found[:, rows] = predict(places[rows])
     return found
-
-
-@contextmanager
-def one_thread() -> Iterator[None]:
-    """Keep linear algebra on one thread: the sums then have one order, whatever the machine."""
-    from threadpoolctl import threadpool_limits
-
-    with threadpool_limits(limits=1):
-        yield
 
 
 def fitted(

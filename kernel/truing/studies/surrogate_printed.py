@@ -159,7 +159,11 @@ def _speed_table(emulated: Emulated, speed: Speed) -> Table:
         [f"{speed.rows} answers of the model", speed.model],
     ]
     never = "The surrogate never pays: the model answers faster than it does."
-    even = never if speed.break_even == float("inf") else f"It pays from {speed.break_even:.2g} calculations on."
+    even = (
+        never
+        if speed.break_even == float("inf")
+        else f"It pays from about {float(f'{speed.break_even:.2g}'):.0f} calculations on."
+    )
     part = (
         f" {speed.measured} of the model's were run, the rest is in proportion." if speed.measured < speed.rows else ""
     )

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from truing.studies.demands import Demand
 from truing.studies.synthesis import Plan, largest_variance
+from truing.studies.threads import one_thread
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,10 +25,12 @@ if TYPE_CHECKING:
 
     Values = NDArray[np.float64]
 
-MARGINS = (0.0, 1e-12, 1e-10, 1e-8, 1e-6)
+MARGINS = (0.0, 1e-10, 1e-8, 1e-6)
+ROUNDING = 1e-13
 STARTS = 4
 FEASIBLE = 1e-9
 AT_END = 1e-7
+CHEAPER = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,10 +109,22 @@ def _largest_sd(demand: Demand, mean: float) -> tuple[float, float]:
     """Return the standard deviation up to which a goal between two limits is met, and its derivative by the mean."""
     from math import exp
 
-    variance = largest_variance(demand, mean)
-    if variance is None:
-        return 0.0, 0.0
-    sd = variance**0.5
+    from scipy.optimize import brentq
+    from scipy.special import ndtr, ndtri
+
+    goal = demand.goal or 0.0
+    reach = min(demand.high - mean, mean - demand.low)
+    if goal <= 0.5:
+        sd = (largest_variance(demand, mean) or 0.0) ** 0.5
+    else:  # both limits as near as the nearer one, or that one alone: the truth lies between
+        ends = (reach / float(ndtri(0.5 + goal / 2)), reach / float(ndtri(goal)))
+        sd = brentq(
+            lambda sd: float(ndtr((demand.high - mean) / sd) - ndtr((demand.low - mean) / sd)) - goal,
+            0.999 * ends[0],
+            1.001 * ends[1],
+            xtol=1e-16 * ends[0],
+            rtol=1e-14,
+        )
     above, below = (demand.high - mean) / sd, (demand.low - mean) / sd
     at_high, at_low = exp(-(above**2) / 2), exp(-(below**2) / 2)
     return sd, -(at_high - at_low) / (above * at_high - below * at_low)
@@ -121,13 +136,42 @@ def bought(shop: Shop, plan: Plan) -> Plan:
         return plan
     search = Search(shop, plan.grades)
     starts = list(_starts(search))
-    found = _cheapest(search, starts)
-    if found is None:
-        nearest = _nearest(search, starts)
-        found = _cheapest(search, [nearest])
+    with one_thread():
+        found = _cheapest(search, starts)
+        if found is None:
+            nearest = _nearest(search, starts)
+            found = _cheapest(search, [nearest])
     if found is None:
         return _with(shop, plan, search.widths(nearest), residual=None)
     return _with(shop, plan, search.widths(found), residual=_residual(search, found))
+
+
+def bettered(shop: Shop, plan: Plan) -> Plan:
+    """Change one grade by one step, buy the widths anew, and take what is cheapest, until no such step is cheaper."""
+    with one_thread():
+        while plan.reached and shop.strips:
+            best = min(_steps_from(shop, plan), key=lambda other: other.cost, default=plan)
+            if best.cost >= plan.cost * (1 - CHEAPER):
+                break
+            plan = best
+    return plan
+
+
+def _steps_from(shop: Shop, plan: Plan) -> Iterator[Plan]:
+    """Yield the designs with one grade a step finer or coarser that meet all goals; widths start where they are."""
+    import numpy as np
+
+    for name, part in shop.parts.items():
+        offered = list(part.choices)
+        place = offered.index(plan.grades[name])
+        for grade in offered[max(place - 1, 0) : place] + offered[place + 1 : place + 2]:
+            other = replace(plan, grades={**plan.grades, name: grade})
+            search = Search(shop, other.grades)
+            held = [np.log(plan.widths[key] / strip.start) for key, strip in shop.strips.items()]
+            low, high = search.ends()
+            found = _cheapest(search, [np.clip(held, low, high), low])
+            if found is not None:
+                yield _with(shop, other, search.widths(found), residual=_residual(search, found))
 
 
 def _with(shop: Shop, plan: Plan, widths: Mapping[str, float], *, residual: float | None) -> Plan:
@@ -159,10 +203,23 @@ def _cheapest(search: Search, starts: Sequence[Values]) -> Values | None:
         ends = [end for start in starts if (end := _descended(search, start, margin)) is not None]
         if not ends:
             return None
-        best = min(ends, key=lambda x: search.cost(x)[0])
+        best = _exact(search, min(ends, key=lambda x: search.cost(x)[0]))
         if search.shop.reached(search.grades, search.widths(best)):
             return best
     return None
+
+
+def _exact(search: Search, x: Values) -> Values:
+    """Take the last rounding out of the goals that are just missed, by the shortest way."""
+    import numpy as np
+
+    for _ in range(4):
+        if search.shop.reached(search.grades, search.widths(x)):
+            break
+        slack, rows = search.slack(x)
+        short = slack < ROUNDING
+        x = np.clip(x + np.linalg.lstsq(rows[short], ROUNDING - slack[short], rcond=None)[0], *search.ends())
+    return x
 
 
 def _descended(search: Search, start: Values, margin: float) -> Values | None:
