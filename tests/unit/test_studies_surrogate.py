@@ -221,7 +221,8 @@ def test_the_same_seed_gives_the_same_numbers_wherever_it_is_computed() -> None:
 def test_the_number_of_threads_changes_nothing() -> None:
     """In fresh processes: linear algebra of a surrogate and of widths that are bought, to the last digit."""
     code = (
-        "import json; from test_studies_surrogate import *; from test_studies_allocation_widths import GROWING, allotted\n"
+        "import json; from test_studies_surrogate import HILL, STUDY, emulated\n"
+        "from test_studies_allocation_widths import GROWING, allotted\n"
         "found = [emulated(HILL, STUDY).as_json(), allotted(GROWING, draws=10).as_json()]\n"
         "print(json.dumps(found))"
     )
