@@ -1,0 +1,393 @@
+"""Mesh of the cycloid disc: geometry, clearance, forces. Limits, identities and independent solutions.
+
+Numbers without another source were computed from the same equations by an independent program; the digits that it
+printed are demanded. Everything else is an identity, or solved here a second time from the equations of the paper.
+"""
+
+from dataclasses import replace
+from math import acos, degrees, log, pi, radians, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from rv_wear import contact, curves, cycloid, sliding
+from rv_wear.history import states
+from rv_wear.mesh import Choices, Mesh, many, mesh_of
+from rv_wear.model import RV_WEAR
+from rv_wear.quantities import Reducer
+from rv_wear.sharing import Loads, shared, start_scale
+from rv_wear.teeth import Teeth, teeth_of
+from rv_wear.wear import worn
+from truing.errors import InfeasibleError
+
+PAPER: Reducer = RV_WEAR.inputs()
+MESH = mesh_of(PAPER)
+K_1 = 2.2 * 40 / 114.5
+Q = sqrt(1 - K_1**2)
+PSI_0 = acos(K_1)
+ANGLES = np.radians(np.linspace(0.5, 179.5, 360))
+SOME = [radians(10), radians(20), radians(38), radians(58), radians(80), radians(120), radians(160)]
+
+
+def unworn(mesh: Mesh) -> tuple[Teeth, Loads]:
+    teeth = teeth_of(mesh)
+    return teeth, shared(teeth, teeth.slack, start_scale(teeth))
+
+
+def lever(angle: Any) -> Any:
+    """Arm of the contact force of the paper's reducer, written out (m)."""
+    return 0.0022 * 39 * np.sin(angle) / np.sqrt(1 + K_1**2 - 2 * K_1 * np.cos(angle))
+
+
+# Geometry
+
+
+def test_the_arm_is_longest_where_the_crank_pin_line_is_normal() -> None:
+    arms = cycloid.arm(MESH, ANGLES)
+    assert np.all(arms < 0.0022 * 39)
+    assert cycloid.arm(MESH, PSI_0) == pytest.approx(0.0022 * 39, rel=1e-15)
+    assert degrees(cycloid.longest_arm_angle(MESH)) == pytest.approx(39.8, abs=0.05)
+    assert arms == pytest.approx(lever(ANGLES), rel=1e-14)
+
+
+def path(turn: Any) -> NDArray[np.complex128]:
+    """The centre of a pin in the disc, from the motion itself: pin circle minus crank."""
+    return np.asarray(0.1145 * np.exp(1j * turn) - 0.0022 * np.exp(40j * turn))
+
+
+def flank(turn: Any) -> NDArray[np.complex128]:
+    x, y = cycloid.profile(replace(MESH, equidistant=0.0, shift=0.0), turn)
+    return np.asarray(x) + 1j * np.asarray(y)
+
+
+def slope(function: Any, at: float, step: float = 1e-5) -> complex:
+    """Derivative by five points."""
+    near, far = function(at + step) - function(at - step), function(at + 2 * step) - function(at - 2 * step)
+    return complex((8 * near - far) / (12 * step))
+
+
+@pytest.mark.parametrize("psi", SOME)
+def test_the_flank_is_a_pin_radius_from_the_path_and_parallel_to_it(psi: float) -> None:
+    turn = psi / 39
+    away, along = complex(flank(turn) - path(turn)), slope(path, turn)
+    assert abs(away) == pytest.approx(0.005, rel=1e-14)
+    assert (away * along.conjugate()).real == pytest.approx(0, abs=1e-9 * abs(along) * 0.005)
+    assert (away * along.conjugate()).imag > 0  # inwards: the disc lies inside of its pins
+    assert abs((slope(flank, turn) * along.conjugate()).imag) < 1e-8 * abs(along) ** 2
+
+
+@pytest.mark.parametrize("psi", SOME)
+def test_speeds_are_those_of_the_moving_profile(psi: float) -> None:
+    turn = psi / 39
+    touching = complex(flank(turn) - path(turn))
+
+    def on_pin(at: float) -> Any:
+        """A point of the pin that is in contact at ``turn``: fixed in the housing, which turns around the disc."""
+        return path(at) + touching * np.exp(1j * (at - turn))
+
+    pin, contact_point = abs(slope(on_pin, turn)), abs(slope(flank, turn))
+    assert sliding.sliding_speed(MESH, psi) == pytest.approx(pin, rel=1e-8)
+    assert sliding.rolling_speed(MESH, psi) == pytest.approx(contact_point, rel=1e-7)
+    assert abs(slope(path, turn)) == pytest.approx(0.1145 * cycloid.pin_distance(MESH, psi), rel=1e-9)
+
+
+@pytest.mark.parametrize(("angle", "ratio"), [(20, 0.18), (58, 1.92), (80, 2.13)])
+def test_sliding_ratio(angle: float, ratio: float) -> None:
+    assert sliding.sliding_ratio(MESH, radians(angle)) == pytest.approx(ratio, abs=0.0101)
+
+
+def test_sliding_ratio_is_one_at_the_longest_arm() -> None:
+    assert sliding.sliding_ratio(MESH, PSI_0) == pytest.approx(1, rel=1e-12)
+
+
+@pytest.mark.parametrize("psi", SOME)
+def test_radius_is_that_of_the_profile(psi: float) -> None:
+    def curvature(at: float) -> float:
+        first = slope(flank, at, 2e-4)
+        second = slope(lambda place: slope(flank, place, 2e-4), at, 2e-4)
+        return float((first.conjugate() * second).imag / abs(first) ** 3)
+
+    assert cycloid.profile_radius(MESH, psi) == pytest.approx(-1 / curvature(psi / 39), rel=1e-4)
+
+
+def test_the_flank_is_straight_where_its_sign_changes() -> None:
+    straight = acos((1 + 40 * K_1**2) / (K_1 * 41))
+    assert degrees(straight) == pytest.approx(38.6, abs=0.05)
+    assert cycloid.profile_radius(MESH, straight - 1e-3) > 0 > cycloid.profile_radius(MESH, straight + 1e-3)
+    assert cycloid.relative_radius(MESH, straight) == pytest.approx(0.005, rel=1e-9)
+
+
+@pytest.mark.parametrize("eccentricity", [0.5e-3, 1.2e-3, 2.2e-3, 2.7e-3])
+def test_smallest_convex_radius_is_that_of_a_fine_grid(eccentricity: float) -> None:
+    mesh = replace(MESH, eccentricity=eccentricity)
+    with np.errstate(divide="ignore"):
+        radius = 1 / cycloid.centre_path_curvature(mesh, np.linspace(0, pi, 400_001))
+    assert cycloid.smallest_convex_radius(mesh) == pytest.approx(-radius[radius < 0].max(), rel=1e-8)
+
+
+def test_smallest_convex_radius_of_the_paper() -> None:
+    assert float(cycloid.smallest_convex_radius(MESH)) * 1e3 == pytest.approx(9.05, abs=0.00501)
+
+
+# Clearance
+
+
+def plain_clearance(equidistant: float, shift: float, psi: Any) -> Any:
+    """Equation G3 as it is printed."""
+    s = np.sqrt(1 + K_1**2 - 2 * K_1 * np.cos(psi))
+    return equidistant * (1 - np.sin(psi) / s) - shift * (1 - K_1 * np.cos(psi) - Q * np.sin(psi)) / s
+
+
+@pytest.mark.parametrize("radial", [0.002e-3, 0.004e-3, 0.01e-3])
+def test_clearance_is_zero_at_the_longest_arm_and_radial_at_the_ends(radial: float) -> None:
+    mesh = replace(MESH, equidistant=-26e-6, shift=-26e-6 - radial)
+    assert cycloid.clearance(mesh, PSI_0) == pytest.approx(0, abs=1e-21)
+    assert cycloid.clearance(mesh, 0.0) == pytest.approx(radial, rel=1e-9)
+    assert cycloid.clearance(mesh, pi) == pytest.approx(radial, rel=1e-9)
+
+
+def test_clearance_is_linear_in_both_modifications_and_the_printed_one() -> None:
+    def of(equidistant: float, shift: float) -> Any:
+        return cycloid.clearance(replace(MESH, equidistant=equidistant, shift=shift), ANGLES)
+
+    assert of(3e-6, -5e-6) == pytest.approx(3 * of(1e-6, 0.0) + 5 * of(0.0, -1e-6), rel=1e-12)
+    assert of(-26e-6, -30e-6) == pytest.approx(plain_clearance(-26e-6, -30e-6, ANGLES), abs=1e-19)
+    assert np.all(of(1e-6, 0.0) > 0)
+    assert np.all(of(0.0, -1e-6) > 0)
+
+
+def test_bounds_of_the_equidistant_modification() -> None:
+    (low,), (high,) = curves.allowed_equidistant(PAPER)
+    assert high * 1e3 == pytest.approx(0.0111, abs=5.01e-5)  # printed 0.011
+    assert low * 1e3 == pytest.approx(-0.05375, abs=5.01e-6)  # printed -0.053
+    assert worn(PAPER).equidistant_low == low
+    at_high, above = (plain_clearance(x, x - 4e-6, ANGLES).min() for x in (high, high + 1e-7))
+    assert at_high > -1e-18
+    assert above < -5e-11
+    at_low, below = (plain_clearance(x, x - 4e-6, ANGLES).max() for x in (low, low - 1e-7))
+    assert at_low == pytest.approx(8e-6, rel=1e-5)
+    assert below > 8e-6
+
+
+@pytest.mark.parametrize("radial", [0.001e-3, 0.008e-3])
+def test_bounds_scale_with_the_radial_clearance(radial: float) -> None:
+    (low,), (high,) = curves.allowed_equidistant(replace(PAPER, shift_modification=-26e-6 - radial))
+    assert high == pytest.approx(radial / (1 - Q), rel=1e-12)
+    (usual,), _ = curves.allowed_equidistant(PAPER)
+    assert low == pytest.approx(usual * radial / 4e-6, rel=1e-9)
+
+
+def test_lower_bound_by_the_approach_is_its_own_approach() -> None:
+    (low,), _ = curves.allowed_equidistant(PAPER, lower="approach")
+    there = worn(replace(PAPER, equidistant_modification=low, shift_modification=low - 4e-6))
+    assert plain_clearance(low, low - 4e-6, ANGLES).max() == pytest.approx(there.approach, rel=1e-5)
+    (narrow,), _ = curves.allowed_equidistant(replace(PAPER, disc_width=0.016), lower="approach")
+    assert narrow * 1e3 == pytest.approx(-0.0537, abs=0.002)  # both readings agree for a width of about 16 mm
+
+
+# Contact
+
+
+def test_line_contact() -> None:
+    number = float(np.asarray(contact.depth_number(MESH, -0.068, 0.0047)))
+    compliance = 2 * (1 - 0.3**2) / (pi * 2.06e11 * 0.02)
+    for force in (10.0, 3390.0):
+        width = contact.half_width(MESH, force, 0.0047)
+        assert width == pytest.approx(sqrt(8 * force * 0.0047 * (1 - 0.3**2) / (pi * 0.02 * 2.06e11)), rel=1e-14)
+        assert contact.half_width(MESH, 2 * force, 0.0047) == pytest.approx(sqrt(2) * width, rel=1e-14)
+        approach = contact.approach(MESH, force, number)
+        printed = compliance * force * (2 / 3 + log(16 * 0.005 * 0.068 / (2 * width) ** 2))
+        assert approach == pytest.approx(printed, rel=1e-13)
+        assert 1 < contact.approach(MESH, 2 * force, number) / approach < 2
+        assert contact.force_of(MESH, approach, number) == pytest.approx(force, rel=1e-13)
+        assert contact.mean_pressure(MESH, force, 0.0047) == pytest.approx(force / (2 * width * 0.02), rel=1e-14)
+    assert contact.force_of(MESH, -1e-6, number) == 0
+
+
+# Forces
+
+
+@pytest.mark.parametrize("load_sharing", ["linear", "hertz"])
+@pytest.mark.parametrize("torque", [30.0, 1724.8, 4000.0])
+def test_without_clearance_all_pins_bear(torque: float, load_sharing: str) -> None:
+    choices = Choices(load_sharing=load_sharing, phases=64)
+    teeth, loads = unworn(replace(MESH, equidistant=0.0, shift=0.0, torque=torque, choices=choices))
+    assert np.all(loads.force > 0)
+    assert len(teeth.angle) == 20
+    if load_sharing == "linear":
+        assert 1 / np.mean(1 / loads.scale) == pytest.approx(4 * torque / (K_1 * 39 * 0.1145), rel=1e-6)
+        assert MESH.start_force == pytest.approx(4 * 1724.8 / (K_1 * 39 * 0.1145), rel=1e-14)
+
+
+def test_identity_behind_the_start_force() -> None:
+    mean = quad(lambda psi: np.sin(psi) ** 2 / (1 + K_1**2 - 2 * K_1 * np.cos(psi)), 0, pi)[0] / pi
+    assert mean == pytest.approx(0.5, rel=1e-12)
+
+
+@pytest.mark.parametrize("load_sharing", ["linear", "hertz"])
+@pytest.mark.parametrize("pins", [40, 41, 25])
+def test_torque_is_held_in_every_position_and_step(pins: int, load_sharing: str) -> None:
+    reducer = replace(
+        PAPER,
+        pin_count=pins,
+        eccentricity=K_1 * 0.1145 / pins,
+        load_sharing=load_sharing,  # type: ignore[arg-type]
+        output_torque=np.array([300.0, 3136.0, 5000.0]),
+    )
+    teeth = teeth_of(mesh_of(reducer))
+    arm = reducer.eccentricity * (pins - 1) / 0.0022 / 39 * lever(teeth.angle)
+    wanted = 0.55 * np.array([300.0, 3136.0, 5000.0])
+    for step, state in zip(range(40), states(teeth), strict=False):
+        held = (state.loads.force * arm[state.teeth.pins]).sum(axis=0)
+        assert held / wanted == pytest.approx(np.ones_like(held), rel=1e-9), step
+        assert np.all(state.loads.force >= 0)
+        assert np.all(state.loads.force[teeth.angle[state.teeth.pins][:, :, 0] >= pi] == 0)
+
+
+def solved_again(phase: float, torque: float, *, hertz: bool) -> tuple[float, NDArray[np.float64]]:
+    """Force at the longest arm and pin forces of one position, by bisection from equations 1b to 4."""
+    psi = 2 * pi * (np.arange(20) + phase) / 40
+    gap, arm = plain_clearance(-26e-6, -30e-6, psi), lever(psi) / (0.0022 * 39)
+    gap = gap - arm * np.min(gap / arm)
+    soft = 2 * (1 - 0.3**2) / (pi * 2.06e11 * 0.02)
+
+    def radii(at: float) -> tuple[float, float]:
+        s = sqrt(1 + K_1**2 - 2 * K_1 * np.cos(at))
+        rho_0 = 0.1145 * s**3 / (K_1 * 41 * np.cos(at) - (1 + 40 * K_1**2))
+        rho = rho_0 + 0.005
+        return min(abs(rho), 0.1145), abs(rho * 0.005 / (rho - 0.005))
+
+    def approach(force: float, at: float) -> float:
+        rho, radius = radii(at)
+        width = 2 * sqrt(8 * force * radius * (1 - 0.3**2) / (pi * 0.02 * 2.06e11))
+        return soft * force * (2 / 3 + log(16 * 0.005 * rho / width**2))
+
+    def force_of(delta: float, at: float) -> float:
+        return brentq(lambda force: approach(force, at) - delta, 1e-9, 1e6, xtol=1e-12) if delta > 0 else 0.0
+
+    def forces(scale: float) -> NDArray[np.float64]:
+        delta = approach(scale, PSI_0)
+        if hertz:
+            return np.array([force_of(a * delta - s, at) for a, s, at in zip(arm, gap, psi, strict=True)])
+        return np.asarray(np.maximum(arm * delta - gap, 0) / delta * scale)
+
+    scale = brentq(lambda force: float(np.sum(forces(force) * lever(psi))) - torque, 1.0, 1e5, xtol=1e-11)
+    return scale, forces(scale)
+
+
+@pytest.mark.parametrize("hertz", [False, True])
+@pytest.mark.parametrize("torque", [100.0, 1724.8, 3000.0])
+def test_forces_are_those_of_a_bisection(torque: float, hertz: bool) -> None:
+    choices = Choices(load_sharing="hertz" if hertz else "linear")
+    _, loads = unworn(replace(MESH, torque=torque, choices=choices))
+    for position in (0, 3, 7):
+        scale, forces = solved_again((position + 0.5) / 8, torque, hertz=hertz)
+        assert loads.scale[position, 0] == pytest.approx(scale, rel=1e-10)
+        assert loads.force[:, position, 0] == pytest.approx(forces, rel=1e-9, abs=1e-6)
+
+
+def test_forces_of_the_paper() -> None:
+    new = worn(PAPER)
+    assert new.start_force == pytest.approx(2010, abs=0.501)
+    assert new.max_force == pytest.approx(3390, abs=5.01)
+    assert new.largest_force == pytest.approx(3390, abs=5.01)
+    assert new.max_pressure * 1e-6 == pytest.approx(1133, abs=0.501)
+    assert new.loaded_pins == 11
+    _, loads = unworn(MESH)
+    assert loads.approach.mean() * 1e6 == pytest.approx(5.97, abs=0.00501)
+    assert set((loads.force > 0).sum(axis=0).ravel()) == {10, 11}
+    at_pitch = cycloid.relative_radius(MESH, PSI_0)
+    assert 2e3 * contact.half_width(MESH, 3390.0, at_pitch) == pytest.approx(0.19, abs=0.00501)
+    profile = curves.flank(PAPER)
+    assert degrees(profile.angle[profile.force[0].argmax()]) == pytest.approx(39, abs=0.501)
+    loaded = np.degrees(profile.angle[profile.force[0] > 0])
+    assert loaded[0] == pytest.approx(9, abs=4)
+    assert loaded[-1] == pytest.approx(100, abs=5)
+
+
+def test_rigorous_sharing_is_near_the_linear_one() -> None:
+    linear = curves.flank(PAPER)
+    rigorous = curves.flank(replace(PAPER, load_sharing="hertz"))
+    assert 1.01 < rigorous.force.max() / linear.force.max() < 1.04
+    near = np.abs(np.degrees(linear.angle) - 20) < 1
+    assert np.all(np.abs(rigorous.force[0, near] / linear.force[0, near] - 1) < 0.22)
+    middle = np.abs(np.degrees(linear.angle) - 60) < 10
+    assert np.all(np.abs(rigorous.force[0, middle] / linear.force[0, middle] - 1) < 0.05)
+
+
+def test_friction_of_the_mesh_is_a_few_percent_of_the_power() -> None:
+    profile = curves.flank(PAPER)
+    speeds = sliding.sliding_speed(MESH, profile.angle)
+    lost = 2 * 0.05 * float((profile.force[0] * speeds).sum()) / 8 / 3136
+    assert lost == pytest.approx(0.057, abs=5.01e-4)
+
+
+def test_larger_modification_at_the_same_clearance_means_less_force_and_more_pins() -> None:
+    modification = np.linspace(-53e-6, 11e-6, 30)
+    reducer = replace(PAPER, equidistant_modification=modification, shift_modification=modification - 4e-6)
+    assert np.all(np.diff(worn(reducer).max_force) < 0)
+    loaded = (curves.flank(reducer).force > 0).mean(axis=1)
+    assert np.all(np.diff(loaded) >= 0)
+    assert loaded[-1] > loaded[0] + 0.2
+
+
+def test_each_of_many_meshes_is_solved_as_if_alone() -> None:
+    rng = np.random.default_rng(3)
+    values = {"torque": rng.uniform(50, 3000, 9), "width": rng.uniform(0.015, 0.025, 9)}
+    for load_sharing in ("linear", "hertz"):
+        base = replace(MESH, choices=Choices(load_sharing=load_sharing))
+        _, together = unworn(many(replace(base, **values)))
+        for row in range(9):
+            _, alone = unworn(replace(base, **{name: value[row] for name, value in values.items()}))
+            assert np.array_equal(together.force[:, :, row], alone.force[:, :, 0])
+
+
+# What cannot be
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"eccentricity": 2.9e-3}, ["short-width coefficient", "eccentricity", "pin_circle_radius"]),
+        ({"pin_radius": 9.06e-3}, ["undercut", "pin_radius"]),
+        ({"pin_radius": 8.99e-3}, ["overlap", "pin_radius", "pin_count"]),
+        ({"shift_modification": -25e-6}, ["negative", "equidistant_modification", "shift_modification"]),
+        (
+            {"equidistant_modification": 11.2e-6, "shift_modification": 7.2e-6},
+            ["interfere", "equidistant_modification", "upper limit"],
+        ),
+        ({"output_torque": 1e13}, ["output_torque", "unit"]),
+        ({"disc_width": float("nan")}, ["disc_width", "greater than zero"]),
+        ({"reconstruction_depth": 1e-10}, ["reconstructions", "reconstruction_depth", "working_time"]),
+    ],
+)
+def test_impossible_geometry_is_refused_by_name(changes: dict[str, float], words: list[str]) -> None:
+    with pytest.raises(InfeasibleError) as caught:
+        worn(replace(PAPER, **changes))
+    for word in words:
+        assert word in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"eccentricity": 2.5e-3},
+        {"pin_radius": 8.97e-3},
+        {"shift_modification": -26e-6},
+        {"equidistant_modification": 11.1e-6, "shift_modification": 7.1e-6},
+        {"equidistant_modification": -200e-6, "shift_modification": -204e-6},
+        {"output_torque": 0.1},
+        {"output_torque": 20000.0},
+    ],
+)
+def test_what_is_only_unusual_is_calculated(changes: dict[str, float]) -> None:
+    found = worn(replace(PAPER, **changes))
+    assert np.isfinite([found.depth, found.max_force, found.max_pressure]).all()
+
+
+def test_a_torque_too_small_loads_one_pin() -> None:
+    assert worn(replace(PAPER, output_torque=0.1)).loaded_pins == 1

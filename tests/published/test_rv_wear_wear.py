@@ -1,0 +1,348 @@
+"""Wear of the cycloid disc: the paper's numbers, limits, and the similarity that the calculation relies on.
+
+Tables of wear over time, load, width, oil and modification were computed from the same equations by an independent
+program; the digits that it printed are demanded. The plain loop of the benchmark solves the whole history again.
+"""
+
+from dataclasses import replace
+from importlib.util import module_from_spec, spec_from_file_location
+from itertools import pairwise
+from math import degrees, pi, radians
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rv_wear import coefficient, courses, curves, cycloid, sliding
+from rv_wear.history import histories, states, wear_at
+from rv_wear.mesh import Mesh, mesh_of
+from rv_wear.model import RV_WEAR
+from rv_wear.quantities import Reducer
+from rv_wear.teeth import teeth_of
+from rv_wear.wear import exposure_of, oil_part, worn
+
+PAPER: Reducer = RV_WEAR.inputs()
+HOUR = 3600.0
+MODULUS = 2.06e11 / (1 - 0.3**2)
+
+
+def of(**changes: Any) -> Any:
+    """Deepest wear in um."""
+    return worn(replace(PAPER, **changes)).depth * 1e6
+
+
+def ground(modification: Any) -> dict[str, Any]:
+    """A disc ground with another equidistant modification at the same radial clearance."""
+    return {"equidistant_modification": modification, "shift_modification": modification - 4e-6}
+
+
+# The printed numbers
+
+
+def test_wear_of_the_paper() -> None:
+    found = worn(PAPER)
+    assert found.depth * 1e6 == pytest.approx(3.127, abs=0.002501)  # printed; ours is 3.129
+    assert found.depth * 1e6 == pytest.approx(3.129, abs=5.01e-4)
+    assert degrees(found.angle) == pytest.approx(58, abs=0.501)
+    assert found.felt == found.depth
+    assert found.mesh_period == pytest.approx(0.1, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("hours", "wear"), [(1000, 0.788), (2000, 1.419), (3000, 1.943), (4000, 2.391), (5000, 2.783), (6000, 3.129)]
+)
+def test_wear_over_time(hours: float, wear: float) -> None:
+    assert of(working_time=hours * HOUR) == pytest.approx(wear, abs=5.01e-4)
+
+
+@pytest.mark.parametrize(
+    ("changes", "wear", "half_digit"),
+    [
+        ({"output_torque": 1000.0}, 0.513, 5e-4),
+        ({"output_torque": 2000.0}, 1.607, 5e-4),
+        ({"output_torque": 4500.0}, 5.217, 5e-4),
+        ({"disc_width": 0.016}, 4.29, 5e-3),
+        ({"disc_width": 0.025}, 2.27, 5e-3),
+        ({"pressure_viscosity": 2.0e-8}, 4.66, 5e-3),
+        ({"pressure_viscosity": 2.1e-8}, 3.84, 5e-3),
+        ({"pressure_viscosity": 2.3e-8}, 2.52, 5e-3),
+        ({"torque_share": 0.5}, 2.73, 5e-3),
+        ({"torque_share": 0.6}, 3.54, 5e-3),
+        ({"reconstruction_depth": 0.2e-6}, 3.170, 5e-4),
+        ({"reconstruction_depth": 0.1e-6}, 3.142, 5e-4),
+        ({"reconstruction_depth": 0.02e-6}, 3.121, 5e-4),
+        ({"reconstruction_depth": 0.01e-6}, 3.118, 5e-4),
+        ({"working_time": 100 * HOUR, **ground(-53e-6)}, 0.105, 5e-4),
+        ({"working_time": 100 * HOUR, **ground(-40e-6)}, 0.098, 5e-4),
+        ({"working_time": 100 * HOUR, **ground(-26e-6)}, 0.088, 5e-4),
+        ({"working_time": 100 * HOUR, **ground(-10e-6)}, 0.077, 5e-4),
+        ({"working_time": 100 * HOUR, **ground(11e-6)}, 0.060, 5e-4),
+        (ground(-27e-6), 3.154, 1e-3),  # the paper's first optimum: 3.151
+        (ground(-29e-6), 3.204, 1e-3),  # and the second: 3.207
+        ({"wear_coefficient": "pitch_point", "composite_roughness": 1.45e-6, "working_time": 4000 * HOUR}, 2.15, 0.02),
+    ],
+)
+def test_wear_of_other_reducers(changes: dict[str, Any], wear: float, half_digit: float) -> None:
+    assert of(**changes) == pytest.approx(wear, abs=1.001 * half_digit)
+
+
+def by_hand() -> Any:
+    """The plain loop of the benchmark."""
+    file = Path(__file__).parents[1] / "benchmarks" / "bench_rv_wear.py"
+    spec = spec_from_file_location("bench_rv_wear", file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize(("modification", "hours"), [(-45e-6, 6000.0), (-26e-6, 2345.0), (8e-6, 500.0)])
+def test_wear_is_that_of_the_plain_iteration(modification: float, hours: float) -> None:
+    plain = by_hand().wear_by_hand(modification, modification - 4e-6, hours)
+    assert of(working_time=hours * HOUR, **ground(modification)) == pytest.approx(plain * 1e6, rel=1e-9)
+
+
+@pytest.mark.parametrize("load_sharing", ["linear", "hertz"])
+def test_half_the_threshold_changes_little(load_sharing: str) -> None:
+    usual = of(load_sharing=load_sharing)
+    assert of(load_sharing=load_sharing, reconstruction_depth=0.025e-6) == pytest.approx(usual, rel=0.005)
+
+
+def test_phases_agree_within_half_a_thousandth() -> None:
+    finest = of(phases=64)
+    for phases in (4, 8, 16, 32):
+        assert of(phases=phases) == pytest.approx(finest, rel=0.0005)
+
+
+# The coefficient
+
+
+@pytest.mark.parametrize(("load", "oil", "roughness", "factor"), [
+    (2, 1, 1, 2**1.219), (1, 2, 1, 2**-7.377), (1, 1, 2, 2**1.589),
+])  # fmt: skip
+def test_exponents_of_the_regression(load: float, oil: float, roughness: float, factor: float) -> None:
+    base = coefficient.wear_coefficient(MODULUS, 1.5e5, 4.5e-3, 2.2e-8, 0.7e-6)
+    changed = coefficient.wear_coefficient(MODULUS, load * 1.5e5, 4.5e-3, oil * 2.2e-8, roughness * 0.7e-6)
+    assert changed / base == pytest.approx(factor, rel=1e-13)
+
+
+def test_coefficient_written_out_and_its_size() -> None:
+    group = 3.981e29 * (1.5e5 / (MODULUS * 4.5e-3)) ** 1.219 * (2.2e-8 * MODULUS) ** -7.377 * (0.7e-6 / 4.5e-3) ** 1.589
+    written = coefficient.wear_coefficient(MODULUS, 1.5e5, 4.5e-3, 2.2e-8, 0.7e-6)
+    assert written == pytest.approx(group / MODULUS, rel=1e-13)
+    assert worn(PAPER).coefficient == pytest.approx(1.6e-20, abs=5.01e-22)
+
+
+def test_millimetres_and_megapascals_give_the_same_wear() -> None:
+    metres = mesh_of(PAPER)
+    millimetres = Mesh(114.5, 5.0, 2.2, 20.0, -0.026, -0.030, 0.55 * 3136e3, 2.06e5, 0.3, 0.05e-3)
+    meshings = 6000 * 15 * 60 * 40
+    in_metres = meshings * coefficient.lubricant_part(MODULUS, 2.2e-8, 0.694e-6)
+    in_millimetres = meshings * coefficient.lubricant_part(MODULUS * 1e-6, 2.2e-2, 0.694e-3)
+    wear = wear_at(teeth_of(metres), np.array([in_metres]))
+    same = wear_at(teeth_of(millimetres), np.array([in_millimetres]))
+    assert same.max() * 1e-3 == pytest.approx(wear.max(), rel=1e-12)
+    assert wear.max() == pytest.approx(worn(PAPER).depth, rel=1e-12)
+
+
+# The law
+
+
+def test_the_first_step_is_equation_13() -> None:
+    """Short time: dh = k F / B lambda for every meshing, k from the force and radius of that point."""
+    new = curves.flank(PAPER)
+    force, mesh = new.force[0], mesh_of(PAPER)
+    radius = np.asarray(cycloid.relative_radius(mesh, new.angle))
+    k = coefficient.wear_coefficient(MODULUS, force / 0.02, radius, 2.2e-8, 0.694e-6)
+    rate = k * force / 0.02 * np.asarray(sliding.sliding_ratio(mesh, new.angle)) / 0.1  # per second
+    assert of(working_time=10 * HOUR) == pytest.approx(rate.max() * 10 * HOUR * 1e6, rel=1e-12)
+    assert curves.flank(PAPER, 10 * HOUR).wear[0] == pytest.approx(rate * 10 * HOUR, rel=1e-11, abs=1e-22)
+
+
+def test_wear_grows_with_time_ever_slower_and_begins_at_zero() -> None:
+    hours = np.linspace(0, 12000, 61)
+    wear = of(working_time=hours * HOUR)
+    assert wear[0] == 0
+    assert np.all(np.diff(wear) > 0)
+    assert np.all(np.diff(wear, 2) < 1e-4 * wear[-1])  # steps of the reconstruction, nothing else
+    assert np.all(np.diff(wear[::5], 2) < 0)
+    assert worn(replace(PAPER, working_time=0.0)).depth == 0
+
+
+def test_wear_grows_with_the_torque_and_falls_with_the_modification() -> None:
+    assert np.all(np.diff(of(output_torque=np.linspace(50, 6000, 50))) > 0)
+    assert np.all(np.diff(of(**ground(np.linspace(-53e-6, 11e-6, 40)))) < 0)
+
+
+def test_exponent_of_the_load() -> None:
+    low, high = of(output_torque=2900.0), of(output_torque=3400.0)
+    assert 1.3 < np.log(high / low) / np.log(3400 / 2900) < 1.6
+
+
+def test_speed_and_time_enter_by_their_product() -> None:
+    assert of(output_speed=7.5 / 60, working_time=12000 * HOUR) == pytest.approx(of(), rel=1e-14)
+    assert of(output_speed=60 / 60, working_time=1500 * HOUR) == pytest.approx(of(), rel=1e-14)
+
+
+def test_the_deepest_point_lies_in_the_middle_of_the_contact() -> None:
+    found = curves.flank(PAPER, 6000 * HOUR)
+    assert found.wear.max() == pytest.approx(worn(PAPER).depth, rel=1e-12)
+    assert found.angle[found.wear[0].argmax()] == worn(PAPER).angle
+    loaded = found.angle[found.force[0] > 0]
+    assert 0.3 < (worn(PAPER).angle - loaded[0]) / (loaded[-1] - loaded[0]) < 0.6
+
+
+@pytest.mark.parametrize("changes", [{}, ground(-45e-6), ground(9e-6), {"output_torque": 700.0}, {"phases": 16}])
+def test_between_the_steps_the_largest_wear_is_that_of_the_whole_flank(changes: dict[str, Any]) -> None:
+    reducer = replace(PAPER, **changes)
+    for hours in np.linspace(37, 6011, 23):
+        now = replace(reducer, working_time=hours * HOUR)
+        whole = curves.flank(now, hours * HOUR)
+        assert worn(now).depth == pytest.approx(whole.wear.max(), rel=1e-12)
+
+
+def test_nodes_do_not_depend_on_how_far_a_history_goes() -> None:
+    teeth = teeth_of(mesh_of(PAPER))
+    exposure = float(exposure_of(PAPER, oil_part(PAPER), 6000 * HOUR))
+    short, long = (histories(teeth, np.array([share * exposure])) for share in (0.3, 3.0))
+    count = len(short.exposure)
+    assert len(long.exposure) > 2 * count
+    for name in ("exposure", "depth", "angle"):
+        assert np.array_equal(getattr(short, name), getattr(long, name)[:count])
+
+
+def test_order_of_questions_does_not_matter() -> None:
+    hours = [6000.0, 100.0, 20000.0, 3000.0]
+    courses.history_of_one.cache_clear()
+    there = [of(working_time=time * HOUR) for time in hours]
+    courses.history_of_one.cache_clear()
+    back = [of(working_time=time * HOUR) for time in reversed(hours)]
+    assert there == back[::-1]
+
+
+def test_every_step_ends_where_the_threshold_is_worn() -> None:
+    steps = [state for state, _ in zip(states(teeth_of(mesh_of(PAPER))), range(70), strict=False)]
+    for before, after in pairwise(steps):
+        assert before.grown.max() == pytest.approx(0.05e-6, rel=1e-12)
+        assert after.exposure - before.exposure == pytest.approx(before.lasts, rel=1e-9)
+
+
+# What stretches time, and what is felt
+
+
+def test_oil_roughness_and_factors_only_stretch_time() -> None:
+    assert of(wear_rate_factor=1.7) == pytest.approx(of(working_time=1.7 * 6000 * HOUR), rel=1e-13)
+    assert of(sliding_factor=0.4) == pytest.approx(of(working_time=0.4 * 6000 * HOUR), rel=1e-13)
+    assert of(sliding_factor=0.0) == 0
+    assert of(composite_roughness=0.8e-6) == pytest.approx(of(wear_rate_factor=(0.8 / 0.694) ** 1.589), rel=1e-13)
+    assert of(pressure_viscosity=2.4e-8) == pytest.approx(of(wear_rate_factor=(2.4 / 2.2) ** -7.377), rel=1e-13)
+
+
+def test_ageing_is_the_integral_of_the_momentary_coefficient() -> None:
+    rate, time = 1 / (4000 * HOUR), 6000 * HOUR
+    instants = np.linspace(0, time, 200_001)
+    stretched = np.trapezoid(1 + rate * instants, instants)
+    assert of(ageing_rate=rate) == pytest.approx(of(working_time=stretched), rel=1e-12)
+
+
+def test_what_is_felt_of_the_wear() -> None:
+    felt = worn(replace(PAPER, loaded_share=0.5, lost_motion_share=0.3, pin_wear_ratio=0.2, extra_wear=0.4e-6))
+    half = worn(replace(PAPER, working_time=3000 * HOUR)).depth
+    assert felt.depth == pytest.approx(worn(PAPER).depth + 0.4e-6, rel=1e-14)
+    assert felt.felt == pytest.approx(0.3 * 1.2 * (half + 0.4e-6), rel=1e-14)
+    assert of(depth_factor=1.5) == pytest.approx(1.5 * of(), rel=1e-14)
+
+
+# The film
+
+
+def film_ratio(angle: float, force: float, factor: float) -> float:
+    """Lambda, written out for the paper's reducer at 15 r/min and 0.2 Pa s."""
+    k_1 = 2.2 * 40 / 114.5
+    s = np.sqrt(1 + k_1**2 - 2 * k_1 * np.cos(angle))
+    bend = (k_1 * 41 * np.cos(angle) - 1 - 40 * k_1**2) / s**2
+    radius = 0.005 * abs(1 + 0.005 * bend / (0.1145 * s))
+    turning = 2 * pi * 15 / 60
+    flank, sliding_speed = turning * abs(0.1145 * s + 0.005 * bend), turning * (0.1145 * s - 0.005)
+    mean = abs(flank + flank - sliding_speed) / 2
+    u, g, w = 0.2 * mean / (MODULUS * radius), 2.2e-8 * MODULUS, force / 0.02 / (MODULUS * radius)
+    return float(factor * 2.65 * radius * u**0.7 * g**0.54 * w**-0.13 / 0.694e-6)
+
+
+def test_film_leaves_the_share_that_its_ratio_says() -> None:
+    new = curves.flank(PAPER)
+    dry = curves.flank(PAPER, 10 * HOUR).wear[0]
+    for factor in (20.0, 80.0, 150.0):
+        wet = curves.flank(replace(PAPER, film_factor=factor), 10 * HOUR).wear[0]
+        for place in np.flatnonzero(new.force[0] > 0):
+            ratio = film_ratio(new.angle[place], new.force[0, place], factor)
+            assert wet[place] == pytest.approx(dry[place] * np.clip((3 - ratio) / 2.5, 0, 1), rel=1e-9)
+
+
+def test_film_does_not_lift_where_the_surfaces_run_against_each_other() -> None:
+    assert film_ratio(radians(58), 2800.0, 1.0) < 0.05
+    assert of(film_factor=1.0) == pytest.approx(of(), rel=1e-5)
+    assert np.all(np.diff(of(film_factor=np.array([0.0, 5.0, 50.0, 150.0]))) < 1e-9)
+    assert of(film_factor=150.0) > 0.8 * of()
+    assert of(film_factor=1e9) < 1e-3 * of()
+
+
+def test_only_with_a_film_its_oil_counts() -> None:
+    assert of(oil_viscosity=0.05) == of()
+    assert of(oil_viscosity=0.05, film_factor=100.0) > of(film_factor=100.0) * 1.01
+    assert of(output_speed=0.5, working_time=3000 * HOUR, film_factor=100.0) < of(film_factor=100.0) * 0.99
+
+
+# Batches
+
+
+def test_a_batch_is_what_every_row_gives_alone() -> None:
+    rng = np.random.default_rng(5)
+    rows = 30
+    modification = np.repeat(rng.uniform(-40e-6, 5e-6, 6), 5)
+    columns = {
+        **ground(modification),
+        "output_torque": np.where(np.arange(rows) % 7 == 0, 2000.0, 3136.0),
+        "composite_roughness": rng.normal(0.694e-6, 0.01e-6, rows),
+        "working_time": rng.uniform(0, 8000 * HOUR, rows),
+        "loaded_share": rng.uniform(0, 1, rows),
+    }
+    together = worn(replace(PAPER, **columns))
+    for row in range(rows):
+        alone = worn(replace(PAPER, **{name: values[row] for name, values in columns.items()}))
+        for name in ("depth", "angle", "felt", "max_force", "largest_force", "max_pressure", "coefficient"):
+            there = getattr(together, name)[row]
+            assert there == pytest.approx(getattr(alone, name), rel=1e-14), name
+
+
+def test_a_row_that_cannot_be_leaves_the_others_alone() -> None:
+    from truing.evaluate import evaluate_rows
+    from truing.kernel import Kernel
+    from truing.setup import default_setup
+
+    offer = Kernel.installed(strict=True).offer("rv_wear")
+    setup = default_setup(offer.model, offer.origin)
+    modification = np.array([-26e-6, 30e-6, -26e-6, 2e-6])
+    columns = {
+        **ground(modification),
+        "pin_radius": np.array([5e-3, 5e-3, 9.2e-3, 5e-3]),
+        "composite_roughness": np.full(4, 0.694e-6),
+    }
+    found = evaluate_rows(setup, columns, 4)
+    assert found.failed.tolist() == [False, True, True, False]
+    assert "interfere" in found.reasons[1]
+    assert "undercut" in found.reasons[2]
+    assert found.results["max_wear"][0] == worn(PAPER).depth
+    nobody = evaluate_rows(setup, {"pin_radius": np.full(3, 9.2e-3)}, 3)
+    assert nobody.failed.all()
+    alike = evaluate_rows(setup, {"pin_radius": 9.2e-3}, 3)
+    assert alike.failed.all()
+    assert "undercut" in alike.reasons[2]
+
+
+def test_many_designs_in_one_call_share_the_work() -> None:
+    many = np.linspace(-45e-6, 9e-6, 700)
+    together = of(**ground(many))
+    assert together[::100] == pytest.approx([of(**ground(value)) for value in many[::100]], rel=1e-14)
