@@ -86,13 +86,14 @@ def next_points(full: Contest, winner: int, rivals: Sequence[int]) -> list[NextP
     """
     import numpy as np
 
-    places = [place for place in (winner, *rivals) if _is_physical(full.found.hypotheses[place])][: RIVALS + 1]
-    twins = _twins(full, full.found.hypotheses[winner])
+    places = [place for place in (winner, *rivals) if is_physical(full.found.hypotheses[place])][: RIVALS + 1]
+    chosen = full.found.hypotheses[winner]
+    twins = twins_of(full, chosen, full.solution(winner).coefficients.tolist()) if is_physical(chosen) else []
     settings = _settings(full) if len(places) > 1 or twins else {}
     if not settings:
         return []
     there = _machine_there(full, settings)
-    duels = [_duel(full, there, a, b) for a in places for b in places if a != b]
+    duels = [_duel(full, there, a, b) for a in places for b in places if not _is_part(full, a, b)]
     duels += [duel for twin in twins for duel in _twin_duels(full, there, full.solution(winner), twin)]
     if not duels:
         return []
@@ -114,8 +115,14 @@ def next_points(full: Contest, winner: int, rivals: Sequence[int]) -> list[NextP
     return _with_count(found)
 
 
-def _is_physical(hypothesis: Hypothesis) -> bool:
+def is_physical(hypothesis: Hypothesis) -> bool:
+    """Whether an explanation is made of causes and inputs alone, so that it says something at other settings."""
     return hypothesis.kind in {"one", "two", "input"}
+
+
+def _is_part(full: Contest, believed: int, rival: int) -> bool:
+    """Whether a rival is the believed explanation itself, or that with something added: it is never wrong then."""
+    return set(full.found.hypotheses[believed].key) <= set(full.found.hypotheses[rival].key)
 
 
 def _with_count(found: list[NextPoint]) -> list[NextPoint]:
@@ -258,7 +265,7 @@ def _duel(full: Contest, there: Machine, believed: int, rival: int) -> _Duel:
 
 
 @dataclass(frozen=True)
-class _Twin:
+class TwinTerm:
     """A cause that draws the curve of a named one on this data: its name, and one term in place of that piece."""
 
     name: str
@@ -267,20 +274,26 @@ class _Twin:
     term: Term
 
 
-def _twins(full: Contest, hypothesis: Hypothesis) -> list[_Twin]:
-    """Return the causes that are the same curve as a piece of a hypothesis: other settings may tell them apart."""
+def twins_of(full: Contest, hypothesis: Hypothesis, coefficients: Sequence[float]) -> list[TwinTerm]:
+    """Return the causes that are the same curve as a piece of a hypothesis: other settings may tell them apart.
+
+    ``coefficients`` are those of its columns: what can only add is no twin of what takes away.
+    """
     problem = full.problem
-    found = []
-    for number, piece in enumerate(hypothesis.pieces if _is_physical(hypothesis) else ()):
-        for name in problem.same_as.get(piece.owner, ()) if piece.kind == "term" else ():
+    found: list[TwinTerm] = []
+    before = 0
+    for number, piece in enumerate(hypothesis.pieces if is_physical(hypothesis) else ()):
+        own = coefficients[before : before + len(piece.columns)]
+        before += len(piece.columns)
+        for name in problem.same_curve(piece.owner, own) if piece.kind == "term" else ():
             for place, candidate in enumerate(problem.candidates):
                 if candidate.name == name:
                     terms = terms_of(place, candidate, problem.machine, full.noise.scales)
-                    found += [_Twin(name, number, candidate, term) for term in terms[:1] if len(terms) == 1]
+                    found += [TwinTerm(name, number, candidate, term) for term in terms[:1] if len(terms) == 1]
     return found
 
 
-def _twin_duels(full: Contest, there: Machine, solution: Solution, twin: _Twin) -> list[_Duel]:
+def _twin_duels(full: Contest, there: Machine, solution: Solution, twin: TwinTerm) -> list[_Duel]:
     """Set up a named cause against one of the same curve here; none where no setting within reach tells them apart."""
     import numpy as np
 

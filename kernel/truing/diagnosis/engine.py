@@ -19,6 +19,7 @@ from truing.diagnosis.problem import Problem, problem_of
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Alternative, Amount, Calibrated, Curves, Diagnosis, Gain, Verdict
 from truing.diagnosis.search import NoiseModel, first_noise
+from truing.diagnosis.unmeasured import with_results
 from truing.diagnosis.visibility import inseparable, smallest_visible
 from truing.errors import UsageError
 from truing.setup import Setup
@@ -124,7 +125,7 @@ def _answer(problem: Problem, full: Contest, decision: Decision, best: Fit, raw:
         calibrated=_calibrated(full, best),
         gain=tuple(_gains(full, best, judged, units, has_cause=verdict != "none")),
         stability=judged.stability,
-        next=tuple(next_points(full, decision.winner, rivals)),
+        next=tuple(with_results(full, best, rivals, next_points(full, decision.winner, rivals))),
         curves=tuple(_curves(full, best)),
         p_any=decision.p_any,
         p_second=decision.p_second,

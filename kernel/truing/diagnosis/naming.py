@@ -50,12 +50,11 @@ def _inputs(full: Contest, best: Fit) -> list[Cause]:
 
 def _cause(full: Contest, best: Fit, name: str, pieces: list[int]) -> Cause:
     problem = full.problem
-    owners = [best.hypothesis.pieces[place].owner for place in pieces]
-    same = tuple(dict.fromkeys(other for owner in owners for other in problem.same_as.get(owner, ())))
     effect = problem.machine.start.model.known_effects[name]
     numbers = [number for number, item in enumerate(best.parameters) if item.piece in pieces]
     unknowns: list[FittedUnknown] = []
     kept: list[int] = []
+    same = _same_curve(full, best, pieces)
     for unknown in effect.unknowns:
         own = [number for number in numbers if best.parameters[number].name == unknown.name]
         if own:
@@ -66,6 +65,16 @@ def _cause(full: Contest, best: Fit, name: str, pieces: list[int]) -> Cause:
     moving = [item.name for item in unknowns if any(best.parameters[number].name == item.name for number in kept)]
     covariance = si_covariance(best, kept) if len(moving) == len(unknowns) and not _is_split(unknowns) else ()
     return Cause(name, tuple(unknowns), covariance, tuple(other for other in same if other != name))
+
+
+def _same_curve(full: Contest, best: Fit, pieces: list[int]) -> tuple[str, ...]:
+    """Return the names of what may be the curve of these pieces as well, at the signs that they have."""
+    found: list[str] = []
+    for place in pieces:
+        own = {item.column: float(value) for item, value in zip(best.parameters, best.values, strict=True)}
+        piece = best.hypothesis.pieces[place]
+        found += full.problem.same_curve(piece.owner, [own.get(column, 0.0) for column in piece.columns])
+    return tuple(dict.fromkeys(found))
 
 
 def _is_split(unknowns: list[FittedUnknown]) -> bool:

@@ -22,8 +22,16 @@ FEW_IN_PAIRS = 6
 
 
 @dataclass(frozen=True)
+class Twin:
+    """A cause that is the curve of another one here, where the coefficient of that one has one of these signs."""
+
+    name: str
+    sides: tuple[int, ...]
+
+
+@dataclass(frozen=True)
 class Problem:
-    """Everything that competes. ``same_as`` holds, by place of a candidate, others that are the same curve here.
+    """Everything that competes. ``twins`` holds, by place of a candidate, others that are the same curve here.
 
     ``shape_results`` holds, by the owner of a shape piece, the place of the shape and the results it acts on;
     ``like`` the (candidate, shape owner) pairs in which the shape reproduces the cause.
@@ -39,9 +47,20 @@ class Problem:
     input_pieces: tuple[Piece, ...]
     shape_pieces: tuple[Piece, ...]
     shape_results: tuple[tuple[int, tuple[str, ...]], ...]
-    same_as: Mapping[int, tuple[str, ...]]
+    twins: Mapping[int, tuple[Twin, ...]]
     like: frozenset[tuple[int, int]]
     unexcited: tuple[str, ...]
+
+    def same_curve(self, owner: int, coefficients: Sequence[float]) -> tuple[str, ...]:
+        """Return the names of what may be the curve of a candidate with these coefficients as well."""
+        way = (-1 if coefficients[0] < 0 else 1) if len(coefficients) == 1 else 0
+        twins = self.twins.get(owner, ())
+        return tuple(dict.fromkeys(twin.name for twin in twins if way == 0 or way in twin.sides))
+
+    @property
+    def same_as(self) -> dict[int, tuple[str, ...]]:
+        """By place of a candidate, the names of all that are the same curve here, whatever its sign."""
+        return {place: tuple(dict.fromkeys(twin.name for twin in twins)) for place, twins in self.twins.items()}
 
     @cached_property
     def designs(self) -> Mapping[str, Design]:
@@ -89,8 +108,8 @@ def _could_move(candidate: Candidate, machine: Machine) -> bool:
 
 def _merged(
     every: Sequence[Candidate], variants: list[Sequence[Term]], known: Sight
-) -> tuple[list[int], dict[int, tuple[str, ...]]]:
-    """Return the candidates that stay, and the names of those that are the same curve on this data.
+) -> tuple[list[int], dict[int, tuple[Twin, ...]]]:
+    """Return the candidates that stay, and those that are the same curve on this data.
 
     Without this the prior mass of a curve with two names would be halved, and no verdict could be unique. Of a
     candidate with several whole numbers only the variant that is another's curve goes.
@@ -99,18 +118,21 @@ def _merged(
         (place for place in range(len(every)) if variants[place]), key=lambda place: every[place].weakest_first
     )
     alone: list[int] = []
-    same: dict[int, list[str]] = {}
+    same: dict[int, list[Twin]] = {}
     for place in order:
         is_grid = len(variants[place]) > 1
         if is_grid and not any(shape.whole for shape in every[place].shapes):
             same[place] = []
             continue
-        twins = [next((other for other in alone if known.is_same(own, other)), None) for own in known.terms[place]]
+        twins = [
+            next((other for other in alone if _sides(known, (place, number), variants, other)), None)
+            for number in range(len(variants[place]))
+        ]
         if is_grid:
             same[place] = []
-            for twin in twins:
+            for number, twin in enumerate(twins):
                 if twin is not None:
-                    same[twin].append(every[place].name)
+                    same[twin].append(Twin(every[place].name, _sides(known, (place, number), variants, twin)))
             left = [number for number, twin in enumerate(twins) if twin is None]
             variants[place] = [variants[place][number] for number in left]
             known.terms[place] = [known.terms[place][number] for number in left]
@@ -118,8 +140,25 @@ def _merged(
             alone.append(place)
             same[place] = []
         elif every[place].name != every[twins[0]].name:
-            same[twins[0]].append(every[place].name)
-    return sorted(same), {place: tuple(dict.fromkeys(names)) for place, names in same.items()}
+            same[twins[0]].append(Twin(every[place].name, _sides(known, (place, 0), variants, twins[0])))
+    return sorted(same), {place: tuple(dict.fromkeys(twins)) for place, twins in same.items()}
+
+
+def _sides(known: Sight, variant: tuple[int, int], variants: Sequence[Sequence[Term]], other: int) -> tuple[int, ...]:
+    """Return the signs of another candidate's coefficient for which a variant (candidate, number) may be its curve.
+
+    None where the curves differ, or where one can only add to what the other can only take away from.
+    """
+    place, number = variant
+    own = known.terms[place][number]
+    if not known.is_same(own, other):
+        return ()
+    if len(own) > 1:
+        return (-1, 1)
+    a, b = variants[place][number], variants[other][0]
+    way = known.products[own[0], known.terms[other][0][0]]
+    low, high = (a.low[0], a.high[0]) if way > 0 else (-a.high[0], -a.low[0])
+    return (*((-1,) if max(low, b.low[0]) < 0 else ()), *((1,) if min(high, b.high[0]) > 0 else ()))
 
 
 def _registered_orders(every: Sequence[Candidate], variants: Sequence[Sequence[Term]]) -> dict[str, frozenset[int]]:

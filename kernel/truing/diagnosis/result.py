@@ -157,12 +157,17 @@ class Gain:
 
 @dataclass(frozen=True)
 class NextPoint:
-    """A setting worth measuring next: what it separates, why, and lambda once all points up to it are measured."""
+    """A setting worth measuring next: what it separates, why, and lambda once all points up to it are measured.
+
+    ``measure`` names results that were not measured and are to be, at the settings there are; lambda is then that of
+    one value without noise.
+    """
 
     settings: Mapping[str, Amount]
     separates: tuple[str, str]
     why: str
     separation: float
+    measure: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -332,7 +332,7 @@ def _next(diagnosis: Diagnosis) -> Iterator[BlockView]:
             + (" Of what was not excited or not measured (chapter 2) this data says nothing." if can_be_more else "")
         )
         return
-    names = list(dict.fromkeys(name for point in diagnosis.next for name in point.settings))
+    names = list(dict.fromkeys(name for point in diagnosis.next for name in (*point.measure, *point.settings)))
     rows = [_point(place, point, names) for place, point in enumerate(diagnosis.next, start=1)]
     heads = ("Point", *(spoken(name).capitalize() for name in names), "Separates", "λ then")
     note = "λ then is the separation to expect once all points up to this one are measured; above 25 the two are apart."
@@ -342,7 +342,7 @@ def _next(diagnosis: Diagnosis) -> Iterator[BlockView]:
 
 
 def _point(place: int, point: NextPoint, names: Sequence[str]) -> tuple[str, ...]:
-    settings = [amount_text(point.settings.get(name), 4) for name in names]
+    settings = ["measure" if name in point.measure else amount_text(point.settings.get(name), 4) for name in names]
     pair = f"{spoken(point.separates[0])} / {spoken(point.separates[1])}"
     return str(place), *settings, pair, score_text(point.separation)
 

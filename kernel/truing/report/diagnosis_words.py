@@ -222,11 +222,14 @@ def _next_sentences(diagnosis: Diagnosis) -> Iterator[str]:
     if diagnosis.next:
         point = diagnosis.next[0]
         first, second = (spoken(name) for name in point.separates)
-        yield f"measure next at {settings_text(point)}: it separates {first} from {second}."
+        what = f"measure {settings_text(point)}" if point.measure else f"measure next at {settings_text(point)}"
+        yield f"{what}: it separates {first} from {second}."
     elif diagnosis.verdict == "named" and diagnosis.unique:
         yield "no other explanation comes near; there is nothing left to separate."
 
 
 def settings_text(point: NextPoint) -> str:
-    """Write a setting: load -50 kN, crank angle 28.6°."""
+    """Write a setting: load -50 kN, crank angle 28.6°; or what to measure, too: depth as well."""
+    if point.measure:
+        return f"{listed([spoken(name) for name in point.measure])} as well"
     return ", ".join(f"{spoken(name)} {amount_text(amount)}" for name, amount in point.settings.items())

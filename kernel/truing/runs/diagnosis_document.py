@@ -213,6 +213,7 @@ def _gain(item: Gain) -> dict[str, Any]:
 def _next(point: NextPoint) -> dict[str, Any]:
     return {
         "settings": {name: _amount(amount) for name, amount in point.settings.items()},
+        "measure": list(point.measure),
         "separates": list(point.separates),
         "why": point.why,
         "separation": clean(point.separation),

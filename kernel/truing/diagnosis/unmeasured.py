@@ -1,0 +1,202 @@
+"""A result that nobody measured and that would separate what the measured ones cannot: measure it, too.
+
+Two causes may draw one curve on everything measured and still differ in another result. What the rivals say of it at
+the rows there are, each as it is fitted, is held against what machines within their tolerances differ in it: no gauge
+is known for it, so this is the only noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
+
+from truing.declare.goals import Maximise, Minimise, Require
+from truing.declare.specs import Axis
+from truing.diagnosis.candidates import si_bounds, stacked
+from truing.diagnosis.contest import Contest, names_of
+from truing.diagnosis.design import SEPARATED, TwinTerm, is_physical, twins_of
+from truing.diagnosis.findings import in_unit
+from truing.diagnosis.fit import Fit, fit
+from truing.diagnosis.machine import Machine, machine_of, predict
+from truing.diagnosis.naming import causes_of, switched_on
+from truing.diagnosis.readable import readable_unit
+from truing.diagnosis.records import Records
+from truing.diagnosis.result import NextPoint
+from truing.setup import SwitchedOn
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+RIVALS = 4
+ROWS = 40
+"""So many rows of the record are asked what the rivals differ in."""
+CLEAR = 3.0
+"""Beyond this many standard deviations of machines within their tolerances a difference is seen."""
+NEARLY = 0.95
+"""Of several rows that tell as clearly the one is told in which the difference is largest."""
+LEAST_SHARE = 1e-3
+"""Of the result itself: no gauge is trusted with less."""
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A rival as it is fitted: its name and its effects, on."""
+
+    name: str
+    on: tuple[SwitchedOn, ...]
+
+
+@dataclass(frozen=True)
+class _Gap:
+    """What two explanations differ in a result that was not measured: where it is clearest, by one value, SI."""
+
+    result: str
+    names: tuple[str, str]
+    size: float
+    scatter: float
+
+    @property
+    def clearness(self) -> float:
+        """The difference over the scatter of machines; a result that does not scatter is as clear as can be."""
+        return self.size / self.scatter if self.scatter > 0 else 1e6
+
+
+def rival_explanations(full: Contest, best: Fit, rivals: Sequence[int]) -> list[Explanation]:
+    """Return the winner, the causes of the same curve and the rivals, each as it is fitted to this data."""
+    if not is_physical(best.hypothesis):
+        return []
+    winner = _fitted(full, best)
+    found = [winner, *(_twin(full, best, winner, twin) for twin in twins_of(full, best.hypothesis, _signs(best)))]
+    physical = [place for place in rivals if is_physical(full.found.hypotheses[place])][:RIVALS]
+    return [*found, *(_fitted(full, fit(full, place)) for place in physical)]
+
+
+def _fitted(full: Contest, best: Fit) -> Explanation:
+    name = " + ".join(names_of(full.problem, best.hypothesis))
+    return Explanation(name, switched_on(full, causes_of(full, best)))
+
+
+def _signs(best: Fit) -> list[float]:
+    """Return the coefficient of every column of the hypothesis, in order."""
+    by_column = {item.column: float(value) for item, value in zip(best.parameters, best.values, strict=True)}
+    return [by_column.get(column, 0.0) for column in best.hypothesis.columns]
+
+
+def _twin(full: Contest, best: Fit, winner: Explanation, twin: TwinTerm) -> Explanation:
+    """Return the winner with one piece replaced by what draws the same curve, as large as that piece is."""
+    import numpy as np
+
+    problem, scales = full.problem, full.noise.scales
+    term = problem.terms[best.hypothesis.pieces[twin.piece].place]
+    sizes = {item.name: best.si_value(at) for at, item in enumerate(best.parameters) if item.piece == twin.piece}
+    parts = zip(term.curves, term.unknowns, strict=True)
+    wanted = sum((stacked(curve, scales) * sizes.get(name, 0.0) for curve, name in parts), np.zeros(1))
+    own = np.column_stack([stacked(curve, scales) for curve in twin.term.curves])
+    fitted = np.linalg.lstsq(own, wanted, rcond=None)[0]
+    replaced = problem.candidates[best.hypothesis.pieces[twin.piece].owner].name
+    values = {item.name: 0.0 if item.is_amplitude else si_bounds(item)[0] for item in twin.candidate.effect.unknowns}
+    values |= {**twin.term.shape, **{name: float(size) for name, size in zip(twin.term.unknowns, fitted, strict=True)}}
+    kept = tuple(item for item in winner.on if item.effect.name != replaced)
+    return Explanation(winner.name.replace(replaced, twin.name), (*kept, SwitchedOn(twin.candidate.effect, values)))
+
+
+def with_results(full: Contest, best: Fit, rivals: Sequence[int], points: Sequence[NextPoint]) -> list[NextPoint]:
+    """Return the next points with the result that separates the rivals: first where no setting does as well."""
+    asked = result_to_measure(full.problem.machine, rival_explanations(full, best, rivals))
+    if asked is None:
+        return list(points)
+    suffices = bool(points) and points[-1].separation >= SEPARATED
+    suffices = suffices and any(set(point.separates) == set(asked.separates) for point in points)
+    return [*points, asked] if suffices else [asked, *points]
+
+
+def result_to_measure(machine: Machine, explanations: Sequence[Explanation]) -> NextPoint | None:
+    """Return the result that separates most pairs of explanations, None where none does.
+
+    Of several the one comes first that a goal of the model names, then the one in which the hardest pair is clearest.
+    """
+    start = machine.start
+    names = [] if machine.records.rows.series or len(explanations) < 2 else _unmeasured(machine)
+    if not names:
+        return None
+    there = machine_of(start, _few_rows(machine.records, names))
+    found = [_changes(there, explanation) for explanation in explanations]
+    best: tuple[Any, ...] = ()
+    for place, name in enumerate(names):
+        gaps = [
+            gap
+            for (a, one), (b, other) in combinations(zip(explanations, found, strict=True), 2)
+            if (gap := _gap(there, name, (a.name, b.name), one[name] - other[name])) is not None
+        ]
+        if gaps:
+            faintest = min(gaps, key=lambda gap: gap.clearness)
+            rank = (len(gaps), name in _goals(start.model), float(f"{faintest.clearness:.2g}"), -place)
+            best = max(best, (*rank, faintest), key=lambda item: item[:4] if item else ())
+    return _point(start, best[4]) if best else None
+
+
+def _unmeasured(machine: Machine) -> list[str]:
+    """Return the results that have one value per row and that no column gives."""
+    fields = machine.start.model.own_result_fields
+    own = [name for name, item in fields.items() if not item.along and not isinstance(item.spec, Axis)]
+    return [name for name in own if name not in machine.records.measured and name in machine.start.model.result_fields]
+
+
+def _goals(model: Any) -> set[str]:
+    return {
+        getattr(goal, "result", getattr(goal, "name", ""))
+        for goal in model.objectives
+        if isinstance(goal, (Require, Minimise, Maximise))
+    }
+
+
+def _few_rows(records: Records, names: Sequence[str]) -> Records:
+    """Return some rows, evenly over the record, as if these results were what is measured there."""
+    import numpy as np
+
+    few = slice(None, None, max(1, len(records) // ROWS))
+    rows = records.rows
+    columns = {name: values[few] for name, values in rows.columns.items()}
+    axes = {name: values[few] for name, values in rows.axes.items()}
+    part = replace(rows, columns=columns, axes=axes, lines=rows.lines[few], runs=rows.runs[few])
+    count = len(records.run_of[few])
+    return replace(
+        records, rows=part, file_of=records.file_of[few], run_of=records.run_of[few], lines=records.lines[few],
+        measured={name: np.zeros(count) for name in names}, sigma={}, held_out=records.held_out[few],
+        covariates={name: replace(item, values=item.values[few]) for name, item in records.covariates.items()},
+    )  # fmt: skip
+
+
+def _changes(there: Machine, explanation: Explanation) -> Mapping[str, Matrix]:
+    """Return the change of every unmeasured result by an explanation, SI, shape (n,)."""
+    setup = replace(there.start, effects=(*there.start.effects, *explanation.on))
+    changed = predict(setup, there.records)
+    return {name: changed[name] - there.base[name] for name in there.base}
+
+
+def _gap(there: Machine, name: str, names: tuple[str, str], apart: Matrix) -> _Gap | None:
+    """Return where two explanations are clearest apart in a result; None where they hardly are."""
+    import numpy as np
+
+    apart = np.abs(apart)
+    scatter = np.sqrt(np.sum(there.slopes[name] ** 2, axis=1))
+    least = LEAST_SHARE * float(np.nanmax(np.abs(there.base[name]), initial=0.0))
+    seen = np.isfinite(apart) & (apart > least) & (apart > CLEAR * scatter)
+    if not seen.any():
+        return None
+    worth = np.where(seen, apart, 0.0) / np.maximum(scatter, np.where(seen, 1e-6 * apart, 1e-300))
+    place = int(np.argmax(np.where(worth > NEARLY * worth.max(), apart, -1.0)))
+    return _Gap(name, names, float(apart[place]), float(scatter[place]))
+
+
+def _point(start: Any, gap: _Gap) -> NextPoint:
+    unit = readable_unit(start.print_unit(gap.result), gap.size)
+    words = f"measure {gap.result}, too: {gap.names[0]} and {gap.names[1]} differ by {in_unit(gap.size, unit)} in it"
+    if gap.scatter > 0:
+        words += f", machines within their tolerances by {in_unit(gap.scatter, unit)}"
+    return NextPoint({}, gap.names, words, gap.clearness**2, (gap.result,))
