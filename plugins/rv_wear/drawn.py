@@ -15,11 +15,13 @@ from rv_wear.drawn_flank import (
     sharing_figure,
     wear_figure,
 )
+from rv_wear.drawn_fronts import PRINTED_OPTIMA, at_printed_wear, better, fronts_figure
 from rv_wear.drawn_look import acting, outcome_of, signed
 from rv_wear.drawn_mesh import mesh_figure
+from rv_wear.least_costs import Fronts
 from rv_wear.modifications import Ground
 from rv_wear.new_machines import Newborn
-from truing import Drawing, Odds, Sensitivities, Swept, Words
+from truing import Drawing, Odds, Optimum, Sensitivities, Swept, Words
 
 if TYPE_CHECKING:
     from rv_wear.drawn_look import Run
@@ -125,3 +127,47 @@ def costs(record: "Run") -> "Sequence[Block]":
         f"By the cost functions in the form '{form}'. Right: one zone of each function, from half to twice as wide."
     )
     return [Drawing("Price of the zones", partial(costs_figure, bill, form), caption)]
+
+
+def better_tolerances(record: "Run") -> "Sequence[Block]":
+    """The paper's Figs. 6 and 7."""
+    fronts = outcome_of(record, Fronts)
+    if fronts is None or not any(front.designs for front in fronts.fronts):
+        return []
+    start = (float(record.answers["tolerance_price"]), float(record.answers["max_wear"]))
+    optimum = outcome_of(record, Optimum)
+    caption = (
+        "As Fig. 6 of the paper. For every equidistant modification (written beside the points) the widths of least "
+        "cost, from those in force to twice as wide, that reach the required reliability; large marks: the knees."
+    )
+    if optimum is not None and optimum.front:
+        caption += " Points: the front that the search of the study 'optimise' came to, a check of it."
+    draw = partial(fronts_figure, fronts, optimum, start)
+    blocks: list[Block] = [Drawing("Cost and wear", draw, caption), Words(_beside_the_paper(fronts))]
+    odds = outcome_of(record, Odds)
+    if odds is not None and odds.curve is not None and odds.curve.over == "working_time" and better(fronts):
+        caption = (
+            "As Fig. 7 of the paper: the reducer as stated, and to first order the knees of the fronts with their cost "
+            "and equidistant modification."
+        )
+        draw = partial(reliability_figure, odds, better(fronts))
+        blocks.append(Drawing("Reliability before and after", draw, caption))
+    return blocks
+
+
+def _beside_the_paper(fronts: Fronts) -> str:
+    """Our least cost at the wear of the paper's optima."""
+    said = []
+    for front in fronts.fronts:
+        ours = at_printed_wear(front)
+        if ours is not None:
+            cost, wear = PRINTED_OPTIMA[front.goal]
+            said.append(
+                f"At {wear:g} µm the paper pays {cost:.0f} yuan, here it is {ours:.0f} for {100 * front.goal:g} %."
+            )
+    said.append(
+        "A more negative equidistant modification at the same radial clearance closes the backlash and wears a little "
+        "faster; what it gains is spent on wider zones. Where a front ends depends on how wide the zones may become, "
+        "and so does its knee; the paper's bounds are lost."
+    )
+    return " ".join(said)

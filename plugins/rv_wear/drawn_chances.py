@@ -50,6 +50,7 @@ def machines_figure(born: "Newborn") -> "Figure":
     left.set_xlabel("machine drawn")
     left.set_ylabel("backlash, arc minutes")
     left.set_xlim(0, len(born.new) + 1)
+    left.locator_params(axis="x", nbins=4, prune="upper")
     right.set_xlabel("number of machines")
     right.legend(loc="lower right")
     left.grid(axis="y", alpha=0.4)
@@ -128,16 +129,8 @@ def indices_figure(indices: Mapping[int, float]) -> "Figure":
     return figure
 
 
-def shares_figure(shares: Mapping[str, float]) -> "Figure":
-    """Draw what each tolerance contributes to the variance of the backlash, the largest on top."""
-    figure, panel = one_panel(0.9 + 0.24 * max(len(shares), 1))
-    _bars(panel, {name: 100 * share for name, share in shares.items()}, "{:.1f} %")
-    panel.set_xlabel("share of the variance of the backlash, %")
-    return figure
-
-
 def costs_figure(bill: "Bill", form: str) -> "Figure":
-    """Draw the price of every zone in one form of the cost functions, and what a narrower zone would cost."""
+    """Draw the price of every zone in one form of the cost functions, and what another width would cost."""
     from matplotlib.figure import Figure
 
     from rv_wear.costs import price
@@ -153,10 +146,11 @@ def costs_figure(bill: "Bill", form: str) -> "Figure":
         width = bill.widths[name]
         paid = [price_at(price(PRICED[name], form), float(share * width)) for share in shares]
         colour = (BLUE, ORANGE, "#2f6b4f")[place % 3]
-        right.plot(shares * width / MICRO, paid, color=colour, label=f"{PRICED[name]}: {name.replace('_', ' ')}")
-        right.plot(width / MICRO, bill.prices[name][form], "o", color=colour, markersize=5)
-    right.set_xlabel("width of the zone, µm")
-    right.set_ylabel("price, yuan")
+        words = f"{name.replace('_', ' ')}, now {width / MICRO:.3g} µm"
+        right.plot(shares, paid, color=colour, label=words)
+        right.plot(1.0, bill.prices[name][form], "o", color=colour, markersize=5)
+    right.set_xlabel("width of the zone over that now")
+    right.set_ylabel("price of the zone, yuan")
     right.set_ylim(0, None)
     right.grid(alpha=0.4)
     if right.get_legend_handles_labels()[0]:

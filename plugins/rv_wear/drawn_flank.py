@@ -1,7 +1,7 @@
 """Along the flank: clearance, forces by both ways of sharing, forces and wear of differently ground discs."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,6 +64,7 @@ def clearance_figure(reducer: Reducer) -> "Figure":
 def sharing_figure(reducer: Reducer) -> "Figure":
     """Draw the forces of the new mesh by both ways of sharing, and after the working time by that of the run."""
     figure, panel = one_panel(3.3)
+    looks: dict[Literal["linear", "hertz"], tuple[str, str, str]]
     looks = {"linear": (BLUE, "-", "in proportion to the approach"), "hertz": (GREY, "--", "Hertz at every pin")}
     for sharing, (colour, dashes, words) in looks.items():
         found = flank(replace(reducer, load_sharing=sharing))

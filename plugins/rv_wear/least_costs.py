@@ -1,0 +1,207 @@
+"""A study of our own: the front of cost and wear without any search, the paper's Fig. 6, and its Fig. 7.
+
+For every equidistant modification the widths of least cost that reach the goal are found; as the wear depends on the
+modification alone, this is the front itself (the epsilon-constraint method). An evolutionary search is judged by it.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import ceil
+from typing import TYPE_CHECKING, Any
+
+from rv_wear.quantities import Reducer
+from truing import Allocation, Bench, Reliability, TruingError
+from truing.errors import InfeasibleError
+from truing.evaluate import acting_inputs, evaluate
+from truing.prices import price_answers
+from truing.studies.optimise_front import knee_of
+from truing.studies.strips import with_widths
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from truing import Block, Check
+
+    Values = NDArray[np.float64]
+
+MICRO, HOUR = 1e-6, 3600.0
+STEP = 1.0  # um of the equidistant modification from one design to the next
+HALVINGS = 10
+ALL_WIDEST = 1e-6  # of the cost: the next design is no cheaper
+POINTS = 25
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeastCosts:
+    """Find the least cost for every wear, with each of ``goals`` for the reliability and with that of the inputs.
+
+    Widths run from those in force to ``widest`` times as much, the equidistant modification over ``span`` (um).
+    """
+
+    goals: tuple[float, ...] = (0.95, 0.999)
+    widest: float = 2.0
+    span: tuple[float, float] = (-45.0, 4.0)
+    name: str = "least_costs"
+    gives: Callable[[Any], Any] | None = None
+
+    def __post_init__(self) -> None:
+        if not all(0 < goal < 1 for goal in self.goals):
+            raise TruingError(f"study '{self.name}': goals lie between 0 and 1")
+        if len(self.span) != 2 or not self.span[0] < self.span[1]:
+            raise TruingError(f"study '{self.name}': span is the lowest and the highest modification in um")
+        if not self.widest > 1:
+            raise TruingError(f"study '{self.name}': widest = {self.widest:g} must lie above 1")
+
+    def run(self, bench: Bench) -> "Fronts":
+        """Follow each front from the smallest wear to the least cost, and the reliability of its knee over time."""
+        own = float(bench.setup.inputs.required_reliability)
+        goals = sorted({*self.goals, own} if own < 1 else {*self.goals})
+        fronts = []
+        for place, goal in enumerate(goals):
+            bench.progress(self.name, place, len(goals))
+            fronts.append(self._front(bench, goal))
+        return Fronts(tuple(fronts), acting_inputs(bench.setup))
+
+    def _front(self, bench: Bench, goal: float) -> "Front":
+        designs: list[Design] = []
+        modification = self._first(bench, goal)
+        while modification is not None and modification >= self.span[0]:
+            design = self._design(bench, modification, goal)
+            if design is None or (designs and design.cost > (1 - ALL_WIDEST) * designs[-1].cost):
+                break
+            designs.append(design)
+            modification = STEP * ceil(modification / STEP - 1.0)
+        return Front(goal, tuple(designs), *self._knee(bench, designs))
+
+    def _first(self, bench: Bench, goal: float) -> float | None:
+        """The largest modification at which the widths in force reach the goal, um; None where there is none."""
+        low, high = self.span
+        if self._chance(bench, low) < goal:
+            return None
+        if self._chance(bench, high) >= goal:
+            return high
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self._chance(bench, middle) >= goal else (low, middle)
+        return low
+
+    def _chance(self, bench: Bench, modification: float) -> float:
+        """Reliability to first order with the widths in force; 0 where the disc cannot be."""
+        at = ground(bench, modification)
+        return 0.0 if at is None else _odds(at, "", "")
+
+    def _design(self, bench: Bench, modification: float, goal: float) -> "Design | None":
+        at = ground(bench, modification, required_reliability=goal)
+        if at is None:
+            return None
+        study = Allocation(of="backlash", tightest=1.0, widest=self.widest, draws=1, name=self.name)
+        plan = study.run(at).least
+        if not plan.reached:
+            return None
+        return Design(modification * MICRO, float(at.answers["max_wear"]), plan.cost, dict(plan.widths))
+
+    def _knee(self, bench: Bench, designs: Sequence["Design"]) -> tuple[int | None, Any, Any]:
+        """The knee's place, and its reliability over the working time to first order."""
+        import numpy as np
+
+        if not designs:
+            return None, np.empty(0), np.empty(0)
+        place, _ = knee_of(np.array([[design.cost, design.wear / MICRO] for design in designs]))
+        found = designs[place]
+        at = ground(bench, found.modification / MICRO, widths=found.widths)
+        hours = float(bench.setup.inputs.working_time) / HOUR
+        if at is None or hours <= 0.0:
+            return place, np.empty(0), np.empty(0)
+        times, chances = _odds(at, "working_time", f"0..{hours!r} h")
+        return place, times, chances
+
+
+def _odds(bench: Bench, over: str, at: str) -> Any:
+    """The reliability of the backlash to first order, or times and reliabilities along the working time."""
+    odds = Reliability(method=("first_order",), over=over, at=at, points=POINTS).run(bench)
+    if odds.curve is None:
+        return float(odds.analytic["backlash"])
+    return odds.curve.axis, odds.curve.analytic["backlash"]
+
+
+def ground(
+    bench: Bench, modification: float, *, widths: Mapping[str, float] | None = None, **inputs: float
+) -> Bench | None:
+    """The bench with another equidistant modification (um) at the design clearance; None where that cannot be."""
+    shift = modification * MICRO - float(bench.setup.inputs.design_clearance)
+    changed = {"equidistant_modification": modification * MICRO, "shift_modification": shift, **inputs}
+    setup = with_widths(bench.setup.changed(changed), dict(widths or {}))
+    try:
+        results = evaluate(setup)
+    except InfeasibleError:
+        return None
+    answers = {**setup.model.read_results(results), **price_answers(setup)}
+    return replace(bench, setup=setup, results=results, answers=answers, progress=_nothing)
+
+
+def _nothing(task: str, done: int, total: int) -> None:
+    """Report no progress: the study reports its own."""
+
+
+@dataclass(frozen=True)
+class Design:
+    """Equidistant modification and deepest wear (m), cost (yuan), and the width of every priced zone (m)."""
+
+    modification: float
+    wear: float
+    cost: float
+    widths: Mapping[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Front:
+    """Designs from the smallest wear to the least cost; the knee's place, and its reliability (n,) over times (n,)."""
+
+    goal: float
+    designs: tuple[Design, ...]
+    knee: int | None
+    times: "Values"
+    chances: "Values"
+
+
+@dataclass(frozen=True, eq=False)
+class Fronts:
+    """One front by goal."""
+
+    fronts: tuple[Front, ...]
+    inputs: Reducer
+
+    def as_json(self) -> Mapping[str, Any]:
+        """Return every front with its knee."""
+        return {"fronts": [_front_json(front) for front in self.fronts]}
+
+    def blocks(self) -> "Sequence[Block]":
+        """Return nothing: the section on better tolerances shows the fronts."""
+        return ()
+
+    def checks(self) -> "Sequence[Check]":
+        """Return nothing: a front decides no limit."""
+        return ()
+
+    def warnings(self) -> Sequence[str]:
+        """Say which goal cannot be reached."""
+        return [
+            f"study 'least_costs': no equidistant modification reaches a reliability of {front.goal:g} with these zones"
+            for front in self.fronts
+            if not front.designs
+        ]
+
+
+def _front_json(front: Front) -> dict[str, Any]:
+    return {
+        "goal": front.goal,
+        "knee": front.knee,
+        "equidistant_modification": {"unit": "um", "values": [item.modification / MICRO for item in front.designs]},
+        "max_wear": {"unit": "um", "values": [item.wear / MICRO for item in front.designs]},
+        "cost": {"unit": "yuan", "values": [item.cost for item in front.designs]},
+        "widths": [
+            {name: {"value": width / MICRO, "unit": "um"} for name, width in item.widths.items()}
+            for item in front.designs
+        ],
+    }
