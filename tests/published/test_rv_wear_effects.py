@@ -1,0 +1,287 @@
+"""What the paper leaves out of the reducer: each effect against its own arithmetic, and identities of the wear.
+
+Numbers marked as reference follow by hand from equation 21: 2 q / (e z_c) is 51.27 arcmin per mm of the pin circle,
+2 / (e z_c) is 80.13 arcmin per mm of wear, 1 / a is 54.57 arcmin per mm of bearing clearance.
+"""
+
+from collections.abc import Callable
+from dataclasses import fields, replace
+from functools import cache
+from math import asin, exp, pi, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rv_wear.calculation import rv_wear
+from rv_wear.effects import EFFECTS
+from rv_wear.model import RV_WEAR
+from rv_wear.quantities import Reducer
+from truing import Effect, Float
+from truing.setup import SwitchedOn, default_setup
+
+MINUTE = pi / 10800
+UM, HOUR = 1e-6, 3600.0
+ROOM = 293.15
+ARM = 2.2e-3 * 39
+ROOT = sqrt(1 - (2.2 * 40 / 114.5) ** 2)
+BY_NAME: dict[str, Effect[Any, Any]] = {effect.name: effect for effect in EFFECTS}
+EVERY = pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.name)
+IDS = (
+    "thermal_clearance running_in wear_temperature film_lubrication pin_rolling pin_wear lost_motion_share "
+    "bearing_wear wind_up stiffening runout pin_pass_ripple friction_hysteresis lubricant_ageing load_exponent duty_share"
+)
+
+
+@cache
+def shown(name: str = "", settings: str = "", **values: float) -> dict[str, float]:
+    """The results in SI with one effect on (unknowns and conditions in SI); settings as in an inputs file."""
+    changed = dict(item.split("=") for item in settings.split(";") if item)
+    reducer: Reducer = RV_WEAR.inputs(**{key: _value(text) for key, text in changed.items()})
+    if not name:
+        return _numbers(rv_wear(reducer))
+    effect = BY_NAME[name]
+    if effect.place == "inputs":
+        return _numbers(rv_wear(effect.function(reducer, **values)))
+    return _numbers(effect.function(reducer, rv_wear(reducer), **values))
+
+
+def _value(text: str) -> Any:
+    return text.strip()
+
+
+def _numbers(results: Any) -> dict[str, float]:
+    return {item.name: float(getattr(results, item.name)) for item in fields(results)}
+
+
+def change(name: str, settings: str = "", result: str = "backlash", **values: float) -> float:
+    """What one effect adds to a result, SI."""
+    return shown(name, settings, **values)[result] - shown("", settings)[result]
+
+
+def test_every_effect_of_the_list_is_there_and_no_other() -> None:
+    assert sorted(BY_NAME) == sorted(IDS.split())
+
+
+@EVERY
+def test_every_effect_says_what_it_looks_like_why_and_whence(effect: Effect[Any, Any]) -> None:
+    assert all(len(words) > 15 for words in (effect.looks_like, effect.why, effect.source))
+    assert all(unknown.note for unknown in effect.unknowns)
+    assert all(need.note and need.low is not None and need.high is not None for need in effect.needs)
+
+
+# Clearance
+
+
+@pytest.mark.parametrize(("disc", "minutes"), [(25.0, -0.3375), (20.0, 0.0), (15.0, 0.3375)])
+def test_heat_closes_the_clearance_by_the_difference_of_the_temperatures(disc: float, minutes: float) -> None:
+    """Reference: 51.27 arcmin/mm * 114.5 mm * 11.5e-6 / K = 0.0675 arcmin per kelvin; disc 5 K hotter: -0.34."""
+    for room in (20.0, 50.0):
+        found = change(
+            "thermal_clearance", expansion=11.5e-6, housing_temperature=273.15 + room,
+            disc_temperature=273.15 + room + disc - 20,
+        )  # fmt: skip
+        assert found / MINUTE == pytest.approx(minutes, abs=2e-4)
+        exact = 2 * asin(ROOT * 114.5e-3 * 11.5e-6 * (20 - disc) / ARM)
+        assert found == pytest.approx(exact, abs=1e-12)
+
+
+def test_a_pin_circle_off_its_centre_swings_once_per_turn() -> None:
+    """Reference: 0.051 arcmin per micrometre; the distance of a circle from a point beside its centre."""
+    for angle in np.radians([0.0, 30.0, 90.0, 200.0, 330.0]):
+        found = change("runout", cosine=3 * UM, sine=-4 * UM, output_angle=float(angle))
+        seems = np.hypot(114.5e-3 * np.cos(angle) + 3 * UM, 114.5e-3 * np.sin(angle) - 4 * UM) - 114.5e-3
+        assert found == pytest.approx(2 * ROOT * seems / ARM, abs=2e-4 * 2 * ROOT * 5 * UM / ARM)
+    assert change("runout", cosine=UM, sine=0.0, output_angle=0.0) / MINUTE == pytest.approx(0.05127, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("settings", "micrometres"),
+    [
+        ("", 5.4),
+        ("output_torque=1568 N*m", 2.7),
+        ("output_speed=30 r/min;working_time=3000 h", 5.4),
+        ("working_time=0 h", 0),
+    ],
+)
+def test_bearings_gain_with_load_and_turns(settings: str, micrometres: float) -> None:
+    """One micrometre per million output turns at 3136 N m; 15 r/min make 5.4 million in 6000 h; 0.0546' per um."""
+    assert change("bearing_wear", settings, wear=UM) / MINUTE == pytest.approx(micrometres * 0.054567, rel=1e-4)
+    assert change("bearing_wear", settings, "max_wear", wear=UM) == 0
+
+
+# Wear
+
+
+@pytest.mark.parametrize(("hours", "share"), [(0.0, 0.0), (300.0, 1 - exp(-1)), (6000.0, 1 - exp(-20))])
+def test_running_in_is_a_depth_that_is_complete_after_a_while(hours: float, share: float) -> None:
+    settings = f"working_time={hours} h"
+    depth = change("running_in", settings, "max_wear", depth=0.8 * UM, run_in_time=300 * HOUR)
+    assert depth == pytest.approx(0.8 * UM * share, rel=1e-9, abs=1e-18)
+    felt = change("running_in", settings, depth=0.8 * UM, run_in_time=300 * HOUR)
+    assert felt == pytest.approx(2 * depth / ARM, rel=1e-9, abs=1e-16)
+
+
+def hours_that_wear_as(name: str, hours: float, **values: float) -> float:
+    """Working time after which the reducer without the effect is worn as deep as with it after ``hours``."""
+    depth = shown(name, f"working_time={hours} h", **values)["max_wear"]
+    low, high = 0.0, 10 * hours
+    for _ in range(40):
+        middle = (low + high) / 2
+        low, high = (middle, high) if shown("", f"working_time={middle} h")["max_wear"] < depth else (low, middle)
+    return low
+
+
+FASTER: list[tuple[str, dict[str, float], Callable[[float], float]]] = [  # effect, unknowns and conditions, hours
+    ("wear_temperature", {"softening": 0.006, "oil_temperature": 323.15}, lambda at: at * exp(7.377 * 0.06)),
+    ("wear_temperature", {"softening": 0.006, "oil_temperature": 313.15}, lambda at: at),
+    ("wear_temperature", {"softening": 0.004, "oil_temperature": 293.15}, lambda at: at * exp(-7.377 * 0.08)),
+    ("pin_rolling", {"rolling": 0.4}, lambda at: 0.6 * at),
+    ("lubricant_ageing", {"rate": 2e-4 / HOUR}, lambda at: at + 2e-4 * at**2 / 2),
+]
+
+
+@pytest.mark.parametrize(("name", "values", "hours"), FASTER)
+@pytest.mark.parametrize("at", [1500.0, 6000.0])
+def test_what_changes_the_rate_of_wear_changes_the_hours(
+    name: str, values: dict[str, float], hours: Callable[[float], float], at: float
+) -> None:
+    """Sliding and coefficient multiply the growth at every contact alike: the same history at another speed."""
+    assert hours_that_wear_as(name, at, **values) == pytest.approx(hours(at), rel=1e-9)
+
+
+def test_pins_that_roll_altogether_wear_nothing() -> None:
+    assert shown("pin_rolling", rolling=1.0)["max_wear"] == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "factor"),
+    [
+        ("pin_wear", {"ratio": 0.5}, 1.5),
+        ("lost_motion_share", {"loss": 0.87}, 0.13),
+        ("lost_motion_share", {"loss": 0.0}, 1.0),
+    ],
+)
+def test_what_is_felt_of_the_wear_leaves_the_flank_as_it_is(name: str, values: dict[str, float], factor: float) -> None:
+    base = shown()
+    assert change(name, result="max_wear", **values) == 0
+    found = shown(name, **values)
+    assert found["backlash_of_wear"] == pytest.approx(factor * 2 * base["max_wear"] / ARM, rel=1e-12)
+    assert found["backlash"] - base["backlash"] == pytest.approx((factor - 1) * base["backlash_of_wear"], rel=1e-9)
+
+
+@pytest.mark.parametrize("reversing", [0.0, 0.5, 1.0])
+def test_a_load_that_reverses_wears_each_flank_for_its_time(reversing: float) -> None:
+    """2 h(T) where one flank is loaded, 2 h(T/2) where both share the time; the deepest wear is the old one."""
+    found = shown("duty_share", reversing=reversing)
+    hours = 6000 * (1 - reversing / 2)
+    assert found["max_wear"] == shown()["max_wear"]
+    expected = 2 * shown("", f"working_time={hours} h")["max_wear"] / ARM
+    assert found["backlash_of_wear"] == pytest.approx(expected, rel=1e-12)
+    if reversing == 1:
+        assert found["backlash_of_wear"] / shown()["backlash_of_wear"] == pytest.approx(0.62, abs=0.005)
+
+
+@pytest.mark.parametrize(("torque", "exponent"), [(3136.0, 0.7), (1568.0, 0.5), (4000.0, -0.4)])
+def test_another_power_of_the_load_turns_about_the_rated_torque(torque: float, exponent: float) -> None:
+    settings = f"output_torque={torque} N*m"
+    found = shown("load_exponent", settings, exponent=exponent)["max_wear"] / shown("", settings)["max_wear"]
+    assert found == pytest.approx((torque / 3136) ** exponent, rel=1e-12)
+
+
+@pytest.mark.parametrize("factor", [0.0, 0.1])
+def test_a_film_as_thin_as_calculated_is_not_felt(factor: float) -> None:
+    """With pins that stand still disc and pin move against one another: the film is a fiftieth of the roughness."""
+    assert change("film_lubrication", result="max_wear", film_factor=factor, oil_temperature=313.15) == 0
+
+
+def test_a_thick_film_spares_the_flank_but_not_where_it_moves_against_the_pin() -> None:
+    base = shown()["max_wear"]
+    thick = [
+        shown("film_lubrication", film_factor=factor, oil_temperature=313.15)["max_wear"]
+        for factor in (25.0, 75.0, 150.0)
+    ]
+    assert base > thick[0] > thick[1] > thick[2] > 0.75 * base
+    cold = shown("film_lubrication", film_factor=75.0, oil_temperature=293.15)["max_wear"]
+    hot = shown("film_lubrication", film_factor=75.0, oil_temperature=353.15)["max_wear"]
+    assert cold < thick[1] < hot < base
+    slow, fast = (
+        shown("film_lubrication", f"output_speed={speed} r/min;working_time={90000 / speed} h", film_factor=75.0,
+              oil_temperature=313.15)["max_wear"]
+        for speed in (5, 20)
+    )  # fmt: skip
+    assert fast < slow
+
+
+# Reading
+
+
+def test_every_tooth_and_every_pin_has_its_wave() -> None:
+    values = {"disc_cosine": 3e-6, "disc_sine": 0.0, "pin_cosine": 0.0, "pin_sine": -2e-6}
+    angles = np.radians(np.arange(360.0))
+    base = shown()["backlash"]
+    read = (
+        np.array([shown("pin_pass_ripple", output_angle=float(angle), **values)["backlash"] for angle in angles]) - base
+    )
+    orders = np.fft.rfft(read) / 180
+    assert orders[39] == pytest.approx(3e-6, abs=1e-15)
+    assert orders[40] == pytest.approx(2e-6j, abs=1e-15)
+    assert np.max(np.abs(np.delete(orders, [39, 40]))) < 1e-15
+
+
+def test_wind_up_is_twice_the_torque_over_the_stiffness() -> None:
+    """Reference: 0.19 arcmin under 94 N m to either side at 980 N m per arcmin; 6.4 arcmin under 3136 N m."""
+    stiffness = 980 / MINUTE
+    for torque, minutes in [(94.08, 0.192), (-94.08, 0.192), (3136.0, 6.4), (0.0, 0.0)]:
+        found = change("wind_up", compliance=1 / stiffness, measuring_torque=torque)
+        assert found / MINUTE == pytest.approx(minutes, abs=1e-9)
+
+
+@pytest.mark.parametrize(("torque", "share"), [(0.0, 0.0), (120.0, 1 - exp(-1)), (-120.0, 1 - exp(-1)), (3136.0, 1.0)])
+def test_stiffening_ends(torque: float, share: float) -> None:
+    found = change("stiffening", twist=0.2 * MINUTE, torque_scale=120.0, measuring_torque=torque)
+    assert found / MINUTE == pytest.approx(0.2 * share, abs=1e-9)
+
+
+@pytest.mark.parametrize("direction", [-1.0, 0.0, 1.0])
+def test_friction_lags_behind(direction: float) -> None:
+    found = change("friction_hysteresis", lag=0.05 * MINUTE, direction=direction)
+    assert found / MINUTE == pytest.approx(0.05 * direction, abs=1e-12)
+
+
+# All
+
+
+@EVERY
+@pytest.mark.parametrize("shape", [0.1, 0.9])
+def test_an_effect_of_no_size_is_the_reducer_of_the_paper(effect: Effect[Any, Any], shape: float) -> None:
+    from truing.units import to_si
+
+    values = {
+        item.name: 0.0 if item.is_amplitude else float(to_si(item.low + shape * (item.high - item.low), item.unit))
+        for item in effect.unknowns
+    }
+    values |= {need.name: need.zero + 7.0 * (1 + place) for place, need in enumerate(effect.needs)}
+    assert shown(effect.name, "working_time=2500 h", **values) == shown("", "working_time=2500 h")
+
+
+@EVERY
+def test_a_gauge_reads_no_machine_worse(effect: Effect[Any, Any]) -> None:
+    """Effects of the reading do not act where machines are drawn; what changes the machine does."""
+    from truing.evaluate import evaluate
+
+    of_gauge = {"wind_up", "stiffening", "friction_hysteresis"}
+    assert (effect.place == "reading") == (effect.name in of_gauge)
+    setup = default_setup(RV_WEAR)
+    half = {item.name: _half(item) for item in effect.unknowns}
+    there = {need.name: need.zero + 0.3 * (1 + place) for place, need in enumerate(effect.needs)}
+    speeds = {"output_torque": 2000.0} if effect.name == "load_exponent" else {}
+    on = replace(setup, effects=(SwitchedOn(effect, half),), conditions={**setup.conditions, **there}).changed(speeds)
+    drawn = float(evaluate(on).backlash)
+    assert (drawn == float(evaluate(setup.changed(speeds)).backlash)) == (effect.name in of_gauge)
+
+
+def _half(item: Any) -> Float:
+    from truing.units import to_si
+
+    return float(to_si((item.low + item.high) / 2 if item.low >= 0 else 0.5 * item.high, item.unit))
