@@ -275,7 +275,7 @@ def test_several_results_and_a_figure_along_one_input() -> None:
         [2 * (50.0 - third) for third in course["at"]], abs=1e-2
     )
     drawings = [block.draw() for block in found.blocks() if hasattr(block, "draw")]
-    assert [len(figure.axes) for figure in drawings] == [2, 2]
+    assert [len(figure.axes) for figure in drawings] == [4, 2]
     json.dumps(found.as_json(), allow_nan=False)
 
 

@@ -105,7 +105,7 @@ def emulated_blocks(emulated: Emulated) -> Sequence[Block]:
     blocks.append(_box_table(emulated))
     names = list(emulated.judged)[:MOST_PANELS]
     if names:
-        caption = "Points that were held out, with their 95 % bands; on the line both agree."
+        caption = "Points that were held out; beside it how far each is off, with its 95 % band."
         blocks.append(Drawing("Surrogate over model", _agreement(emulated, names), caption))
     if emulated.course is not None:
         title = f"Surrogate along the {spoken(emulated.course.over)}"
@@ -146,7 +146,7 @@ def _accuracy_table(emulated: Emulated) -> Table:
         errors = [found["median_error"], shares[0], found["largest_error"], shares[1]]
         rows.append([name, unit_text(unit), judged.points, 100 * judged.coverage, *errors])
     whole = "value" if next(iter(emulated.judged.values())).is_share else "range of all values"
-    columns = ("result", "unit", "points", "in the 95 % band", "median error", "", "largest error", "")
+    columns = ("result", "unit", "points", "in the 95 % band", "median error", "share", "largest error", "share")
     note = f"At points the surrogate never saw. Percentages of errors are of the {whole}."
     return Table("What the surrogate loses", columns, rows, ("", "", "", "%", "", "%", "", "%"), note)
 
@@ -187,36 +187,59 @@ def _box_table(emulated: Emulated) -> Table:
 
 
 def _agreement(emulated: Emulated, names: Sequence[str]) -> Callable[[], Figure]:
-    """Draw predicted over simulated results with their bands."""
+    """Draw predicted over simulated results, and beside it how far each is off with its band."""
 
     def draw() -> Figure:
         from matplotlib.figure import Figure
 
-        from truing.units import from_si, unit_text
-
-        figure = Figure(figsize=(WIDTH, 3.4 * len(names)), layout="constrained")
-        panels = figure.subplots(len(names), 1, squeeze=False)[:, 0]
-        for panel, name in zip(panels, names, strict=True):
-            judged, unit = emulated.judged[name], emulated.units[name]
-            model, mean, low, high = (
-                from_si(values, unit) for values in (judged.simulated, judged.predicted, judged.low, judged.high)
-            )
-            panel.errorbar(
-                model, mean, yerr=[mean - low, high - mean], fmt="o", color=BLUE, ecolor=GREY, markersize=3,
-                elinewidth=0.8, label="surrogate with 95 % band",
-            )  # fmt: skip
-            ends = [float(model.min()), float(model.max())]
-            panel.plot(ends, ends, color=ORANGE, linewidth=0.9, label="model")
-            if judged.is_share:
-                panel.set_xscale("log")
-                panel.set_yscale("log")
-            panel.set_xlabel(labelled(f"{name} by the model", unit_text(unit)))
-            panel.set_ylabel(labelled("by the surrogate", unit_text(unit)))
-            panel.legend(frameon=False)
-            panel.grid(alpha=0.3)
+        figure = Figure(figsize=(WIDTH, 3.0 * len(names)), layout="constrained")
+        panels = figure.subplots(len(names), 2, squeeze=False)
+        for (left, right), name in zip(panels, names, strict=True):
+            _draw_values(left, emulated.judged[name], name, emulated.units[name])
+            _draw_errors(right, emulated.judged[name], name, emulated.units[name])
         return figure
 
     return draw
+
+
+def _draw_values(panel: Any, judged: Judged, name: str, unit: str) -> None:
+    from truing.units import from_si, unit_text
+
+    model, mean = from_si(judged.simulated, unit), from_si(judged.predicted, unit)
+    panel.plot(model, mean, "o", color=BLUE, markersize=3, label="surrogate")
+    ends = [float(model.min()), float(model.max())]
+    panel.plot(ends, ends, color=ORANGE, linewidth=0.9, label="model")
+    panel.set_ylabel(labelled("by the surrogate", unit_text(unit)))
+    if judged.is_share:
+        panel.set_yscale("log")
+    _finish(panel, judged, labelled(f"{name} by the model", unit_text(unit)))
+    panel.legend(frameon=False)
+
+
+def _draw_errors(panel: Any, judged: Judged, name: str, unit: str) -> None:
+    """Draw errors in percent of the value, or of the range of all values."""
+    import numpy as np
+
+    from truing.units import from_si, unit_text
+
+    whole = judged.simulated if judged.is_share else np.ptp(judged.simulated)
+    off, low, high = (
+        100 * (values - judged.simulated) / whole for values in (judged.predicted, judged.low, judged.high)
+    )
+    bars = np.abs([off - low, high - off])
+    panel.errorbar(
+        from_si(judged.simulated, unit), off, yerr=bars, fmt="o", color=BLUE, ecolor=GREY, markersize=3, elinewidth=0.8
+    )
+    panel.axhline(0.0, color=ORANGE, linewidth=0.9)
+    panel.set_ylabel("off by, %")
+    _finish(panel, judged, labelled(f"{name} by the model", unit_text(unit)))
+
+
+def _finish(panel: Any, judged: Judged, label: str) -> None:
+    if judged.is_share:
+        panel.set_xscale("log")
+    panel.set_xlabel(label)
+    panel.grid(alpha=0.3)
 
 
 def _along(emulated: Emulated, names: Sequence[str]) -> Callable[[], Figure]:
