@@ -81,7 +81,7 @@ def highest_equidistant(mesh: Mesh) -> Float:
     return mesh.radial_clearance / (1.0 - mesh.root)
 
 
-def lowest_equidistant(mesh: Mesh, largest: Float | None = None, points: int = 241) -> Float:
+def lowest_equidistant(mesh: Mesh, largest: Float | None = None, points: int = 121) -> Float:
     """Smallest equidistant modification of equation 17 at this radial clearance: a number or (m,).
 
     Below it the clearance somewhere exceeds *largest*: twice the radial clearance where nothing is given, or for

@@ -58,11 +58,12 @@ def growth(teeth: Teeth, unworn: Loads) -> Rate:
     modulus = np.asarray(mesh.equivalent_modulus)
     by_load = np.asarray(sliding.sliding_ratio(mesh, teeth.angle)) / mesh.width
     if mesh.choices.wear_coefficient == "pitch_point":
-        return _times(_at_pitch_point(teeth, unworn) * by_load, 1.0)
+        factor = _at_pitch_point(teeth, unworn) * by_load
+        return lambda force: factor * force
     by_load = by_load * coefficient.contact_part(modulus, 1.0 / mesh.width, teeth.relative_radius)
     power = 1.0 + coefficient.LOAD
     if mesh.film is None:
-        return _times(by_load, power)
+        return _power_law(by_load, power)
     turning = 2.0 * np.pi * mesh.film.speed
     carried = sliding.rolling_speed(mesh, teeth.angle) - 0.5 * sliding.sliding_speed(mesh, teeth.angle)
     number = coefficient.film_number(mesh, np.abs(carried) * turning, teeth.relative_radius)
@@ -76,18 +77,19 @@ def growth(teeth: Teeth, unworn: Loads) -> Rate:
     return with_film
 
 
-def _times(factor: Array, power: float) -> Rate:
-    if power == 1.0:
-        return lambda force: factor * force
-    lowest = np.full(8, SLIGHT) ** power
+def _power_law(factor: Array, power: float) -> Rate:
+    """Factor times force to a power, 0 for a force of 0; its power would take three times as long as any other."""
+    slight = np.full_like(factor, SLIGHT)
+    least = (slight.reshape(-1)[:8] ** power)[0]
 
-    def plain(force: Array) -> Array:
-        rate = np.maximum(force, np.full_like(force, SLIGHT)) ** power  # a power of 0 takes three times as long
-        rate -= lowest[0]
+    def rate_of(force: Array) -> Array:
+        rate = np.maximum(force, slight)
+        np.power(rate, power, out=rate)
+        rate -= least
         rate *= factor
         return rate
 
-    return plain
+    return rate_of
 
 
 def _at_pitch_point(teeth: Teeth, unworn: Loads) -> Array:
@@ -116,12 +118,18 @@ def states(teeth: Teeth) -> Iterator[State]:
         wear = after
         exposure = exposure + lasts
         guess, last = np.maximum(2.0 * loads.scale - last, 0.5 * loads.scale), loads.scale
-        loads = shared(part, part.slack + wear * part.per_arm, guess)
+        loads = shared(part, _slack(part, wear), guess)
         while np.any(clear - loads.taken <= loads.approach):
             wider, clear = widened(teeth, part)
             wear = _put(wear, part, wider)
             part, rate_of = wider, growth(wider, unworn)
-            loads = shared(part, part.slack + wear * part.per_arm, guess)
+            loads = shared(part, _slack(part, wear), guess)
+
+
+def _slack(teeth: Teeth, wear: Array) -> Array:
+    slack = wear * teeth.per_arm
+    slack += teeth.slack
+    return slack
 
 
 def _lasts(teeth: Teeth, rate: Array) -> Array:

@@ -10,6 +10,8 @@ from rv_wear.history import Histories
 from rv_wear.mesh import Array, Mesh
 from truing import Float
 
+FEW_ROWS = 4  # so many rows of a mesh are read together with those of the others
+
 
 @dataclass(frozen=True)
 class Meshes:
@@ -43,10 +45,28 @@ def _of_many(meshes: Meshes, place: NDArray[np.intp], new: Unworn, rows: Array) 
     order = np.argsort(place, kind="stable")
     ends = np.searchsorted(place[order], np.arange(meshes.count + 1))
     for places, history in all_histories(meshes.mesh, _reach(rows, place, meshes.count), new.first_step):
-        for column, mesh in enumerate(places):
-            mine = order[ends[mesh] : ends[mesh + 1]]
-            depth[mine], angle[mine] = _read(history, column, rows[mine])
+        parts = [order[ends[mesh] : ends[mesh + 1]] for mesh in places]
+        mine = np.concatenate(parts)
+        if len(mine) <= FEW_ROWS * len(places):
+            columns = np.repeat(np.arange(len(places)), [len(part) for part in parts])
+            depth[mine], angle[mine] = _read_each(history, columns, rows[mine])
+            continue
+        for column, part in enumerate(parts):
+            depth[part], angle[part] = _read(history, column, rows[part])
     return depth, angle
+
+
+def _read_each(history: Histories, columns: NDArray[np.intp], exposure: Array) -> tuple[Array, Array]:
+    """Depth and angle at exposures (n,), each of its own mesh; the depth is NaN beyond the last node."""
+    last = len(history.exposure) - 1
+    nodes = history.exposure[:, columns]
+    passed = np.minimum((nodes <= exposure).sum(axis=0), last)
+    before = np.maximum(passed - 1, 0), columns
+    after = passed, columns
+    slope = (history.depth[after] - history.depth[before]) / (history.exposure[after] - history.exposure[before])
+    depth = slope * (exposure - history.exposure[before]) + history.depth[before]
+    at = np.minimum((nodes < exposure).sum(axis=0), last)
+    return np.where(exposure <= nodes[-1], depth, np.nan), history.angle[at, columns]
 
 
 def _reach(rows: Array, place: NDArray[np.intp] | None, count: int) -> Array:

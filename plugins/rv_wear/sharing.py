@@ -59,7 +59,7 @@ def linear(teeth: Teeth, slack: Array, taken: Array, guess: Array) -> tuple[Arra
     scale = settled.reshape(guess.shape)
     approach = teeth.compliance * scale * (teeth.depth_number - np.log(scale))
     force = (approach + taken) - slack
-    np.maximum(force, np.zeros_like(force), out=force)  # much faster than with the number 0
+    np.maximum(force, teeth.nothing, out=force)  # much faster than with the number 0
     force *= teeth.relative_arm
     force *= scale / approach
     return scale, approach, force

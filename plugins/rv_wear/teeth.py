@@ -21,7 +21,7 @@ class Teeth:
     """Contacts of many meshes: phase angle (pins, phases, 1), arms, slack and radii (pins, phases, m).
 
     ``weight`` is the torque per force at the longest arm and approach, ``depth_number``, ``compliance`` and ``torque``
-    are the numbers of equation 1b and the torque for every position (phases, m). ``first`` is the number of the first
+    are the numbers of equation 1b and the torque for every position (phases, m), ``nothing`` is 0. ``first`` is the number of the first
     pin where a part of the pins is left out.
     """
 
@@ -35,6 +35,7 @@ class Teeth:
     depth_number: Array
     compliance: Array
     torque: Array
+    nothing: Array
     first: int = 0
 
     @property
@@ -72,12 +73,13 @@ def teeth_of(mesh: Mesh, angle: Float | None = None) -> Teeth:
         depth_number=number,
         compliance=compliance,
         torque=torque,
+        nothing=np.zeros_like(arm),
     )
 
 
 def part_of(teeth: Teeth, pins: slice) -> Teeth:
     """The same meshes with some pins only, of all those there are."""
-    names = ("angle", "relative_arm", "per_arm", "weight", "slack", "relative_radius")
+    names = ("angle", "relative_arm", "per_arm", "weight", "slack", "relative_radius", "nothing")
     return replace(teeth, **{name: getattr(teeth, name)[pins] for name in names}, first=pins.start)
 
 

@@ -3,7 +3,7 @@
 Run it: ``python -m pytest tests/benchmarks/bench_rv_wear.py --benchmark-enable -s``, or as a script, which prints the
 figures. The baseline is that iteration as a plain loop, written well: geometry is computed once for each disc, only
 plain floats and functions of ``math`` are used, every solution starts from the last one, and pins too far from contact
-to bear are left out. Both are measured alternately in one process and the least time of each counts. The second
+to bear are left out. Both are measured alternately in one process, in time of the processor, and the least of each counts. The second
 question is what the reliability of the backlash costs beside drawing its random numbers.
 """
 
@@ -128,9 +128,9 @@ def by_hand(count: int, of: int = DESIGNS) -> np.ndarray:
 
 
 def seconds(work: Callable[[], object]) -> float:
-    start = time.perf_counter()
+    start = time.process_time()
     work()
-    return time.perf_counter() - start
+    return time.process_time() - start
 
 
 def seconds_per_design() -> tuple[float, float]:
