@@ -30,7 +30,8 @@ def fronts_figure(fronts: "Fronts", optimum: "Optimum | None", start: tuple[floa
         if not front.designs:
             continue
         cost, wear = _places(front)
-        panel.plot(cost, wear, color=colour, marker=marker, markersize=3.5, label=f"least cost for {_percent(front.goal)}")
+        words = f"least cost for {_percent(front.goal)}"
+        panel.plot(cost, wear, color=colour, marker=marker, markersize=3.5, label=words)
         if front.goal in PRINTED_OPTIMA:
             panel.plot(
                 *PRINTED_OPTIMA[front.goal], "D", markersize=9, fillstyle="none", color=colour,
