@@ -73,10 +73,15 @@ def peak_mebibytes(draws: int) -> float:
 
 
 def report_peak(draws: int) -> None:
-    """Print the peak of this process, in MiB; that of ``getrusage`` would begin with the parent's (Linux only)."""
+    """Print the peak of this process in MiB after so many draws."""
     monte_carlo(all_sources(), draws)
+    print(peak_of_this_process())
+
+
+def peak_of_this_process() -> float:
+    """Return the peak in MiB; that of ``getrusage`` would begin with the parent's (Linux only)."""
     status = Path("/proc/self/status").read_text()
-    print(next(int(line.split()[1]) / 1024 for line in status.splitlines() if line.startswith("VmHWM")))
+    return next(int(line.split()[1]) / 1024 for line in status.splitlines() if line.startswith("VmHWM"))
 
 
 MILLION = pytest.mark.benchmark(group="a million machines of 29 sources; in brackets the ratio to drawing alone")

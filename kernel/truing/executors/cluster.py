@@ -18,6 +18,7 @@ from truing.executors.versions import differences, versions_here
 CONNECT_SECONDS = 15
 WORKER_SECONDS = 30
 EMPTY_SECONDS = 60
+ANSWER_SECONDS = 10
 PATIENCE = 5.0
 MOST_RENEWALS = 3
 
@@ -31,6 +32,7 @@ class ClusterExecutor(Place):
     """
 
     patience = PATIENCE
+    moment = 0.25
 
     def __init__(self, address: str) -> None:
         self.where = address
@@ -71,7 +73,8 @@ class ClusterExecutor(Place):
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Hand a call to the scheduler."""
         if self._grown:
-            self._present()
+            with suppress(Exception):
+                self._present()
         answer: Future[Any] = self._executor.submit(function, *args, **kwargs)
         return answer
 
@@ -108,18 +111,21 @@ class ClusterExecutor(Place):
         except UsageError as lost:
             raise TruingError(f"the cluster was lost: {lost}") from None
 
-    def look_after(self) -> None:
-        """See whether there is still a worker. Raises TruingError where there has been none for a minute."""
-        try:
-            present = self._present()
-        except Exception:  # a lost scheduler cancels what is under way, which is seen to there
-            return
-        if present:
-            self._empty_since = None
-            return
-        self._empty_since = self._empty_since or time.monotonic()
-        if time.monotonic() - self._empty_since > EMPTY_SECONDS:
+    def look_after(self) -> Exception | None:
+        """See whether there is still a worker, and a scheduler.
+
+        Raises TruingError where there has been no worker for a minute.
+        """
+        if self._client.status == "closed":  # it was connecting again, and has given up
+            return CancelledError()
+        with suppress(Exception):  # a lost connection cancels what is under way, which is seen to there
+            if self._present():
+                self._empty_since = None
+                return None
+            self._empty_since = self._empty_since or time.monotonic()
+        if self._empty_since is not None and time.monotonic() - self._empty_since > EMPTY_SECONDS:
             raise TruingError(f"no worker has been left at {self.where} for {EMPTY_SECONDS} s; start one and run again")
+        return None
 
     def remarks(self) -> list[str]:
         """Say how many workers were lost, and whose versions are others."""
@@ -143,17 +149,25 @@ class ClusterExecutor(Place):
     def settle(self) -> None:
         """At the end of the work: compare the workers that joined later too, and count those that are not there."""
         with suppress(Exception):
-            self.compare(self._code)
             self._count_absent()
+            self.compare(self._code)
 
     def _present(self) -> dict[str, int]:
         """Ask who is there now, and how much they do at once."""
         self._grown = False
-        threads: dict[str, int] = self._client.nthreads()
+        threads = self._threads()
         with self._lock:
             self._seen |= set(threads)
         self.workers = max(self.workers, len(threads))
         self.slots = max(1, sum(threads.values()))
+        return threads
+
+    def _threads(self) -> dict[str, int]:
+        """Return how many threads each worker has. Raises an exception where no answer comes."""
+        if self._client.status == "closed":  # its event loop has ended too: nobody would answer
+            raise CancelledError
+        client = self._client
+        threads: dict[str, int] = client.sync(client.scheduler.ncores, workers=None, callback_timeout=ANSWER_SECONDS)
         return threads
 
     def _heard(self, event: tuple[float, Any]) -> None:
@@ -175,7 +189,7 @@ class ClusterExecutor(Place):
 
     def _count_absent(self) -> None:
         """Count workers that have gone without a word of the scheduler."""
-        present = set(self._client.nthreads())
+        present = set(self._threads())
         with self._lock:
             self._gone += sorted(self._seen - present - self._retired - set(self._gone))
 

@@ -10,14 +10,16 @@ import struct
 import threading
 import time
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from truing.executors.places import Place
+from truing.executors.places import Place, Timed, answered
 
+J = TypeVar("J")
+A = TypeVar("A")
 MAGIC = b"TRB1"
 HEAD = struct.Struct(">4s32sQI")
 SYNC_SECONDS = 1.0
@@ -118,21 +120,30 @@ class KeptExecutor(Place):
         return len(self._taken)
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Return the answer that is kept, or compute and keep it."""
-        key = key_of(function, args, kwargs)
-        if key in self._log:
-            if key in self._earlier:
-                self._taken.add(key)
-            future: Future[Any] = Future()
-            future.set_result(self._log.get(key))
-            return future
-        future = self._inner.submit(function, *args, **kwargs)
-        future.add_done_callback(partial(self._keep, key))
+        """Compute elsewhere, without keeping."""
+        return self._inner.submit(function, *args, **kwargs)
+
+    def known(self, function: Callable[[J], A], job: J) -> Future[Timed[A]] | None:
+        """Return the answer that is kept, or None."""
+        key = key_of(function, job)
+        if key not in self._log:
+            return None
+        if key in self._earlier:
+            self._taken.add(key)
+        future: Future[Timed[A]] = Future()
+        future.set_result(Timed([self._log.get(key)], 0.0))
         return future
 
-    def _keep(self, key: bytes, future: Future[Any]) -> None:
-        if not future.cancelled() and future.exception() is None:
-            self._log.put(key, future.result())
+    def submit_together(self, function: Callable[[J], A], jobs: Sequence[J]) -> Future[Timed[A]]:
+        """Compute elsewhere and keep each answer as soon as it is there."""
+        future = self._inner.submit_together(function, jobs)
+        future.add_done_callback(partial(self._keep, [key_of(function, job) for job in jobs]))
+        return future
+
+    def _keep(self, keys: list[bytes], future: Future[Timed[Any]]) -> None:
+        if answered(future):
+            for key, answer in zip(keys, future.result().answers, strict=False):
+                self._log.put(key, answer)
 
     @property
     def where(self) -> str:  # type: ignore[override]
@@ -159,6 +170,11 @@ class KeptExecutor(Place):
         """How long an answer is waited for."""
         return self._inner.patience
 
+    @property
+    def moment(self) -> float:  # type: ignore[override]
+        """How many seconds of work travel together."""
+        return self._inner.moment
+
     def is_loss(self, error: BaseException) -> bool:
         """Tell whether a worker was lost."""
         return self._inner.is_loss(error)
@@ -167,9 +183,9 @@ class KeptExecutor(Place):
         """Make the place fit again."""
         self._inner.renew(error)
 
-    def look_after(self) -> None:
+    def look_after(self) -> Exception | None:
         """See whether an answer can still come."""
-        self._inner.look_after()
+        return self._inner.look_after()
 
     def remarks(self) -> list[str]:
         """Say what befell the workers, and where batches could not be kept."""
@@ -192,8 +208,8 @@ class _Plain(pickle.Pickler):
         return NotImplemented
 
 
-def key_of(function: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any] | None = None) -> bytes:
-    """Return the SHA-256 of what is asked: the function by its name, and its arguments as plain data."""
+def key_of(function: Callable[[J], Any], job: J) -> bytes:
+    """Return the SHA-256 of what is asked: the function by its name, and the job as plain data."""
     stream = io.BytesIO()
-    _Plain(stream).dump((function, args, kwargs or {}))
+    _Plain(stream).dump((function, job))
     return hashlib.sha256(stream.getvalue()).digest()

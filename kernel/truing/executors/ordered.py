@@ -5,33 +5,30 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, Future
-from typing import Any, TypeVar
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
 
-from truing.executors.places import Place
+from truing.executors.places import Place, Timed, answered
 
 J = TypeVar("J")
 A = TypeVar("A")
+MOST_TOGETHER = 256
 
 
 def in_order(executor: Executor, function: Callable[[J], A], jobs: Iterable[J], *, window: int = 16) -> Iterator[A]:
     """Yield ``function(job)`` in the order of the jobs, with about ``window`` of them under way.
 
-    Jobs that were under way when a worker was lost are handed out again. For a place that is not this process
-    (``SerialExecutor``) function and jobs must be picklable.
+    Short jobs travel together, as many as are computed in a moment. Jobs that were under way when a worker was lost are
+    handed out again. For a place that is not this process (``SerialExecutor``) function and jobs must be picklable.
     """
     place = executor if isinstance(executor, Place) else _Foreign(executor)
-    pending: deque[tuple[J, Future[A]]] = deque()
-    most = 1 if place.where == "serial" else window
+    work = _Work(place, function, 1 if place.where == "serial" else window)
     try:
         for job in jobs:
-            pending.append((job, _submitted(place, function, job, pending)))
-            if len(pending) >= max(most, 4 * (place.slots - 1)):
-                yield _first(place, function, pending)
-        while pending:
-            yield _first(place, function, pending)
+            yield from work.after(job)
+        yield from work.rest()
     finally:
-        for _, future in pending:
-            future.cancel()
+        work.cancel()
 
 
 class _Foreign(Place):
@@ -46,51 +43,100 @@ class _Foreign(Place):
         return self._executor.submit(function, *args, **kwargs)
 
 
-def _first(place: Place, function: Callable[[J], A], pending: deque[tuple[J, Future[A]]]) -> A:
-    """Take the oldest answer, handing out again what was lost as often as is sensible."""
-    while True:
-        future = pending[0][1]
-        try:
-            answer = future.result(timeout=place.patience)
-        except Exception as error:
-            if isinstance(error, TimeoutError) and not future.done():
-                place.look_after()
-            elif place.is_loss(error):
-                _hand_out_again(place, function, pending, error)
-            else:
-                raise
-            continue
-        pending.popleft()
-        return answer
+@dataclass
+class _Part(Generic[J, A]):
+    """Jobs that travel together, and their answers to come."""
+
+    jobs: list[J]
+    future: Future[Timed[A]]
 
 
-def _submitted(place: Place, function: Callable[[J], A], job: J, pending: deque[tuple[J, Future[A]]]) -> Future[A]:
-    while True:
-        try:
-            return place.submit(function, job)
-        except Exception as error:
-            if not place.is_loss(error):
-                raise
-            _hand_out_again(place, function, pending, error)
+class _Work(Generic[J, A]):
+    """The jobs under way, oldest first, and those that wait until enough of them can travel together."""
 
+    def __init__(self, place: Place, function: Callable[[J], A], window: int) -> None:
+        self._place = place
+        self._function = function
+        self._window = window
+        self._pending: deque[_Part[J, A]] = deque()
+        self._waiting: list[J] = []
+        self._together = 1
 
-def _hand_out_again(
-    place: Place, function: Callable[[J], A], pending: deque[tuple[J, Future[A]]], error: Exception
-) -> None:
-    """Renew the place and submit every unanswered job once more, in the same order."""
-    while True:
-        place.renew(error)
-        try:
-            fresh = [(job, future if _answered(future) else place.submit(function, job)) for job, future in pending]
-        except Exception as again:
-            if not place.is_loss(again):
-                raise
-            error = again
-            continue
-        pending.clear()
-        pending.extend(fresh)
-        return
+    def after(self, job: J) -> Iterator[A]:
+        """Take one more job, and yield the answers that must come before further ones are taken."""
+        known = self._place.known(self._function, job)
+        if known is not None:
+            self._hand_out()
+            self._pending.append(_Part([job], known))
+        else:
+            self._waiting.append(job)
+            if len(self._waiting) >= self._together:
+                self._hand_out()
+        while len(self._pending) >= max(self._window, 4 * (self._place.slots - 1)):
+            yield from self._first()
 
+    def rest(self) -> Iterator[A]:
+        """Yield all answers that are still to come."""
+        self._hand_out()
+        while self._pending:
+            yield from self._first()
 
-def _answered(future: Future[Any]) -> bool:
-    return future.done() and not future.cancelled() and future.exception() is None
+    def cancel(self) -> None:
+        """Give up what is under way."""
+        for part in self._pending:
+            part.future.cancel()
+
+    def _hand_out(self) -> None:
+        if self._waiting:
+            jobs, self._waiting = self._waiting, []
+            self._pending.append(_Part(jobs, self._submitted(jobs)))
+
+    def _first(self) -> Iterator[A]:
+        """Yield the oldest answers. Jobs behind one that failed have none yet and are handed out again."""
+        timed = self._awaited()
+        part = self._pending.popleft()
+        left = part.jobs[len(timed.answers) :]
+        if left:
+            self._pending.appendleft(_Part(left, self._submitted(left)))
+        if timed.seconds > 0:
+            fitting = int(self._place.moment * len(timed.answers) / timed.seconds)
+            self._together = max(1, min(fitting, 2 * self._together, MOST_TOGETHER))
+        yield from timed.answers
+
+    def _awaited(self) -> Timed[A]:
+        """Wait for the oldest answers, handing out again what was lost as often as is sensible."""
+        while True:
+            future = self._pending[0].future
+            try:
+                return future.result(timeout=self._place.patience)
+            except Exception as error:
+                waited = isinstance(error, TimeoutError) and not future.done()
+                if not waited and not self._place.is_loss(error):
+                    raise
+                loss = self._place.look_after() if waited else error
+                if loss is not None:
+                    self._hand_out_again(loss)
+
+    def _submitted(self, jobs: list[J]) -> Future[Timed[A]]:
+        while True:
+            try:
+                return self._place.submit_together(self._function, jobs)
+            except Exception as error:
+                if not self._place.is_loss(error):
+                    raise
+                self._hand_out_again(error)
+
+    def _hand_out_again(self, error: Exception) -> None:
+        """Renew the place and submit every unanswered part once more, in the same order."""
+        while True:
+            self._place.renew(error)
+            try:
+                for part in self._pending:
+                    if not answered(part.future):
+                        part.future = self._place.submit_together(self._function, part.jobs)
+            except Exception as again:
+                if not self._place.is_loss(again):
+                    raise
+                error = again
+                continue
+            return

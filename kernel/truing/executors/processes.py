@@ -22,6 +22,7 @@ class ProcessExecutor(Place):
 
     where = "processes"
     patience = PATIENCE
+    moment = 0.2
 
     def __init__(self, workers: int) -> None:
         self.workers = self.slots = workers
