@@ -20,9 +20,9 @@ NEVER_TOUCHES = 1.0  # m; slack of such a pin
 class Teeth:
     """Contacts of many meshes: phase angle (pins, phases, 1), arms, slack and radii (pins, phases, m).
 
-    ``weight`` is the torque per force at the longest arm and approach, ``depth_number``, ``compliance`` and ``torque``
-    are the numbers of equation 1b and the torque for every position (phases, m), ``nothing`` is 0. ``first`` is the number of the first
-    pin where a part of the pins is left out.
+    ``weight`` is the torque per force at the longest arm and approach; ``depth_number``, ``compliance`` and ``torque``
+    are the numbers of equation 1b and the torque for every position (phases, m); ``nothing`` is 0. ``first`` is the
+    number of the first pin where a part of the pins is left out.
     """
 
     mesh: Mesh
