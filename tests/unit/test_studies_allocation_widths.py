@@ -66,6 +66,11 @@ def row(lengths: Row) -> End:
     return End(end=lengths.a + 2.0 * lengths.b - 0.5 * lengths.c + lengths.d)
 
 
+def only_d(lengths: Row) -> End:
+    """The last length alone."""
+    return End(end=lengths.d + 0.0 * lengths.a)
+
+
 def euro(formula: str) -> Price:
     return Price(formula, width="mm", unit="EUR")
 
@@ -308,6 +313,17 @@ def test_what_has_no_width_to_choose_is_no_variable() -> None:
     assert set(allotted(replace(ROW, errors=errors)).tolerances) == {"a"}
     with pytest.raises(UsageError, match="none with a price whose width could be chosen"):
         allotted(replace(ROW, errors=errors[1:]))
+
+
+def test_a_width_that_does_not_matter_becomes_the_widest() -> None:
+    """The goal hangs on d alone, which has no price."""
+    model = replace(ROW, function=only_d, objectives=[Require("end", within="0.1 mm", reliability=0.99)])
+    answer = allotted(model)
+    assert {name: 1e3 * width for name, width in answer.least.widths.items()} == pytest.approx(
+        dict.fromkeys("abc", 4 * 0.3), rel=1e-6
+    )
+    still = replace(model, errors=[*ROW.errors[:3], Tolerance("d", off())])
+    assert allotted(still).least.widths == pytest.approx(answer.least.widths)
 
 
 @pytest.mark.parametrize("formula", ["16.14 * width**-0.324 + 0.217 * exp(-0.013 * width)", "2 / (width + 0.1)", "7"])

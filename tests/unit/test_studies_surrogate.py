@@ -21,7 +21,7 @@ from truing.calculation import calculate
 from truing.errors import UsageError
 from truing.executors import open_executor
 from truing.inputs_file.study_options import options_of, read_option
-from truing.setup import Setup
+from truing.setup import Setup, SwitchedOn
 from truing.studies.surrogate_box import open_box
 from truing.studies.surrogate_runs import Speed, designed
 
@@ -279,6 +279,24 @@ def test_several_results_and_a_figure_along_one_input() -> None:
     json.dumps(found.as_json(), allow_nan=False)
 
 
+def test_a_condition_is_a_direction_and_effects_act() -> None:
+    """Lengths of 30 + 20 - 40 mm grow by 1e-3 per kelvin, so the gap of 10 mm does."""
+    on = SwitchedOn(CHAIN.effects["grow"], {"strain": 1e-3})
+    study = Surrogate(of="gap", over={"warmth": "0..60 degC"}, design=15, compare=0)
+    found = emulated(CHAIN, study, effects=(on,))
+    kelvin = 273.15 + np.array([10.0, 20.0, 50.0])
+    assert 1e3 * found.predict({"warmth": kelvin})["gap"] == pytest.approx([9.9, 10.0, 10.3], rel=1e-5)
+    assert found.as_json()["box"]["warmth"]["low"] == pytest.approx(0.0)
+    assert found.as_json()["course"]["at"][-1] == pytest.approx(60.0)
+
+
+def test_what_depends_on_nothing_is_learnt_as_a_constant() -> None:
+    found = emulated(CHAIN, Surrogate(of="gap", over={"gap_limit": "0.1..1 mm"}, design=10, compare=0))
+    assert 1e3 * found.predict({"gap_limit": 5e-4})["gap"] == pytest.approx([10.0], rel=1e-9)
+    assert found.as_json()["results"]["gap"]["largest_share"] == pytest.approx(0.0, abs=1e-9)
+    assert all(block.draw() for block in found.blocks() if hasattr(block, "draw"))
+
+
 def test_the_answer_stands_for_what_it_was_made_for(found: Emulated) -> None:
     assert found.predict({"x3": 0.0})["total"] == pytest.approx([0.0], abs=1e-3)
     with pytest.raises(UsageError, match="made for one value of 'x3'"):
@@ -302,6 +320,7 @@ def test_options_can_stand_in_a_file() -> None:
         ({"of": ()}, "results to learn"),
         ({"over": {}}, "ranges to learn"),
         ({"design": 5}, "design = 5 is too few for 2 directions"),
+        ({"design": 3001}, "more than 3000 points takes too long"),
         ({"held_out": 3}, "at least 10 points"),
         ({"restarts": -1}, "not negative"),
         ({"batch": 0}, "at least 1"),

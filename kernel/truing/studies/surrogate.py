@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 PROMISED = 0.95
 FINE, COARSE = 61, 5
+LARGEST = 3000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,6 +62,8 @@ class Surrogate:
             raise UsageError(
                 f"design = {self.design} is too few for {len(self.over)} directions; take {10 * len(self.over)} or more"
             )
+        if self.design > LARGEST:
+            raise UsageError(f"design = {self.design}, but learning from more than {LARGEST} points takes too long")
         if self.held_out < 10:
             raise UsageError(f"held_out = {self.held_out}, but at least 10 points are needed to judge a surrogate")
         if self.restarts < 0 or self.compare < 0 or self.batch < 1:

@@ -75,12 +75,19 @@ class Judged:
         return abs(self.predicted - self.simulated)
 
     @property
+    def whole(self) -> Any:
+        """What errors are shares of: the values (n,), or their range."""
+        import numpy as np
+
+        size = abs(self.simulated)
+        return size if self.is_share else np.ptp(self.simulated) or size.max() or 1.0
+
+    @property
     def shares(self) -> Values:
         """The same as shares of the value, or of the range of all values."""
         import numpy as np
 
-        with np.errstate(all="ignore"):
-            return self.errors / (abs(self.simulated) if self.is_share else np.ptp(self.simulated))
+        return np.asarray(self.errors / self.whole)
 
 
 @dataclass(frozen=True, eq=False)

@@ -222,10 +222,8 @@ def _draw_errors(panel: Any, judged: Judged, name: str, unit: str) -> None:
 
     from truing.units import from_si, unit_text
 
-    whole = judged.simulated if judged.is_share else np.ptp(judged.simulated)
-    off, low, high = (
-        100 * (values - judged.simulated) / whole for values in (judged.predicted, judged.low, judged.high)
-    )
+    ends = (judged.predicted, judged.low, judged.high)
+    off, low, high = (100 * (values - judged.simulated) / judged.whole for values in ends)
     bars = np.abs([off - low, high - off])
     panel.errorbar(
         from_si(judged.simulated, unit), off, yerr=bars, fmt="o", color=BLUE, ecolor=GREY, markersize=3, elinewidth=0.8

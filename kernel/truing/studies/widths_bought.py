@@ -84,7 +84,7 @@ class Search:
         by_mean = np.array([strip.pulls[name] * widths[key] for key, strip in shop.strips.items()])
         by_sd = np.array([strip.variance(name, widths[key]) / sd for key, strip in shop.strips.items()])
         room, of_mean, of_sd = _room(demand, shop.mean(name, widths), sd)
-        scale = max(shop.variance(name, shop.start), 1e-300) ** 0.5
+        scale = shop.variance(name, shop.start) ** 0.5 or 1.0
         return room / scale, (of_mean * by_mean + of_sd * by_sd) / scale
 
 
