@@ -34,12 +34,23 @@ def is_alive(process: int) -> bool:
         return False
 
 
+def hearing_interrupts(command: list[str]) -> list[str]:
+    """Return a command that hears an interrupt, also where the tests themselves were started deaf to it (``&``)."""
+    hear = "import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); os.execv(sys.argv[1], sys.argv[1:])"
+    return [sys.executable, "-c", hear, *command]
+
+
 def interrupted(folder: Path, *more: str, after: float) -> tuple[subprocess.CompletedProcess[str], list[int]]:
     """Start a run that would take hours, interrupt it as a terminal does, and return its end and its children."""
     (folder / "press.toml").write_text(INPUTS)
     command = [sys.executable, "-m", "truing", "run", "press_linkage", "--inputs", "press.toml", *more]
     process = subprocess.Popen(
-        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+        hearing_interrupts(command),
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
     )
     try:
         time.sleep(after)

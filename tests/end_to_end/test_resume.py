@@ -1,0 +1,229 @@
+"""A run that was killed goes on from its finished batches, and answers as if nobody had disturbed it."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from test_interrupt import children_of, hearing_interrupts, is_alive
+
+from shared import Calc
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
+
+PATIENCE = 120.0
+PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
+PRESS = (
+    "run", "press_linkage", "-q", "--set", 'reading="printed"', "--set", 'studies.run=["reliability"]',
+    "--set", "studies.reliability.draws=8000000", "--resume",
+)  # fmt: skip
+BATCHES = -(-8_000_000 // 2**14)
+SMALL = ("run", PIN, "-q", "--set", 'studies.run=["reliability"]', "--set", "studies.reliability.draws=60000")
+
+
+def wait_until(holds: Callable[[], Any], what: str) -> None:
+    until = time.monotonic() + PATIENCE
+    while not holds():
+        assert time.monotonic() < until, f"not within {PATIENCE:.0f} s: {what}"
+        time.sleep(0.02)
+
+
+def ended(folder: Path, how: signal.Signals, *more: str) -> tuple[int, str, list[int]]:
+    """Start the long run and end it when a few batches are finished; return its end, its words, its children."""
+    command = [sys.executable, "-m", "truing", *PRESS, "-o", "run", *more]
+    process = subprocess.Popen(
+        hearing_interrupts(command), cwd=folder, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    log = folder / "run.partial" / "batches.log"
+    before = log.stat().st_size if log.exists() else 0
+    wait_until(lambda: process.poll() is not None or (log.exists() and log.stat().st_size > before), "a batch is kept")
+    assert process.poll() is None, process.communicate()
+    children = children_of(process.pid) if Path("/proc/self/task").exists() else []
+    process.send_signal(how)
+    _, err = process.communicate(timeout=PATIENCE)
+    return process.returncode, err, children
+
+
+def run_of(folder: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+    return found
+
+
+def test_a_killed_run_goes_on_where_it_was(calc: Calc, tmp_path: Path) -> None:
+    """Killed with two processes, interrupted with one, completed with one: no batch is computed twice."""
+    code, _, children = ended(tmp_path, signal.SIGKILL, "--workers", "2")
+    assert code == -signal.SIGKILL
+    wait_until(lambda: not any(map(is_alive, children)), "the workers end with the process that started them")
+    assert not (tmp_path / "run").exists()
+    code, err, _ = ended(tmp_path, signal.SIGINT)
+    words = "calc: interrupted; finished batches are kept in run.partial, the same command goes on from there\n"
+    assert (code, err) == (130, words)
+    log = tmp_path / "run.partial" / "batches.log"
+    with log.open("ab") as torn:
+        torn.write(b"TRB1 the power failed here")
+    answer = calc(*PRESS, "-o", "run")
+    assert answer.code == 1, answer.err
+    assert 0 < run_of(tmp_path / "run")["resumed"] < BATCHES
+    assert calc(*PRESS[:-1], "-o", "whole").code == 1
+    assert run_of(tmp_path / "whole")["resumed"] == 0
+    assert (tmp_path / "run/results.json").read_bytes() == (tmp_path / "whole/results.json").read_bytes()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["run", "whole"]
+
+
+@pytest.fixture
+def unfinished(calc: Calc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A run that failed at the very end, when every batch was finished."""
+    from truing.errors import OutputError
+    from truing.report import run
+
+    with monkeypatch.context() as broken:
+
+        def full(*_: object, **__: object) -> None:
+            raise OutputError("the disk is full")
+
+        broken.setattr(run, "write_run", full)
+        assert calc(*SMALL, "-o", "run", "--resume").code == 2
+    assert (tmp_path / "run.partial" / "batches.log").stat().st_size > 0
+    return tmp_path
+
+
+def test_all_batches_are_taken_up_and_none_is_computed(
+    calc: Calc, unfinished: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from truing.studies import sampling
+
+    assert calc(*SMALL, "-o", "whole").code == 0
+    monkeypatch.setattr(sampling, "_unpacked", None)  # computing a batch would call it
+    assert calc(*SMALL, "-o", "run", "--resume").code == 0
+    assert run_of(unfinished / "run")["resumed"] == 4
+    assert (unfinished / "run/results.json").read_bytes() == (unfinished / "whole/results.json").read_bytes()
+    assert not (unfinished / "run.partial").exists()
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        (("--set", 'load="121 N"'), "other inputs"),
+        (("--set", "seed=7"), r"another seed \(0, now 7\)"),
+        (("--set", "studies.reliability.draws=60001"), "other inputs"),
+    ],
+)
+def test_batches_of_another_run_are_refused(calc: Calc, unfinished: Path, changed: tuple[str, ...], said: str) -> None:
+    import re
+
+    before = (unfinished / "run.partial/batches.log").read_bytes()
+    answer = calc(*SMALL, *changed, "-o", "run", "--resume")
+    assert answer.code == 2
+    sentence = (
+        f"calc: run.partial: holds finished batches of a run with {said}; run that one again, or remove the folder"
+    )
+    assert re.fullmatch(sentence + "\n", answer.err)
+    assert (unfinished / "run.partial/batches.log").read_bytes() == before
+    assert calc(*SMALL, *changed, "-o", "run").code == 0  # without --resume they are neither read nor touched
+    assert (unfinished / "run.partial/batches.log").read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("where", "name", "said"),
+    [
+        ("versions", "numpy", r"another version of numpy \(0.1, now [\d.]+\)"),
+        ("code", "pin_wear.py", "other code of pin_wear.py"),
+        ("code", "truing", "other code of truing"),
+    ],
+)
+def test_batches_of_other_versions_are_refused(calc: Calc, unfinished: Path, where: str, name: str, said: str) -> None:
+    import re
+
+    header = unfinished / "run.partial" / "partial.json"
+    content = json.loads(header.read_text(encoding="utf-8"))
+    assert name in content[where]
+    content[where][name] = "0.1"
+    header.write_text(json.dumps(content), encoding="utf-8")
+    answer = calc(*SMALL, "-o", "run", "--resume")
+    assert answer.code == 2
+    assert re.search(
+        f"holds finished batches of a run with {said}; run that one again, or remove the folder", answer.err
+    )
+
+
+def test_two_runs_do_not_share_their_batches(calc: Calc, unfinished: Path) -> None:
+    holder = (
+        "import fcntl, sys\n"
+        "with open('run.partial/lock', 'a') as file:\n"
+        "    fcntl.flock(file, fcntl.LOCK_EX)\n"
+        "    print('held', flush=True)\n"
+        "    sys.stdin.read()\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", holder], cwd=unfinished, stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as other:
+        assert other.stdout is not None
+        assert other.stdout.readline() == b"held\n"
+        answer = calc(*SMALL, "-o", "run", "--resume")
+        assert answer.code == 2
+        assert answer.err == "calc: run.partial: is in use by another run; wait for it, or name another --output\n"
+        other.kill()
+    assert calc(*SMALL, "-o", "run", "--resume").code == 0  # whoever held it is gone, and so is the hold
+
+
+def test_a_folder_of_somebody_else_is_left_alone(calc: Calc, tmp_path: Path) -> None:
+    (tmp_path / "run.partial").mkdir()
+    (tmp_path / "run.partial" / "thesis.txt").write_text("mine")
+    answer = calc(*SMALL, "-o", "run", "--resume")
+    assert answer.code == 2
+    assert answer.err == "calc: run.partial: holds 'thesis.txt', so it is none of ours; name another --output\n"
+    assert [path.name for path in (tmp_path / "run.partial").iterdir()] == ["thesis.txt"]
+
+
+def test_nothing_is_kept_of_a_run_that_never_began(calc: Calc, tmp_path: Path) -> None:
+    answer = calc(*SMALL, "--set", 'load="900 kN"', "-o", "deep/down/run", "--resume")
+    assert answer.code == 2
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs /proc to find the workers")
+def test_a_worker_that_is_killed_changes_nothing_but_the_warning(calc: Calc, tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "truing", *PRESS, "-o", "run", "--workers", "2"]
+    process = subprocess.Popen(
+        [word for word in command if word != "-q"], cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+        text=True, encoding="utf-8",
+    )  # fmt: skip
+    log = tmp_path / "run.partial" / "batches.log"
+    wait_until(lambda: process.poll() is not None or (log.exists() and log.stat().st_size), "a batch is kept")
+    workers = [child for child in children_of(process.pid) if b"spawn_main" in command_of(child)]
+    os.kill(workers[0], signal.SIGKILL)
+    _, err = process.communicate(timeout=PATIENCE)
+    lost = "a worker process ended without an answer once; its batches were computed again, the results are the same"
+    assert f"warning: {lost}\n" in err
+    run = run_of(tmp_path / "run")
+    assert run["workers"] == {"count": 2, "lost": 1, "where": "processes"}
+    assert run["warnings"] == [lost]
+    assert calc(*PRESS[:-1], "-o", "whole").code == 1
+    assert (tmp_path / "run/results.json").read_bytes() == (tmp_path / "whole/results.json").read_bytes()
+
+
+def command_of(process: int) -> bytes:
+    return Path(f"/proc/{process}/cmdline").read_bytes()
+
+
+def test_cluster_and_workers_exclude_each_other(calc: Calc) -> None:
+    answer = calc("run", PIN, "--cluster", "tcp://127.0.0.1:1", "--workers", "2")
+    assert (answer.code, answer.out) == (2, "")
+    assert answer.err == "calc: --cluster and --workers exclude each other: a cluster has its own workers\n"
+
+
+def test_without_the_extra_it_is_named(calc: Calc, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    answer = calc("run", PIN, "-q", "--cluster", "tcp://127.0.0.1:1")
+    assert answer.code == 2
+    assert answer.err.endswith(
+        'calc: a cluster needs dask.distributed; install it with: pip install "truing[cluster]"\n'
+    )
