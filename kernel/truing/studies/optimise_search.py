@@ -22,6 +22,13 @@ FAILED = 1e6
 ROOM = 4
 """How many times its population a search remembers of what it has found on the way."""
 
+LED = 2
+"""Every second offspring is a differential step."""
+REACH, MOVED = (0.2, 1.0), 0.9
+"""How long these steps are, and in what share of the variables."""
+
+TRIFLE, DEAR = 1e-4, 1e-2
+
 Answering = Callable[["NDArray[np.float64]"], Answers]
 
 
@@ -50,7 +57,10 @@ class Trail:
 
 def search(problem: Problem, plan: Plan, answer: Answering, done: Callable[[int, int], None]) -> Trail:
     """Look for the designs that no other beats. ``answer(designs)`` is called once per generation."""
+    import numpy as np
+
     algorithm, shell = _algorithm(problem, plan)
+    rng = np.random.default_rng([plan.seed, LED])
     kept: tuple[NDArray[np.float64], Answers] | None = None
     fronts: list[NDArray[np.float64]] = []
     evaluations = failed = 0
@@ -58,6 +68,8 @@ def search(problem: Problem, plan: Plan, answer: Answering, done: Callable[[int,
         asked = algorithm.ask()
         if asked is None or not len(asked):
             break
+        if kept is not None:
+            asked.set("X", _led(problem, (asked.get("X"), algorithm.pop.get("X")), kept[0], rng))
         designs = problem.space.designs(asked.get("X"))
         found = answer(designs)
         evaluations, failed = evaluations + len(designs), failed + int(found.failed.sum())
@@ -68,6 +80,33 @@ def search(problem: Problem, plan: Plan, answer: Answering, done: Callable[[int,
     assert kept is not None  # the first generation is never empty
     designs, answers = _best(problem, None, kept, plan.population)
     return Trail(designs, answers, tuple(fronts), evaluations, failed)
+
+
+def _led(
+    problem: Problem,
+    places: tuple[NDArray[np.float64], NDArray[np.float64]],
+    best: NDArray[np.float64],
+    rng: np.random.Generator,
+) -> NDArray[np.float64]:
+    """Put differential steps in the place of every second offspring, and return all offspring as places.
+
+    A step is a part of the way between two designs of the population, away from one of the best: so it follows the
+    front whatever its direction (R. Storn, K. Price, J. Glob. Optim. 11 (1997) 341). ``places`` are those of the
+    offspring and of the population.
+    """
+    import numpy as np
+
+    offspring, population = places
+    changed = offspring.copy()
+    count = len(changed[1::LED])
+    start = problem.space.units(best[rng.integers(len(best), size=count)])
+    ahead, behind = (population[rng.integers(len(population), size=count)] for _ in range(2))
+    reach = rng.uniform(*REACH, (count, 1))
+    moved = rng.random(start.shape) < MOVED
+    led = start + np.where(moved, reach * (ahead - behind), 0.0)
+    led = np.where(led < 0, -led, np.where(led > 1, 2 - led, led))
+    changed[1::LED] = problem.space.units(problem.space.designs(np.clip(led, 0.0, 1.0)))
+    return changed
 
 
 def small(problem: Problem, answers: Answers) -> NDArray[np.float64]:
@@ -95,7 +134,8 @@ def _best(
         return designs[[least]], answers[[least]]
     rows = np.flatnonzero(answers.feasible)
     values = small(problem, answers)
-    chosen = rows[spread_out(values, non_dominated(values), most)]
+    front = non_dominated(values)
+    chosen = rows[spread_out(values, front[worth_it(values[front])], most)]
     return designs[chosen], answers[chosen]
 
 
@@ -122,6 +162,21 @@ def non_dominated(values: NDArray[np.float64]) -> NDArray[np.intp]:
         front.append(first)
         order = rest[(values[rest] < values[first]).any(axis=1)]
     return np.array(front, dtype=np.intp)
+
+
+def worth_it(front: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Say which designs of a front buy something for their price.
+
+    One that is better than another by less than ``TRIFLE`` of the front's extent, in what it is better in, and worse
+    by more than ``DEAR`` in anything, is no trade: the ends of a front would hang on to such designs for ever.
+    """
+    import numpy as np
+
+    span = np.ptp(front, axis=0)
+    scaled = front / np.where(span > 0, span, 1.0)
+    apart: NDArray[np.float64] = scaled[:, None, :] - scaled[None, :, :]  # how much worse the first is than the second
+    beaten = (apart.min(axis=2) > -TRIFLE) & (apart.max(axis=2) > DEAR)
+    return np.asarray(~beaten.any(axis=1))
 
 
 def spread_out(values: NDArray[np.float64], front: NDArray[np.intp], most: int) -> NDArray[np.intp]:
