@@ -29,7 +29,8 @@ BY_NAME: dict[str, Effect[Any, Any]] = {effect.name: effect for effect in EFFECT
 EVERY = pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.name)
 IDS = (
     "thermal_clearance running_in wear_temperature film_lubrication pin_rolling pin_wear lost_motion_share "
-    "bearing_wear wind_up stiffening runout pin_pass_ripple friction_hysteresis lubricant_ageing load_exponent duty_share"
+    "bearing_wear wind_up stiffening runout pin_pass_ripple friction_hysteresis lubricant_ageing load_exponent "
+    "duty_share"
 )
 
 
