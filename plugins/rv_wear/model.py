@@ -7,18 +7,40 @@ from rv_wear.calculation import rv_wear
 from rv_wear.chances import chances, history, indices
 from rv_wear.effects import EFFECTS
 from rv_wear.findings import FINDINGS
+from rv_wear.front import bought, ends, front, learnt
+from rv_wear.least_costs import LeastCosts
 from rv_wear.modifications import Modifications, trend
+from rv_wear.new_machines import NewMachines
 from rv_wear.published import PUBLISHED
 from rv_wear.sections import SECTIONS
 from rv_wear.tolerances import TOLERANCES
 from rv_wear.validity import Validity
-from truing import Minimise, Model, Reliability, Require, Sensitivity, Sweep, Vary
+from truing import (
+    Allocation,
+    Minimise,
+    Model,
+    Optimise,
+    Reliability,
+    Require,
+    Sensitivity,
+    Surrogate,
+    Sweep,
+    Vary,
+)
 
 LITERATURE = [
     "The paper: Liu Jiang, Xiao Zhengming, Zhang Longlong, Liu Weibiao (劉江, 肖正明, 張龍隆, 劉衛標), Transmission "
     "accuracy reliability analysis and parameter optimization of RV reducer considering cycloid gear wear, Chinese "
     "Journal of Engineering Design 29(6), 2022, p. 739.",
 ]
+
+BOX = {
+    "output_torque": "1000..4500 N*m",
+    "output_speed": "5..25 r/min",
+    "working_time": "200..7000 h",
+    "equidistant_modification": "-45..4 um",
+    "equidistant_modification - shift_modification": "2..6 um",
+}
 
 RV_WEAR = Model(
     name="rv_wear",
@@ -39,7 +61,19 @@ RV_WEAR = Model(
         Sweep(over="working_time", at="0..6000 h", points=25, gives=history),
         Sensitivity(of="backlash", gives=indices),
         Reliability(over="working_time", at="0..6000 h", points=25, gives=chances),
+        NewMachines(),
         Costs(gives=cost),
+        Surrogate(
+            of="max_wear",
+            over=BOX,
+            logarithmic=("output_torque", "output_speed", "working_time"),
+            log_result=True,
+            along="working_time",
+            gives=learnt,
+        ),
+        Allocation(of="backlash", tightest=1.0, widest=2.0, gives=bought),
+        LeastCosts(gives=ends),
+        Optimise(chance="first_order", gives=front),
     ],
     sheet=SECTIONS,
     published=PUBLISHED,
