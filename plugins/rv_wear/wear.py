@@ -14,7 +14,7 @@ from rv_wear.reading import Meshes, depth_at
 from truing import Float, feasible
 
 TOO_FAR = (
-    f"the wear needs more than {MOST_STEPS} reconstructions of the profile: check pressure_viscosity, "
+    f"the wear needs more than {MOST_STEPS} reconstructions of the profile: check output_torque, pressure_viscosity, "
     "composite_roughness (um, not mm) and working_time, or enlarge reconstruction_depth"
 )
 
