@@ -45,10 +45,14 @@ SECTIONS = [
     ),
     Section(
         "Influence of the errors",
-        *(f"index_{number}" for number in range(1, 17)),
         text="How much backlash each error gives per micrometre, against that of the pin circle radius. Both "
         "modifications are taken at the same wear; that they also change the wear is not in these indices.",
         blocks=drawn.influence,
+    ),
+    Section(
+        "The sixteen indices",
+        *(f"index_{number}" for number in range(1, 17)),
+        level="full",
     ),
     Section(
         "Reliability of the backlash",
@@ -60,9 +64,23 @@ SECTIONS = [
     ),
     Section(
         "Cost of the tolerances",
-        "manufacturing_cost",
+        "tolerance_price", "manufacturing_cost",
         text="Six zones are priced by their width, in the form of the cost functions that the inputs state. The "
         "errors of both modifications share one width and one price.",
         blocks=drawn.costs,
+    ),
+    Section(
+        "Surrogate of the wear",
+        "band_share", "surrogate_coverage", "surrogate_error", "surrogate_worst",
+        text="The paper learns the wear from some simulated cases, because each of them takes long there. What that "
+        "is worth here, and whether it is faster than the calculation itself, stands in the study below.",
+    ),
+    Section(
+        "Better tolerances",
+        "least_cost", "knee_cost", "knee_wear", "knee_equidistant", "smallest_wear", "front_cost", "front_wear",
+        "front_equidistant",
+        text="Which modification and which widths of the zones are worth their money? The cost of the zones and the "
+        "deepest wear are to be small, while the required share of machines stays within the permitted backlash.",
+        blocks=drawn.better_tolerances,
     ),
 ]  # fmt: skip
