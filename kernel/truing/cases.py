@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,11 +11,16 @@ from truing.calculation import Calculation, calculate
 from truing.declare.goals import Require
 from truing.errors import Fault, InputError, UsageError
 from truing.evaluate import evaluate_rows
+from truing.executors import SerialExecutor, in_order, open_executor
 from truing.measurements import Case
+from truing.packed import Packed, pack, travels, unpack
 from truing.prices import price_answers
 from truing.setup import Setup
 from truing.studies.bench import Check, Progress, silent
 from truing.studies.checks import plain_checks
+
+BLOCK = 2**10
+"""How many cases one array call calculates."""
 
 
 @dataclass(frozen=True)
@@ -86,12 +91,13 @@ def run_cases(
 ) -> tuple[Calculation, CasesTable]:
     """Calculate every case and, in full with its studies, the governing one.
 
-    Limits that studies decide need the studies of each case; without such limits all cases are one array call. Raises
-    InputError with every reason and its line when no case can be calculated.
+    Limits that studies decide need the studies of each case; without such limits cases are calculated in array calls of
+    fixed length. Either is shared out by ``executor``. Raises InputError with every reason and its line when no case
+    can be calculated.
     """
     cases = _completed(setup, cases)
     one_by_one = _studies_decide(setup)
-    done = _one_by_one(setup, cases, executor, progress) if one_by_one else _all_at_once(setup, cases)
+    done = (_one_by_one if one_by_one else _in_blocks)(setup, cases, executor, progress)
     while alive := [place for place, case in enumerate(done) if case.reason is None]:
         governing = min(alive, key=lambda place: done[place].margin)
         try:
@@ -120,31 +126,77 @@ def _studies_decide(setup: Setup) -> bool:
 
 
 def _one_by_one(setup: Setup, cases: Sequence[Case], executor: Executor, progress: Progress) -> list[CaseResult]:
+    """Run the studies of every case.
+
+    Where cases are many, each is a job of its own; where they are few, the batches of each are shared out.
+    """
+    answers: Iterable[Answer]
+    apart = len(cases) >= 2 * getattr(executor, "slots", 1) > 2 and travels(setup)
+    if apart:
+        answers = in_order(executor, _packed_case, (pack(case_setup(setup, case), studies=True) for case in cases))
+    else:
+        answers = (_case_answer(case_setup(setup, case), executor) for case in cases)
     done = []
-    for count, case in enumerate(cases):
-        progress("cases", count, len(cases))
-        try:
-            found = calculate(case_setup(setup, case), executor=executor)
-        except UsageError as error:  # impossible, or a tolerance that its size outgrows
-            done.append(CaseResult(case, {}, reason=str(error)))
-            continue
-        done.append(CaseResult(case, found.answers, found.checks))
-    progress("cases", len(cases), len(cases))
+    progress("cases", 0, len(cases))
+    for case, (found, checks, reason) in zip(cases, answers, strict=True):
+        done.append(CaseResult(case, found, checks, reason))
+        progress("cases", len(done), len(cases))
     return done
 
 
-def _all_at_once(setup: Setup, cases: Sequence[Case]) -> list[CaseResult]:
-    columns = {name: [case.values[name] for case in cases] for name in cases[0].values}
-    rows = evaluate_rows(setup, columns, len(cases))
-    done = []
-    for place, case in enumerate(cases):
-        reason = rows.reasons.get(place)
-        if reason is not None:
-            done.append(CaseResult(case, {}, reason=reason))
-            continue
-        answers = {name: _plain(values[place]) for name, values in rows.results.items()}
-        done.append(_checked(case, case_setup(setup, case), answers))
+Answer = tuple[Mapping[str, Any], tuple[Check, ...], str | None]
+
+
+def _packed_case(packed: Packed) -> Answer:
+    """Calculate one case in a worker, all by itself."""
+    with open_executor("serial") as alone:
+        return _case_answer(unpack(packed), alone)
+
+
+def _case_answer(setup: Setup, executor: Executor) -> Answer:
+    """Return what a case answers and its checks, or why it failed."""
+    try:
+        found = calculate(setup, executor=executor)
+    except UsageError as error:  # impossible, or a tolerance that its size outgrows
+        return {}, (), str(error)
+    return found.answers, found.checks, None
+
+
+def _in_blocks(setup: Setup, cases: Sequence[Case], executor: Executor, progress: Progress) -> list[CaseResult]:
+    """Calculate cases in array calls of fixed length: a block is the same wherever it is calculated."""
+    blocks = [cases[start : start + BLOCK] for start in range(0, len(cases), BLOCK)]
+    jobs = ([case.values for case in block] for block in blocks)
+    answers: Iterable[list[tuple[dict[str, Any], str | None]]]
+    if len(blocks) == 1 or isinstance(executor, SerialExecutor) or not travels(setup):
+        answers = (_block_answer(setup, rows) for rows in jobs)
+    else:
+        packed = pack(setup)
+        answers = in_order(executor, _packed_block, ((packed, rows) for rows in jobs))
+    done: list[CaseResult] = []
+    for block, found in zip(blocks, answers, strict=True):
+        done += [_block_case(setup, case, *answer) for case, answer in zip(block, found, strict=True)]
+        progress("cases", len(done), len(cases))
     return done
+
+
+def _packed_block(job: tuple[Packed, list[Mapping[str, Any]]]) -> list[tuple[dict[str, Any], str | None]]:
+    """Calculate one block in a worker."""
+    return _block_answer(unpack(job[0]), job[1])
+
+
+def _block_answer(setup: Setup, block: list[Mapping[str, Any]]) -> list[tuple[dict[str, Any], str | None]]:
+    """Return what each case of a block answers, or why it failed."""
+    rows = evaluate_rows(setup, {name: [values[name] for values in block] for name in block[0]}, len(block))
+    return [
+        ({name: _plain(values[place]) for name, values in rows.results.items()}, rows.reasons.get(place))
+        for place in range(len(block))
+    ]
+
+
+def _block_case(setup: Setup, case: Case, answers: Mapping[str, Any], reason: str | None) -> CaseResult:
+    if reason is not None:
+        return CaseResult(case, {}, reason=reason)
+    return _checked(case, case_setup(setup, case), answers)
 
 
 def _checked(case: Case, setup: Setup, answers: Mapping[str, Any]) -> CaseResult:

@@ -6,7 +6,7 @@ import io
 import pickle
 import threading
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
 
@@ -32,8 +32,11 @@ class Packed:
     """The hash of a plugin in one file: a worker may find another one there, or have loaded it before it changed."""
 
 
-def pack(setup: Setup) -> Packed:
-    """Turn a setup into plain data; spreads are packed only where they differ from the declared ones."""
+def pack(setup: Setup, *, studies: bool = False) -> Packed:
+    """Turn a setup into plain data; spreads are packed only where they differ from the declared ones.
+
+    With ``studies`` those that run travel too; what each gives is found again by its name.
+    """
     declared = {name: tolerance.spread for name, tolerance in setup.model.tolerances.items()}
     content = {
         "inputs": setup.model.read_inputs(setup.inputs),
@@ -42,6 +45,8 @@ def pack(setup: Setup) -> Packed:
         "effects": [_plain_effect(item) for item in setup.effects],
         "calibrated": dict(setup.calibrated),
         "seed": setup.seed,
+        "units": dict(setup.units),
+        "studies": [_without_gives(study) for study in setup.studies] if studies else [],
     }
     origin = setup.origin
     return Packed(origin.ref, origin.name, setup.model.name, _plain(content), _file_hash(origin.ref))
@@ -79,7 +84,27 @@ def unpack(packed: Packed) -> Setup:
         ),
         calibrated=content["calibrated"],
         seed=content["seed"],
+        units=content["units"],
+        studies=tuple(_with_gives(study, model) for study in content["studies"]),
     )
+
+
+def travels(setup: Setup) -> bool:
+    """Tell whether a setup can be packed with its studies: nothing in it is a function made on the fly."""
+    try:
+        pack(setup, studies=True)
+    except Exception:
+        return False
+    return True
+
+
+def _without_gives(study: Any) -> Any:
+    return replace(study, gives=None)
+
+
+def _with_gives(study: Any, model: Model[Any, Any]) -> Any:
+    declared = {item.name: item.gives for item in model.studies}
+    return replace(study, gives=declared.get(study.name))
 
 
 def made(cls: type[Any], values: Mapping[tuple[str, ...], Any]) -> Any:

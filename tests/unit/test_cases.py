@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from concurrent.futures import Future
 from dataclasses import replace
 from typing import Any
 
@@ -11,7 +13,8 @@ from pin_wear import PIN_WEAR, Pin
 from truing import Float, Model, Reliability, Require, Sensitivities, Sensitivity, found, results
 from truing.cases import CasesTable, case_setup, run_cases
 from truing.errors import InputError
-from truing.executors import open_executor
+from truing.executors import Place, SerialExecutor, open_executor
+from truing.kernel import Origin
 from truing.measurements import Case
 from truing.setup import Setup, default_setup
 
@@ -124,3 +127,38 @@ def test_an_effect_that_is_on_acts_in_every_case() -> None:
     plain, with_effect = run(PLAIN, *cases), run(PLAIN, *cases, setup=worn)
     added = [b.answers["depth"] - a.answers["depth"] for a, b in zip(plain.cases, with_effect.cases, strict=True)]
     assert added == pytest.approx([7e-6, 7e-6])
+
+
+class Counting(Place):
+    """Two workers who are in fact this process, and who count what they are asked."""
+
+    slots = workers = 2
+    where = "counting"
+
+    def __init__(self) -> None:
+        self.asked: list[str] = []
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        self.asked.append(getattr(args[0], "__name__", "?"))
+        return SerialExecutor().submit(function, *args, **kwargs)
+
+
+@pytest.mark.parametrize(
+    ("count", "studies", "asked"),
+    [
+        (3, True, ["run_batch"] * 4),  # few cases: their batches are shared out, those of the governing one twice
+        (4, True, ["_packed_case"] * 4 + ["run_batch"]),
+        (1024, False, []),  # one array call stays here
+        (1025, False, ["_packed_block"] * 2),
+    ],
+)
+def test_cases_are_shared_out_where_they_are_many(count: int, studies: bool, asked: list[str]) -> None:
+    origin = Origin("pin_wear", "", "", "", "module:pin_wear")
+    setup = default_setup(PIN_WEAR, origin)
+    setup = replace(setup, studies=(Reliability(draws=2000, gives=PIN_WEAR.studies[-1].gives),) if studies else ())
+    rows = [Case(place, place + 1, str(place), {"load": 100.0 + place}, "cases.csv") for place in range(1, count + 1)]
+    there = Counting()
+    _, shared = run_cases(setup, rows, executor=there)
+    assert there.asked == asked
+    _, alone = run_cases(setup, rows, executor=SerialExecutor())
+    assert shared == alone
