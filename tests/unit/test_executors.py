@@ -1,7 +1,11 @@
 """Where batches are computed: the order of the answers, lost workers, and setups that travel as plain data."""
 
 import os
+import pickle
+import struct
 import time
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +14,9 @@ from study_models import CHAIN, WEAR, setup_of
 
 from truing.declare.spreads import Off
 from truing.errors import PluginError, TruingError, UsageError
-from truing.executors import ProcessExecutor, SerialExecutor, in_order, open_executor
+from truing.executors import BatchLog, KeptExecutor, Place, ProcessExecutor, SerialExecutor, in_order, open_executor
+from truing.executors.kept import key_of
+from truing.executors.versions import differences
 from truing.kernel import kernel_for
 from truing.packed import pack, unpack
 from truing.setup import SwitchedOn, default_setup
@@ -131,3 +137,150 @@ def test_a_model_that_a_worker_cannot_find_is_named():
     packed = replace(pack(setup_of(CHAIN)), model="chian")
     with pytest.raises(PluginError, match="no model 'chian' in module:study_models"):
         unpack(packed)
+
+
+# ---- short jobs travel together -----------------------------------------------------------------------------------
+
+
+class Travel(Place):
+    """A place which notes how many jobs came together, and pretends that each took ``seconds``."""
+
+    where = "travel"
+    moment = 1.0
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds = seconds
+        self.together: list[int] = []
+
+    def submit_together(self, function, jobs):
+        self.together.append(len(jobs))
+        timed = super().submit_together(function, jobs)
+        if timed.exception() is None:
+            timed._result = replace(timed.result(), seconds=self.seconds * len(timed.result().answers))
+        return timed
+
+    def submit(self, function: Callable, /, *args, **kwargs) -> Future:
+        return SerialExecutor().submit(function, *args, **kwargs)
+
+
+def test_short_jobs_travel_together_and_long_ones_alone():
+    short, long = Travel(0.1), Travel(1.1)
+    assert list(in_order(short, abs, range(400))) == list(range(400))
+    assert short.together[0] == 1
+    assert max(short.together) == 10  # 1 s of jobs that take 0.1 s
+    assert sum(short.together) == 400
+    assert list(in_order(long, abs, range(100))) == list(range(100))
+    assert set(long.together) == {1}
+
+
+def test_an_error_among_jobs_that_travel_together_comes_after_the_answers_before_it():
+    together = Travel(0.01)
+    answers = in_order(together, fail_at_77, range(400))
+    found = []
+    with pytest.raises(ValueError, match="77"):
+        found += [next(answers) for _ in range(78)]
+    assert found == [] or found == list(range(77))
+    assert list(zip(range(77), in_order(Travel(0.01), fail_at_77, range(400)), strict=False))[-1] == (76, 76)
+
+
+def fail_at_77(number: int) -> int:
+    if number == 77:
+        raise ValueError("77")
+    return number
+
+
+def test_any_other_executor_will_do():
+    with ThreadPoolExecutor(2) as threads:
+        assert list(in_order(threads, slow_when_even, range(10))) == [number * number for number in range(10)]
+
+
+# ---- batches that are kept ----------------------------------------------------------------------------------------
+
+
+def counted(job: tuple[int, str]) -> int:
+    """Note that it was called."""
+    number, marker = job
+    with Path(marker).open("a") as file:
+        file.write("x")
+    return number * 10
+
+
+@pytest.mark.parametrize("place", ["serial", "processes:2"])
+def test_what_was_answered_is_not_asked_again(tmp_path, place):
+    marker = tmp_path / "calls"
+    jobs = [(number, str(marker)) for number in range(12)]
+    for finished, count in ((5, 5), (12, 12), (12, 12)):
+        log = BatchLog(tmp_path / "log")
+        with open_executor(place) as inner:
+            kept = KeptExecutor(inner, log)
+            assert list(in_order(kept, counted, jobs[:finished])) == [number * 10 for number in range(finished)]
+            assert kept.where == inner.where
+        log.close()
+        assert len(marker.read_text()) == count
+    assert kept.resumed == 12
+
+
+def test_a_torn_or_spoilt_end_is_cut_off(tmp_path):
+    path = tmp_path / "log"
+    log = BatchLog(path)
+    for number in range(3):
+        log.put(key_of(abs, number), {"answer": number})
+    log.close()
+    whole = path.read_bytes()
+    length = len(whole) // 3
+    for cut in (1, 47, 48, length - 1):  # in the head of the last record and in its content
+        path.write_bytes(whole[: 2 * length + cut])
+        log = BatchLog(path)
+        assert len(log) == 2
+        assert log.get(key_of(abs, 1)) == {"answer": 1}
+        assert key_of(abs, 2) not in log
+        log.put(key_of(abs, 2), {"answer": 2})
+        log.close()
+        assert path.read_bytes() == whole
+    spoilt = bytearray(whole)
+    spoilt[length + 60] ^= 1
+    path.write_bytes(spoilt)
+    assert len(BatchLog(path)) == 1
+    path.write_bytes(whole[: 2 * length] + struct.pack(">4s32sQI", b"TRB1", bytes(32), 2**62, 0))
+    assert len(BatchLog(path)) == 2  # a length beyond the file is no length
+
+
+def test_a_full_disk_ends_the_keeping_and_not_the_run(tmp_path, monkeypatch):
+    log = BatchLog(tmp_path / "log")
+
+    def full(_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(log, "_append", full)
+    kept = KeptExecutor(SerialExecutor(), log)
+    assert list(in_order(kept, abs, range(4))) == [0, 1, 2, 3]
+    assert kept.remarks() == ["finished batches are no longer kept for --resume: No space left on device"]
+    assert len(log) == 0
+
+
+def test_equal_jobs_have_one_key_wherever_their_parts_lie():
+    twice = "".join(["kn", "ee"])
+    one = {"a": twice, "b": twice}
+    two = {"a": "knee", "b": "".join(["k", "nee"])}
+    assert pickle.dumps(one) != pickle.dumps(two)
+    assert key_of(abs, one) == key_of(abs, two)
+    assert key_of(abs, one) != key_of(len, one)
+    assert key_of(abs, one) != key_of(abs, {**one, "a": "elbow"})
+
+
+# ---- versions -----------------------------------------------------------------------------------------------------
+
+
+def test_other_versions_are_named_with_the_worker():
+    here = {"python": "3.12.1", "numpy": "2.1.0", "the code of wear": "ab"}
+    may = "the results may differ from those of this machine"
+    assert differences(here, {"tcp://a:1": dict(here), "tcp://b:1": dict(here)}) == []
+    assert differences(here, {"tcp://a:1": here, "tcp://b:1": {**here, "numpy": "2.0.0"}}) == [
+        f"worker tcp://b:1 has numpy 2.0.0, here it is 2.1.0: {may}"
+    ]
+    old = {"python": "3.11.7", "numpy": "", "the code of wear": "cd"}
+    assert differences(here, {"tcp://b:1": old, "tcp://c:1": old}) == [
+        f"worker tcp://b:1 and 1 more has python 3.11.7, here it is 3.12.1: {may}",
+        f"worker tcp://b:1 and 1 more has numpy missing, here it is 2.1.0: {may}",
+        f"the code of wear is not the same on worker tcp://b:1 and 1 more as here: {may}",
+    ]

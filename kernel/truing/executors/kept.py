@@ -195,21 +195,14 @@ class KeptExecutor(Place):
         return words
 
 
-class _Plain(pickle.Pickler):
-    """Writes equal values as equal bytes: nothing is referred to by where it lies in memory, sets are sorted."""
-
-    def __init__(self, stream: io.BytesIO) -> None:
-        super().__init__(stream, protocol=5)
-        self.fast = True
-
-    def reducer_override(self, item: Any) -> Any:
-        if isinstance(item, (set, frozenset)):
-            return type(item), (sorted(item, key=repr),)
-        return NotImplemented
-
-
 def key_of(function: Callable[[J], Any], job: J) -> bytes:
-    """Return the SHA-256 of what is asked: the function by its name, and the job as plain data."""
+    """Return the SHA-256 of what is asked: the function by its name, and the job as plain data.
+
+    Equal jobs have equal keys, wherever their parts lie in memory; not so where a job holds a set of texts, whose order
+    is another in each process: such a batch would not be found again.
+    """
     stream = io.BytesIO()
-    _Plain(stream).dump((function, job))
+    pickler = pickle.Pickler(stream, protocol=5)
+    pickler.fast = True  # nothing is referred to by where it lies
+    pickler.dump((function, job))
     return hashlib.sha256(stream.getvalue()).digest()
