@@ -16,7 +16,7 @@ from rv_wear.drawn_flank import (
     wear_figure,
 )
 from rv_wear.drawn_fronts import PRINTED_OPTIMA, at_printed_wear, better, fronts_figure
-from rv_wear.drawn_look import acting, outcome_of, signed
+from rv_wear.drawn_look import acting, outcome_of
 from rv_wear.drawn_mesh import mesh_figure
 from rv_wear.least_costs import Fronts
 from rv_wear.modifications import Ground
@@ -51,9 +51,9 @@ def forces(record: "Run") -> "Sequence[Block]":
     reducer = acting(record)
     largest, one = difference_of_sharing(reducer)
     words = (
-        f"With Hertz at every pin the largest force of the new disc is {signed(100 * largest, '+.1f')} % off that in "
-        f"proportion to the approach; a single pin differs by up to {100 * one:.0f} % of the largest force. The input "
-        "load_sharing chooses."
+        f"With Hertz at every pin the largest force of the new disc is {100 * abs(largest):.1f} % "
+        f"{'larger' if largest > 0 else 'smaller'} than in proportion to the approach; a single pin differs by up to "
+        f"{100 * one:.0f} % of the largest force. The input load_sharing chooses."
     )
     caption = (
         "Every pin on the loaded side passes through all phase angles. The dip of the Hertz curve is where the flank "

@@ -61,15 +61,45 @@ def browser(chromium: Path) -> Iterator[Browser]:
         running.close()
 
 
-@pytest.fixture(scope="session", params=["hostile", "hostile-full", "press"])
+SMALL = """
+[studies.reliability]
+draws = 2000
+points = 4
+[studies.new_machines]
+draws = 200
+[studies.surrogate]
+design = 30
+held_out = 10
+restarts = 0
+compare = 100
+[studies.allocation]
+draws = 1000
+[studies.least_costs]
+goals = []
+[studies.optimise]
+population = 12
+generations = 4
+draws = 256
+verify = 1000
+"""
+"""Budgets with which the sheet of the reducer has all its figures and tables, and is made in a few seconds."""
+
+
+@pytest.fixture(scope="session", params=["hostile", "hostile-full", "press", "reducer"])
 def sheet(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A sheet on disk: one whose every text is hostile, at two levels of detail, and that of the press."""
+    """A sheet on disk: one whose every text is hostile, at two levels of detail, and those of press and reducer."""
     kernel = Kernel.installed()
     kernel.add_file(DATA / "hostile_pin.py")
     if request.param == "press":
         offer = kernel.offer("press_linkage")
         assert offer.model.example is not None
         setup = read_setup(offer.model.example, offer)
+    elif request.param == "reducer":
+        offer = kernel.offer("rv_wear")
+        assert offer.model.example is not None
+        inputs = tmp_path_factory.mktemp("reducer") / "small.toml"
+        inputs.write_text(offer.model.example.read_text(encoding="utf-8") + SMALL, encoding="utf-8")
+        setup = read_setup(inputs, offer)
     else:
         offer = kernel.offer("hostile_pin")
         setup = read_setup(DATA / "hostile_pin.toml", offer)
