@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.blocks import Block, Cell, Drawing, Table, Words
 from truing.studies.demands import as_number
 from truing.studies.optimise_front import REFERENCE, SETTLED
-from truing.studies.reading import printed
+from truing.studies.reading import printed, spoken
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from truing.studies.optimise import Design, Optimum
 
 SHOWN = 20
+WIDEST = 7
+"""So many columns with long names fit on A4 and letter."""
 
 
 def optimum_json(optimum: Optimum) -> dict[str, Any]:
@@ -110,9 +112,9 @@ def optimum_blocks(optimum: Optimum) -> Sequence[Block]:
     """Return start against knee, the front, and the figures."""
     if optimum.knee is None:
         return [Words(f"{optimum.status[:1].upper()}{optimum.status[1:]}.", "finding"), _comparison(optimum)]
-    blocks: list[Block] = [Words(_summary(optimum)), _comparison(optimum)]
-    if len(optimum.aims) > 1:
-        blocks += [_front(optimum), Drawing("Front, start and knee", _drawn_front(optimum))]
+    blocks: list[Block] = [Words(_summary(optimum)), _comparison(optimum), *_undecided(optimum)]
+    if len(optimum.front) > 1:
+        blocks += [*fit_for_paper(_front(optimum)), Drawing("Front, start and knee", _drawn_front(optimum))]
     blocks.append(Drawing("Hypervolume over the generations", _drawn_history(optimum), _history_words(optimum)))
     return blocks
 
@@ -176,6 +178,8 @@ def _comparison_note(optimum: Optimum) -> str:
         return ""
     if len(optimum.aims) == 1:
         return "With one objective the knee is the best design."
+    if len(optimum.front) == 1:
+        return "The front is a single design: it is the best in every objective."
     return "The knee lies farthest from the chord between the ends of the front, each objective brought to 0 to 1."
 
 
@@ -193,6 +197,7 @@ def _front(optimum: Optimum) -> Table:
     """List the front, thinned evenly; its ends and the knee stay."""
     places = _thinned(len(optimum.front), optimum.knee_place or 0)
     first = optimum.front[0]
+    inputs = [name for name in first.inputs if name not in first.objectives]
     chances = [bound.name for bound in optimum.problem.by_chance]
     rows: list[list[Cell]] = []
     for place in places:
@@ -200,16 +205,32 @@ def _front(optimum: Optimum) -> Table:
         row: list[Cell] = [f"{place + 1} knee" if place == optimum.knee_place else str(place + 1)]
         row += [printed(design.objectives[aim.name], aim.unit) for aim in optimum.aims]
         row += [_percent(design.chances[name]) for name in chances]
-        row += [printed(value, _input_unit(optimum, name)) for name, value in design.inputs.items()]
+        row += [printed(design.inputs[name], _input_unit(optimum, name)) for name in inputs]
         row += [_width(optimum, name, value) for name, value in design.tolerances.items()]
         rows.append(row)
-    columns = ["design", *(aim.name for aim in optimum.aims), *chances, *first.inputs, *first.tolerances]
+    columns = ["design", *(aim.name for aim in optimum.aims), *chances, *inputs, *first.tolerances]
     units = ["", *(aim.unit for aim in optimum.aims), *("%" for _ in chances)]
-    units += [_input_unit(optimum, name) for name in first.inputs]
+    units += [_input_unit(optimum, name) for name in inputs]
     units += ["" if isinstance(width, str) else _width_unit(optimum, name) for name, width in first.tolerances.items()]
     left = len(optimum.front) - len(places)
     note = f"{len(places)} of {len(optimum.front)} designs; results.json holds all of them." if left else ""
     return Table("Front", columns, rows, units, note)
+
+
+def fit_for_paper(table: Table) -> list[Table]:
+    """Cut a table with more columns than a page has room for; the first column stands in every part."""
+    count = len(table.columns)
+    if count <= WIDEST:
+        return [table]
+    steps = range(1, count, WIDEST - 1)
+    found = []
+    for part, start in enumerate(steps, 1):
+        places = [0, *range(start, min(start + WIDEST - 1, count))]
+        title = f"{table.title}, part {part} of {len(steps)}"
+        columns = [table.columns[place] for place in places]
+        rows = [[row[place] for place in places] for row in table.rows]
+        found.append(Table(title, columns, rows, [table.units[place] for place in places], table.note))
+    return found
 
 
 def _thinned(count: int, knee: int) -> list[int]:
@@ -301,17 +322,26 @@ def optimum_warnings(optimum: Optimum) -> Iterator[str]:
 
 
 def _contradicted(optimum: Optimum) -> Iterator[str]:
-    """Name the goals that the knee misses when it is verified, and whether the sampling error may be why."""
-    goals: Mapping[str, float] = {item.name: item.goal for item in optimum.demands if item.goal is not None}
-    for name, goal in goals.items():
-        low, high = optimum.interval[name]
+    """Name the goals that the knee misses when it is verified."""
+    for name, goal, (low, high) in _goals(optimum):
         if high < goal:
             yield (
                 f"the knee misses '{name}': machines that the search has not seen give {low:.5f} to {high:.5f} "
                 f"of {goal:g}"
             )
-        elif low < goal:
-            yield (
-                f"whether the knee reaches {goal:g} of '{name}' lies within the sampling error "
-                f"({low:.5f} to {high:.5f}); it stands at its limit, as an optimum does"
+
+
+def _undecided(optimum: Optimum) -> Iterator[Words]:
+    """Say where the sampling error of the verification does not decide: an optimum stands at its limits."""
+    for name, goal, (low, high) in _goals(optimum):
+        if low < goal <= high:
+            yield Words(
+                f"Whether the knee reaches {goal:g} of {spoken(name)} lies within the sampling error of the "
+                f"verification ({low:.5f} to {high:.5f}): it stands at this limit."
             )
+
+
+def _goals(optimum: Optimum) -> Iterator[tuple[str, float, tuple[float, float]]]:
+    for item in optimum.demands:
+        if item.goal is not None:
+            yield item.name, item.goal, optimum.interval[item.name]

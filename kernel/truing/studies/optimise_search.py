@@ -27,7 +27,7 @@ LED = 2
 REACH, MOVED = (0.2, 1.0), 0.9
 """How long these steps are, and in what share of the variables."""
 
-TRIFLE, DEAR = 1e-4, 1e-2
+TRIFLE, DEAR = 1e-3, 2e-2
 
 Answering = Callable[["NDArray[np.float64]"], Answers]
 
