@@ -8,15 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rv_wear import coefficient, contact, cycloid
-from rv_wear.history import NEVER, Histories, growth, histories
-from rv_wear.mesh import Array, Choices, Film, Mesh, columns_of, some_of, with_columns
+from rv_wear.history import NEVER, Histories, growth, histories, states
+from rv_wear.mesh import Array, Choices, Film, Mesh, columns_of, with_columns
 from rv_wear.sharing import shared, start_scale
 from rv_wear.teeth import teeth_of
 
 CHUNK = 256  # meshes at a time: their contacts stay in the cache of a core
-FEW = 8  # so many meshes are looked for among the remembered ones
-REMEMBERED = 64
-FINENESS = 4  # a history reaches to the next power of two ^ (1 / 4), so that batches ask for the same one
+FEW = 8  # so many meshes are calculated and remembered one by one
+FEW_REMEMBERED = 64
+GROUPS_REMEMBERED = 8  # a fit asks for the same rows again and again
+FINENESS = 32  # a history reaches to the next power of two ^ (1 / 32), so that batches ask for the same one
+SHORTEST = 1e-9
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -36,20 +39,27 @@ class Unworn:
     first_step: Array
 
 
-Key = tuple[tuple[float, ...], Choices, bool]
+@dataclass(frozen=True)
+class Key:
+    """Meshes as something to remember an answer by: their numbers as bytes, how many they are, and their choices."""
+
+    numbers: bytes
+    count: int
+    choices: Choices
+    has_film: bool
 
 
-def key_of(mesh: Mesh, place: int) -> Key:
-    """One of many meshes as plain numbers."""
-    return tuple(float(np.asarray(column)[place]) for column in columns_of(mesh)), mesh.choices, mesh.film is not None
+def key_of(mesh: Mesh, places: NDArray[np.intp]) -> Key:
+    """Some of many meshes (m,)."""
+    table = np.stack([np.asarray(column)[places] for column in columns_of(mesh)])
+    return Key(table.tobytes(), len(places), mesh.choices, mesh.film is not None)
 
 
 def mesh_from(key: Key) -> Mesh:
-    """The mesh of a key."""
-    numbers, choices, has_film = key
-    film = Film(0.0, 0.0, 0.0, 0.0, 0.0) if has_film else None
-    blank = Mesh(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, choices, film)
-    return with_columns(blank, [np.array([number]) for number in numbers])
+    """The meshes of a key."""
+    film = Film(0.0, 0.0, 0.0, 0.0, 0.0) if key.has_film else None
+    blank = Mesh(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, key.choices, film)
+    return with_columns(blank, list(np.frombuffer(key.numbers).reshape(-1, key.count)))
 
 
 def unworn(mesh: Mesh) -> Unworn:
@@ -75,27 +85,30 @@ def unworn(mesh: Mesh) -> Unworn:
     )
 
 
-@lru_cache(maxsize=REMEMBERED)
-def unworn_of_one(key: Key) -> Unworn:
-    """The new mesh of a key."""
-    return unworn(mesh_from(key))
+def history(key: Key, power: int) -> Histories:
+    """Histories of the meshes of a key, each over 2 ^ (power / FINENESS) times the exposure of its first step."""
+    teeth = teeth_of(mesh_from(key))
+    return histories(teeth, next(states(teeth)).lasts * 2.0 ** (power / FINENESS))
 
 
-@lru_cache(maxsize=REMEMBERED)
-def history_of_one(key: Key, power: int) -> Histories:
-    """The history of a key to the exposure 2 ^ (power / FINENESS)."""
-    return histories(teeth_of(mesh_from(key)), np.array([2.0 ** (power / FINENESS)]))
+unworn_of_one = lru_cache(maxsize=FEW_REMEMBERED)(lambda key: unworn(mesh_from(key)))
+unworn_of_group = lru_cache(maxsize=GROUPS_REMEMBERED)(lambda key: unworn(mesh_from(key)))
+history_of_one = lru_cache(maxsize=FEW_REMEMBERED)(history)
+history_of_group = lru_cache(maxsize=GROUPS_REMEMBERED)(history)
+
+
+def groups(order: NDArray[np.intp]) -> list[NDArray[np.intp]]:
+    """Part meshes into groups that are calculated at once; a few of them are alone each."""
+    size = CHUNK if len(order) > FEW else 1
+    return [order[start : start + size] for start in range(0, len(order), size)]
 
 
 def all_unworn(mesh: Mesh, count: int) -> Unworn:
     """The new meshes, all of them."""
     if count == 0:
         return unworn_of_nothing()
-    if count <= FEW:
-        parts = [unworn_of_one(key_of(mesh, place)) for place in range(count)]
-    else:
-        places = np.arange(count)
-        parts = [unworn(some_of(mesh, places[start : start + CHUNK])) for start in range(0, count, CHUNK)]
+    solve = unworn_of_group if count > FEW else unworn_of_one
+    parts = [solve(key_of(mesh, places)) for places in groups(np.arange(count))]
     names = Unworn.__dataclass_fields__
     return Unworn(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
 
@@ -107,12 +120,9 @@ def unworn_of_nothing() -> Unworn:
 
 def all_histories(mesh: Mesh, reach: Array, first_step: Array) -> Iterator[tuple[NDArray[np.intp], Histories]]:
     """Histories to an exposure (m,) each, in groups of about the same length: the places of their meshes, and they."""
-    if len(reach) <= FEW:
-        for place, most in enumerate(reach):
-            power = int(np.ceil(FINENESS * np.log2(max(float(most), 1e-300))))
-            yield np.array([place]), history_of_one(key_of(mesh, place), power)
-        return
-    order = np.argsort(reach / first_step, kind="stable")
-    for start in range(0, len(order), CHUNK):
-        places = order[start : start + CHUNK]
-        yield places, histories(teeth_of(some_of(mesh, places)), reach[places])
+    steps = np.maximum(reach / first_step, SHORTEST)
+    follow = history_of_group if len(reach) > FEW else history_of_one
+    order = np.argsort(steps, kind="stable") if len(reach) > CHUNK else np.arange(len(reach))
+    for places in groups(order):
+        power = int(np.ceil(FINENESS * np.log2(steps[places].max()) + ROUNDING))
+        yield places, follow(key_of(mesh, places), power)

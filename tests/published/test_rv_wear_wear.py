@@ -213,13 +213,17 @@ def test_nodes_do_not_depend_on_how_far_a_history_goes() -> None:
         assert np.array_equal(getattr(short, name), getattr(long, name)[:count])
 
 
-def test_order_of_questions_does_not_matter() -> None:
+@pytest.mark.parametrize("designs", [1, 5, 40])
+def test_order_of_questions_does_not_matter(designs: int) -> None:
     hours = [6000.0, 100.0, 20000.0, 3000.0]
-    courses.history_of_one.cache_clear()
-    there = [of(working_time=time * HOUR) for time in hours]
-    courses.history_of_one.cache_clear()
-    back = [of(working_time=time * HOUR) for time in reversed(hours)]
-    assert there == back[::-1]
+    discs = ground(np.linspace(-40e-6, 5e-6, designs))
+
+    def asked(times: list[float]) -> list[Any]:
+        courses.history_of_one.cache_clear()
+        courses.history_of_group.cache_clear()
+        return [of(working_time=time * HOUR, **discs).tolist() for time in times]
+
+    assert asked(hours) == asked(hours[::-1])[::-1]
 
 
 def test_every_step_ends_where_the_threshold_is_worn() -> None:
