@@ -1,0 +1,275 @@
+"""A reducer that wears, is warm, runs out of round and is read under torque: mesh and wear from the equations alone.
+
+Nothing of the plugin is imported. Lengths are mm, forces N, stresses MPa, times h; the wear coefficient alone is worked
+out in m, Pa. The mesh is solved by halving intervals, the wear integrated by the midpoint rule in the turns of the
+output; what changes the rate of wear evenly is a change of those turns.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from math import acos, pi, sqrt
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array: TypeAlias = NDArray[np.float64]
+Hidden: TypeAlias = Mapping[str, Mapping[str, float]]  # effect -> unknown, in the units of the registry
+
+PINS, TEETH = 40, 39
+CIRCLE, PIN, THROW, WIDTH = 114.5, 5.0, 2.2, 20.0
+SUN, CENTRES, RATIO, PRESSURE_ANGLE = 18.0, 63.0, 101.0, 20.0 * pi / 180
+EQUIDISTANT, SHIFT = -0.026, -0.030
+YOUNG, POISSON = 2.06e5, 0.3
+SHARE, RATED, SPEED, LIFE = 0.55, 3136.0, 15.0, 6000.0
+PRESSURE_VISCOSITY, ROUGHNESS, VISCOSITY = 2.2e-8, 0.694e-3, 0.2  # 1/Pa, mm, Pa s
+SHORT = THROW * PINS / CIRCLE
+ROOT = sqrt(1 - SHORT**2)
+LONGEST = THROW * TEETH
+MINUTE = pi / 10800
+PHASES = 12
+STEP = 0.1e-3
+
+MIDDLE = {  # of the zones of the error factors, mm
+    "base_tangent_error": -0.015, "gear_runout": 0.005, "centre_distance_error": 0.0, "pin_circle_error": 0.0,
+    "pin_radius_error": -0.002, "pin_fit_clearance": 0.0085, "disc_runout": 0.003275, "pin_position_error": 0.0006,
+    "disc_pitch_error": 0.0, "equidistant_error": 0.0, "shift_error": 0.0, "eccentricity_error": 0.0,
+    "bearing_clearance": 0.0111,
+}  # fmt: skip
+ZONES = {  # their widths, mm: six standard deviations
+    "base_tangent_error": 0.010, "gear_runout": 0.010, "centre_distance_error": 0.020, "pin_circle_error": 0.0012,
+    "pin_radius_error": 0.001, "pin_fit_clearance": 0.0016, "disc_runout": 0.00655, "pin_position_error": 0.0012,
+    "disc_pitch_error": 0.002, "equidistant_error": 0.0012, "shift_error": 0.0012, "eccentricity_error": 0.004,
+    "bearing_clearance": 0.0012,
+}  # fmt: skip
+ROUGHNESS_SCATTER = 0.0126
+
+
+@dataclass(frozen=True)
+class Rows:
+    """What was set and measured beside the backlash, arrays (n,): h, N m, r/min, degC, deg."""
+
+    time: Array
+    working_time: Array
+    output_torque: Array
+    output_speed: Array
+    housing_temperature: Array
+    disc_temperature: Array
+    oil_temperature: Array
+    output_angle: Array
+    measuring_torque: Array
+    direction: Array
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def taken(self, places: "NDArray[np.intp] | slice") -> "Rows":
+        """Some of the rows."""
+        return Rows(**{name: values[places] for name, values in vars(self).items()})
+
+
+# The mesh: pins over phases, (PHASES, PINS / 2)
+
+PSI = 2 * pi * (np.arange(PINS // 2)[None, :] + (np.arange(PHASES)[:, None] + 0.5) / PHASES) / PINS
+
+
+def distance(psi: Array) -> Array:
+    """Speed of a pin centre against the disc over that of the pin circle."""
+    return np.asarray(np.sqrt(1 + SHORT**2 - 2 * SHORT * np.cos(psi)))
+
+
+def curvature_radius(psi: Array) -> tuple[Array, Array]:
+    """Signed radius of the path of the pin centre, and the radius of both bodies together at the flank."""
+    path = CIRCLE * distance(psi) ** 3 / (SHORT * (PINS + 1) * np.cos(psi) - (1 + PINS * SHORT**2))
+    flank = path + PIN
+    return path, np.asarray(np.abs(flank * PIN / (flank - PIN)))
+
+
+def gaps(psi: Array) -> Array:
+    """Clearance of the new disc, turned until the pin with the longest arm touches."""
+    s = distance(psi)
+    return np.asarray(EQUIDISTANT * (1 - np.sin(psi) / s) - SHIFT * (1 - SHORT * np.cos(psi) - ROOT * np.sin(psi)) / s)
+
+
+S = distance(PSI)
+ARM = LONGEST * np.sin(PSI) / S
+RADIUS = curvature_radius(PSI)[1]
+NEW = gaps(PSI)
+AT_LONGEST = np.array(acos(SHORT))
+PITCH_PATH, PITCH_RADIUS = (float(one) for one in curvature_radius(AT_LONGEST))
+PIN_WAY = CIRCLE * S - PIN  # sliding, per radian of the disc
+FLANK_WAY = np.abs(CIRCLE * S + PIN * (SHORT * (PINS + 1) * np.cos(PSI) - 1 - PINS * SHORT**2) / S**2)
+SLIDING = PIN_WAY / FLANK_WAY
+
+
+def approach(force: Array) -> Array:
+    """How far disc and pin come together at the longest arm, mm."""
+    soft = (1 - POISSON**2) / YOUNG
+    half_width_squared = 8 * force * PITCH_RADIUS * soft / (pi * WIDTH)
+    inside = 2 / 3 + np.log(16 * PIN * abs(PITCH_PATH + PIN) / (4 * half_width_squared))
+    return np.asarray(2 * soft / pi * force / WIDTH * inside)
+
+
+def forces(torque: float, worn: Array) -> Array:
+    """Force on every pin in every phase under the torque of one disc, N mm: rows of ``worn`` are turned to touch."""
+    gap = NEW + worn
+    gap = gap - ARM * np.min(gap / ARM, axis=1, keepdims=True)
+    low, high = np.full((PHASES, 1), 1.0), np.full((PHASES, 1), 1e6)
+    for _ in range(60):
+        middle = np.sqrt(low * high)
+        each = middle * np.maximum(ARM / LONGEST - gap / approach(middle), 0.0)
+        is_more = np.sum(each * ARM, axis=1, keepdims=True) > torque
+        high, low = np.where(is_more, middle, high), np.where(is_more, low, middle)
+    return np.asarray(each)
+
+
+@dataclass(frozen=True)
+class Wearing:
+    """What a flank wears by: torque of the output (N m), roughness (mm), and a film of some thickness, if any."""
+
+    torque: float
+    roughness: float
+    film: float = 0.0
+    speed: float = SPEED
+    viscosity: float = VISCOSITY
+
+    def per_turn(self, worn: Array) -> Array:
+        """Depth that every point of the flank loses in one turn of the output, mm."""
+        force = forces(SHARE * self.torque * 1e3, worn)
+        modulus = YOUNG * 1e6 / (1 - POISSON**2)
+        load = force / (WIDTH * 1e-3)
+        radius = RADIUS * 1e-3
+        k = 3.981e29 / modulus * (load / (modulus * radius)) ** 1.219 * (PRESSURE_VISCOSITY * modulus) ** -7.377
+        k = k * (self.roughness / RADIUS) ** 1.589
+        if self.film:
+            k = k * self._bare(np.maximum(load, 1e-9), modulus)
+        return np.asarray(PINS * k * load * SLIDING * 1e3)
+
+    def _bare(self, load: Array, modulus: float) -> Array:
+        """Share of the wear that a film of this thickness leaves."""
+        turning = 2 * pi * self.speed / 60
+        entrained = turning * np.abs(2 * FLANK_WAY - PIN_WAY) / 2 * 1e-3
+        radius = RADIUS * 1e-3
+        speed = self.viscosity * entrained / (modulus * radius)
+        thick = 2.65 * radius * speed**0.7 * (PRESSURE_VISCOSITY * modulus) ** 0.54
+        thick = thick * (load / (modulus * radius)) ** -0.13
+        return np.asarray(np.clip((3 - self.film * thick / (self.roughness * 1e-3)) / 2.5, 0, 1))
+
+
+@lru_cache(maxsize=256)
+def history(wearing: Wearing, turns: float) -> tuple[Array, Array]:
+    """Turns of the output and the deepest wear (mm) after them, up to more than so many turns."""
+    worn = np.zeros_like(PSI)
+    done, deepest = [0.0], [0.0]
+    while done[-1] < turns:
+        rate = wearing.per_turn(worn)
+        step = STEP / float(np.max(rate))
+        worn = worn + step * wearing.per_turn(worn + rate * (step / 2))
+        done.append(done[-1] + step)
+        deepest.append(float(np.max(worn)))
+    return np.array(done), np.array(deepest)
+
+
+def wear_after(wearing: Wearing, turns: Array) -> Array:
+    """Deepest wear after so many turns, mm."""
+    most = 5.4e6 * 2.0 ** np.ceil(np.log2(max(float(np.max(turns)) / 5.4e6, 0.25)))
+    at, deepest = history(wearing, float(most))
+    return np.asarray(np.interp(np.maximum(turns, 0.0), at, deepest))
+
+
+# The whole reducer, row by row
+
+
+def of(hidden: Hidden, effect: str, unknown: str) -> float:
+    """An unknown of an effect, in the unit of the registry; 0 where the effect is not hidden."""
+    return float(hidden.get(effect, {}).get(unknown, 0.0))
+
+
+def made_turns(rows: Rows, hidden: Hidden) -> Array:
+    """Turns of the output that would wear the flank as far without what hastens or slows the wear."""
+    turns = rows.output_speed * 60 * rows.working_time
+    softer = np.exp(-of(hidden, "wear_temperature", "softening") * (rows.oil_temperature - 40))
+    older = 1 + of(hidden, "lubricant_ageing", "rate") / 1000 * rows.working_time / 2  # mean of 1 + rate t
+    return np.asarray(turns * softer**-7.377 * older * (1 - of(hidden, "pin_rolling", "rolling")))
+
+
+def depth_after(rows: Rows, turns: Array, off: Mapping[str, float], hidden: Hidden) -> Array:
+    """Deepest wear by the law of wear, mm: one history per torque, and with a film per speed and oil."""
+    roughness = ROUGHNESS * (1 + off.get("roughness", 0.0))
+    film = of(hidden, "film_lubrication", "film_factor")
+    thin = VISCOSITY * np.exp(-0.0411 * (rows.oil_temperature - 40))
+    found = np.zeros(len(rows))
+    keys = np.column_stack([rows.output_torque, rows.output_speed if film else turns * 0, thin if film else turns * 0])
+    for key in np.unique(keys, axis=0):
+        mine = np.all(keys == key, axis=1)
+        settings = (film, float(key[1]), float(key[2])) if film else ()
+        found[mine] = wear_after(Wearing(float(key[0]), roughness, *settings), turns[mine])
+    return found * (rows.output_torque / RATED) ** of(hidden, "load_exponent", "exponent")
+
+
+def worn(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> tuple[Array, Array]:
+    """Deepest wear of the disc, and what the backlash feels of both flanks together, mm."""
+    turns = made_turns(rows, hidden)
+    early = of(hidden, "running_in", "depth") * 1e-3
+    tau = of(hidden, "running_in", "run_in_time") or 1.0
+    deepest = depth_after(rows, turns, off, hidden) + early * (1 - np.exp(-rows.working_time / tau))
+    share = 1 - of(hidden, "duty_share", "reversing") / 2
+    flank = deepest if share == 1 else depth_after(rows, turns * share, off, hidden)
+    both = (1 + of(hidden, "pin_wear", "ratio")) * (1 - of(hidden, "lost_motion_share", "loss")) * (flank + flank)
+    return deepest, both
+
+
+def circle_error(rows: Rows, hidden: Hidden) -> Array:
+    """How much larger the circle of the pins is for the disc than as made: heat of both, and a centre that is off."""
+    strain = of(hidden, "thermal_clearance", "expansion") * 1e-6
+    outer, inner = (
+        CIRCLE * (1 + strain * (rows.housing_temperature - 20)),
+        CIRCLE * (1 + strain * (rows.disc_temperature - 20)),
+    )
+    angle = np.radians(rows.output_angle)
+    x, y = of(hidden, "runout", "cosine") * 1e-3, of(hidden, "runout", "sine") * 1e-3
+    reach = np.hypot(CIRCLE * np.cos(angle) + x, CIRCLE * np.sin(angle) + y)
+    return np.asarray(outer - inner + reach - CIRCLE)
+
+
+def play(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> Array:
+    """Angle that the output can be turned by hand, rad: equation 21, sixteen factors."""
+    size = {name: middle + off.get(name, 0.0) for name, middle in MIDDLE.items()}
+    felt = worn(rows, off, hidden)[1]
+    involute = 2 * np.sin(PRESSURE_ANGLE) * (size["gear_runout"] + size["centre_distance_error"])
+    radial = EQUIDISTANT + size["equidistant_error"] - size["pin_radius_error"]
+    circle = size["pin_circle_error"] + circle_error(rows, hidden) - SHIFT - size["shift_error"]
+    circle = circle + 1.6e-4 * size["eccentricity_error"]
+    around = SHORT * (2 * size["pin_position_error"] - size["disc_pitch_error"])
+    gearing = 2 * radial + 2 * ROOT * circle + size["pin_fit_clearance"] + size["disc_runout"] / 2 + around
+    turns = rows.output_speed * 60 * rows.working_time
+    gained = of(hidden, "bearing_wear", "wear") * 1e-3 * (rows.output_torque / RATED) * turns / 1e6
+    return np.asarray(
+        (involute - size["base_tangent_error"]) / (SUN * RATIO)
+        + (gearing + felt) / LONGEST
+        + (size["bearing_clearance"] + gained) / CENTRES
+    )
+
+
+def of_reading(rows: Rows, hidden: Hidden) -> Array:
+    """What is in the reading and not in the play, arcmin: ripple of teeth and pins, twist, friction."""
+    ripple, angle = hidden.get("pin_pass_ripple", {}), np.radians(rows.output_angle)
+    waves = {"disc_cosine": np.cos(39 * angle), "disc_sine": np.sin(39 * angle)}
+    waves |= {"pin_cosine": np.cos(40 * angle), "pin_sine": np.sin(40 * angle)}
+    read = sum((ripple.get(name, 0.0) * wave for name, wave in waves.items()), np.zeros(len(rows)))
+    torque = np.abs(rows.measuring_torque)
+    read = read + of(hidden, "wind_up", "compliance") * 2 * torque / 1000
+    closing = of(hidden, "stiffening", "torque_scale") or 1.0
+    read = read + of(hidden, "stiffening", "twist") * (1 - np.exp(-torque / closing))
+    return np.asarray(read + of(hidden, "friction_hysteresis", "lag") * rows.direction)
+
+
+def shown(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> dict[str, Array]:
+    """What the gauges would show without noise: backlash in arcmin, wear in um; ``off`` in mm, roughness as a share."""
+    backlash = play(rows, off, hidden) / MINUTE + of_reading(rows, hidden)
+    read = {"backlash": backlash, "max_wear": worn(rows, off, hidden)[0] * 1e3}
+    for name in read:
+        read[name] = read[name] * (1 + of(hidden, "sensor_gain", name)) + of(hidden, "sensor_offset", name)
+        read[name] = read[name] + of(hidden, "sensor_drift", name) * (rows.time - rows.time[0])
+    return read
