@@ -341,7 +341,7 @@ def test_the_same_seed_gives_the_same_front_and_another_one_another() -> None:
 
 @pytest.mark.parametrize("chance_", ["draws", "first_order"])
 def test_processes_give_the_same_bytes(chance_: Any) -> None:
-    study = replace(SMALL, tightest=0.25, chance=chance_)
+    study = replace(SMALL, tightest=0.25, chance=chance_, parts=3)
     setups = [replace(setup_of(PAIR), studies=(study,)), replace(grown(), studies=(study,))]
     with open_executor("processes:2") as executor:
         for setup in setups:
@@ -365,9 +365,12 @@ def test_a_population_is_one_array(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("truing.studies.optimise_problem.evaluate_rows", counted)
     optimum(setup_of(PAIR), replace(SMALL, population=40, generations=1, draws=4000))
     drawn = [rows for rows in sizes if rows >= 4000]
-    assert sum(drawn) == 40 * 4000
+    assert sum(drawn) == 40 * 4000  # one of them twice in the first population, and the start
     assert max(drawn) <= ROWS
-    assert len(drawn) == 5  # four parts of the population, and the start
+    assert len(drawn) == 4
+    sizes.clear()
+    optimum(setup_of(PAIR), replace(SMALL, population=40, generations=1, chance="first_order"))
+    assert sizes == [39, 39 * 5, 1, 5]  # the designs, two inputs up and down; the start
 
 
 # What the outcome says
@@ -634,7 +637,7 @@ OPTIONS = [
     ({"tightest": 2.0, "widest": 1.0}, "tightest = 2 and widest = 1, but widths run"),
     ({"tightest": 0.0}, "tightest = 0 and widest = 2, but widths run"),
     ({"finest": "IT19"}, "'IT19' is no tolerance grade"),
-    ({"draws": 0}, "draws, verify and batch are at least 1"),
+    ({"draws": 0}, "draws, verify, batch and parts are at least 1"),
     ({"chance": "luck"}, "chance takes draws or first_order, not 'luck'"),
     ({"algorithm": "annealing"}, "the algorithm 'annealing' is unknown; there is nsga2"),
 ]

@@ -52,6 +52,7 @@ class Optimise:
     surrogate: bool = False
     verify: int = 100_000
     batch: int = 2**14
+    parts: int = 1
     name: str = "optimise"
     gives: Callable[[Optimum], Any] | None = None
 
@@ -82,6 +83,7 @@ class Optimise:
             finest=self.finest,
             chance=self.chance,
             draws=self.draws,
+            parts=self.parts,
             known=constants(bench.setup, bench.answers),
         )
 
@@ -125,8 +127,8 @@ def _check_options(study: Optimise) -> None:
         )
     if study.finest not in GRADES:
         raise UsageError(f"'{study.finest}' is no tolerance grade; write IT1 to IT18")
-    if min(study.draws, study.verify, study.batch) < 1:
-        raise UsageError("draws, verify and batch are at least 1")
+    if min(study.draws, study.verify, study.batch, study.parts) < 1:
+        raise UsageError("draws, verify, batch and parts are at least 1")
 
 
 def _stand_in(bench: Bench, study: str) -> StandIn:

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 ROWS = 2**16  # of one call of the model, so that memory stays flat
-PARTS = 4  # a population without draws is cut into so many jobs, whoever computes them
 
 
 @runtime_checkable
@@ -234,6 +233,6 @@ def _parts(problem: Problem, designs: NDArray[np.float64]) -> Iterator[NDArray[n
     rows = problem.brief.draws if problem.cloud is not None else 1
     if problem.cloud is None and problem.by_chance:
         rows = 1 + 2 * len(problem.scatter.columns)
-    size = max(1, min(ROWS // rows, -(-len(designs) // PARTS)))
+    size = max(1, min(ROWS // rows, -(-len(designs) // problem.brief.parts)))
     for start in range(0, len(designs), size):
         yield designs[start : start + size]

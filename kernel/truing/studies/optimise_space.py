@@ -43,6 +43,7 @@ class Brief:
     finest: str = "IT5"
     chance: Literal["draws", "first_order"] = "draws"
     draws: int = 4096
+    parts: int = 1
     known: tuple[tuple[str, float], ...] = ()
 
 
