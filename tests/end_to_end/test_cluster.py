@@ -7,33 +7,20 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import pytest
+from gated import BATCHES, FREE, PATIENCE, Gated, run_of, wait_until
 
 from shared import Answer, Calc
 from truing.errors import TruingError, UsageError
 
 distributed = pytest.importorskip("distributed", reason="the extra [cluster] is not installed")
 
-PATIENCE = 120.0  # seconds for what takes one or two on a quiet machine
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
-PRESS = (
-    "run", "press_linkage", "-q", "--set", 'reading="printed"', "--set", 'studies.run=["reliability"]',
-    "--set", "studies.reliability.draws=8000000",
-)  # fmt: skip
-
-
-def wait_until(holds: Callable[[], Any], what: str) -> None:
-    """Poll until something holds."""
-    until = time.monotonic() + PATIENCE
-    while not holds():
-        assert time.monotonic() < until, f"not within {PATIENCE:.0f} s: {what}"
-        time.sleep(0.02)
 
 
 @dataclass
@@ -91,37 +78,43 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
             process.wait()
 
 
-def run_of(folder: Path) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads((folder / "run.json").read_text(encoding="utf-8"))
-    return found
+@pytest.mark.parametrize("words", [("press_linkage",), (str(PIN), "--cases", "cases.csv")], ids=["press", "cases"])
+def test_a_cluster_answers_as_one_process(
+    cluster: Cluster, calc_process: Calc, tmp_path: Path, words: tuple[str, ...]
+) -> None:
+    cluster.start_workers(2)
+    (tmp_path / "cases.csv").write_text("load [N]\n140\n2200\n500000\n2230\n180\n")
+    there = calc_process("run", *words, "-q", "-o", "run", "--cluster", cluster.address)
+    (tmp_path / "run").rename(tmp_path / "there")
+    here = calc_process("run", *words, "-q", "-o", "run")
+    assert (there.code, there.out, there.err) == (here.code, here.out, here.err)
+    for name in ("results.json", "inputs.toml", "sheet.md"):
+        assert (tmp_path / "run" / name).read_bytes() == (tmp_path / "there" / name).read_bytes()
+    assert run_of(tmp_path / "there")["workers"] == {"count": 2, "lost": 0, "where": cluster.address}
+    assert run_of(tmp_path / "run")["workers"] == {"count": 1, "lost": 0, "where": "serial"}
 
 
-def test_a_cluster_answers_as_one_process_also_when_a_worker_is_killed(
+def test_a_worker_that_is_killed_changes_nothing_but_the_warning(
     cluster: Cluster, calc_process: Calc, tmp_path: Path
 ) -> None:
     first, _ = cluster.start_workers(2)
-    log = tmp_path / "killed.partial" / "batches.log"
-    command = [sys.executable, "-m", "truing", *PRESS, "-o", "killed", "--cluster", cluster.address, "--resume"]
-    killed = subprocess.Popen(
-        [word for word in command if word != "-q"], cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-        text=True, encoding="utf-8",
-    )  # fmt: skip
-    wait_until(lambda: killed.poll() is not None or (log.exists() and log.stat().st_size), "a batch is finished")
-    assert killed.poll() is None, killed.communicate()
+    pin = Gated.in_folder(tmp_path)
+    process = pin.start("-o", "run", "--cluster", cluster.address)
+    pin.at_the_gate(process, FREE + 2)  # each of the two workers holds a batch
     first.kill()
-    _, err = killed.communicate(timeout=PATIENCE)
-    assert killed.returncode == 1, err  # the printed reading misses its goals
-    run = run_of(tmp_path / "killed")
+    pin.open()
+    _, err = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 0, err
     fate = "what was under way there was computed again, the results are the same"
     lost = f"1 worker was lost at {cluster.address}; {fate}"
+    run = run_of(tmp_path / "run")
     assert run["workers"] == {"count": 2, "lost": 1, "where": cluster.address}
     assert run["warnings"] == [lost]
     assert f"warning: {lost}\n" in err
-    assert calc_process(*PRESS, "-o", "serial").code == 1
+    assert pin.calls > BATCHES  # what the killed one held was computed again
+    assert calc_process(*pin.words, "-q", "-o", "serial").code == 0
     for name in ("results.json", "inputs.toml", "sheet.md"):
-        assert (tmp_path / "killed" / name).read_bytes() == (tmp_path / "serial" / name).read_bytes()
-    assert run_of(tmp_path / "serial")["workers"] == {"count": 1, "lost": 0, "where": "serial"}
-    assert not log.parent.exists()
+        assert (tmp_path / "run" / name).read_bytes() == (tmp_path / "serial" / name).read_bytes()
 
 
 def test_finished_batches_outlive_a_lost_scheduler(
@@ -132,25 +125,22 @@ def test_finished_batches_outlive_a_lost_scheduler(
 
     monkeypatch.setattr(on_cluster, "CONNECT_SECONDS", 2)
     cluster.start_workers(1)
-    log = tmp_path / "run.partial" / "batches.log"
+    pin = Gated.in_folder(tmp_path)
 
     def lose_the_scheduler() -> None:
-        wait_until(lambda: log.exists() and log.stat().st_size, "a batch is finished")
+        wait_until(lambda: pin.kept("run") == FREE, "six batches are kept")
         cluster.processes[0].kill()
 
     with ThreadPoolExecutor(1) as beside:
         beside.submit(lose_the_scheduler)
-        cut_off = calc(*PRESS, "-o", "run", "--cluster", cluster.address, "--resume")
-    assert cut_off == Answer(
-        1,
-        "",
-        f"calc: the cluster was lost: no scheduler answers at {cluster.address} within 2 s; "
-        "is dask scheduler running there?\n",
-    )
+        cut_off = calc(*pin.words, "-q", "-o", "run", "--cluster", cluster.address, "--resume")
+    nobody = f"no scheduler answers at {cluster.address} within 2 s; is dask scheduler running there?"
+    assert cut_off == Answer(1, "", f"calc: the cluster was lost: {nobody}\n")
     assert not (tmp_path / "run").exists()
+    pin.open()
     for folder, more in (("run", ["--resume"]), ("whole", [])):
-        assert calc(*PRESS, "-o", folder, *more).code == 1
-    assert run_of(tmp_path / "run")["resumed"] > 0
+        assert calc(*pin.words, "-q", "-o", folder, *more).code == 0
+    assert run_of(tmp_path / "run")["resumed"] == FREE
     assert (tmp_path / "run" / "results.json").read_bytes() == (tmp_path / "whole" / "results.json").read_bytes()
 
 

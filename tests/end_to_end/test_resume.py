@@ -7,75 +7,51 @@ import os
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
+from gated import BATCHES, FREE, PATIENCE, Gated, run_of, wait_until
 from test_interrupt import children_of, hearing_interrupts, is_alive
 
 from shared import Calc
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
 
-PATIENCE = 120.0
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
-PRESS = (
-    "run", "press_linkage", "-q", "--set", 'reading="printed"', "--set", 'studies.run=["reliability"]',
-    "--set", "studies.reliability.draws=8000000", "--resume",
-)  # fmt: skip
-BATCHES = -(-8_000_000 // 2**14)
 SMALL = ("run", PIN, "-q", "--set", 'studies.run=["reliability"]', "--set", "studies.reliability.draws=60000")
 
 
-def wait_until(holds: Callable[[], Any], what: str) -> None:
-    until = time.monotonic() + PATIENCE
-    while not holds():
-        assert time.monotonic() < until, f"not within {PATIENCE:.0f} s: {what}"
-        time.sleep(0.02)
-
-
-def ended(folder: Path, how: signal.Signals, *more: str) -> tuple[int, str, list[int]]:
-    """Start the long run and end it when a few batches are finished; return its end, its words, its children."""
-    command = [sys.executable, "-m", "truing", *PRESS, "-o", "run", *more]
-    process = subprocess.Popen(
-        hearing_interrupts(command), cwd=folder, stderr=subprocess.PIPE, text=True, start_new_session=True
-    )
-    log = folder / "run.partial" / "batches.log"
-    before = log.stat().st_size if log.exists() else 0
-    wait_until(lambda: process.poll() is not None or (log.exists() and log.stat().st_size > before), "a batch is kept")
-    assert process.poll() is None, process.communicate()
+def test_a_killed_run_goes_on_where_it_was(calc_process: Calc, tmp_path: Path) -> None:
+    """Killed with two processes, interrupted with one, completed with one: no finished batch is computed twice."""
+    pin = Gated.in_folder(tmp_path)
+    process = pin.start("-o", "run", "--resume", "--workers", "2")
+    pin.at_the_gate(process, FREE + 2)  # each of the two workers holds a batch
+    wait_until(lambda: pin.kept("run") == FREE, "the others are kept")
     children = children_of(process.pid) if Path("/proc/self/task").exists() else []
-    process.send_signal(how)
-    _, err = process.communicate(timeout=PATIENCE)
-    return process.returncode, err, children
-
-
-def run_of(folder: Path) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads((folder / "run.json").read_text(encoding="utf-8"))
-    return found
-
-
-def test_a_killed_run_goes_on_where_it_was(calc: Calc, tmp_path: Path) -> None:
-    """Killed with two processes, interrupted with one, completed with one: no batch is computed twice."""
-    code, _, children = ended(tmp_path, signal.SIGKILL, "--workers", "2")
-    assert code == -signal.SIGKILL
+    process.kill()
+    process.communicate(timeout=PATIENCE)
     wait_until(lambda: not any(map(is_alive, children)), "the workers end with the process that started them")
     assert not (tmp_path / "run").exists()
-    code, err, _ = ended(tmp_path, signal.SIGINT)
+
+    process = pin.start("-o", "run", "--resume", "-q", launcher=hearing_interrupts)
+    pin.at_the_gate(process, FREE + 3)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=PATIENCE)
     words = "calc: interrupted; finished batches are kept in run.partial, the same command goes on from there\n"
-    assert (code, err) == (130, words)
-    log = tmp_path / "run.partial" / "batches.log"
-    with log.open("ab") as torn:
+    assert (process.returncode, err) == (130, words)
+    with (tmp_path / "run.partial" / "batches.log").open("ab") as torn:
         torn.write(b"TRB1 the power failed here")
-    answer = calc(*PRESS, "-o", "run")
-    assert answer.code == 1, answer.err
-    assert 0 < run_of(tmp_path / "run")["resumed"] < BATCHES
-    assert calc(*PRESS[:-1], "-o", "whole").code == 1
+
+    pin.open()
+    before = pin.calls
+    answer = calc_process(*pin.words, "-q", "-o", "run", "--resume")
+    assert answer.code == 0, answer.err
+    assert run_of(tmp_path / "run")["resumed"] == FREE
+    assert pin.calls - before == BATCHES - FREE
+    assert not (tmp_path / "run.partial").exists()
+    assert calc_process(*pin.words, "-q", "-o", "whole").code == 0
     assert run_of(tmp_path / "whole")["resumed"] == 0
     assert (tmp_path / "run/results.json").read_bytes() == (tmp_path / "whole/results.json").read_bytes()
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["run", "whole"]
 
 
 @pytest.fixture
@@ -191,22 +167,21 @@ def test_nothing_is_kept_of_a_run_that_never_began(calc: Calc, tmp_path: Path) -
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs /proc to find the workers")
 def test_a_worker_that_is_killed_changes_nothing_but_the_warning(calc: Calc, tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "truing", *PRESS, "-o", "run", "--workers", "2"]
-    process = subprocess.Popen(
-        [word for word in command if word != "-q"], cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-        text=True, encoding="utf-8",
-    )  # fmt: skip
-    log = tmp_path / "run.partial" / "batches.log"
-    wait_until(lambda: process.poll() is not None or (log.exists() and log.stat().st_size), "a batch is kept")
+    pin = Gated.in_folder(tmp_path)
+    process = pin.start("-o", "run", "--workers", "2")
+    pin.at_the_gate(process, FREE + 2)
     workers = [child for child in children_of(process.pid) if b"spawn_main" in command_of(child)]
+    assert len(workers) == 2
     os.kill(workers[0], signal.SIGKILL)
+    pin.open()
     _, err = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 0, err
     lost = "a worker process ended without an answer once; its batches were computed again, the results are the same"
     assert f"warning: {lost}\n" in err
     run = run_of(tmp_path / "run")
     assert run["workers"] == {"count": 2, "lost": 1, "where": "processes"}
     assert run["warnings"] == [lost]
-    assert calc(*PRESS[:-1], "-o", "whole").code == 1
+    assert calc(*pin.words, "-q", "-o", "whole").code == 0
     assert (tmp_path / "run/results.json").read_bytes() == (tmp_path / "whole/results.json").read_bytes()
 
 

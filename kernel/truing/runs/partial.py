@@ -30,20 +30,18 @@ def partial_folder(folder: Path) -> Path:
 
 
 def code_of(setup: Setup) -> tuple[str, ...]:
-    """Name the packages and files whose code decides the results: ours, the plugin's, and those of its guests."""
-    file = Path(setup.origin.file)
-    own = file.parent.name if file.name == "__init__.py" else str(file.resolve())
+    """Name the packages and files whose code decides the results: ours, the plugin's, and those of its guests.
+
+    A single file stands with the modules that were imported from its folder, all of them by path.
+    """
+    file = Path(setup.origin.file).resolve()
     functions = [setup.model.function, *(effect.function for effect in setup.model.known_effects.values())]
-    modules = {sys.modules.get(function.__module__.partition(".")[0]) for function in functions}
-    guests = {module.__name__ for module in modules if module is not None and _file(module) != file.resolve()}
-    beside = set()
-    if file.name != "__init__.py":  # modules that a single file imports from its folder
-        beside = {
-            str(path)
-            for module in list(sys.modules.values())
-            if (path := _file(module)).parent == file.resolve().parent
-        }
-    return tuple(sorted({"truing", own, *guests, *beside}))
+    packages = {function.__module__.partition(".")[0] for function in functions}
+    if file.name == "__init__.py":
+        return tuple(sorted({"truing", file.parent.name, *packages}))
+    beside = {path for module in list(sys.modules.values()) if (path := _file(module)).parent == file.parent}
+    others = {name for name in packages if name in sys.modules and _file(sys.modules[name]) not in beside}
+    return tuple(sorted({"truing", str(file), *others, *map(str, beside)}))
 
 
 def _file(module: Any) -> Path:

@@ -1,0 +1,105 @@
+"""A calculation that finishes six batches, then waits at a gate: a test can end whoever computes it in the middle."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+PATIENCE = 120.0  # seconds for what takes one or two on a quiet machine
+FREE, ROWS, BATCHES = 6, 1024, 24
+PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
+PLUGIN = f'''
+"""The wear of a pin, calculated by whoever passes the gate."""
+
+import os
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from pin_wear import PIN_WEAR, Pin, Wear, wear
+
+from truing import Model, hookimpl
+
+CALLS, OPEN = Path(__file__).with_name("calls"), Path(__file__).with_name("open")
+
+
+def gated(pin: Pin) -> Wear:
+    """Let {FREE} batches pass, and the others when the gate is opened."""
+    if np.shape(pin.load) == ({ROWS},):
+        with CALLS.open("ab", buffering=0) as calls:
+            calls.write(b"x")
+        while CALLS.stat().st_size > {FREE} and not OPEN.exists():
+            time.sleep(0.01)
+    return wear(pin)
+
+
+@hookimpl
+def truing_models() -> list[Model]:
+    """Offer it."""
+    return [replace(PIN_WEAR, name="gated_pin", function=gated, sheet=[])]
+'''
+
+
+def wait_until(holds: Callable[[], Any], what: str) -> None:
+    """Poll until something holds."""
+    until = time.monotonic() + PATIENCE
+    while not holds():
+        assert time.monotonic() < until, f"not within {PATIENCE:.0f} s: {what}"
+        time.sleep(0.02)
+
+
+@dataclass(frozen=True)
+class Gated:
+    """The calculation in a folder of its own: how it is run, how often it was asked for a batch, and its gate."""
+
+    folder: Path
+
+    @classmethod
+    def in_folder(cls, folder: Path) -> Gated:
+        (folder / "pin_wear.py").write_text(PIN.read_text(encoding="utf-8"), encoding="utf-8")
+        (folder / "gated_pin.py").write_text(PLUGIN, encoding="utf-8")
+        return cls(folder)
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        options = ['studies.run=["reliability"]', f"studies.reliability.batch={ROWS}"]
+        options.append(f"studies.reliability.draws={ROWS * BATCHES}")
+        return ("run", str(self.folder / "gated_pin.py"), *(word for text in options for word in ("--set", text)))
+
+    @property
+    def calls(self) -> int:
+        file = self.folder / "calls"
+        return file.stat().st_size if file.exists() else 0
+
+    def kept(self, run: str) -> int:
+        """How many batches are kept beside a run folder."""
+        log = self.folder / f"{run}.partial" / "batches.log"
+        return log.read_bytes().count(b"TRB1") if log.exists() else 0
+
+    def open(self) -> None:
+        (self.folder / "open").touch()
+
+    def start(self, *more: str, launcher: Callable[[list[str]], list[str]] = list) -> subprocess.Popen[str]:
+        command = [sys.executable, "-m", "truing", *self.words, *more]
+        return subprocess.Popen(
+            launcher(command), cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+            encoding="utf-8", start_new_session=True,
+        )  # fmt: skip
+
+    def at_the_gate(self, process: subprocess.Popen[str], calls: int) -> None:
+        """Wait until so many batches were begun."""
+        wait_until(lambda: process.poll() is not None or self.calls >= calls, f"{calls} batches are begun")
+        assert process.poll() is None, process.communicate()
+
+
+def run_of(folder: Path) -> dict[str, Any]:
+    """Return run.json."""
+    found: dict[str, Any] = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+    return found
