@@ -186,7 +186,10 @@ WRONG = [
     (by_choice("length", power=EUR, exponential=EUR), "is chosen by 'length', which offers no choices"),
     (by_choice("cost_form", power=EUR), "has a price for power, but 'cost_form' offers power, exponential"),
     (by_choice("cost_form", power=EUR, exponential=replace(EUR, unit="yuan")), "the prices are in EUR and yuan"),
-    (by_choice("cost_form", power=EUR, exponential=replace(EUR, formula="1 / breadth")), "names breadth; it is a formula"),
+    (
+        by_choice("cost_form", power=EUR, exponential=replace(EUR, formula="1 / breadth")),
+        "names breadth; it is a formula",
+    ),
 ]
 
 

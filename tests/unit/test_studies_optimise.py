@@ -4,6 +4,7 @@ import itertools
 import json
 import math
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,10 +26,12 @@ from truing import (
     off,
 )
 from truing.calculation import Calculation, calculate
-from truing.errors import DeclarationError, UsageError
+from truing.errors import DeclarationError, InputError, UsageError
 from truing.evaluate import evaluate, evaluate_rows
 from truing.executors import open_executor
 from truing.fits import GRADES, tolerance
+from truing.inputs_file import read_setup
+from truing.kernel import Offer, Origin
 from truing.prices import price_answers, total_price
 from truing.setup import Setup, default_setup
 from truing.studies.bench import Bench
@@ -647,3 +650,53 @@ OPTIONS = [
 def test_options_that_make_no_sense_are_refused(options: dict[str, Any], words: str) -> None:
     with pytest.raises(UsageError, match=words):
         Optimise(**options)
+
+
+# [studies.optimise] of an inputs file
+
+
+def read(folder: Path, text: str) -> Setup:
+    file = folder / "in.toml"
+    file.write_text(text, encoding="utf-8")
+    return read_setup(file, Offer("pair", PAIR, Origin("optimise_models", "", "", "", "module:optimise_models")))
+
+
+def test_an_inputs_file_sets_the_options(tmp_path: Path) -> None:
+    text = """
+[studies.optimise]
+vary = ["permitted", "one"]
+population = 30
+widest = 3
+chance = "draws"
+surrogate = true
+"""
+    (study,) = read(tmp_path, text).studies
+    assert isinstance(study, Optimise)
+    assert (study.vary, study.population, study.widest) == (("permitted", "one"), 30, 3.0)
+    assert (study.chance, study.surrogate, study.tightest) == ("draws", True, 0.25)
+
+
+FILES = [
+    ("population = 2", "in.toml:3: study 'optimise': population = 2, but a population has 4 to 10000 designs"),
+    ('chance = "luck"', "in.toml:3: study 'optimise': chance = 'luck': input should be 'draws' or 'first_order'"),
+    ("generation = 3", "in.toml:3: study 'optimise' has no option 'generation'. Did you mean 'generations'?"),
+    ("widest = 0.1", "in.toml:3: study 'optimise': tightest = 0.25 and widest = 0.1, but widths run from"),
+    ('finest = "IT40"', "in.toml:3: study 'optimise': 'IT40' is no tolerance grade; write IT1 to IT18"),
+    ("draws = 2.5", "in.toml:3: study 'optimise': draws = 2.5 is no whole number"),
+]
+
+
+@pytest.mark.parametrize(("line", "words"), FILES)
+def test_a_wrong_option_is_one_sentence_with_its_line(tmp_path: Path, line: str, words: str) -> None:
+    with pytest.raises(InputError) as refused:
+        read(tmp_path, f"\n[studies.optimise]\n{line}\n")
+    (fault,) = refused.value.faults
+    assert words in str(fault)
+
+
+def test_a_choice_of_the_file_changes_the_prices_of_the_search(tmp_path: Path) -> None:
+    study = "[studies.optimise]\npopulation = 8\ngenerations = 2\nverify = 100\n"
+    square = optimum(read(tmp_path, f'[inputs]\nlaw = "square"\n{study}'))
+    assert square.start.objectives["tolerance_price"] == pytest.approx(1000 / 24**2 + 300 / 24**2, rel=1e-12)
+    plain = optimum(read(tmp_path, study))
+    assert plain.start.objectives["tolerance_price"] == pytest.approx(1000 / 24 + 300 / 24, rel=1e-12)
