@@ -16,6 +16,7 @@ from study_models import PRICED
 from press_linkage.model import PRESS_LINKAGE
 from truing import (
     Allocation,
+    Maximise,
     Minimise,
     Optimise,
     Optimum,
@@ -28,7 +29,7 @@ from truing import (
 from truing.calculation import Calculation, calculate
 from truing.errors import DeclarationError, InputError, UsageError
 from truing.evaluate import evaluate, evaluate_rows
-from truing.executors import open_executor
+from truing.executors import BatchLog, KeptExecutor, SerialExecutor, open_executor
 from truing.fits import GRADES, tolerance
 from truing.inputs_file import read_setup
 from truing.kernel import Offer, Origin
@@ -186,6 +187,17 @@ def test_whole_numbers_stay_whole_and_the_best_gear_is_found() -> None:
     assert best.failed > 0
     for design in best.front:
         assert all(design.inputs[name] == round(design.inputs[name]) for name in ("teeth", "starts"))
+
+
+def test_a_search_ends_when_every_design_was_tried() -> None:
+    levels = [Vary("teeth", "20", "22"), Minimise("weight"), Maximise("ratio")]
+    best = optimum(setup_of(replace(GEAR, objectives=levels, errors=[], studies=[])), SMALL)
+    assert [design.inputs["teeth"] for design in best.front] == [20, 21, 22]
+    assert best.volume is not None
+    assert best.volume.settled
+    assert list(best.warnings()) == []
+    assert len(best.volume.history) < 12
+    assert "no design was left" in best.blocks()[0].text  # type: ignore[union-attr]
 
 
 # One design at a time: what the arrays of the search must say too
@@ -350,6 +362,17 @@ def test_processes_give_the_same_bytes(chance_: Any) -> None:
         for setup in setups:
             apart = calculate(setup, executor=executor).outcomes["optimise"]
             assert written(apart) == written(calculate(setup).outcomes["optimise"])  # type: ignore[arg-type]
+
+
+def test_an_interrupted_search_takes_up_what_was_kept(tmp_path: Path) -> None:
+    setup = replace(setup_of(PAIR), studies=(replace(SMALL, tightest=0.25),))
+    wanted = written(calculate(setup).outcomes["optimise"])  # type: ignore[arg-type]
+    for resumed in (0, 13):  # twelve generations and the verification
+        log = BatchLog(tmp_path / "batches")
+        executor = KeptExecutor(SerialExecutor(), log)
+        assert written(calculate(setup, executor=executor).outcomes["optimise"]) == wanted  # type: ignore[arg-type]
+        assert executor.resumed == resumed
+        log.close()
 
 
 def test_it_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:

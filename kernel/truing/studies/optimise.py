@@ -165,7 +165,7 @@ def _optimum(study: Optimise, problem: Problem, trail: Trail) -> Optimum:
         knee_place=place,
         distance=distance,
         status=FOUND if feasible else _nothing(problem, trail),
-        volume=volume_of(trail.fronts) if feasible else None,
+        volume=volume_of(trail.fronts, exhausted=len(trail.fronts) < study.generations) if feasible else None,
         evaluations=trail.evaluations,
         failed=trail.failed,
         remarks=(*left_out(problem.setup), *_too_few(problem)),

@@ -23,6 +23,8 @@ class Volume:
     ideal: tuple[float, ...]
     nadir: tuple[float, ...]
     history: tuple[float, ...]
+    exhausted: bool = False
+    """Whether the search ended because it found no design that it had not tried."""
 
     @property
     def last(self) -> int:
@@ -37,11 +39,11 @@ class Volume:
 
     @property
     def settled(self) -> bool:
-        """Whether it grew by no more than one part in a thousand."""
-        return len(self.history) > self.last and self.gain <= SETTLED
+        """Whether it grew by no more than one part in a thousand, or nothing was left to try."""
+        return self.exhausted or (len(self.history) > self.last and self.gain <= SETTLED)
 
 
-def volume_of(fronts: Sequence[NDArray[np.float64]]) -> Volume:
+def volume_of(fronts: Sequence[NDArray[np.float64]], *, exhausted: bool = False) -> Volume:
     """Measure every generation's front (values that should be small) in the box of the last one.
 
     In one objective it is the way from the reference to the best. An objective in which the last front has no extent
@@ -55,7 +57,7 @@ def volume_of(fronts: Sequence[NDArray[np.float64]]) -> Volume:
     nadir = np.where(nadir > ideal, nadir, whole.max(axis=0))
     span = np.where(nadir > ideal, nadir - ideal, 1.0)
     history = tuple(_hypervolume((front - ideal) / span) if len(front) else 0.0 for front in fronts)
-    return Volume(tuple(ideal.tolist()), tuple((ideal + span).tolist()), history)
+    return Volume(tuple(ideal.tolist()), tuple((ideal + span).tolist()), history, exhausted)
 
 
 def _hypervolume(values: NDArray[np.float64]) -> float:

@@ -136,6 +136,8 @@ def _summary(optimum: Optimum) -> str:
 def _settled(optimum: Optimum) -> str:
     volume = optimum.volume
     assert volume is not None  # there is a front
+    if volume.exhausted:
+        return "The search ended when no design was left that it had not tried."
     grown = f"the hypervolume grew by {100 * volume.gain:.2g} % in the last {volume.last} generations"
     return f"The search has settled: {grown}." if volume.settled else f"The search has not settled: {grown}."
 
