@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -14,6 +15,7 @@ from pathlib import Path
 
 import pytest
 from gated import BATCHES, FREE, PATIENCE, Gated, run_of, wait_until
+from test_interrupt import hearing_interrupts
 
 from shared import Answer, Calc
 from truing.errors import TruingError, UsageError
@@ -142,6 +144,22 @@ def test_finished_batches_outlive_a_lost_scheduler(
         assert calc(*pin.words, "-q", "-o", folder, *more).code == 0
     assert run_of(tmp_path / "run")["resumed"] == FREE
     assert (tmp_path / "run" / "results.json").read_bytes() == (tmp_path / "whole" / "results.json").read_bytes()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
+def test_an_interrupted_run_leaves_the_cluster_at_once(cluster: Cluster, tmp_path: Path) -> None:
+    cluster.start_workers(2)
+    pin = Gated.in_folder(tmp_path)
+    process = pin.start("-o", "run", "-q", "--cluster", cluster.address, launcher=hearing_interrupts)
+    pin.at_the_gate(process, FREE + 2)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=PATIENCE)
+    assert (process.returncode, err) == (130, "calc: interrupted; nothing was written\n")
+    pin.open()
+    with distributed.Client(cluster.address, set_as_default=False) as client:
+        wait_until(lambda: not any(client.processing().values()), "the workers have nothing to do")
+    assert pin.calls == FREE + 2
+    assert not (tmp_path / "run").exists()
 
 
 def test_a_plugin_in_one_file_reaches_the_cluster_and_another_one_there_is_refused(

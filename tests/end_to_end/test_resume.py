@@ -78,7 +78,9 @@ def test_all_batches_are_taken_up_and_none_is_computed(
 
     assert calc(*SMALL, "-o", "whole").code == 0
     monkeypatch.setattr(sampling, "_unpacked", None)  # computing a batch would call it
-    assert calc(*SMALL, "-o", "run", "--resume").code == 0
+    answer = calc(*(word for word in SMALL if word != "-q"), "-o", "run", "--resume")
+    assert answer.code == 0
+    assert "4 finished batches of an interrupted run were taken up\n" in answer.err
     assert run_of(unfinished / "run")["resumed"] == 4
     assert (unfinished / "run/results.json").read_bytes() == (unfinished / "whole/results.json").read_bytes()
     assert not (unfinished / "run.partial").exists()
@@ -103,7 +105,10 @@ def test_batches_of_another_run_are_refused(calc: Calc, unfinished: Path, change
     )
     assert re.fullmatch(sentence + "\n", answer.err)
     assert (unfinished / "run.partial/batches.log").read_bytes() == before
-    assert calc(*SMALL, *changed, "-o", "run").code == 0  # without --resume they are neither read nor touched
+    plain = calc(*(word for word in SMALL if word != "-q"), *changed, "-o", "run")
+    assert plain.code == 0  # without --resume they are neither read nor touched
+    note = "note: run.partial holds finished batches of an interrupted run; --resume would take them up\n"
+    assert note in plain.err
     assert (unfinished / "run.partial/batches.log").read_bytes() == before
 
 

@@ -50,7 +50,7 @@ def run(
     setup = read_or_example(offer, inputs, changed or (), word=plugin, settings=settings)
     folder = output or Path("runs") / (inputs.stem if inputs else offer.name)
     order = RunOrder(folder, cases, workers=workers or 1, cluster=cluster, resume=resume, pdf=pdf)
-    with progress_bar(settings) as progress, told_by_line(setup), _told_what_is_kept(order):
+    with progress_bar(settings) as progress, told_by_line(setup), _told_what_is_kept(order, settings):
         done = perform(setup, offer, order, progress)
     _say_beside(done, settings)
     if as_json:
@@ -61,14 +61,17 @@ def run(
 
 
 @contextmanager
-def _told_what_is_kept(order: RunOrder) -> Iterator[None]:
-    """Say of an interrupt whether finished batches are kept."""
-    from truing.runs.partial import partial_folder
+def _told_what_is_kept(order: RunOrder, settings: Settings) -> Iterator[None]:
+    """Say of batches that lie there whether they are taken up, and of an interrupt whether they are kept."""
+    from truing.runs.partial import is_partial, partial_folder
 
+    kept = partial_folder(order.folder)
+    if not order.resume and is_partial(kept):
+        settings.say(f"note: {kept} holds finished batches of an interrupted run; --resume would take them up")
     try:
         yield
     except KeyboardInterrupt:
-        if order.resume and (kept := partial_folder(order.folder)).is_dir():
+        if order.resume and kept.is_dir():
             raise KeyboardInterrupt(
                 f"calc: interrupted; finished batches are kept in {kept}, the same command goes on from there"
             ) from None
@@ -85,6 +88,8 @@ def _say_beside(done: Done, settings: Settings) -> None:
                 say(str(case.fault))
     if done.note:
         settings.say(done.note)
+    if done.resumed:
+        settings.say(f"{done.resumed} finished batches of an interrupted run were taken up")
     setup = done.calculation.setup
     stated = len(setup.stated & set(setup.model.input_fields))
     settings.detail(f"plugin {setup.origin.name} {setup.origin.version} from {setup.origin.file}")

@@ -50,7 +50,8 @@ class RunOrder:
 class Done:
     """A finished run: its calculation (of the governing case), results.json, and what is to be said of the printing.
 
-    ``remarks`` say what befell the workers, which is no part of the results.
+    ``remarks`` say what befell the workers, which is no part of the results; ``resumed`` is the number of finished
+    batches that were taken up.
     """
 
     calculation: Calculation
@@ -58,6 +59,7 @@ class Done:
     cases: CasesTable | None = None
     note: str = ""
     remarks: tuple[str, ...] = ()
+    resumed: int = 0
 
     @property
     def passed(self) -> bool:
@@ -98,7 +100,7 @@ def _perform(setup: Setup, offer: Offer, order: RunOrder, *, progress: Progress,
         sheets=sheets,
         cases=cases,
     )
-    return Done(calculation, document, cases, note, tuple(computed["warnings"]))
+    return Done(calculation, document, cases, note, tuple(computed["warnings"]), computed["resumed"])
 
 
 def _computed(place: Place) -> dict[str, Any]:

@@ -29,6 +29,11 @@ def partial_folder(folder: Path) -> Path:
     return target.with_name(f"{target.name}.partial")
 
 
+def is_partial(place: Path) -> bool:
+    """Tell whether a folder holds finished batches of ours."""
+    return (place / HEADER).is_file()
+
+
 def code_of(setup: Setup) -> tuple[str, ...]:
     """Name the packages and files whose code decides the results: ours, the plugin's, and those of its guests.
 
