@@ -22,6 +22,7 @@ from truing import (
     Optimum,
     Reliability,
     Require,
+    Surrogate,
     Vary,
     Words,
     off,
@@ -615,6 +616,22 @@ def test_the_surrogate_answers_what_it_knows_and_the_knee_is_run_on_the_model() 
     assert best.exact["stress"] == pytest.approx(1e3 * best.knee.objectives["stress"], rel=1e-9)
     assert json.loads(written(best))["surrogate"] is True
     assert "The surrogate answered" in best.blocks()[0].text  # type: ignore[union-attr]
+
+
+def test_a_learnt_surrogate_finds_the_front_and_says_where_it_learnt_nothing() -> None:
+    learnt = Surrogate(of=("first", "second"), over={"a": "0.1..1", "b": "0..1"}, design=60, held_out=20, compare=0)
+    study = Optimise(vary=("a", "b"), population=40, generations=30, surrogate=True)
+    best = calculate(replace(setup_of(ZDT1, c=0, d=0, e=0), studies=(learnt, study))).outcomes["optimise"]
+    assert isinstance(best, Optimum)
+    first, second = values(best, "first", "second").T
+    inside = first > 0.1
+    assert second[inside] == pytest.approx(1 - np.sqrt(first[inside]), abs=0.02)
+    counted = sum(design.inputs["a"] < 0.1 for design in best.front)
+    assert counted > 0
+    words = f"study 'optimise': {counted} of {len(best.front)} designs of the front lie outside the surrogate's box"
+    assert words in best.warnings()
+    assert best.knee is not None
+    assert best.exact["first"] == pytest.approx(best.knee.inputs["a"], rel=1e-12)
 
 
 def test_a_surrogate_that_is_not_there_is_asked_for() -> None:

@@ -168,7 +168,7 @@ def _optimum(study: Optimise, problem: Problem, trail: Trail) -> Optimum:
         volume=volume_of(trail.fronts, exhausted=len(trail.fronts) < study.generations) if feasible else None,
         evaluations=trail.evaluations,
         failed=trail.failed,
-        remarks=(*left_out(problem.setup), *_too_few(problem)),
+        remarks=(*left_out(problem.setup), *_too_few(problem), *_beyond(problem, designs)),
         inputs=acting_inputs(problem.setup),
     )
 
@@ -197,6 +197,15 @@ def _too_few(problem: Problem) -> tuple[str, ...]:
         if goal is not None and problem.cloud.draws * (1 - goal) < 1:
             words.append(f"{problem.cloud.draws} machines cannot tell {goal:g} of '{bound.name}' from certainty")
     return tuple(words)
+
+
+def _beyond(problem: Problem, designs: NDArray[np.float64]) -> tuple[str, ...]:
+    """Say how many designs of the front lie where the surrogate learnt nothing."""
+    import numpy as np
+
+    outside = getattr(problem.stand_in, "extrapolated", None)
+    count = int(np.sum(outside(problem.space.columns(designs)))) if outside is not None else 0
+    return (f"{count} of {len(designs)} designs of the front lie outside the surrogate's box",) if count else ()
 
 
 @dataclass(frozen=True, kw_only=True)
