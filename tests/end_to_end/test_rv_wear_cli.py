@@ -1,0 +1,163 @@
+"""The reducer through the command line: the shipped example, its sheet, and the paper's numbers."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import sys
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from shared import Answer, Calc, process
+
+STUDIES = (
+    "validity", "modifications", "sweep", "sensitivity", "reliability", "costs", "surrogate", "allocation",
+    "least_costs", "optimise",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory: pytest.TempPathFactory) -> tuple[Answer, Path, dict[str, Any]]:
+    """Write the example file and run it, once."""
+    folder = tmp_path_factory.mktemp("reducer")
+    written = process([sys.executable, "-m", "truing", "init", "rv_wear", "-o", "reducer.toml"], folder)
+    assert written.code == 0, written.err
+    answer = process([sys.executable, "-m", "truing", "run", "rv_wear", "--inputs", "reducer.toml", "--json"], folder)
+    return answer, folder, json.loads(answer.out)
+
+
+def value(found: dict[str, Any], name: str) -> Any:
+    return found["results"][name]["value"]
+
+
+def test_the_example_ends_with_the_finding_of_the_paper(example: tuple[Answer, Path, dict[str, Any]]) -> None:
+    """88.7 % stay within one arc minute after 6000 h: not enough, so one check fails."""
+    answer, folder, found = example
+    assert answer.code == 1
+    (failing,) = [check for check in found["checks"] if not check["passed"] and check["name"] == "backlash"]
+    assert failing["limit"] == 0.95
+    assert value(found, "accuracy_reliability") == pytest.approx(88.7, rel=0.01)
+    assert {path.name for path in (folder / "runs/reducer").iterdir()} >= {
+        "inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md",
+    }  # fmt: skip
+
+
+def test_the_example_gives_the_numbers_of_the_paper(example: tuple[Answer, Path, dict[str, Any]]) -> None:
+    _, _, found = example
+    assert value(found, "max_wear") == pytest.approx(3.127, rel=1e-3)
+    assert value(found, "max_force") == pytest.approx(3390, rel=1e-3)
+    assert value(found, "backlash") == pytest.approx(0.949, abs=5e-4)
+    assert value(found, "manufacturing_cost") == pytest.approx(1402, rel=1e-3)
+    assert value(found, "equidistant_high") == pytest.approx(11, rel=0.01)
+    assert value(found, "equidistant_low") == pytest.approx(-53, rel=0.015)
+    assert value(found, "band_share") == 100.0
+    assert 85 <= value(found, "surrogate_coverage") <= 100
+
+
+def test_what_runs_along_an_axis_comes_from_studies_and_reaches_the_results(
+    example: tuple[Answer, Path, dict[str, Any]],
+) -> None:
+    _, folder, found = example
+    written = json.loads((folder / "runs/reducer/results.json").read_text())
+    assert written["results"] == found["results"]
+    axes = {
+        "phase_angle": ("normal_force", "worn_force", "wear_depth"),
+        "history_time": ("wear_history", "backlash_history"),
+        "reliability_time": ("reliability_history",),
+        "front_cost": ("front_wear", "front_equidistant"),
+    }
+    for axis, names in axes.items():
+        assert len(value(found, axis)) > 2
+        for name in names:
+            assert len(value(found, name)) == len(value(found, axis)), name
+    assert max(value(found, "normal_force")) == pytest.approx(value(found, "largest_force"), rel=1e-12)
+    assert max(value(found, "wear_depth")) == pytest.approx(value(found, "max_wear"), rel=1e-9)
+    assert value(found, "wear_history")[-1] == pytest.approx(value(found, "max_wear"), rel=1e-12)
+    assert value(found, "wear_history")[0] == 0
+    assert value(found, "reliability_history")[-1] == pytest.approx(value(found, "accuracy_reliability"), rel=1e-12)
+    sheet = (folder / "runs/reducer/sheet.md").read_text(encoding="utf-8")
+    for name in ("wear_history", "reliability_history", "manufacturing_cost", "least_cost"):
+        assert name.replace("_", "\\_") in sheet, name
+
+
+def test_every_study_has_its_part_in_the_results(example: tuple[Answer, Path, dict[str, Any]]) -> None:
+    assert set(STUDIES) <= set(example[2]["studies"])
+
+
+def test_no_design_of_the_front_beats_another_and_each_reaches_the_goal(
+    example: tuple[Answer, Path, dict[str, Any]],
+) -> None:
+    """In the order of cost the wear falls."""
+    _, _, found = example
+    wear = value(found, "front_wear")
+    assert all(after < before for before, after in pairwise(wear))
+    assert all(design["feasible"] for design in found["studies"]["optimise"]["front"])
+
+
+def test_the_search_finds_the_front_that_is_found_without_it(example: tuple[Answer, Path, dict[str, Any]]) -> None:
+    """Nothing lies below the front of least costs, and the search comes within two percent of its cost."""
+    import numpy as np
+
+    _, _, found = example
+    front = next(each for each in found["studies"]["least_costs"]["fronts"] if each["goal"] == 0.95)
+    wear, cost = np.array(front["max_wear"]["values"]), np.array(front["cost"]["values"])
+    searched_cost, searched_wear = np.array(value(found, "front_cost")), np.array(value(found, "front_wear"))
+    inside = (searched_wear > wear[0]) & (searched_wear < wear[-1])
+    over = searched_cost[inside] / np.interp(searched_wear[inside], wear, cost)
+    assert inside.sum() > 20
+    assert over.min() > 0.99  # the chords of the convex front lie a little above it
+    assert np.median(over) < 1.02
+
+
+def test_a_table_of_working_times(calc: Calc, tmp_path: Path) -> None:
+    """Reference values of the wear over the time, um."""
+    reference = {1000: 0.788, 2000: 1.419, 3000: 1.943, 4000: 2.391, 5000: 2.783, 6000: 3.129}
+    (tmp_path / "reducer.toml").write_text("[inputs]\n")
+    (tmp_path / "rows.csv").write_text("working_time [h]\n" + "".join(f"{hours}\n" for hours in reference))
+    answer = calc("table", "rv_wear", "--inputs", "reducer.toml", "--rows", "rows.csv")
+    assert answer.code == 0, answer.err
+    head, *rows = csv.reader(io.StringIO(answer.out))
+    place = head.index("max_wear [um]")
+    assert [float(row[place]) for row in rows] == pytest.approx(list(reference.values()), abs=1.1e-3)
+
+
+def test_describe_names_inputs_results_errors_and_goals(calc: Calc) -> None:
+    answer = calc("describe", "rv_wear", "--json")
+    assert answer.code == 0
+    for name in (
+        "output_torque", "output_speed", "working_time", "equidistant_modification", "shift_modification",
+        "pin_circle_radius", "pin_radius", "eccentricity", "pin_count", "disc_width", "composite_roughness",
+        "pressure_viscosity", "max_force", "max_wear", "backlash", "normal_force", "wear_depth", "wear_history",
+        "accuracy_reliability", "manufacturing_cost", "tolerance_price", "modification_error",
+    ):  # fmt: skip
+        assert f'"{name}"' in answer.out, name
+
+
+def test_verify_prints_every_row_with_its_verdict(calc: Calc) -> None:
+    answer = calc("verify", "rv_wear", "--json")
+    assert (answer.code, answer.err) == (0, "")
+    found = json.loads(answer.out)
+    rows = {row["name"]: row for row in found["rows"]}
+    assert all(row["as_stated"] for row in found["rows"])
+    bounds = {
+        "largest equidistant modification": 0.010, "smallest equidistant modification": 0.015,
+        "deepest wear after 6000 h": 0.001, "deepest wear at optimum 1": 0.001, "deepest wear at optimum 2": 0.0012,
+        "mean backlash, unworn": 0.003, "reliability after 6000 h": 0.0078, "cost before optimisation": 0.001,
+        "least cost at optimum 1": 0.036, "wear at optimum 1, begin of the front": 0.0025,
+        "wear at optimum 2, begin of the front": 0.0027,
+    }  # fmt: skip
+    for name, apart in bounds.items():
+        assert rows[name]["ratio"] == pytest.approx(1, abs=apart), name
+    for number in range(1, 17):
+        assert rows[f"sensitivity index {number}"]["ratio"] == pytest.approx(1, abs=0.0095)
+    differing = [name for name, row in rows.items() if row["verdict"] == "differs"]
+    assert all(rows[name]["why"] for name in differing)
+    assert {name for name in rows if "knee" in name} <= set(differing)
+    assert rows["deepest wear after 6000 h"]["obtained"] == "calibrated"
+    titles = [finding["title"] for finding in found["findings"]]
+    assert "The cost functions are read as powers" in titles
+    assert "A reliability of 100 % is no number that can be met" in titles
