@@ -1,0 +1,34 @@
+"""The measured reducer of the manual: made again byte for byte, and diagnosed to what its README says."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import make_reducer_example
+import pytest
+from measured import calc_here, names, read_document
+from shown_in_docs import EXAMPLES
+
+EXAMPLE = EXAMPLES / "reducer_wears_slowly"
+
+
+def test_the_shipped_rows_are_those_that_the_script_makes() -> None:
+    for name, text in make_reducer_example.files().items():
+        assert (EXAMPLE / name).read_bytes() == text.encode()
+
+
+@pytest.mark.parametrize(("file", "unique"), [("backlash.csv", False), ("opened.csv", True)])
+def test_only_the_wear_of_a_flank_makes_the_cause_unique(file: str, unique: bool, tmp_path: Path) -> None:
+    (stated,) = re.findall(r"\*\*([\d.]+)\*\*", (EXAMPLE / "README.md").read_text(encoding="utf-8"))
+    desk = tmp_path / "desk"
+    shutil.copytree(EXAMPLE, desk)
+    answer = calc_here(desk, "diagnose", "rv_wear", "--inputs", "inputs.toml", "--data", file)
+    assert answer.code == 0
+    found = read_document(desk / "runs" / Path(file).stem)
+    assert (found["verdict"], found["unique"]) == ("named", unique)
+    if unique:
+        assert names(found) == ["pin_rolling"]
+        low, high = found["causes"][0]["unknowns"]["rolling"]["interval95"]
+        assert low < float(stated) < high
