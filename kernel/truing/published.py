@@ -51,18 +51,25 @@ def compare_published(
 ) -> list[ComparedRow]:
     """Compare the printed numbers of a model with its own, starting from its defaults.
 
-    ``known`` is a calculation that was made already; it serves for the settings that it has.
+    ``known`` is a calculation that was made already; it serves for the settings that it has, and for those that ask
+    for a part of its studies.
     """
     from truing.calculation import calculate
     from truing.inputs_file import setup_from_settings
 
     def calculation_for(settings: Mapping[str, str]) -> Calculation:
         wanted = setup_from_settings(offer, settings)
-        if known is not None and known.setup.studies == wanted.studies and same_run(known.setup, wanted):
+        if known is not None and _covers(known.setup, wanted) and same_run(known.setup, wanted):
             return known
         return calculate(wanted, progress=progress)
 
     return compare(calculation_for, offer.model.published)
+
+
+def _covers(known: Setup, wanted: Setup) -> bool:
+    """Tell whether a run asked every study that is wanted, with the same options, in this order."""
+    asked = [study for study in known.studies if study in wanted.studies]
+    return asked == list(wanted.studies)
 
 
 def compare_one(item: Published, calculation: Calculation) -> ComparedRow:
