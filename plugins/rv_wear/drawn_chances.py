@@ -121,7 +121,7 @@ def indices_figure(indices: Mapping[int, float]) -> "Figure":
     panel.axvline(0.0, color=INK, linewidth=0.8)
     panel.tick_params(axis="y", length=0)
     widest = max(1.6, *(abs(value) for value in values))
-    panel.set_xlim(-1.3 * widest, 1.3 * widest)
+    panel.set_xlim(-1.42 * widest, 1.42 * widest)
     panel.set_xlabel("change of backlash per change of the error, over that of factor 6")
     panel.legend(loc="lower left")
     panel.grid(axis="x", alpha=0.4)
