@@ -13,24 +13,26 @@ from jsonschema import Draft202012Validator
 from shared import Calc
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
+INSTALLED = ["press_linkage", "rv_wear"]
 
 
 def test_plugins(calc: Calc) -> None:
     answer = calc("plugins")
     assert (answer.code, answer.err) == (0, "")
-    head, row = answer.out.rstrip("\n").split("\n")
+    head, *rows = answer.out.rstrip("\n").split("\n")
     assert head.split() == ["model", "version", "from", "title"]
-    assert row.split()[:3] == ["press_linkage", version("truing"), "truing"]
-    assert calc("plugins", "--names").out == "press_linkage\n"
+    assert [row.split()[:3] for row in rows] == [[name, version("truing"), "truing"] for name in INSTALLED]
+    assert calc("plugins", "--names").out == "".join(f"{name}\n" for name in INSTALLED)
 
 
 def test_plugins_as_json(calc: Calc) -> None:
     found = json.loads(calc("plugins", "--json").out)
     assert found["broken"] == []
-    (model,) = found["models"]
-    assert model["name"] == model["plugin"] == "press_linkage"
-    assert model["distribution"] == "truing"
-    assert Path(model["file"]).is_file()
+    assert [model["name"] for model in found["models"]] == INSTALLED
+    for model in found["models"]:
+        assert model["plugin"] == model["name"]
+        assert model["distribution"] == "truing"
+        assert Path(model["file"]).is_file()
 
 
 def test_describe_names_everything_that_is_declared(calc: Calc) -> None:
