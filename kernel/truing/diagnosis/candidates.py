@@ -58,7 +58,8 @@ class Term:
     """One variant of a candidate: its columns, with the amplitude each stands for per unit of coefficient (SI).
 
     ``unknowns`` and ``files`` say which amplitude of which file (-1: of all) a column belongs to; ``low`` and ``high``
-    bound its coefficient. ``size`` counts the parameters, gridded shapes too.
+    bound its coefficient. ``size`` counts the parameters, gridded shapes too. ``at`` is the amplitude (SI) whose chord
+    the curve is; 0 for the slope at zero.
     """
 
     candidate: int
@@ -69,6 +70,7 @@ class Term:
     low: tuple[float, ...]
     high: tuple[float, ...]
     shape: Mapping[str, float]
+    at: float = 0.0
 
     @property
     def size(self) -> int:
@@ -135,6 +137,12 @@ def curve_at(
     return {name: changed[name] - machine.base[name] for name in machine.records.measured}
 
 
+def chord_at(machine: Machine, candidate: Candidate, size: float, shape: Mapping[str, float]) -> Curve:
+    """Return the change by an effect whose one amplitude has this size, per unit of it, SI."""
+    change = curve_at(machine, candidate, {candidate.amplitudes[0].name: size}, shape)
+    return {name: values / size for name, values in change.items()}
+
+
 def _rest(unknown: Unknown) -> float:
     """Return the value of an unknown that is not looked at: no amplitude, any shape."""
     return 0.0 if unknown.is_amplitude else si_bounds(unknown)[0]
@@ -145,7 +153,7 @@ def terms_of(place: int, candidate: Candidate, machine: Machine, scales: Mapping
 
     ``scales`` holds the size of the noise by result. A candidate whose every condition stood still is not excited.
     """
-    if _stands_still(candidate, machine):
+    if stands_still(candidate, machine):
         return []
     found: list[Term] = []
     for shape in shapes_of(candidate, machine):
@@ -153,7 +161,8 @@ def terms_of(place: int, candidate: Candidate, machine: Machine, scales: Mapping
     return _refined(found, candidate, machine, scales)
 
 
-def _stands_still(candidate: Candidate, machine: Machine) -> bool:
+def stands_still(candidate: Candidate, machine: Machine) -> bool:
+    """Whether nothing that the effect follows has moved; one that acts at the references follows nothing."""
     if candidate.effect.acts_at_reference:
         return False
     covariates = machine.records.covariates
@@ -210,12 +219,12 @@ def _densified(terms: list[Term], name: str, scales: Mapping[str, float], *, is_
         for share in np.linspace(0, 1, int(np.ceil(angle / NARROWEST)) + 1)[1:-1]:
             value = begin + share * (end - begin)
             columns = [
-                _Column({key: spline(value) for key, spline in curves.items()}, unknown, file, low * per, high * per)
+                TermColumn({key: spline(value) for key, spline in curves.items()}, unknown, file, low * per, high * per)
                 for curves, unknown, file, low, high, per in zip(
                     splines, term.unknowns, term.files, term.low, term.high, term.per, strict=True
                 )
             ]
-            made += _term(term.candidate, columns, {name: float(np.exp(value) if is_log else value)}, scales)
+            made += made_term(term.candidate, columns, {name: float(np.exp(value) if is_log else value)}, scales)
     return [*made, terms[-1]]
 
 
@@ -250,11 +259,11 @@ def variants_of(
     found: list[Term] = []
     for curves, limits in halves:
         columns = [
-            _Column(_of_file(curve, file, machine), name, file, low, high)
+            TermColumn(_of_file(curve, file, machine), name, file, low, high)
             for curve, name, (low, high), files in zip(curves, names, limits, splits, strict=True)
             for file in files
         ]
-        found += _term(place, columns, shape, scales)
+        found += made_term(place, columns, shape, scales)
     return found
 
 
@@ -305,6 +314,8 @@ def _differ(up: Curve, down: Curve) -> bool:
 def new_curves(machine: Machine, candidate: Candidate, term: Term) -> list[Curve]:
     """Return the curves of a term on other rows than it was made for, at the same shape, SI per amplitude."""
     found: list[Curve] = []
+    if term.at:
+        return [chord_at(machine, candidate, term.at, term.shape)]
     for name, low in zip(term.unknowns, term.low, strict=True):
         unknown = next(each for each in candidate.amplitudes if each.name == name)
         sides = _sides(machine, candidate, unknown, term.shape)
@@ -314,7 +325,9 @@ def new_curves(machine: Machine, candidate: Candidate, term: Term) -> list[Curve
 
 
 @dataclass(frozen=True)
-class _Column:
+class TermColumn:
+    """One column of a term: its curve per unit of the amplitude, whose it is, and the bounds of that, SI."""
+
     curve: Curve
     unknown: str
     file: int
@@ -330,13 +343,13 @@ def _of_file(curve: Curve, file: int, machine: Machine) -> Curve:
     return {name: np.where(machine.records.file_of == file, values, 0.0) for name, values in curve.items()}
 
 
-def _term(
-    place: int, columns: Sequence[_Column], shape: Mapping[str, float], scales: Mapping[str, float]
+def made_term(
+    place: int, columns: Sequence[TermColumn], shape: Mapping[str, float], scales: Mapping[str, float]
 ) -> list[Term]:
     """Make a term of the columns that are excited and not one another's multiple; none where there are none."""
     import numpy as np
 
-    kept: list[tuple[_Column, float]] = []
+    kept: list[tuple[TermColumn, float]] = []
     seen: list[NDArray[np.float64]] = []
     for column in columns:
         values = stacked(column.curve, scales)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.hypotheses import NOTHING, Hypothesis, Piece, mixed, off_inputs, pairs, shapes, singles
-from truing.diagnosis.problem import Problem, near, sharpened, terms_for_pairs
+from truing.diagnosis.problem import Problem, bent, near, sharpened, terms_for_pairs
 from truing.diagnosis.search import (
     Evidence,
     Found,
@@ -75,10 +75,24 @@ def contest(
             if sharpen:
                 tops = [found.hypotheses[place] for place in found.ranked()[:SHARPENED]]
                 pieces = [piece for hypothesis in tops for piece in hypothesis.pieces]
+                problem = bent(problem, _fitted(evidence, found))
                 problem = sharpened(problem, [*pieces, *best_terms(found, SHARPENED)])
             noise = learned(problem, evidence, solve(evidence, found.hypotheses[best], found.setting[best]), raw, noise)
     evidence.known.clear()  # few of the filters are asked for again
     return Contest(problem, noise, evidence, found, tuple(tried))
+
+
+def _fitted(evidence: Evidence, found: Found) -> list[tuple[Piece, float]]:
+    """Return the pieces of one column of the best explanations, and of the best single causes, as fitted."""
+    alone = [place for place in found.ranked() if found.hypotheses[place].kind == "one"]
+    made: list[tuple[Piece, float]] = []
+    for place in dict.fromkeys((*found.ranked()[:SHARPENED], *alone[:SHARPENED])):
+        solution = solve(evidence, found.hypotheses[place], found.setting[place])
+        values = iter(solution.coefficients.tolist())
+        for piece in found.hypotheses[place].pieces:
+            own = [next(values) for _ in piece.columns]
+            made += [(piece, own[0])] if len(own) == 1 else []
+    return made
 
 
 def _all_scored(

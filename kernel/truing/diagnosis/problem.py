@@ -8,6 +8,7 @@ from functools import cached_property
 from math import inf
 
 from truing.diagnosis.candidates import Candidate, Term, candidates_of, terms_of, variants_of
+from truing.diagnosis.chords import are_faint, bent_terms, late_terms
 from truing.diagnosis.columns import Column, Design, Values, acting
 from truing.diagnosis.hypotheses import Piece, unbounded
 from truing.diagnosis.machine import Machine
@@ -73,6 +74,9 @@ def problem_of(machine: Machine, scales: Mapping[str, float]) -> Problem:
     """Lay out the search; ``scales`` holds a first estimate of the noise by result, SI."""
     every = candidates_of(machine)
     variants: list[Sequence[Term]] = [terms_of(at, candidate, machine, scales) for at, candidate in enumerate(every)]
+    for at, candidate in enumerate(every):
+        if are_faint(variants[at], scales):
+            variants[at] = late_terms(at, candidate, machine, scales) or variants[at]
     library = library_of(machine.records, _registered_orders(every, variants), has_steps=_has_steps(every, variants))
     known = Sight(machine, scales, variants, library)
     kept, same_as = _merged(every, variants, known)
@@ -265,17 +269,29 @@ def sharpened(problem: Problem, pieces: Sequence[Piece]) -> Problem:
     A grid is as fine as a moderate effect asks for; of a large one it leaves a residual that a second cause or a
     wander of the noise would then explain.
     """
-    made = _Columns(problem.columns)
-    terms, term_pieces = list(problem.terms), list(problem.term_pieces)
+    new: list[Term] = []
     for piece in {(item.owner, item.place): item for item in pieces if item.kind == "term"}.values():
         candidate = problem.candidates[piece.owner]
         if len(candidate.shapes) != 1 or candidate.shapes[0].whole or candidate.shapes[0].along:
             continue
         for shape in _between(problem, piece, candidate.shapes[0].name):
-            for term in variants_of(piece.owner, candidate, problem.machine, shape, problem.scales):
-                terms.append(term)
-                term_pieces.append(made.term(len(terms) - 1, term))
-    return replace(problem, terms=tuple(terms), term_pieces=tuple(term_pieces), columns=tuple(made.columns))
+            new += variants_of(piece.owner, candidate, problem.machine, shape, problem.scales)
+    return _with_terms(problem, new)
+
+
+def bent(problem: Problem, fitted: Sequence[tuple[Piece, float]]) -> Problem:
+    """Return the problem with the chords of causes at the coefficients that they were fitted with."""
+    terms = [(problem.terms[piece.place], coefficient) for piece, coefficient in fitted if piece.kind == "term"]
+    new = bent_terms(terms, problem.terms, problem.candidates, problem.machine, problem.scales)
+    return _with_terms(problem, list(new))
+
+
+def _with_terms(problem: Problem, new: Sequence[Term]) -> Problem:
+    made = _Columns(problem.columns)
+    terms = [*problem.terms, *new]
+    pieces = [made.term(len(problem.terms) + place, term) for place, term in enumerate(new)]
+    added = (*problem.term_pieces, *pieces)
+    return replace(problem, terms=tuple(terms), term_pieces=added, columns=tuple(made.columns))
 
 
 def _between(problem: Problem, piece: Piece, name: str) -> list[dict[str, float]]:
