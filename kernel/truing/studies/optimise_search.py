@@ -104,7 +104,6 @@ def _led(
     reach = rng.uniform(*REACH, (count, 1))
     moved = rng.random(start.shape) < MOVED
     led = start + np.where(moved, reach * (ahead - behind), 0.0)
-    led = np.where(led < 0, -led, np.where(led > 1, 2 - led, led))
     changed[1::LED] = problem.space.units(problem.space.designs(np.clip(led, 0.0, 1.0)))
     return changed
 
