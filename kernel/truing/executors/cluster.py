@@ -220,6 +220,12 @@ def _connected(dask: Any, address: str) -> Any:
         ) from None
     except ValueError as error:
         raise UsageError(f"'{address}' is no address of a scheduler, like tcp://host:8786: {error}") from None
+    except Exception as error:  # what another version of dask has to say
+        words = f"{type(error).__name__}: {error}"
+        raise UsageError(
+            f"the scheduler at {address} does not understand dask {dask.__version__} of this machine ({words}); "
+            "install the same version there"
+        ) from None
 
 
 def _demand_worker(client: Any, address: str) -> None:
