@@ -47,12 +47,22 @@ class Wear:
         formula="(2 * sin(pressure_angle) * (gear_runout + centre_distance_error) - base_tangent_error)"
         " / (sun_radius * total_ratio)",
     )  # fmt: skip
+    gap_ground: Float = found(
+        "um", symbol="Delta beta_g", note="gap of both flanks by grinding, factors 4, 5, 12 and 13", source=EQUATION_21,
+        formula="2 * (equidistant_modification + equidistant_error) - 2 * root * (shift_modification + shift_error)",
+    )  # fmt: skip
+    gap_pins: Float = found(
+        "um", symbol="Delta beta_p", note="gap by pins and holes, factors 6, 7, 8 and 10", source=EQUATION_21,
+        formula="2 * root * pin_circle_error - 2 * pin_radius_error + pin_fit_clearance"
+        " + 2 * short_width * pin_position_error",
+    )  # fmt: skip
+    gap_disc: Float = found(
+        "um", symbol="Delta beta_d", note="gap by toothing and crank, factors 9, 11 and 14", source=EQUATION_21,
+        formula="disc_runout / 2 - short_width * disc_pitch_error + 2 * root * 1.6e-4 * eccentricity_error",
+    )  # fmt: skip
     backlash_gearing: Float = found(
-        "arcmin", symbol="Delta phi_2", note="backlash of disc and pins as made, factors 4 to 14", source=EQUATION_21,
-        formula="(2 * (equidistant_modification + equidistant_error - pin_radius_error)"
-        " + 2 * root * (pin_circle_error - shift_modification - shift_error + 1.6e-4 * eccentricity_error)"
-        " + pin_fit_clearance + disc_runout / 2 + short_width * (2 * pin_position_error - disc_pitch_error))"
-        " / (eccentricity * (pin_count - 1))",
+        "arcmin", symbol="Delta phi_2", note="backlash of disc and pins as made", source=EQUATION_21,
+        formula="(gap_ground + gap_pins + gap_disc) / (eccentricity * (pin_count - 1))",
     )  # fmt: skip
     backlash_of_wear: Float = found(
         "arcmin", symbol="Delta phi_3", note="backlash of wear, factor 15", source=EQUATION_21,

@@ -12,8 +12,11 @@ ECCENTRICITY_SHARE = 1.6e-4  # of factor 14: the normal stands across the crank,
 
 @dataclass(frozen=True)
 class Shares:
-    """Backlash by where it comes from, rad."""
+    """Gaps between disc and pins by what opens them, m, and backlash by where it comes from, rad."""
 
+    ground: Float
+    pins: Float
+    disc: Float
     involute: Float
     gearing: Float
     wear: Float
@@ -26,18 +29,26 @@ def backlash_of(reducer: Reducer, felt_wear: Float) -> Shares:
     root = np.sqrt(1.0 - short_width**2)
     arm = reducer.eccentricity * (reducer.pin_count - 1)
     involute = 2.0 * np.sin(reducer.pressure_angle) * (reducer.gear_runout + reducer.centre_distance_error)
-    radial = reducer.equidistant_modification + reducer.equidistant_error - reducer.pin_radius_error
-    circle = (
-        reducer.pin_circle_error
-        - reducer.shift_modification
-        - reducer.shift_error
-        + ECCENTRICITY_SHARE * reducer.eccentricity_error
+    ground = 2.0 * (reducer.equidistant_modification + reducer.equidistant_error) - 2.0 * root * (
+        reducer.shift_modification + reducer.shift_error
     )
-    along = short_width * (2.0 * reducer.pin_position_error - reducer.disc_pitch_error)
-    gearing = 2.0 * radial + 2.0 * root * circle + reducer.pin_fit_clearance + 0.5 * reducer.disc_runout + along
+    pins = (
+        2.0 * root * reducer.pin_circle_error
+        - 2.0 * reducer.pin_radius_error
+        + reducer.pin_fit_clearance
+        + 2.0 * short_width * reducer.pin_position_error
+    )
+    disc = (
+        0.5 * reducer.disc_runout
+        - short_width * reducer.disc_pitch_error
+        + 2.0 * root * ECCENTRICITY_SHARE * reducer.eccentricity_error
+    )
     return Shares(
+        ground=ground,
+        pins=pins,
+        disc=disc,
         involute=(involute - reducer.base_tangent_error) / (reducer.sun_radius * reducer.total_ratio),
-        gearing=gearing / arm,
+        gearing=(ground + pins + disc) / arm,
         wear=2.0 * felt_wear / arm,
         bearing=reducer.bearing_clearance / reducer.centre_distance,
     )

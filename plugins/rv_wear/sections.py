@@ -38,8 +38,8 @@ SECTIONS = [
     ),
     Section(
         "Backlash",
-        "backlash_wear", "backlash_involute", "backlash_gearing", "backlash_of_wear", "backlash_bearing", "backlash",
-        "backlash_history",
+        "backlash_wear", "backlash_involute", "gap_ground", "gap_pins", "gap_disc", "backlash_gearing",
+        "backlash_of_wear", "backlash_bearing", "backlash", "backlash_history",
         text="Clearance at the contacts, turned into an angle at the output: sixteen errors of the parts, each at the "
         "middle of its zone, and the wear.",
     ),
