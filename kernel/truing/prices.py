@@ -22,7 +22,7 @@ def price_of(setup: Setup, tolerance: Tolerance) -> Price | None:
 
 def price_at(price: Price, width: float) -> float:
     """Return what a full width in SI costs, in the unit of the price."""
-    return float(_evaluated(price, width))
+    return price.at(width)
 
 
 def prices_at(price: Price, widths: NDArray[np.float64]) -> NDArray[np.float64]:

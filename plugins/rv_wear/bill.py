@@ -29,16 +29,12 @@ class Costs:
 
     def run(self, bench: "Bench") -> "Bill":
         """Read the width of every priced zone that is in force and price it; one that is off is not paid."""
-        from truing.prices import price_at
-
         widths = {
             name: next(iter(inner.values())).width
             for name, inner in bench.setup.distributions().items()
             if name in PRICED
         }
-        prices = {
-            name: {form: price_at(price(PRICED[name], form), width) for form in FORMS} for name, width in widths.items()
-        }
+        prices = {name: {form: price(PRICED[name], form).at(width) for form in FORMS} for name, width in widths.items()}
         return Bill(float(bench.answers["tolerance_price"]), widths, prices)
 
 

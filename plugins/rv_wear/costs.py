@@ -6,12 +6,9 @@ Industry 116 (1994) 199. Every formula is in the width of the zone in mm and giv
 printed total of 1402 yuan.
 """
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from truing import Price, by_choice
-
-if TYPE_CHECKING:
-    from truing.declare.goals import PriceByChoice
+from truing import Price
 
 Kind = Literal["size", "place", "runout"]
 FORMS = ("power", "exponential", "process")
@@ -39,8 +36,3 @@ FORMULAS: dict[str, dict[Kind, str]] = {
 def price(kind: Kind, form: str) -> Price:
     """Return the price of a tolerance of this kind in one form."""
     return Price(FORMULAS[form][kind], width="mm", unit="yuan")
-
-
-def prices(kind: Kind) -> "PriceByChoice":
-    """Return the price of a tolerance of this kind in the form that the inputs state."""
-    return by_choice("cost_form", **{form: price(kind, form) for form in FORMS})

@@ -2,14 +2,11 @@
 
 from dataclasses import replace
 from math import isnan, nan
-from typing import TYPE_CHECKING
+from typing import Any
 
 from rv_wear.least_costs import Fronts
 from rv_wear.quantities import Reducer
 from truing import Allotted, Emulated, Float, Optimum, axis, found, results
-
-if TYPE_CHECKING:
-    from truing.studies.optimise import Design
 
 HOUR = 3600.0
 TIMES = tuple(HOUR * hours for hours in range(300, 3001, 300))  # s; the paper's figure 3 ends at 3000 h
@@ -117,7 +114,8 @@ def front(optimum: Optimum) -> Front:
     )
 
 
-def _of(design: "Design | None", objective: str) -> float:
+def _of(design: Any, objective: str) -> float:
+    """An objective of a design of the front; NaN where there is none."""
     return nan if design is None else float(design.objectives.get(objective, nan))
 
 

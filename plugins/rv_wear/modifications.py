@@ -8,7 +8,6 @@ from rv_wear.calculation import rv_wear
 from rv_wear.curves import Flank, flank
 from rv_wear.quantities import Reducer
 from truing import Block, Float, Table, TruingError, found, results
-from truing.evaluate import acting_inputs
 
 if TYPE_CHECKING:
     import numpy as np
@@ -49,7 +48,7 @@ class Modifications:
         """Calculate all of them at the radial clearance of the inputs."""
         import numpy as np
 
-        reducer: Reducer = replace(acting_inputs(bench.setup), working_time=self.hours * HOUR)
+        reducer: Reducer = replace(bench.inputs, working_time=self.hours * HOUR)
         clearance = reducer.equidistant_modification - reducer.shift_modification
         low, high = float(bench.answers["equidistant_low"]), float(bench.answers["equidistant_high"])
         modifications = np.linspace(low, high, self.points)

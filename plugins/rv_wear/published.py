@@ -90,20 +90,19 @@ def optima() -> Iterator[Published]:
     for number, reliability, cost, _, equidistant in CHOSEN:
         chosen = {"equidistant_modification": f"{equidistant} um", "shift_modification": f"{equidistant - 4} um"}
         bought = only("allocation", required_reliability=reliability, **chosen)
-        yield differing(f"least cost at optimum {number}", "least_cost", cost, "yuan", LEAST, bought)
+        yield differing((f"least cost at optimum {number}", "least_cost", cost, "yuan"), LEAST, bought)
     whole = only("least_costs")
     for number, _, cost, wear, _ in CHOSEN:
         row = (f"wear at optimum {number}, begin of the front", f"least_wear_{number}", wear, "um", 4e-3)
         yield printed(row, FIG_6, why=END, settings=whole)
         for result, value, unit in (("cost", cost, "yuan"), ("wear", wear, "um")):
             name = f"{result} at optimum {number}, knee of the front"
-            yield differing(name, f"corner_{result}_{number}", value, unit, KNEE, whole)
+            yield differing((name, f"corner_{result}_{number}", value, unit), KNEE, whole)
 
 
-def differing(
-    name: str, result: str, value: float, unit: str, why: str, settings: Mapping[str, str]
-) -> Published:  # fmt: skip
-    """One printed number that does not come out."""
+def differing(row: tuple[str, str, float, str], why: str, settings: Mapping[str, str]) -> Published:
+    """One printed number (name, result, value, unit) that does not come out within one percent."""
+    name, result, value, unit = row
     return Published(
         name=name, result=result, value=value, unit=unit, where=FIG_6, settings=settings, agrees_to=1e-2,
         verdict="differs", why=why,

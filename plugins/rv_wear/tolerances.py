@@ -7,8 +7,8 @@ standard deviations wide; the inputs hold the middles.
 
 from typing import Literal
 
-from rv_wear.costs import Kind, prices
-from truing import Tolerance, normal, zone
+from rv_wear.costs import FORMS, Kind, price
+from truing import Tolerance, by_choice, normal, zone
 
 # Which cost function holds for which zone; the paper names the functions, not the features they are for.
 PRICED: dict[str, Kind] = {
@@ -31,9 +31,11 @@ def factor(
     on: tuple[str, ...] = (),
 ) -> Tolerance:
     """A zone of an error factor, ``half`` to either side of its middle; one that grows up keeps its lower end."""
+    priced = PRICED.get(name)
+    prices = by_choice("cost_form", **{form: price(priced, form) for form in FORMS}) if priced else None
     return Tolerance(
         name, zone(f"-{half}", half, grows=grows), on=on or (name,), why=why, source=SOURCE,
-        price=prices(PRICED[name]) if name in PRICED else None,
+        price=prices,
     )  # fmt: skip
 
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 from rv_wear.curves import allowed_equidistant
 from rv_wear.quantities import Reducer
 from truing import Block, Table
-from truing.evaluate import acting_inputs
 
 if TYPE_CHECKING:
     from truing import Bench, Check
@@ -27,7 +26,7 @@ class Validity:
 
     def run(self, bench: "Bench") -> "Valid":
         """Compare the inputs, as effects leave them, with the ranges."""
-        reducer: Reducer = acting_inputs(bench.setup)
+        reducer: Reducer = bench.inputs
         lowest, highest = (float(bench.answers[name]) for name in ("equidistant_low", "equidistant_high"))
         by_approach, _ = allowed_equidistant(reducer, "approach")
         return Valid(

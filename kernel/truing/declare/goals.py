@@ -19,6 +19,13 @@ class Price:
     width: str
     unit: str
 
+    def at(self, width: float) -> float:
+        """Return what a full width in SI costs, in the unit of the price."""
+        from truing.formulas import evaluate, parse
+        from truing.units import from_si
+
+        return float(evaluate(parse(self.formula), {"width": float(from_si(width, self.width))}))
+
 
 @dataclass(frozen=True)
 class PriceByChoice:

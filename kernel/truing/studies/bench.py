@@ -49,6 +49,13 @@ class Bench:
     outcomes: Mapping[str, Outcome] = field(default_factory=dict)
     progress: Progress = silent
 
+    @property
+    def inputs(self) -> Any:
+        """The inputs as the effects that are on leave them: what the calculation itself is called with."""
+        from truing.evaluate import acting_inputs
+
+        return acting_inputs(self.setup)
+
 
 class Outcome(Protocol):
     """What a study found; the sheet and results.json ask it for their part."""
