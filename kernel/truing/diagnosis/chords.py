@@ -85,11 +85,15 @@ def bent_terms(
     machine: Machine,
     scales: Mapping[str, float],
 ) -> Iterator[Term]:
-    """Give the chords of terms at the coefficients they were fitted with, where these are no longer their slopes."""
+    """Give the chords of terms at the coefficients they were fitted with, where these are no longer their slopes.
+
+    Only effects on inputs are asked: a term that is added to a result is in proportion to its size.
+    """
     taken = list(known)
     for term, coefficient in fitted:
         candidate = candidates[term.candidate]
-        if len(term.curves) != 1 or term.files != (-1,) or not has_chords(candidate):
+        is_asked = candidate.effect.place == "inputs" and has_chords(candidate)
+        if len(term.curves) != 1 or term.files != (-1,) or not is_asked:
             continue
         size = min(max(coefficient, term.low[0]), term.high[0]) * term.per[0]
         if size == 0 or any(_is_near(other, term, size) for other in taken):
