@@ -135,7 +135,6 @@ def costs_figure(bill: "Bill", form: str) -> "Figure":
 
     from rv_wear.costs import price
     from rv_wear.tolerances import PRICED
-    from truing.prices import price_at
 
     figure = Figure(figsize=(WIDTH, 3.2), layout="constrained")
     left, right = figure.subplots(1, 2, width_ratios=(1, 1))
@@ -144,7 +143,7 @@ def costs_figure(bill: "Bill", form: str) -> "Figure":
     shares = np.linspace(0.5, 2.0, 61)
     for place, name in enumerate(_first_of_kind(bill.widths, PRICED)):
         width = bill.widths[name]
-        paid = [price_at(price(PRICED[name], form), float(share * width)) for share in shares]
+        paid = [price(PRICED[name], form).at(float(share * width)) for share in shares]
         colour = (BLUE, ORANGE, "#2f6b4f")[place % 3]
         words = f"{name.replace('_', ' ')}, now {width / MICRO:.3g} µm"
         right.plot(shares, paid, color=colour, label=words)

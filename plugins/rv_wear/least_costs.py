@@ -5,17 +5,12 @@ modification alone, this is the front itself (the epsilon-constraint method). An
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
 from rv_wear.quantities import Reducer
 from truing import Allocation, Bench, Reliability, TruingError
-from truing.errors import InfeasibleError
-from truing.evaluate import acting_inputs, evaluate
-from truing.prices import price_answers
-from truing.studies.optimise_front import knee_of
-from truing.studies.strips import with_widths
 
 if TYPE_CHECKING:
     import numpy as np
@@ -61,7 +56,7 @@ class LeastCosts:
         for place, goal in enumerate(goals):
             bench.progress(self.name, place, len(goals))
             fronts.append(self._front(bench, goal))
-        return Fronts(tuple(fronts), acting_inputs(bench.setup))
+        return Fronts(tuple(fronts), bench.inputs)
 
     def _front(self, bench: Bench, goal: float) -> "Front":
         designs: list[Design] = []
@@ -107,7 +102,7 @@ class LeastCosts:
 
         if not designs:
             return None, np.empty(0), np.empty(0)
-        place, _ = knee_of(np.array([[design.cost, design.wear / MICRO] for design in designs]))
+        place = farthest_from_chord(np.array([[design.cost, design.wear / MICRO] for design in designs]))
         found = designs[place]
         at = ground(bench, found.modification / MICRO, widths=found.widths)
         hours = float(bench.setup.inputs.working_time) / HOUR
@@ -131,17 +126,19 @@ def ground(
     """The bench with another equidistant modification (um) at the design clearance; None where that cannot be."""
     shift = modification * MICRO - float(bench.setup.inputs.design_clearance)
     changed = {"equidistant_modification": modification * MICRO, "shift_modification": shift, **inputs}
-    setup = with_widths(bench.setup.changed(changed), dict(widths or {}))
     try:
-        results = evaluate(setup)
-    except InfeasibleError:
+        return bench.changed(changed, widths)
+    except TruingError:
         return None
-    answers = {**setup.model.read_results(results), **price_answers(setup)}
-    return replace(bench, setup=setup, results=results, answers=answers, progress=_nothing)
 
 
-def _nothing(task: str, done: int, total: int) -> None:
-    """Report no progress: the study reports its own."""
+def farthest_from_chord(front: "Values") -> int:
+    """The place of the design (n, 2) below the chord of the front, both objectives brought to 0 to 1."""
+    import numpy as np
+
+    span = np.ptp(front, axis=0)
+    scaled = (front - front.min(axis=0)) / np.where(span > 0, span, 1.0)
+    return int(np.argmin(scaled.sum(axis=1)))
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from truing import TruingError
-from truing.evaluate import acting_inputs, evaluate_rows
-from truing.studies.scatter import scatter_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -32,16 +30,13 @@ class NewMachines:
 
     def run(self, bench: "Bench") -> "Newborn":
         """Calculate each machine twice: without any working time, and with that of the run."""
-        setup = bench.setup
-        columns = scatter_of(setup).draw(setup.seed, 0, self.draws)
+        columns = bench.drawn(self.draws)
         as_new = {name: values for name, values in columns.items() if name != "working_time"}
-        new = evaluate_rows(setup.changed({"working_time": 0.0}), as_new, self.draws, wanted=("backlash",))
-        used = evaluate_rows(setup, columns, self.draws, wanted=("backlash",))
         return Newborn(
-            new=new.results["backlash"],
-            used=used.results["backlash"],
-            limit=float(setup.inputs.permitted_backlash),
-            inputs=acting_inputs(setup),
+            new=bench.changed({"working_time": 0.0}).rows(as_new, self.draws, "backlash")["backlash"],
+            used=bench.rows(columns, self.draws, "backlash")["backlash"],
+            limit=float(bench.setup.inputs.permitted_backlash),
+            inputs=bench.inputs,
         )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 from truing.declare.blocks import Block
@@ -55,6 +55,32 @@ class Bench:
         from truing.evaluate import acting_inputs
 
         return acting_inputs(self.setup)
+
+    def changed(self, values: Mapping[str, Any], widths: Mapping[str, float] | None = None) -> Bench:
+        """Return the workbench of another design: inputs, conditions and full widths of tolerances by name, SI.
+
+        Results and price are those of the new design; nobody hears of its progress. Raises InfeasibleError.
+        """
+        from truing.evaluate import evaluate
+        from truing.prices import price_answers
+        from truing.studies.strips import with_widths
+
+        setup = with_widths(self.setup.changed(values), dict(widths or {}))
+        results = evaluate(setup)
+        answers = {**setup.model.read_results(results), **price_answers(setup)}
+        return replace(self, setup=setup, results=results, answers=answers, progress=silent)
+
+    def drawn(self, rows: int) -> Mapping[str, Any]:
+        """Return what scatters in so many machines, (rows,) by column in SI: the first that ``Reliability`` draws."""
+        from truing.studies.scatter import scatter_of
+
+        return scatter_of(self.setup).draw(self.setup.seed, 0, rows)
+
+    def rows(self, columns: Mapping[str, Any], rows: int, *results: str) -> Mapping[str, Any]:
+        """Return these results (rows,) of so many calculations in SI; NaN where one has no answer."""
+        from truing.evaluate import evaluate_rows
+
+        return evaluate_rows(self.setup, columns, rows, wanted=results).results
 
 
 class Outcome(Protocol):
