@@ -40,21 +40,21 @@ def factor(
 
 
 TOLERANCES = [
-    factor("base_tangent_error", "5 um", "factor 1: teeth are ground thinner, -20 to -10 um"),
-    factor("gear_runout", "5 um", "factor 2: 0 to 10 um"),
-    factor("centre_distance_error", "10 um", "factor 3: ±10 um"),
-    factor("pin_circle_error", "0.6 um", "factor 6: ±0.6 um"),
-    factor("pin_radius_error", "0.5 um", "factor 7: -2.5 to -1.5 um"),
-    factor("pin_fit_clearance", "0.8 um", "factor 8: 7.7 to 9.3 um"),
-    factor("disc_runout", "3.275 um", "factor 9: 0 to 6.55 um, the lower end stays", grows="up"),
-    factor("pin_position_error", "0.6 um", "factor 10: 0 to 1.2 um, the lower end stays", grows="up"),
-    factor("disc_pitch_error", "1 um", "factor 11: ±1 um"),
+    factor("base_tangent_error", "5 um", "factor 1: teeth are ground thinner, −20 to −10 µm"),
+    factor("gear_runout", "5 um", "factor 2: 0 to 10 µm"),
+    factor("centre_distance_error", "10 um", "factor 3: ±10 µm"),
+    factor("pin_circle_error", "0.6 um", "factor 6: ±0.6 µm"),
+    factor("pin_radius_error", "0.5 um", "factor 7: −2.5 to −1.5 µm"),
+    factor("pin_fit_clearance", "0.8 um", "factor 8: 7.7 to 9.3 µm"),
+    factor("disc_runout", "3.275 um", "factor 9: 0 to 6.55 µm, the lower end stays", grows="up"),
+    factor("pin_position_error", "0.6 um", "factor 10: 0 to 1.2 µm, the lower end stays", grows="up"),
+    factor("disc_pitch_error", "1 um", "factor 11: ±1 µm"),
     factor(
-        "modification_error", "0.6 um", "factors 12 and 13: ±0.6 um each, one width and one price",
+        "modification_error", "0.6 um", "factors 12 and 13: ±0.6 µm each, one width and one price",
         on=("equidistant_error", "shift_error"),
     ),
-    factor("eccentricity_error", "2 um", "factor 14: ±2 um"),
-    factor("bearing_clearance", "0.6 um", "factor 16: 10.5 to 11.7 um"),
+    factor("eccentricity_error", "2 um", "factor 14: ±2 µm"),
+    factor("bearing_clearance", "0.6 um", "factor 16: 10.5 to 11.7 µm"),
     Tolerance(
         "composite_roughness", normal(sd="1.26 %"), why="2 % in the wear coefficient: the scatter of wear, factor 15",
         source="the paper: wear scatters normally; its size is not printed",
