@@ -11,7 +11,8 @@
     │   └── UnknownPluginError     no plugin or model of that name
     ├── PluginError                exit 3: a plugin failed while it was loaded or run
     │   └── DeclarationError       a calculation is declared wrongly
-    └── ConvergenceError           exit 4: an iteration or a search did not arrive
+    ├── ConvergenceError           exit 4: an iteration or a search did not arrive
+    └── LostWorkersError           exit 2: the processes or the cluster that computed are gone, and work with them
 """
 
 from __future__ import annotations
@@ -88,3 +89,9 @@ class ConvergenceError(TruingError):
     """An iteration or a search ended without arriving."""
 
     exit_code = 4
+
+
+class LostWorkersError(TruingError):
+    """The processes or the cluster that computed are gone, and their work with them; the inputs are not to blame."""
+
+    exit_code = 2

@@ -18,7 +18,7 @@ from gated import BATCHES, FREE, PATIENCE, Gated, run_of, wait_until
 from test_interrupt import hearing_interrupts
 
 from shared import Answer, Calc
-from truing.errors import TruingError, UsageError
+from truing.errors import LostWorkersError, UsageError
 
 distributed = pytest.importorskip("distributed", reason="the extra [cluster] is not installed")
 
@@ -137,7 +137,7 @@ def test_finished_batches_outlive_a_lost_scheduler(
         beside.submit(lose_the_scheduler)
         cut_off = calc(*pin.words, "-q", "-o", "run", "--cluster", cluster.address, "--resume")
     nobody = f"no scheduler answers at {cluster.address} within 2 s; is dask scheduler running there?"
-    assert cut_off == Answer(1, "", f"calc: the cluster was lost: {nobody}\n")
+    assert cut_off == Answer(2, "", f"calc: the cluster was lost: {nobody}\n")
     assert not (tmp_path / "run").exists()
     pin.open()
     for folder, more in (("run", ["--resume"]), ("whole", [])):
@@ -188,7 +188,7 @@ def test_a_batch_that_ends_every_worker_ends_the_run(cluster: Cluster) -> None:
     cluster.start_workers(1, nanny=True)
     with open_executor(f"dask:{cluster.address}") as place:
         assert list(in_order(place, abs, range(-40, 0))) == list(range(40, 0, -1))
-        with pytest.raises(TruingError, match=r"4 workers of tcp://.* ended over the same batch"):
+        with pytest.raises(LostWorkersError, match=r"4 workers of tcp://.* ended over the same batch"):
             list(in_order(place, os._exit, [1]))
         assert place.losses == 4
         assert place.remarks()[-1].startswith("4 workers were lost at tcp://")
@@ -208,7 +208,7 @@ def test_a_cluster_without_workers_is_told(cluster: Cluster, monkeypatch: pytest
         answers = in_order(place, time.sleep, [0.0] * 16 + [60.0] * 20)
         next(answers)
         only.kill()
-        with pytest.raises(TruingError, match=r"no worker has been left at tcp://.* for 0.2 s"):
+        with pytest.raises(LostWorkersError, match=r"no worker has been left at tcp://.* for 0.2 s"):
             list(answers)
 
 

@@ -13,7 +13,7 @@ import pytest
 from study_models import CHAIN, WEAR, setup_of
 
 from truing.declare.spreads import Off
-from truing.errors import PluginError, TruingError, UsageError
+from truing.errors import LostWorkersError, PluginError, UsageError
 from truing.executors import BatchLog, KeptExecutor, Place, ProcessExecutor, SerialExecutor, in_order, open_executor
 from truing.executors.kept import key_of
 from truing.executors.versions import differences
@@ -88,7 +88,7 @@ def test_a_lost_worker_changes_the_time_and_not_the_result(tmp_path):
 
 
 def test_workers_that_die_again_and_again_end_the_run():
-    with open_executor("processes:1") as executor, pytest.raises(TruingError, match="without an answer"):
+    with open_executor("processes:1") as executor, pytest.raises(LostWorkersError, match="without an answer"):
         list(in_order(executor, die, range(2)))
 
 

@@ -11,7 +11,7 @@ from contextlib import suppress
 from importlib import import_module
 from typing import Any
 
-from truing.errors import TruingError, UsageError
+from truing.errors import LostWorkersError, UsageError
 from truing.executors.places import Place
 from truing.executors.versions import differences, versions_here
 
@@ -27,8 +27,8 @@ class ClusterExecutor(Place):
     """The workers of a dask scheduler; dask hands out again what a lost worker had, ``losses`` counts such workers.
 
     Raises UsageError where dask.distributed is missing, where no scheduler answers in 15 s, or no worker is there in
-    30 s; TruingError later, where the scheduler is lost, where no worker is left for 60 s, or where one batch has ended
-    several workers.
+    30 s; LostWorkersError later, where the scheduler is lost, where no worker is left for 60 s, or where one batch has
+    ended several workers.
     """
 
     patience = PATIENCE
@@ -95,26 +95,28 @@ class ClusterExecutor(Place):
         return isinstance(error, lost) or self._client.status == "closed"
 
     def renew(self, error: BaseException) -> None:
-        """Connect again, for work that was cancelled with the connection. Raises TruingError where that fails."""
+        """Connect again, for work that was cancelled with the connection. Raises LostWorkersError where that fails."""
         if isinstance(error, self._dask.KilledWorker):
             times = error.allowed_failures + 1
-            raise TruingError(
+            raise LostWorkersError(
                 f"{times} workers of {self.where} ended over the same batch; their logs say why (memory, most often)"
             )
         self._renewals += 1
         if self._renewals > MOST_RENEWALS:
-            raise TruingError(f"the work was cancelled {self._renewals} times at {self.where}; is it restarted again?")
+            raise LostWorkersError(
+                f"the work was cancelled {self._renewals} times at {self.where}; is it restarted again?"
+            )
         with suppress(Exception):
             self._client.close(timeout=1)
         try:
             self._open()
         except UsageError as lost:
-            raise TruingError(f"the cluster was lost: {lost}") from None
+            raise LostWorkersError(f"the cluster was lost: {lost}") from None
 
     def look_after(self) -> Exception | None:
         """See whether there is still a worker, and a scheduler.
 
-        Raises TruingError where there has been no worker for a minute.
+        Raises LostWorkersError where there has been no worker for a minute.
         """
         if self._client.status == "closed":  # it was connecting again, and has given up
             return CancelledError()
@@ -124,7 +126,9 @@ class ClusterExecutor(Place):
                 return None
             self._empty_since = self._empty_since or time.monotonic()
         if self._empty_since is not None and time.monotonic() - self._empty_since > EMPTY_SECONDS:
-            raise TruingError(f"no worker has been left at {self.where} for {EMPTY_SECONDS} s; start one and run again")
+            raise LostWorkersError(
+                f"no worker has been left at {self.where} for {EMPTY_SECONDS} s; start one and run again"
+            )
         return None
 
     def remarks(self) -> list[str]:

@@ -69,12 +69,12 @@ class Place(Executor):
         return False
 
     def renew(self, error: BaseException) -> None:
-        """Make the place fit for handing out again what was lost. Raises TruingError where that is hopeless."""
+        """Make the place fit for handing out again what was lost. Raises LostWorkersError where that is hopeless."""
 
     def look_after(self) -> Exception | None:
         """See after a long wait whether an answer can still come; return the loss where one is found.
 
-        Raises TruingError where no answer can come any more.
+        Raises LostWorkersError where no answer can come any more.
         """
         return None
 

@@ -10,7 +10,7 @@ from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool, ProcessPoolExecutor
 from typing import Any
 
-from truing.errors import TruingError
+from truing.errors import LostWorkersError
 from truing.executors.places import Place
 
 MOST_LOSSES = 3
@@ -37,11 +37,13 @@ class ProcessExecutor(Place):
         return isinstance(error, BrokenProcessPool)
 
     def renew(self, error: BaseException) -> None:
-        """Replace the workers after one was lost. Raises TruingError when it happens again and again."""
+        """Replace the workers after one was lost. Raises LostWorkersError when it happens again and again."""
         self.losses += 1
         self._pool.shutdown(wait=False, cancel_futures=True)
         if self.losses > MOST_LOSSES:
-            raise TruingError(f"worker processes ended {self.losses} times without an answer; try without --workers")
+            raise LostWorkersError(
+                f"worker processes ended {self.losses} times without an answer; try without --workers"
+            )
         self._pool = self._new_pool()
 
     def remarks(self) -> list[str]:

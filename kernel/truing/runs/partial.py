@@ -42,8 +42,9 @@ def code_of(setup: Setup) -> tuple[str, ...]:
     file = Path(setup.origin.file).resolve()
     functions = [setup.model.function, *(effect.function for effect in setup.model.known_effects.values())]
     packages = {function.__module__.partition(".")[0] for function in functions}
-    if file.name == "__init__.py":
-        return tuple(sorted({"truing", file.parent.name, *packages}))
+    if not setup.origin.ref.startswith("file:"):
+        own = file.parent.name if file.name == "__init__.py" else file.stem
+        return tuple(sorted({"truing", own, *packages}))
     beside = {path for module in list(sys.modules.values()) if (path := _file(module)).parent == file.parent}
     others = {name for name in packages if name in sys.modules and _file(sys.modules[name]) not in beside}
     return tuple(sorted({"truing", str(file), *others, *map(str, beside)}))
