@@ -282,6 +282,19 @@ def test_a_figure_that_fails_is_a_warning_and_not_the_end(offer: Offer, setup: S
     assert "could not be drawn" in markdown_of(sheet)
 
 
+def test_a_section_without_anything_to_show_has_no_heading(setup: Setup, provenance: Provenance) -> None:
+    """Its study did not run; a section that is words and nothing else stays."""
+    from truing import Section
+
+    def nothing(record: Any) -> Any:
+        return []
+
+    sections = [Section("Not there", text="What the study found", blocks=nothing), Section("There", text="Only words")]
+    model = replace(setup.model, sheet=sections)
+    titles = [item.title for item in make_sheet(calculate(replace(setup, model=model)), provenance=provenance).chapters]
+    assert ("Not there" in titles, "There" in titles) == (False, True)
+
+
 @pytest.mark.parametrize("rows", [[["a"], ["a", 1.0, "too many"]], "no table at all"])
 def test_blocks_of_a_guest_do_not_take_the_sheet_away(setup: Setup, provenance: Provenance, rows: Any) -> None:
     """Rows too short or too long are printed as far as they go; what is no table is said to have failed."""

@@ -64,7 +64,9 @@ def result_chapters(writing: Writing) -> Iterator[Chapter]:
     for section in writing.setup.model.sheet:
         named.update(section.names)
         if RANK[section.level] <= rank:
-            yield _of_section(writing, section)
+            chapter = _of_section(writing, section)
+            if chapter.entries or chapter.blocks or not (section.names or section.figure or section.blocks):
+                yield chapter  # one that has nothing to say because its study did not run has no heading either
     if rank == 0:
         yield from _main_results(writing)
         return
