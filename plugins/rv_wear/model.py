@@ -73,7 +73,7 @@ RV_WEAR = Model(
         ),
         Allocation(of="backlash", tightest=1.0, widest=2.0, gives=bought),
         LeastCosts(gives=ends),
-        Optimise(chance="first_order", gives=front),
+        Optimise(chance="first_order", generations=200, gives=front),
     ],
     sheet=SECTIONS,
     published=PUBLISHED,
