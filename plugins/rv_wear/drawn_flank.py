@@ -47,7 +47,9 @@ def clearance_figure(reducer: Reducer) -> "Figure":
     clear = clearance_over_angle(reducer, FINE)[0] / MICRO
     approach = float(rv_wear(reducer).approach) * np.asarray(relative_arm(mesh, FINE)) / MICRO
     panel.plot(degrees(FINE), clear, color=BLUE, label="clearance, new")
-    panel.plot(degrees(worn.angle), worn.clearance[0] / MICRO, color=ORANGE, label=f"and wear of {hours_of(reducer)}")
+    if reducer.working_time > 0.0:
+        words = f"and wear of {hours_of(reducer)}"
+        panel.plot(degrees(worn.angle), worn.clearance[0] / MICRO, color=ORANGE, label=words)
     panel.plot(degrees(FINE), approach, color=INK, linestyle="--", linewidth=1.0, label="approach under load, new")
     panel.fill_between(degrees(FINE), clear, approach, where=clear < approach, color=BLUE, alpha=0.14, linewidth=0)
     longest = float(np.degrees(longest_arm_angle(mesh)))
@@ -69,8 +71,9 @@ def sharing_figure(reducer: Reducer) -> "Figure":
     for sharing, (colour, dashes, words) in looks.items():
         found = flank(replace(reducer, load_sharing=sharing))
         panel.plot(degrees(found.angle), found.force[0], color=colour, linestyle=dashes, label=f"new, {words}")
-    worn = flank(reducer, float(reducer.working_time))
-    panel.plot(degrees(worn.angle), worn.force[0], color=ORANGE, label=f"after {hours_of(reducer)}")
+    if reducer.working_time > 0.0:
+        worn = flank(reducer, float(reducer.working_time))
+        panel.plot(degrees(worn.angle), worn.force[0], color=ORANGE, label=f"after {hours_of(reducer)}")
     over_phase(panel, "force on a pin, N")
     panel.set_ylim(0, None)
     panel.legend(loc="upper right")

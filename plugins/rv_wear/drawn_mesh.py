@@ -66,7 +66,7 @@ def mesh_figure(reducer: Reducer) -> "Figure":
     panel.set_aspect("equal")
     _disc(panel, position)
     _pins(panel, position, MM * float(mesh.pin_radius))
-    _forces(panel, position)
+    _forces(panel, position, MM * float(mesh.pin_radius))
     _angle_and_arm(panel, position)
     _centres(panel, position, mesh)
     reach = 1.04 * MM * (float(mesh.pin_circle_radius) + float(mesh.pin_radius))
@@ -95,7 +95,7 @@ def _pins(panel: Any, position: Position, radius: float) -> None:
         )  # fmt: skip
 
 
-def _forces(panel: Any, position: Position) -> None:
+def _forces(panel: Any, position: Position, radius: float) -> None:
     """Arrows from the contacts along their lines of action, as long as the force is large."""
     largest = float(position.force.max(initial=0.0))
     if largest <= 0.0:
@@ -113,9 +113,9 @@ def _forces(panel: Any, position: Position) -> None:
                         "mutation_scale": 7},
         )  # fmt: skip
     place = int(position.force.argmax())
-    beside = position.pins[place]
+    beside = position.pins[place] * (1.0 + radius / abs(position.pins[place]))
     panel.annotate(
-        f"{largest:.0f} N", (beside.real, beside.imag), (5, 9), textcoords="offset points", color=ORANGE, fontsize=8.5,
+        f"{largest:.0f} N", (beside.real, beside.imag), (4, 3), textcoords="offset points", color=ORANGE, fontsize=8.5,
     )  # fmt: skip
 
 
