@@ -116,9 +116,10 @@ def with_results(full: Contest, best: Fit, rivals: Sequence[int], points: Sequen
 
 
 def result_to_measure(machine: Machine, explanations: Sequence[Explanation]) -> NextPoint | None:
-    """Return the result that separates most pairs of explanations, None where none does.
+    """Return the result that separates most explanations from the first one, None where none separates any two.
 
-    Of several the one comes first that a goal of the model names, then the one in which the hardest pair is clearest.
+    Of several the one comes first that a goal of the model names, then the one that separates most pairs, then the one
+    in which the hardest pair is clearest.
     """
     start = machine.start
     names = [] if machine.records.rows.series or len(explanations) < 2 else _unmeasured(machine)
@@ -135,9 +136,10 @@ def result_to_measure(machine: Machine, explanations: Sequence[Explanation]) -> 
         ]
         if gaps:
             faintest = min(gaps, key=lambda gap: gap.clearness)
-            rank = (len(gaps), name in _goals(start.model), float(f"{faintest.clearness:.2g}"), -place)
-            best = max(best, (*rank, faintest), key=lambda item: item[:4] if item else ())
-    return _point(start, best[4]) if best else None
+            parted = sum(explanations[0].name in gap.names for gap in gaps)
+            rank = (parted, name in _goals(start.model), len(gaps), float(f"{faintest.clearness:.2g}"), -place)
+            best = max(best, (*rank, faintest), key=lambda item: item[:5] if item else ())
+    return _point(start, best[5]) if best else None
 
 
 def _unmeasured(machine: Machine) -> list[str]:
