@@ -28,7 +28,9 @@ def test_only_the_wear_of_a_flank_makes_the_cause_unique(file: str, unique: bool
     assert answer.code == 0
     found = read_document(desk / "runs" / Path(file).stem)
     assert (found["verdict"], found["unique"]) == ("named", unique)
-    if unique:
+    if not unique:
+        assert found["next"][0]["measure"] == ["max_wear"]
+    else:
         assert names(found) == ["pin_rolling"]
         low, high = found["causes"][0]["unknowns"]["rolling"]["interval95"]
         assert low < float(stated) < high
