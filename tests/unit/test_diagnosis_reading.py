@@ -317,6 +317,16 @@ def test_a_result_without_values_in_the_rows_that_are_left(read: Read, refused: 
     assert "'work' is not used in 1 row that its axis does not reach" in sentence
 
 
+@pytest.mark.parametrize(("count", "used"), [(5, False), (6, True)])
+def test_a_result_measured_a_few_times_beside_another_is_left_out(read: Read, count: int, used: bool) -> None:
+    """From five values nobody tells noise from cause: some cause among many fits them exactly."""
+    rows = [f"{load},{load + load % 3},{load if load <= count else ''}" for load in range(1, 21)]
+    records = read(PIN_WEAR, "\n".join(["load [N],depth [um],pressure [MPa]", *rows, ""]))
+    assert list(records.measured) == (["depth", "pressure"] if used else ["depth"])
+    few = "'pressure' is not used: 5 values are too few to tell its noise; measure it 6 times or more"
+    assert said(records, "too few") == ([] if used else [few])
+
+
 def test_rows_that_all_fail_hint_at_the_unit(refused: Refused) -> None:
     """The contact flows above 58.8 kN: loads in newtons under a header in kilonewtons."""
     (sentence,) = refused(PIN_WEAR, "load [kN],depth [um]\n100,1\n110,2\n120,3\n")

@@ -204,7 +204,7 @@ def test_words_are_listed_as_a_sentence_does(words: tuple[str, ...], expected: s
     [
         (Amount(1.15e-6 / 3600, "mm/h"), "1.15 µm/h"), (Amount(5.25e-6, "mm"), "5.25 µm"),
         (Amount(72.3e-6, "mrad"), "72.3 µrad"), (Amount(2.8e-12, "1/GN"), "0.0028 1/GN"),
-        (Amount(0.12e-3, "mm"), "0.12 mm"), (Amount(0.0, "mm"), "0 mm"), (Amount(2e-4, "deg"), "0.0115°"),
+        (Amount(0.12e-3, "mm"), "0.12 mm"), (Amount(0.0, "mm"), "0 mm"), (Amount(2e-4, "deg"), "0.688′"),
     ],
 )  # fmt: skip
 def test_sizes_are_written_in_a_unit_that_reads_well(amount: Amount, expected: str) -> None:

@@ -105,6 +105,13 @@ def test_a_result_that_was_not_measured_is_asked_for_where_it_tells_causes_apart
     assert point.separation == pytest.approx((float(words[1]) / float(words[2])) ** 2, rel=0.1)
 
 
+def test_settings_that_separate_nothing_are_not_proposed_beside_it(tmp_path: Path) -> None:
+    """Both causes draw one curve along the path wherever it is measured: only the other result is asked for."""
+    answer = asked(tmp_path, on_disc=1.4, on_both=1.0)
+    assert [point for point in answer.next if point.settings and point.separation < 1] == []
+    assert answer.next[0].measure == ("debris",)
+
+
 def test_a_goal_comes_before_other_results_that_tell_as_much(tmp_path: Path) -> None:
     """Warmth is declared before debris and follows the disc as well."""
     assert asked(tmp_path, on_disc=1.4, on_both=1.0, goals=False).next[0].measure == ("warmth",)

@@ -7,6 +7,7 @@ from truing.units import difference_unit, from_si, same_dimension
 FAMILIES = (
     ("m", "mm", "um", "nm"),
     ("rad", "mrad", "urad"),
+    ("deg", "arcmin", "arcsec"),
     ("kN", "N", "mN"),
     ("kN*m", "N*m", "mN*m"),
     ("GPa", "MPa", "kPa", "Pa"),
@@ -14,6 +15,7 @@ FAMILIES = (
     ("kW", "W", "mW"),
     ("kg", "g", "mg"),
 )
+KNOWN = {unit for family in FAMILIES for unit in family}
 SMALLEST, LARGEST = 0.1, 1000.0
 
 
@@ -23,7 +25,7 @@ def readable_unit(unit: str, size: float) -> str:
     if SMALLEST <= abs(float(from_si(size, own))) < LARGEST or size == 0:
         return own
     for family in FAMILIES:
-        if same_dimension(own, family[0]):
+        if own in family or (same_dimension(own, family[0]) and own not in KNOWN):
             fitting = [each for each in family if SMALLEST <= abs(float(from_si(size, each))) < LARGEST]
             return fitting[0] if fitting else own
     return own

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 FEWEST = 3
+FEWEST_BESIDE = 6
+"""Of a result beside others: from fewer values its noise cannot be told, and any cause would fit them exactly."""
 MOST_FAILED = 0.5
 _FEW = ("no row", "one row", "two rows")
 
@@ -126,11 +128,15 @@ def _enough_values(joined: Joined, fitted: NDArray[np.bool_], notes: Sequence[st
 
     measured = joined.data.named("measured")
     values = {name: int(np.isfinite(joined.data.columns[name][fitted]).sum()) for name in measured}
-    few = {name: count for name, count in values.items() if count < FEWEST}
+    fewest = FEWEST_BESIDE if max(values.values()) >= FEWEST_BESIDE else FEWEST
+    few = {name: count for name, count in values.items() if count < fewest}
     if len(few) == len(measured):
         _demand_rows(max(few.values()), joined, notes)
     columns = {name: column for name, column in joined.data.columns.items() if name not in few}
-    said = [f"'{name}' is not used: {counted(count, 'value is', 'values are')} too few" for name, count in few.items()]
+    more = f" to tell its noise; measure it {fewest} times or more" if fewest > FEWEST else ""
+    said = [
+        f"'{name}' is not used: {counted(count, 'value is', 'values are')} too few{more}" for name, count in few.items()
+    ]
     return replace(joined, data=replace(joined.data, columns=columns)), said
 
 

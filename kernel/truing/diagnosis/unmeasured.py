@@ -39,6 +39,8 @@ CLEAR = 3.0
 """Beyond this many standard deviations of machines within their tolerances a difference is seen."""
 NEARLY = 0.95
 """Of several rows that tell as clearly the one is told in which the difference is largest."""
+WORTH_MEASURING = 1.0
+"""Points that separate less, all together, are not worth setting where another result does."""
 LEAST_SHARE = 1e-3
 """Of the result itself: no gauge is trusted with less."""
 
@@ -112,7 +114,9 @@ def with_results(full: Contest, best: Fit, rivals: Sequence[int], points: Sequen
         return list(points)
     suffices = bool(points) and points[-1].separation >= SEPARATED
     suffices = suffices and any(set(point.separates) == set(asked.separates) for point in points)
-    return [*points, asked] if suffices else [asked, *points]
+    if suffices:
+        return [*points, asked]
+    return [asked, *points] if points and points[-1].separation >= WORTH_MEASURING else [asked]
 
 
 def result_to_measure(machine: Machine, explanations: Sequence[Explanation]) -> NextPoint | None:

@@ -78,20 +78,22 @@ def inseparable(contest: Contest, setting: tuple[int, ...]) -> list[str]:
 
     problem, case = contest.problem, contest.evidence.case(setting)
     h = case.total_h
-    sentences: list[str] = []
+    angles: dict[tuple[str, str], float] = {}
     alone = [
         piece for piece in problem.term_pieces if len(piece.columns) == 1 and len(problem.terms[piece.place].shape) == 0
     ]
     for a, b in combinations(alone, 2):
         i, j = a.columns[0], b.columns[0]
         cosine2 = h[i, j] ** 2 / max(h[i, i] * h[j, j], 1e-300)
-        first, second = problem.candidates[a.owner].name, problem.candidates[b.owner].name
-        if first != second and 1 - cosine2 < INSEPARABLE:
-            angle = np.degrees(np.arcsin(sqrt(max(0.0, 1 - cosine2))))
-            sentences.append(
-                f"{first} and {second} draw nearly the same curve on this data (angle {angle:.1f} degrees): "
-                "only much larger effects than usual could be told apart"
-            )
+        pair = problem.candidates[a.owner].name, problem.candidates[b.owner].name
+        if pair[0] != pair[1] and 1 - cosine2 < INSEPARABLE:
+            angle = float(np.degrees(np.arcsin(sqrt(max(0.0, 1 - cosine2)))))
+            angles[pair] = min(angle, angles.get(pair, angle))
+    sentences = [
+        f"{first} and {second} draw nearly the same curve on this data (angle {angle:.1f} degrees): "
+        "only much larger effects than usual could be told apart"
+        for (first, second), angle in angles.items()
+    ]
     return [*sentences, *_tied(contest), *_one_sided(contest)]
 
 

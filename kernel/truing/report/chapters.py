@@ -13,7 +13,7 @@ from truing.declare.fields import Axis, Found, ResultField
 from truing.declare.model import Section
 from truing.errors import PluginError
 from truing.kernel.blame import spoken_place
-from truing.numbers import format_value
+from truing.numbers import format_value, pretty
 from truing.report.context import BlockView, Chapter, Entry, FigureView, TableView, Value
 from truing.report.equations import equation_of, value_text
 from truing.report.figures import draw
@@ -160,7 +160,7 @@ def _range_entry(writing: Writing, item: ResultField) -> Entry:
     unit = writing.setup.print_unit(item.name)
     if finite.size:
         (low, text), (high, _) = (format_value(float(end), unit) for end in (finite.min(), finite.max()))
-        extent = f"{low} … {high}"
+        extent = f"{pretty(low)} … {pretty(high)}"
     else:
         extent, text = "no finite value", ""
     along = item.along if isinstance(item.spec, Found) else ""
