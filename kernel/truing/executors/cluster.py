@@ -207,7 +207,11 @@ def _dask() -> Any:
 
 
 def _silenced() -> dict[str, int]:
-    """Silence the library: what it has to say of losses is said in our words. Return the levels there were."""
+    """Silence the library: what it has to say of losses is said in our words. Return the levels there were.
+
+    Its event loop stays silent for good: callbacks that an interrupt cancelled complain after everything is closed.
+    """
+    logging.getLogger("tornado.application").setLevel(logging.CRITICAL + 1)
     names = [name for name in logging.root.manager.loggerDict if name.partition(".")[0] == "distributed"]
     levels = {name: logging.getLogger(name).level for name in names}
     for name in names:

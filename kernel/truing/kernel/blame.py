@@ -10,7 +10,7 @@ from typing import Any
 
 Place = tuple[str, int | None]
 _HOUSE = Path(__file__).parents[1]
-_MACHINERY = {"pluggy", "importlib", "matplotlib", "numpy", "scipy"}
+_MACHINERY = {"pluggy", "importlib", "importlib_metadata", "matplotlib", "numpy", "scipy"}
 
 
 def place_of(error: BaseException, homes: Iterable[Path] = ()) -> Place:
