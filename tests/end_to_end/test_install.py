@@ -98,7 +98,8 @@ def _lists_and_describes(fresh: Path, folder: Path) -> None:
     assert calc(fresh, folder, "describe", "screw_joint").code == 0
     others = [[str(fresh / "truing")], [str(fresh / "python"), "-m", "truing"]]
     answers = [process([*command, "plugins", "--names"], folder) for command in others]
-    assert [answer.out.split() for answer in answers] == [["broken_guest", "press_linkage", "rv_wear", "screw_joint"]] * 2
+    names = ["broken_guest", "press_linkage", "rv_wear", "screw_joint"]
+    assert [answer.out.split() for answer in answers] == [names] * 2
 
 
 def _runs(fresh: Path, folder: Path, name: str) -> None:
