@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from truing.declare.checks import TOTAL_PRICE
 from truing.declare.goals import Price, PriceByChoice
@@ -20,23 +20,11 @@ def price_of(setup: Setup, tolerance: Tolerance) -> Price | None:
     return price.chosen(str(setup.nominal(price.chooser))) if isinstance(price, PriceByChoice) else price
 
 
-def price_at(price: Price, width: float) -> float:
-    """Return what a full width in SI costs, in the unit of the price."""
-    return price.at(width)
-
-
 def prices_at(price: Price, widths: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return what full widths (n,) in SI cost, in the unit of the price."""
     import numpy as np
 
-    return np.broadcast_to(np.asarray(_evaluated(price, widths), dtype=float), widths.shape)
-
-
-def _evaluated(price: Price, width: Any) -> Any:
-    from truing.formulas import evaluate, parse
-    from truing.units import from_si
-
-    return evaluate(parse(price.formula), {"width": from_si(width, price.width)})
+    return np.broadcast_to(np.asarray(price.evaluated(widths), dtype=float), widths.shape)
 
 
 def total_price(setup: Setup) -> float | None:
@@ -50,7 +38,7 @@ def total_price(setup: Setup) -> float | None:
         return None
     prices = {name: price_of(setup, item) for name, item in setup.model.tolerances.items()}
     paid = [
-        price_at(price, next(iter(inner.values())).width)
+        price.at(next(iter(inner.values())).width)
         for name, inner in setup.distributions().items()
         if (price := prices.get(name)) is not None
     ]

@@ -11,7 +11,7 @@ from truing.declare.fields import with_values
 from truing.declare.model import Model, Study
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Effect, Unknown
-from truing.declare.spreads import ByChoice, Distribution, Off, Spread, Target
+from truing.declare.spreads import Distribution, Off, Spread, Target, settled
 from truing.errors import UsageError
 from truing.kernel import Added, Origin
 
@@ -129,9 +129,7 @@ class Setup:
 
     def settled(self, spread: Spread) -> Spread:
         """Return a spread itself, or of one that follows a choice the branch that is chosen."""
-        while isinstance(spread, ByChoice):
-            spread = spread.chosen(str(self.nominal(spread.chooser)))
-        return spread
+        return settled(spread, self.nominal)
 
     def spread_of(self, tolerance: str) -> Spread:
         """Return the spread of a tolerance in force, settled where it follows a choice."""

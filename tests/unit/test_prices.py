@@ -36,7 +36,7 @@ from truing.errors import DeclarationError
 from truing.executors import open_executor
 from truing.fits import tolerance
 from truing.measurements import Case
-from truing.prices import price_at, price_of, prices_at
+from truing.prices import price_of, prices_at
 from truing.runs.documents import results_document
 from truing.runs.provenance import provenance_of
 from truing.setup import default_setup
@@ -144,7 +144,7 @@ def test_a_price_follows_the_choice(form: str, price: float) -> None:
     assert calculate(setup).answers["tolerance_price"] == pytest.approx(price, rel=1e-14)
     settled = price_of(setup, CHOSEN.tolerances["length"])
     assert settled is not None
-    assert price_at(settled, 0.25e-3) == pytest.approx(price, rel=1e-14)
+    assert settled.at(0.25e-3) == pytest.approx(price, rel=1e-14)
     assert prices_at(settled, np.array([0.25e-3, 0.25e-3])) == pytest.approx([price, price], rel=1e-14)
 
 

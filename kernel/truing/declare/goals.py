@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from truing.errors import DeclarationError
 
@@ -21,10 +21,14 @@ class Price:
 
     def at(self, width: float) -> float:
         """Return what a full width in SI costs, in the unit of the price."""
+        return float(self.evaluated(float(width)))
+
+    def evaluated(self, widths: Any) -> Any:
+        """Return the formula at a full width in SI, or at widths (n,), in the unit of the price."""
         from truing.formulas import evaluate, parse
         from truing.units import from_si
 
-        return float(evaluate(parse(self.formula), {"width": float(from_si(width, self.width))}))
+        return evaluate(parse(self.formula), {"width": from_si(widths, self.width)})
 
 
 @dataclass(frozen=True)

@@ -213,7 +213,14 @@ class ByChoice:
 
     def resolve(self, target: Target) -> Distribution | None:
         """Return what the chosen spread says."""
-        return self.chosen(str(target.value_of(self.chooser))).resolve(target)
+        return settled(self, target.value_of).resolve(target)
+
+
+def settled(spread: Spread, value_of: Callable[[str], Any]) -> Spread:
+    """Return a spread itself, or of one that follows a choice the branch that is chosen."""
+    while isinstance(spread, ByChoice):
+        spread = spread.chosen(str(value_of(spread.chooser)))
+    return spread
 
 
 @dataclass(frozen=True, slots=True)

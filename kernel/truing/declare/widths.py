@@ -9,16 +9,18 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from truing.declare.spreads import SIGMAS_IN_BAND, Band, ByChoice, Grade, Spread, Target, Zone, difference
+from truing.declare.spreads import SIGMAS_IN_BAND, Band, Grade, Spread, Target, Zone, difference, settled
 from truing.errors import UsageError
+
+GROWTH = {"up": 0.5, "down": -0.5, "both": 0.0}
 
 
 def width_of(spread: Spread, target: Target) -> float:
     """Return the full band of a spread in SI. Raises UsageError where it has none of its own: off, or drawn."""
-    settled = _settled(spread, target)
-    distribution = settled.resolve(target)
-    if distribution is None or not isinstance(settled, (Band, Grade, Zone)):
-        raise UsageError(_refusal(settled, target))
+    spread = settled(spread, target.value_of)
+    distribution = spread.resolve(target)
+    if distribution is None or not isinstance(spread, (Band, Grade, Zone)):
+        raise UsageError(_refusal(spread, target))
     return distribution.width
 
 
@@ -31,21 +33,20 @@ def with_width(spread: Spread, target: Target, width: float) -> Spread:
     """
     if not (width > 0 and math.isfinite(width)):
         raise UsageError(f"the width of the tolerance of '{target.name}' must lie above zero; it is {width:g}")
-    settled = _settled(spread, target)
-    settled.resolve(target)  # refuses what the present words cannot say of this input, such as a share of 0
-    if isinstance(settled, Band):
-        return replace(settled, amount=_amount(settled, target, width))
-    if isinstance(settled, Zone):
-        return _zone(settled, target, width)
-    if isinstance(settled, Grade):
+    spread = settled(spread, target.value_of)
+    spread.resolve(target)  # refuses what the present words cannot say of this input, such as a share of 0
+    if isinstance(spread, Band):
+        return replace(spread, amount=_amount(spread, target, width))
+    if isinstance(spread, Zone):
+        return _zone(spread, target, width)
+    if isinstance(spread, Grade):
         return Band(_quantity(width, _unit(target)), "band")
-    raise UsageError(_refusal(settled, target))
+    raise UsageError(_refusal(spread, target))
 
 
-def _settled(spread: Spread, target: Target) -> Spread:
-    while isinstance(spread, ByChoice):
-        spread = spread.chosen(str(target.value_of(spread.chooser)))
-    return spread
+def shift_per_width(spread: Spread) -> float:
+    """Return by how much the middle moves with the width: half of what is added where one end of a zone stays."""
+    return GROWTH[spread.grows] if isinstance(spread, Zone) else 0.0
 
 
 def _refusal(spread: Spread, target: Target) -> str:

@@ -23,6 +23,7 @@ from truing.diagnosis.unmeasured import with_results
 from truing.diagnosis.visibility import inseparable, smallest_visible
 from truing.errors import UsageError
 from truing.setup import Setup
+from truing.studies.threads import one_thread
 
 if TYPE_CHECKING:
     from truing.studies.bench import Progress
@@ -39,11 +40,8 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
 
     The same records, setup and seed give the same answer. Raises UsageError where an option names what is not there.
     """
-    import scipy.linalg  # noqa: F401  # it brings a linear algebra of its own, which must be there to be limited
-    from threadpoolctl import threadpool_limits
-
     _check_options(setup)
-    with threadpool_limits(limits=1):  # many small matrices: threads would only wait for one another
+    with one_thread():  # many small matrices: threads would only wait for one another
         return _diagnose(setup, records, _Steps(progress))
 
 

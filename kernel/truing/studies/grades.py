@@ -11,7 +11,7 @@ from truing.declare.sources import Tolerance
 from truing.declare.spreads import Grade
 from truing.errors import TruingError, UsageError
 from truing.fits import GRADES
-from truing.prices import price_at, price_of
+from truing.prices import price_of
 from truing.setup import Setup
 from truing.studies.chances import Straight
 from truing.studies.demands import Demand, normal_chance
@@ -187,7 +187,7 @@ def cost_of(price: Price | None, width: float) -> float:
 
     Source of the law: K. W. Chase, A. R. Parkinson, survey of cost-tolerance models, Res. Eng. Des. 3 (1991) 23.
     """
-    return 1e-3 / width if price is None else price_at(price, width)
+    return 1e-3 / width if price is None else price.at(width)
 
 
 def _price_unit(setup: Setup, graded: Sequence[Tolerance]) -> str | None:

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.sources import Tolerance
-from truing.declare.spreads import SIGMAS_IN_BAND, Band, Distribution, Grade, Shape, Spread, Target, Zone
+from truing.declare.spreads import SIGMAS_IN_BAND, Band, Distribution, Grade, Shape, Spread, Target
+from truing.declare.widths import shift_per_width
 from truing.errors import TruingError
 from truing.fits import GRADES
 from truing.prices import price_of, prices_at
@@ -20,8 +21,6 @@ from truing.studies.optimise_space import Space, Variable
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
-
-GROWTH = {"up": 1.0, "down": -1.0, "both": 0.0}
 
 
 @dataclass(frozen=True)
@@ -82,9 +81,9 @@ def _widened(tolerance: Tolerance, spread: Spread, each: Mapping[str, Scattered]
     first = next(iter(each.values())).width
     with np.errstate(all="ignore"):
         factor = widths / first
-    growth = GROWTH[spread.grows] if isinstance(spread, Zone) else 0.0
+    shift = shift_per_width(spread)
     return {
-        column: replace(item, mean=item.mean + growth * (factor - 1) * item.width / 2, sd=item.sd * factor)
+        column: replace(item, mean=item.mean + shift * (factor - 1) * item.width, sd=item.sd * factor)
         for column, item in each.items()
     }
 

@@ -13,12 +13,11 @@ from typing import Any
 from truing.declare.goals import Price
 from truing.declare.sources import Tolerance
 from truing.declare.spreads import Band, Zone
-from truing.declare.widths import with_width
-from truing.prices import price_at, price_of
+from truing.declare.widths import shift_per_width, with_width
+from truing.prices import price_of
 from truing.setup import Setup
 from truing.studies.chances import Straight
 
-GROWTH = {"up": 0.5, "down": -0.5, "both": 0.0}
 COMPLEX_STEP = 1e-30
 
 
@@ -44,7 +43,7 @@ class Strip:
 
     def cost(self, width: float) -> float:
         """Return what a full width costs."""
-        return price_at(self.price, width)
+        return self.price.at(width)
 
     def cost_slope(self, width: float) -> float:
         """Return the exact derivative of the price by the width: the formula at a width with an imaginary step.
@@ -90,7 +89,7 @@ def _strip(setup: Setup, tolerance: Tolerance, straight: Mapping[str, Straight],
     spread, price = setup.spread_of(tolerance.name), price_of(setup, tolerance)
     inner = setup.distributions()[tolerance.name]
     width = next(iter(inner.values())).width
-    pull = GROWTH[spread.grows] if isinstance(spread, Zone) else 0.0
+    pull = shift_per_width(spread)
     assert price is not None  # priced_widths has chosen these
     return Strip(
         name=tolerance.name,

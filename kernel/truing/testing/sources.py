@@ -14,7 +14,6 @@ from truing.declare.sources import Effect, Unknown
 from truing.errors import InfeasibleError, TruingError
 from truing.evaluate import evaluate
 from truing.formulas import parse
-from truing.prices import price_at
 from truing.setup import Setup, SwitchedOn
 from truing.testing.subject import Subject, fail
 
@@ -43,7 +42,7 @@ def spreads_resolve(subject: Subject) -> None:
 
 
 def _priced(subject: Subject, tolerance: str, price: Any, width: float) -> None:
-    paid = price_at(price, width)
+    paid = price.at(width)
     if not math.isfinite(paid) or paid < 0:
         fail(f"{subject.model.name}: the price of tolerance '{tolerance}' is {paid:g} at its declared width")
 
