@@ -1,0 +1,20 @@
+"""How a mesh spreads its load over the face, and how a resonance raises it: what effects of gear models share."""
+
+import numpy as np
+
+from truing import Float
+
+
+def face_factor(ratio: Float) -> Float:
+    """Return K_Hbeta of a misaligned pair, from r = F_beta c_gamma b / (2 F): 1 + r, and 2 sqrt(r) beyond 1.
+
+    Above r = 1 the teeth carry over a part of their width only. Reference: ISO 6336-1, method C. Below 0 r counts as 0.
+    """
+    held = np.maximum(ratio, 0.0)
+    return np.where(held <= 1.0, 1.0 + held, 2.0 * np.sqrt(held))
+
+
+def amplification(speed_ratio: Float, damping: Float) -> Float:
+    """Return 1/sqrt((1 - N^2)^2 + (2 zeta N)^2): response of one degree of freedom at N times its own frequency."""
+    square = np.square(speed_ratio)
+    return 1.0 / np.sqrt((1.0 - square) ** 2 + 4.0 * np.square(damping) * square)

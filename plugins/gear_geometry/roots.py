@@ -1,0 +1,112 @@
+"""Tooth roots of gears made by a rack, and of internal gears by the substitute rack: chord, fillet, arm, form factors.
+
+All lengths are in modules. Reference: ISO 6336-3, 30 degree tangent at the root; GB/T 3480-1997 (as DIN 3990-3) for the
+substitute rack. The same formulas serve a load at the tip (Y_Fa, Y_Sa) and one at the outer point of single contact
+(Y_F, Y_S): they differ in the diameter at which the force acts, and are not to be mixed.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gear_geometry.involute import involute
+from truing import Float
+
+TANGENT = np.pi / 3.0  # rad; 60 degrees between the tangent of 30 degrees and the normal of the tooth axis
+STEPS = 12
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rack:
+    """The basic rack: dedendum and fillet radius in modules, pressure angle in radians."""
+
+    dedendum: Float
+    fillet: Float
+    pressure_angle: Float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Root:
+    """The critical section of a tooth, in modules: chord, radius of the fillet there, and where it lies."""
+
+    chord: Float
+    fillet: Float
+    depth: Float  # distance of the section from the gear centre
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arm:
+    """Where the force acts on the tooth: bending arm in modules, angle of the force to the normal of its axis, rad."""
+
+    height: Float
+    angle: Float
+
+
+def external_root(rack: Rack, teeth: Float, shift: Float) -> Root:
+    """Return the critical section of an external gear; ``teeth`` is the virtual number for a helical one.
+
+    NaN where the rack has no such fillet (its straight flanks would meet above it).
+    """
+    alpha, rho = rack.pressure_angle, rack.fillet
+    e = 0.25 * np.pi - rack.dedendum * np.tan(alpha) - (1.0 - np.sin(alpha)) * rho / np.cos(alpha)
+    g = rho - rack.dedendum + shift
+    theta = _tangent_angle(2.0 * g / teeth, (2.0 / teeth) * (0.5 * np.pi - e) - TANGENT)
+    offset = g / np.cos(theta) - rho
+    return Root(
+        chord=teeth * np.sin(TANGENT - theta) + np.sqrt(3.0) * offset,
+        fillet=rho + 2.0 * g**2 / (np.cos(theta) * (teeth * np.cos(theta) ** 2 - 2.0 * g)),
+        depth=0.5 * (teeth * np.cos(TANGENT - theta) + offset),
+    )
+
+
+def _tangent_angle(slope: Float, constant: Float) -> Float:
+    """Solve theta = slope tan(theta) - constant by Newton from 30 degrees, as the standard begins."""
+    theta = np.pi / 6.0 + 0.0 * (slope + constant)
+    for _ in range(STEPS):
+        theta = theta - (theta - slope * np.tan(theta) + constant) / (1.0 - slope / np.cos(theta) ** 2)
+    return theta
+
+
+def external_arm(rack: Rack, teeth: Float, shift: Float, root: Root, diameter: Float) -> Arm:
+    """Return the arm of a force on an external gear that acts at ``diameter`` (modules) along the line of action."""
+    alpha = rack.pressure_angle
+    with np.errstate(invalid="ignore"):
+        there = np.arccos(teeth * np.cos(alpha) / diameter)
+    half = (0.5 * np.pi + 2.0 * shift * np.tan(alpha)) / teeth + involute(alpha) - involute(there)
+    angle = there - half
+    height = 0.5 * (np.cos(half) - np.sin(half) * np.tan(angle)) * diameter - root.depth
+    return Arm(height=height, angle=angle)
+
+
+def ring_root(rack: Rack) -> Root:
+    """Return the critical section of an internal gear, taken as a rack with the fillet of ``rack``."""
+    alpha, rho = rack.pressure_angle, rack.fillet
+    chord = 2.0 * (
+        0.25 * np.pi + (rack.dedendum - rho) * np.tan(alpha) + rho / np.cos(alpha) - rho * np.cos(np.pi / 6.0)
+    )
+    return Root(chord=chord, fillet=rho + 0.0 * chord, depth=0.5 * rho + 0.0 * chord)
+
+
+def ring_arm(rack: Rack, root: Root, addendum: Float) -> Arm:
+    """Return the arm of a force at the tip of an internal gear of this ``addendum`` (modules), as a rack."""
+    alpha = rack.pressure_angle
+    height = rack.dedendum + addendum
+    half_thickness = 0.25 * np.pi + (rack.dedendum - height) * np.tan(alpha)
+    return Arm(height=height - half_thickness * np.tan(alpha) - root.depth, angle=alpha)
+
+
+def form_factor(root: Root, arm: Arm, pressure_angle: Float) -> Float:
+    """Return Y_Fa or Y_F: nominal bending stress of a tooth of module 1 and width 1 under a tangential force of 1."""
+    return 6.0 * arm.height * np.cos(arm.angle) / (root.chord**2 * np.cos(pressure_angle))
+
+
+def stress_correction(root: Root, arm: Arm) -> Float:
+    """Return Y_Sa or Y_S: local over nominal stress; stated for notches 1 <= q_s < 8."""
+    slenderness = root.chord / arm.height
+    with np.errstate(invalid="ignore"):
+        return (1.2 + 0.13 * slenderness) * notch(root) ** (1.0 / (1.21 + 2.3 / slenderness))
+
+
+def notch(root: Root) -> Float:
+    """Return the notch parameter q_s: half the chord over the radius of the fillet."""
+    return root.chord / (2.0 * root.fillet)
