@@ -1,0 +1,117 @@
+"""The root of a ring that a pinion cutter makes, against the envelope of the cutter swept step by step."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from gear_geometry.cut_rings import Cutter, cut_ring_arm, cut_ring_root
+from gear_geometry.roots import Arm, Root
+
+ALPHA = np.radians(20.0)
+CASES = [
+    (Cutter(teeth=25.0, shift=0.1, addendum=1.1, fillet=0.15), 100.0, -0.16),
+    (Cutter(teeth=18.0, shift=0.2, addendum=1.25, fillet=0.2), 60.0, 0.4),
+    (Cutter(teeth=40.0, shift=-0.1, addendum=1.25, fillet=0.25), 160.0, 0.0),
+]
+
+
+def involute(angle: float) -> float:
+    return float(np.tan(angle) - angle)
+
+
+def bisected(value: float) -> float:
+    """The angle whose involute is the value, by halving."""
+    low, high = 0.0, 1.5
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if involute(middle) < value else (low, middle)
+    return 0.5 * (low + high)
+
+
+def rounding(cutter: Cutter) -> tuple[float, float]:
+    """Radius and angle of the centre of the tip rounding: found where a circle of its radius touches the flank.
+
+    The flank is traced point by point; its centre lies along the normal of the flank, at the height of the rounding.
+    """
+    teeth, base = float(cutter.teeth), 0.5 * float(cutter.teeth) * np.cos(ALPHA)
+    radius = 0.5 * teeth + float(cutter.shift) + float(cutter.addendum) - float(cutter.fillet)
+    half = (0.5 * np.pi + 2.0 * float(cutter.shift) * np.tan(ALPHA)) / teeth + involute(ALPHA)
+    roll = np.linspace(0.0, 1.2, 400_001)  # tan of the pressure angle
+    angle = half - (roll - np.arctan(roll))  # polar angle of the flank from the axis of the tooth
+    flank = base * np.sqrt(1.0 + roll**2) * np.array([np.cos(angle), np.sin(angle)])
+    tangent = np.gradient(flank, axis=1)
+    tangent /= np.hypot(*tangent)
+    inward = np.array([tangent[1], -tangent[0]]) * np.sign(tangent[0])  # into the tooth: towards its axis
+    centre = flank + float(cutter.fillet) * inward
+    place = int(np.argmin(np.abs(np.hypot(*centre) - radius)[roll > 0.1])) + int(np.sum(roll <= 0.1))
+    return radius, float(np.arctan2(centre[1, place], centre[0, place]))
+
+
+def swept(cutter: Cutter, teeth: float, shift: float) -> tuple[float, float, float]:
+    """Chord, radius of curvature and depth where the tangent of the swept rounding makes 60 degrees with the tooth."""
+    radius, half = rounding(cutter)
+    own = float(cutter.teeth)
+    working = bisected(involute(ALPHA) + 2.0 * np.tan(ALPHA) * (shift - float(cutter.shift)) / (teeth - own))
+    distance = 0.5 * (teeth - own) * np.cos(ALPHA) / np.cos(working)
+    turned = np.linspace(-0.05, 0.05, 200_001)  # the cutter around the ring
+    own_turn = half - turned * (teeth - own) / own
+    path = distance * direction(turned) + radius * direction(own_turn)
+    tangent = np.gradient(path, axis=1)
+    normal = np.array([-tangent[1], tangent[0]]) / np.hypot(*tangent)
+    normal *= np.sign((normal * path).sum(axis=0))
+    fillet = path + float(cutter.fillet) * normal
+    tooth = np.pi / teeth
+    leaning = np.arctan2(normal[1], normal[0]) - tooth - np.pi / 6.0
+    places = np.flatnonzero(leaning[:-1] * leaning[1:] < 0)
+    place = int(places[np.argmax(np.hypot(*fillet[:, places]))])  # the deepest of them is the envelope
+    point = fillet[:, place] - leaning[place] * np.diff(fillet[:, place : place + 2])[:, 0] / np.diff(leaning)[place]
+    steps = np.gradient(fillet, axis=1)
+    curvature = np.hypot(*steps)[place] / abs(np.gradient(leaning)[place])
+    across = point @ np.array([-np.sin(tooth), np.cos(tooth)])
+    return -2.0 * float(across), float(curvature), float(point @ direction(np.array(tooth)))
+
+
+def direction(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.array([np.cos(angle), np.sin(angle)])
+
+
+@pytest.mark.parametrize(("cutter", "teeth", "shift"), CASES)
+def test_the_critical_section_is_that_of_the_swept_cutter(cutter: Cutter, teeth: float, shift: float) -> None:
+    root = cut_ring_root(cutter, teeth, shift, ALPHA)
+    chord, curvature, depth = swept(cutter, teeth, shift)
+    assert float(root.chord) == pytest.approx(chord, rel=1e-5)
+    assert float(root.fillet) == pytest.approx(curvature, rel=1e-3)
+    assert float(root.depth) == pytest.approx(depth, rel=1e-6)
+
+
+@pytest.mark.parametrize(("cutter", "teeth", "shift"), CASES)
+def test_the_force_at_the_tip_meets_the_axis_of_the_tooth_where_its_line_does(
+    cutter: Cutter, teeth: float, shift: float
+) -> None:
+    root = cut_ring_root(cutter, teeth, shift, ALPHA)
+    tip = 0.5 * teeth - 1.0 + shift
+    arm = cut_ring_arm(root, teeth, shift, tip, ALPHA)
+    base = 0.5 * teeth * np.cos(ALPHA)
+    contact = np.arccos(base / tip)
+    half = (0.5 * np.pi - 2.0 * shift * np.tan(ALPHA)) / teeth + involute(contact) - involute(ALPHA)
+    point = tip * direction(np.array(half))  # the tooth stands along the first axis
+    along = direction(np.array(half + contact + 0.5 * np.pi))  # of the line of action, tangent to the base circle
+    assert abs(point[0] * along[1] - point[1] * along[0]) == pytest.approx(base, rel=1e-12)
+    meets = point[0] - point[1] * along[0] / along[1]
+    assert float(arm.height) == pytest.approx(float(root.depth) - meets, rel=1e-9)
+
+
+def test_a_cutter_whose_tip_is_pointed_before_it_is_round_makes_nothing() -> None:
+    root = cut_ring_root(Cutter(teeth=25.0, shift=0.0, addendum=1.25, fillet=0.5), 100.0, 0.0, ALPHA)
+    assert np.isnan(root.chord)
+
+
+def test_a_batch_is_the_same_as_one_by_one() -> None:
+    cutter, shifts = Cutter(teeth=25.0, shift=0.0, addendum=1.1, fillet=0.15), np.linspace(-0.5, 0.5, 5)
+    root = cut_ring_root(cutter, 100.0, shifts, ALPHA)
+    arm = cut_ring_arm(root, 100.0, shifts, 50.0 - 0.8 + shifts, ALPHA)
+    for place, shift in enumerate(shifts):
+        one: Root = cut_ring_root(cutter, 100.0, float(shift), ALPHA)
+        lever: Arm = cut_ring_arm(one, 100.0, float(shift), 49.2 + float(shift), ALPHA)
+        assert np.asarray(root.chord)[place] == pytest.approx(float(one.chord), rel=1e-13)
+        assert np.asarray(arm.height)[place] == pytest.approx(float(lever.height), rel=1e-13)
