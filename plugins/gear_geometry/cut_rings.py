@@ -19,7 +19,7 @@ STEPS = 30
 
 @dataclass(frozen=True, kw_only=True)
 class Cutter:
-    """A pinion cutter: teeth, profile shift, addendum above its shifted reference circle, radius of the tip rounding."""
+    """A pinion cutter: teeth, profile shift, addendum above its shifted reference circle, radius of its rounding."""
 
     teeth: Float
     shift: Float

@@ -25,4 +25,4 @@ def test_installed(offer: Offer, check: ConformanceCheck) -> None:
 
 
 def test_something_is_installed() -> None:
-    assert {"press_linkage", "rv_wear"} <= set(SUBJECTS)
+    assert {"press_linkage", "roller_screw_shift", "rv_gearing", "rv_wear"} <= set(SUBJECTS)

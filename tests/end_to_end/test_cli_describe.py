@@ -13,7 +13,7 @@ from jsonschema import Draft202012Validator
 from shared import Calc
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
-INSTALLED = ["press_linkage", "rv_wear"]
+INSTALLED = ["press_linkage", "roller_screw_shift", "rv_gearing", "rv_wear"]
 
 
 def test_plugins(calc: Calc) -> None:
