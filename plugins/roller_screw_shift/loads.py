@@ -1,0 +1,35 @@
+"""The load of one mesh of roller and ring, and how often its parts turn while the screw turns once."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from roller_screw_shift.quantities import Pair
+from truing import Float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Load:
+    """Load of one mesh, N, its direction, and the orders of carrier and roller: turns per turn of the screw."""
+
+    tangential_force: Float
+    direction: Float
+    carrier_order: Float
+    roller_order: Float
+
+
+def load_of(pair: Pair) -> Load:
+    """Return the load of the mesh of one roller at the mean: without the neutral factors, never negative.
+
+    The direction is +1, or -1 where the screw pulls the other way. The nut stands still: the thread of the roller rolls
+    between those of screw and nut, so that the carrier makes k/(2 (k + 1)) turns per turn of the screw, k = d_s/d_r, and
+    a roller z_I/z_E times as many with respect to the carrier.
+    """
+    ratio = pair.screw_diameter / pair.roller_diameter
+    carrier = ratio / (2.0 * (ratio + 1.0))
+    return Load(
+        tangential_force=pair.tangential_share * np.abs(pair.axial_load),
+        direction=np.where(np.asarray(pair.axial_load) < 0.0, -1.0, 1.0),
+        carrier_order=carrier,
+        roller_order=carrier * pair.ring_teeth / pair.roller_teeth,
+    )
