@@ -90,6 +90,7 @@ def groups_of(stage: Gearing, teeth: Teeth) -> Groups:
 
 def chosen_teeth(stage: Gearing) -> Teeth:
     """Return the teeth that are rated: those stated, else those of ``stage.group`` in the search with its own duty."""
+    check_ranges(stage)
     unstated = np.isnan(stage.sun_teeth)
     both = unstated == np.isnan(stage.planet_teeth)
     feasible(both, "sun_teeth and planet_teeth are stated together, or neither of them")
