@@ -26,6 +26,16 @@ class Rack:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Fillet:
+    """How the rounding of a rack lies to its gear: E and G of the standard in modules, H and theta in radians."""
+
+    offset: Float  # E, from the middle of the gap of the rack to the centre of the rounding
+    height: Float  # G, of that centre over the pitch line
+    constant: Float  # H
+    angle: Float  # theta, where the tangent of 30 degrees touches
+
+
+@dataclass(frozen=True, kw_only=True)
 class Root:
     """The critical section of a tooth, in modules: chord, radius of the fillet there, and where it lies."""
 
@@ -42,15 +52,25 @@ class Arm:
     angle: Float
 
 
+def fillet_of(rack: Rack, teeth: Float, shift: Float) -> Fillet:
+    """Return how the rounding of the rack lies to an external gear, with the angle of the 30 degree tangent.
+
+    NaN where the rack has no such rounding (those of its two flanks would meet before they are round).
+    """
+    alpha, rho = rack.pressure_angle, rack.fillet
+    offset = np.asarray(0.25 * np.pi - rack.dedendum * np.tan(alpha) - (1.0 - np.sin(alpha)) * rho / np.cos(alpha))
+    height = rho - rack.dedendum + shift
+    constant = (2.0 / teeth) * (0.5 * np.pi - np.where(offset >= 0.0, offset, np.nan)) - TANGENT
+    return Fillet(offset=offset, height=height, constant=constant, angle=_tangent_angle(2.0 * height / teeth, constant))
+
+
 def external_root(rack: Rack, teeth: Float, shift: Float) -> Root:
     """Return the critical section of an external gear; ``teeth`` is the virtual number for a helical one.
 
-    NaN where the rack has no such fillet (its straight flanks would meet above it).
+    NaN where the rack has no such fillet, see ``fillet_of``.
     """
-    alpha, rho = rack.pressure_angle, rack.fillet
-    e = 0.25 * np.pi - rack.dedendum * np.tan(alpha) - (1.0 - np.sin(alpha)) * rho / np.cos(alpha)
-    g = rho - rack.dedendum + shift
-    theta = _tangent_angle(2.0 * g / teeth, (2.0 / teeth) * (0.5 * np.pi - e) - TANGENT)
+    rho, fillet = rack.fillet, fillet_of(rack, teeth, shift)
+    g, theta = fillet.height, fillet.angle
     offset = g / np.cos(theta) - rho
     return Root(
         chord=teeth * np.sin(TANGENT - theta) + np.sqrt(3.0) * offset,

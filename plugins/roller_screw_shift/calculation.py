@@ -1,48 +1,80 @@
 """From the profile shift to geometry, objectives and constraints; one call answers for thousands of shifts."""
 
+from typing import Any
+
 import numpy as np
 
-from gear_geometry.pairs import shift_per_tooth, working_angle_at
-from gear_geometry.roots import (
-    Rack,
-    external_arm,
-    external_root,
-    form_factor,
-    ring_arm,
-    ring_root,
-    stress_correction,
-)
+from gear_geometry.roots import notch
+from roller_screw_shift import geometry as geo
 from roller_screw_shift.answers import Meshing
+from roller_screw_shift.constraints import margins_at
+from roller_screw_shift.feasibility import require_pair, require_roots
+from roller_screw_shift.loads import load_of
 from roller_screw_shift.quantities import Pair
+from roller_screw_shift.strength import Tooth, acting, ring_tooth, roller_fillet, roller_tooth
 
 
 def roller_screw_shift(pair: Pair) -> Meshing:
     """The pair at one shift or at a batch of them; every Float is a number or an array (n,), SI."""
-    difference = pair.ring_teeth - pair.roller_teeth
-    alpha, dedendum = pair.pressure_angle, pair.addendum + pair.clearance
-    working = working_angle_at(pair.centre_distance, 0.5 * pair.module * difference * np.cos(alpha))
-    ring_shift = pair.roller_shift + difference * shift_per_tooth(working, alpha)
-    rack = Rack(dedendum=dedendum, fillet=pair.roller_fillet, pressure_angle=alpha)
-    root = external_root(rack, pair.roller_teeth, pair.roller_shift)
-    tip = pair.roller_teeth + 2.0 * (pair.addendum + pair.roller_shift)
-    arm = external_arm(rack, pair.roller_teeth, pair.roller_shift, root, tip)
-    substitute = Rack(dedendum=dedendum, fillet=pair.ring_fillet, pressure_angle=alpha)
-    ring = ring_root(substitute)
-    ring_lever = ring_arm(substitute, ring, pair.addendum)
-    load = pair.tangential_share * np.abs(pair.axial_load) / (pair.carrying_share * pair.face_width * pair.module)
-    load = load * pair.face_load_factor * pair.dynamic_factor * pair.sharing_factor
-    zero = 0.0 * load
+    geometry, fillet = geo.geometry_of(pair), roller_fillet(pair)
+    require_pair(pair, geometry)
+    roller, ring = roller_tooth(pair), ring_tooth(pair)
+    require_roots(roller, ring, fillet.offset)
     return Meshing(
-        working_angle=working + zero,
-        ring_shift=ring_shift + zero,
-        root_stress_roller=load * form_factor(root, arm, alpha) * stress_correction(root, arm),
-        root_stress_ring=load
-        * form_factor(ring, ring_lever, alpha)
-        * stress_correction(ring, ring_lever)
-        * pair.rim_factor,
-        transmission_error=zero,
-        wear_depth=zero,
-        axial_shift=zero,
-        friction_torque=zero,
-        backlash=zero,
+        **_circles(geometry),
+        **_mesh(pair, geometry),
+        tangential_force=load_of(pair).tangential_force,
+        fillet_offset_roller=fillet.offset,
+        fillet_height_roller=fillet.height,
+        tangent_constant_roller=fillet.constant,
+        tangent_angle_roller=fillet.angle,
+        load_angle_roller=roller.arm.angle,
+        root_fillet_roller=roller.root.fillet,
+        **_roots(roller, ring),
+        root_stress_roller=roller.stress * acting(pair),
+        root_stress_ring=ring.stress * acting(pair) * pair.rim_factor,
+        shift_sum=pair.roller_shift + geometry.ring_shift,
+        stress_difference=np.abs(roller.stress - ring.stress),
+        **vars(margins_at(pair, geometry)),
+        **dict.fromkeys(("transmission_error", "wear_depth", "axial_shift", "friction_torque"), 0.0),
+        backlash=geo.backlash(geometry),
     )
+
+
+def _circles(geometry: geo.Geometry) -> dict[str, Any]:
+    """Return angles, shifts and circles by the names of their results."""
+    names = ("working_angle", "shift_difference", "ring_shift", "mounted_distance", "mounted_angle")
+    found = {name: getattr(geometry, name) for name in names}
+    for gear in ("roller", "ring"):
+        for name in ("base_radius", "tip_radius", "root_radius", "tip_angle"):
+            found[f"{name}_{gear}"] = getattr(getattr(geometry, gear), name)
+    return found
+
+
+def _mesh(pair: Pair, geometry: geo.Geometry) -> dict[str, Any]:
+    """Return contact ratio, tips and sliding by the names of their results."""
+    crossing, (roller, ring) = geo.crossing_of(geometry), geo.sliding(geometry)
+    return {
+        "contact_ratio": geo.contact_ratio(geometry),
+        "half_angle_roller": geo.half_angle_at_tip(pair, geometry),
+        "tip_land": geo.tip_land(pair, geometry),
+        "crossing_angle_roller": crossing.roller,
+        "crossing_angle_ring": crossing.ring,
+        "tip_clearance": crossing.clearance,
+        "sliding_roller": roller,
+        "sliding_ring": ring,
+        "sliding_difference": np.abs(roller - ring),
+    }
+
+
+def _roots(roller: Tooth, ring: Tooth) -> dict[str, Any]:
+    """Return sections, factors and nominal stresses of both by the names of their results."""
+    found: dict[str, Any] = {}
+    for gear, tooth in (("roller", roller), ("ring", ring)):
+        found[f"root_chord_{gear}"] = tooth.root.chord
+        found[f"bending_arm_{gear}"] = tooth.arm.height
+        found[f"form_factor_{gear}"] = tooth.form
+        found[f"notch_{gear}"] = notch(tooth.root)
+        found[f"stress_correction_{gear}"] = tooth.correction
+        found[f"nominal_stress_{gear}"] = tooth.stress
+    return found

@@ -21,9 +21,9 @@ class Load:
 def load_of(pair: Pair) -> Load:
     """Return the load of the mesh of one roller at the mean: without the neutral factors, never negative.
 
-    The direction is +1, or -1 where the screw pulls the other way. The nut stands still: the thread of the roller rolls
-    between those of screw and nut, so that the carrier makes k/(2 (k + 1)) turns per turn of the screw, k = d_s/d_r, and
-    a roller z_I/z_E times as many with respect to the carrier.
+    The direction is +1, or -1 where the axial load is negative. The nut stands still and the thread of the roller rolls
+    between those of screw and nut: the carrier makes k/(2 (k + 1)) turns per turn of the screw, k = d_s/d_r, and with
+    respect to the carrier a roller makes z_I/z_E times as many.
     """
     ratio = pair.screw_diameter / pair.roller_diameter
     carrier = ratio / (2.0 * (ratio + 1.0))

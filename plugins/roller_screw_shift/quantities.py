@@ -83,6 +83,6 @@ class Pair:
                                   above=0, at_most=1)  # fmt: skip
     rim_factor: Float = given(1.0, "", symbol="Y_B", note="neutral 1: raises the root stress of the ring", above=0)
     centre_distance_deviation: Float = given(
-        0.0, "um", symbol="Delta a", note="neutral 0: centres farther apart than without backlash", at_least=-1000,
-        at_most=1000,
+        0.0, "um", symbol="Delta a", note="neutral 0: centres farther apart than without backlash; "
+        "above 0 the teeth of an internal pair jam, below 0 they have backlash", at_least=-1000, at_most=1000,
     )  # fmt: skip
