@@ -30,6 +30,7 @@ class Pair:
     # The screw
     screw_diameter: Float = size(30.0, "d_s", "pitch diameter of the thread of the screw")
     roller_diameter: Float = size(10.0, "d_r", "pitch diameter of the thread of a roller")
+    lead: Float = size(10.0, "l", "lead of the screw; acts with effects only")
     rollers: int = given(10, symbol="n_r", note="rollers that share the load", source=SET, at_least=1, at_most=100)
     # The pair
     pressure_angle: Float = given(20.0, "deg", symbol="alpha", note="of the rack", source=PAPER, above=10, below=30)
