@@ -52,22 +52,28 @@ class Arm:
     angle: Float
 
 
+def gap_offset(rack: Rack) -> Float:
+    """Return E, from the middle of the gap of the rack to the centre of its rounding; below 0 there is no rounding."""
+    alpha = rack.pressure_angle
+    return 0.25 * np.pi - rack.dedendum * np.tan(alpha) - (1.0 - np.sin(alpha)) * rack.fillet / np.cos(alpha)
+
+
 def fillet_of(rack: Rack, teeth: Float, shift: Float) -> Fillet:
     """Return how the rounding of the rack lies to an external gear, with the angle of the 30 degree tangent.
 
-    NaN where the rack has no such rounding (those of its two flanks would meet before they are round).
+    The angle is NaN where the rack has no such rounding (those of its two flanks would meet before they are round), and
+    where the fillet that it makes has no tangent of 30 degrees (few teeth with a large shift).
     """
-    alpha, rho = rack.pressure_angle, rack.fillet
-    offset = np.asarray(0.25 * np.pi - rack.dedendum * np.tan(alpha) - (1.0 - np.sin(alpha)) * rho / np.cos(alpha))
-    height = rho - rack.dedendum + shift
-    constant = (2.0 / teeth) * (0.5 * np.pi - np.where(offset >= 0.0, offset, np.nan)) - TANGENT
-    return Fillet(offset=offset, height=height, constant=constant, angle=_tangent_angle(2.0 * height / teeth, constant))
+    offset, height = gap_offset(rack), rack.fillet - rack.dedendum + shift
+    constant = (2.0 / teeth) * (0.5 * np.pi - offset) - TANGENT
+    angle = np.where(np.asarray(offset) >= 0.0, _tangent_angle(2.0 * height / teeth, constant), np.nan)
+    return Fillet(offset=offset, height=height, constant=constant, angle=angle)
 
 
 def external_root(rack: Rack, teeth: Float, shift: Float) -> Root:
     """Return the critical section of an external gear; ``teeth`` is the virtual number for a helical one.
 
-    NaN where the rack has no such fillet, see ``fillet_of``.
+    NaN where there is no such section, see ``fillet_of``.
     """
     rho, fillet = rack.fillet, fillet_of(rack, teeth, shift)
     g, theta = fillet.height, fillet.angle
@@ -80,11 +86,17 @@ def external_root(rack: Rack, teeth: Float, shift: Float) -> Root:
 
 
 def _tangent_angle(slope: Float, constant: Float) -> Float:
-    """Solve theta = slope tan(theta) - constant by Newton from 30 degrees, as the standard begins."""
-    theta = np.pi / 6.0 + 0.0 * (slope + constant)
-    for _ in range(STEPS):
-        theta = theta - (theta - slope * np.tan(theta) + constant) / (1.0 - slope / np.cos(theta) ** 2)
-    return theta
+    """Solve theta = slope tan(theta) - constant by Newton from 0; NaN where nothing between 0 and 90 degrees does.
+
+    From 0 the steps go up to the smaller solution where the slope is positive, and come down to the only one after the
+    first step where it is negative.
+    """
+    theta, close = 0.0 * (slope + constant), 1e-12
+    with np.errstate(all="ignore"):
+        for _ in range(STEPS):
+            theta = theta - (theta - slope * np.tan(theta) + constant) / (1.0 - slope / np.cos(theta) ** 2)
+        solved = np.abs(theta - slope * np.tan(theta) + constant) <= close
+    return np.where(solved & (theta >= 0.0) & (theta < 0.5 * np.pi), theta, np.nan)
 
 
 def external_arm(rack: Rack, teeth: Float, shift: Float, root: Root, diameter: Float) -> Arm:

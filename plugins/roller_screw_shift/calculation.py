@@ -19,7 +19,7 @@ def roller_screw_shift(pair: Pair) -> Meshing:
     geometry, fillet = geo.geometry_of(pair), roller_fillet(pair)
     require_pair(pair, geometry)
     roller, ring = roller_tooth(pair), ring_tooth(pair)
-    require_roots(roller, ring, fillet.offset)
+    require_roots(pair, roller, ring, fillet)
     return Meshing(
         **_circles(geometry),
         **_mesh(pair, geometry),

@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from gear_geometry.roots import Fillet, gap_offset
 from roller_screw_shift.geometry import Geometry, involute_margin
 from roller_screw_shift.quantities import Pair
-from roller_screw_shift.strength import Tooth
+from roller_screw_shift.strength import Tooth, ring_rack
 from truing import Float, feasible
 
 FEWEST = 8  # teeth of the ring beyond those of the roller
@@ -42,25 +43,29 @@ def require_pair(pair: Pair, geometry: Geometry) -> None:
     )
 
 
-def require_roots(roller: Tooth, ring: Tooth, offset: Float) -> None:
-    """Refuse teeth without a critical section; ``offset`` is E of the rack of the roller."""
+def require_roots(pair: Pair, roller: Tooth, ring: Tooth, fillet: Fillet) -> None:
+    """Refuse teeth without a critical section; ``fillet`` is that of the rack of the roller."""
+    for gear, offset in (("roller", fillet.offset), ("ring", gap_offset(ring_rack(pair)))):
+        feasible(
+            np.asarray(offset) >= 0.0,
+            f"the rack of the {gear} is pointed before it is round: reduce {gear}_fillet, addendum or clearance",
+        )
     feasible(
-        np.asarray(offset) >= 0.0,
-        "the rack of the roller is pointed before it is round: reduce roller_fillet, addendum or clearance",
+        np.isfinite(fillet.angle),
+        "the fillet of the roller has no tangent of 30 degrees: reduce roller_shift or enlarge roller_teeth",
     )
     for gear, tooth in (("roller", roller), ("ring", ring)):
-        shift = " or change roller_shift" if gear == "roller" else ""
         feasible(
             tooth.root.chord > 0.0,
-            f"the tooth of the {gear} has no thickness at its root: reduce addendum, clearance or {gear}_fillet{shift}",
+            f"the tooth of the {gear} has no thickness at its root: reduce addendum, clearance or pressure_angle",
         )
         feasible(
             (tooth.root.fillet > 0.0) & np.isfinite(tooth.root.fillet),
-            f"the root of the {gear} has no radius: {gear}_fillet must be greater than 0{shift}",
+            f"the root of the {gear} has no radius: {gear}_fillet must be greater than 0",
         )
         feasible(
             tooth.arm.height > 0.0,
-            f"the load at the tip of the {gear} has no arm about its root: enlarge addendum{shift}",
+            f"the load at the tip of the {gear} has no arm about its root: enlarge addendum or clearance",
         )
 
 
