@@ -1,0 +1,59 @@
+"""What the figures share: colours, panels, and what a finished run knows."""
+
+from typing import TYPE_CHECKING, Any
+
+from gear_geometry.roots import Rack
+from rv_gearing.quantities import Gearing
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rv_gearing.answers import Strength
+    from truing import Record
+
+    Run = Record[Gearing, Strength]
+
+BLUE, ORANGE, GREEN, INK, GREY = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c"
+SUN_FILL, PLANET_FILL = "#e8eff5", "#fbeee3"
+WIDTH = 6.4
+MM, MPA = 1e3, 1e-6
+
+
+def acting(record: "Run") -> Gearing:
+    """The inputs as effects leave them, from the first study that knows them; else those of the run."""
+    for outcome in record.studies.values():
+        inputs = getattr(outcome, "inputs", None)
+        if isinstance(inputs, Gearing):
+            return inputs
+    return record.inputs
+
+
+def outcome_of(record: "Run", kind: type[Any], name: str = "") -> Any:
+    """The outcome of the first study of this kind (and name), None where none ran."""
+    for key, found in record.studies.items():
+        if isinstance(found, kind) and name in ("", key):
+            return found
+    return None
+
+
+def number(record: "Run", name: str) -> float:
+    """One result, SI."""
+    return float(record.answers[name])
+
+
+def rack_of(stage: Gearing) -> Rack:
+    """The rack of both gears in the normal section, in modules."""
+    return Rack(dedendum=float(stage.dedendum), fillet=float(stage.fillet), pressure_angle=float(stage.pressure_angle))
+
+
+def one_panel(height: float) -> "tuple[Figure, Any]":
+    """A figure as wide as the sheet with one panel."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    return figure, figure.subplots()
+
+
+def minus(text: str) -> str:
+    """A text of numbers with a true minus."""
+    return text.replace("-", "−")
