@@ -1,0 +1,212 @@
+"""The first stage of a reducer on its test rig, with something wrong: what all its gauges would show.
+
+Nothing of the plugin is imported. Torques are N m, speeds r/min, angles degrees, temperatures degC, deviations along the
+line of action um. What an effect does is not the formula of the effect: another law of viscosity, heat summed over the
+contact, wear step by step, counts one by one, waves that are not quite round.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import cos, hypot, pi, sqrt, tan
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import erf
+
+from hidden_effects.gearing_stage import ANGLE, BASE, MODULE, PINS, PLANET, SUN, Array, Stage, pair_of, play_between
+from hidden_effects.gearing_stress import (
+    APPLICATION,
+    POISSON,
+    YOUNG,
+    Loaded,
+    Wrong,
+    mesh_stiffness,
+    stresses,
+    swinging,
+)
+
+Hidden: TypeAlias = Mapping[str, Mapping[str, float]]  # effect -> unknown, in the units of the registry
+
+RATIO, MESHES = 111.0, 0.920941
+CONDUCTING = sqrt(50 * 3.8e6)  # of steel, N/(m s^0.5 K)
+STEPS = 2000
+
+
+@dataclass(frozen=True)
+class Rows:
+    """What was set and measured beside the results, arrays (n,): h, N m, r/min, degC, deg."""
+
+    time: Array
+    load_torque: Array
+    input_speed: Array
+    oil_temperature: Array
+    input_angle: Array
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def taken(self, places: "NDArray[np.intp] | slice") -> "Rows":
+        """Some of the rows."""
+        return Rows(**{name: values[places] for name, values in vars(self).items()})
+
+    @property
+    def side(self) -> Array:
+        """To which the torque lays the teeth."""
+        return np.where(self.load_torque < 0, -1.0, 1.0)
+
+
+def of(hidden: Hidden, effect: str, unknown: str) -> float:
+    """An unknown of an effect, in the unit of the registry; 0 where the effect is not hidden."""
+    return float(hidden.get(effect, {}).get(unknown, 0.0))
+
+
+def efficiency(stage: Stage) -> float:
+    """Of both meshes and three bearings."""
+    return MESHES * stage.bearing**3
+
+
+def sun_torque(rows: Rows, stage: Stage) -> Array:
+    """What the sun needs for the torque of the output."""
+    return np.asarray(np.abs(rows.load_torque) / (RATIO * efficiency(stage)))
+
+
+def loaded(rows: Rows, stage: Stage, hidden: Hidden) -> Loaded:
+    """Force and speed of a mesh; crowned teeth carry over a width whose square grows with the force."""
+    force = 1000 * sun_torque(rows, stage) / (2 * MODULE * SUN / 2)
+    full = of(hidden, "crowned_contact", "full_force")
+    low, high = np.zeros(len(rows)), np.ones(len(rows))
+    for _ in range(50):  # width at which the contact takes the force
+        middle = (low + high) / 2
+        low, high = np.where(full * middle**2 < force, middle, low), np.where(full * middle**2 < force, high, middle)
+    return Loaded(force, rows.input_speed * (1 - 1 / RATIO), high)
+
+
+def strength(rows: Rows, stage: Stage, hidden: Hidden) -> dict[str, Array]:
+    """The stresses."""
+    load = loaded(rows, stage, hidden)
+    misaligned = of(hidden, "face_misalignment", "misalignment") + np.zeros(len(rows))
+    misaligned = misaligned + of(hidden, "face_misalignment", "per_load") * load.force / 1000
+    resonance = hidden.get("structural_resonance")
+    shaken = np.zeros(len(rows))
+    if resonance:
+        shaken = resonance["strength"] * swinging(load.speed, resonance["resonance_speed"], resonance["damping"])
+    lead, relief = of(hidden, "planet_load_sharing", "lead"), of(hidden, "relief_error", "missing")
+    return stresses(stage, load, Wrong(misaligned, shaken, lead, relief))
+
+
+# Oil and heat
+
+
+def viscosity(temperature: Array) -> Array:
+    """Of an ISO VG 100 oil by Vogel's law through 100 mm²/s at 40 degC and 11.1 mm²/s at 100 degC."""
+    slope = np.log(100 / 11.1) / (1 / (40 + 110) - 1 / (100 + 110))
+    return np.asarray(100 * np.exp(slope * (1 / (temperature + 110) - 1 / (40 + 110))))
+
+
+def held_back(rows: Rows, hidden: Hidden) -> Array:
+    """Torque by which seals and oil hold the sun back."""
+    viscous = (viscosity(rows.oil_temperature) / 100 * rows.input_speed / 1000) ** (2 / 3)
+    return np.asarray(
+        of(hidden, "speed_dependent_loss", "constant") + of(hidden, "speed_dependent_loss", "viscous") * viscous
+    )
+
+
+def contact_heat(force: float, sun: float, planet: float, turning: float) -> float:
+    """Flash of a Hertzian contact per coefficient of friction, K: its heat summed from its front to every place.
+
+    ``force`` in N/mm, radii in mm, ``turning`` of the sun in rad/s. Each flank takes the share of heat that gives both
+    the same peak. The heat behind a place has gone in for the time since it passed there.
+    """
+    half = sqrt(4 * force * sun * planet / (sun + planet) * 2 * (1 - POISSON**2) / (pi * YOUNG))
+    one, two = turning * sun, turning * SUN / PLANET * planet  # mm/s
+    edges = np.linspace(-1, 1, 401)
+    middles = (edges[1:] + edges[:-1]) / 2
+    heat = 2 / pi * np.sqrt(1 - middles**2)  # share of the force per half width
+    since = np.sqrt(np.maximum(edges[:, None] - edges[None, :], 0))
+    peak = float(np.max((2 * (since[:, :-1] - since[:, 1:]) * (since[:, :-1] > 0)) @ heat))
+    power = force * abs(one - two)  # N/mm * mm/s = N/s -> W/m
+    each = peak * power / (CONDUCTING * sqrt(pi * half / 1000))
+    return each / (sqrt(one / 1000) + sqrt(two / 1000))
+
+
+def flash(rows: Rows, stage: Stage, hidden: Hidden) -> Array:
+    """Rise of the flanks over the oil, K."""
+    friction = of(hidden, "flash_temperature", "friction")
+    if not friction:
+        return np.zeros(len(rows))
+    load = loaded(rows, stage, hidden)
+    pair = pair_of(stage)
+    path = (BASE[0] + BASE[1]) * tan(pair.angle)
+    outer = [sqrt(tip**2 - base**2) for tip, base in zip(pair.tips, BASE, strict=True)]
+    ends = [(path - outer[1], outer[1]), (outer[0], path - outer[0])]
+    force, turning = load.line_load(stage) / cos(ANGLE), load.speed * 2 * pi / 60
+    rise = [max(contact_heat(w, *end, t) for end in ends) for w, t in zip(force, turning, strict=True)]
+    return friction * np.array(rise)
+
+
+# Transmission error and backlash
+
+
+def turning(rows: Rows, hidden: Hidden) -> Array:
+    """Waves over the angle, um: phase and amplitude; a mesh whose wave is not quite round."""
+    sun = np.radians(rows.input_angle) * (1 - 1 / RATIO)
+    output = np.radians(rows.input_angle) / RATIO
+    angles = {
+        ("sun_runout", ""): sun, ("planet_runout", ""): sun * SUN / PLANET, ("mesh_ripple", ""): SUN * sun,
+        ("mesh_ripple", "second_"): 2 * SUN * sun, ("output_eccentricity", ""): output,
+        ("output_eccentricity", "tooth_"): (PINS - 1) * output,
+    }  # fmt: skip
+    found = np.zeros(len(rows))
+    for (effect, part), angle in angles.items():
+        cosine, sine = of(hidden, effect, f"{part}cosine"), of(hidden, effect, f"{part}sine")
+        size, phase = hypot(cosine, sine), np.arctan2(sine, cosine)
+        found = found + size * (np.cos(angle - phase) + 0.04 * np.cos(3 * (angle - phase)))
+    return found
+
+
+def counted(rows: Rows, hidden: Hidden) -> Array:
+    """What an encoder of 5000 marks loses that misses some marks, um."""
+    lost = of(hidden, "ratio_drift", "miscount")
+    marks = np.floor(rows.input_angle / 360 * 5000)
+    return np.asarray(lost * marks / 5000 * 2 * pi * BASE[0] * 1e3)
+
+
+def given_way(rows: Rows, stage: Stage, hidden: Hidden) -> Array:
+    """What teeth give way, um: pressed together until spring and load are in balance."""
+    load = loaded(rows, stage, hidden).line_load(stage)
+    full = mesh_stiffness(stage, np.full(1, 100.0))  # at 100 N/mm
+    low, high = np.zeros(len(rows)), np.full(len(rows), 1000.0)
+    for _ in range(60):
+        way = (low + high) / 2
+        carried = np.where(full * way < 100, (full * way) ** (4 / 3) / 100 ** (1 / 3), full * way)
+        low, high = np.where(carried < load, way, low), np.where(carried < load, high, way)
+    return low
+
+
+def worn(rows: Rows, hidden: Hidden) -> Array:
+    """Depth that a flank has lost, um: hour by hour in steps."""
+    rate = of(hidden, "wear_drift", "rate") / 1000
+    clock = np.linspace(0, max(float(np.max(rows.time)), 1.0), STEPS)
+    depth = np.concatenate([[0.0], np.cumsum(rate * np.diff(clock))])
+    return np.asarray(np.interp(rows.time, clock, depth))
+
+
+def shown(rows: Rows, stage: Stage, hidden: Hidden) -> dict[str, Array]:
+    """What the gauges would show without noise."""
+    play, scale = of(hidden, "lost_motion", "play"), of(hidden, "lost_motion", "torque_scale") or 1.0
+    depth, torque = worn(rows, hidden), sun_torque(rows, stage)
+    error = turning(rows, hidden) + counted(rows, hidden) + rows.side * depth
+    error = error + play / 2 * erf(sqrt(pi) / 2 * rows.load_torque / scale)
+    error = error + rows.side * of(hidden, "wind_up", "compliance") * torque
+    error = error + rows.side * of(hidden, "mesh_stiffening", "share") * given_way(rows, stage, hidden)
+    apart = of(hidden, "centre_distance_growth", "expansion") * 1e-6 * MODULE * (SUN + PLANET) / 2
+    apart = apart * (rows.oil_temperature - 20)
+    read = strength(rows, stage, hidden)
+    read["transmission_error"] = error
+    read["backlash"] = play_between(stage, apart) + play + 2 * depth
+    read["efficiency"] = efficiency(stage) - held_back(rows, hidden) / torque
+    read["flank_temperature"] = rows.oil_temperature + flash(rows, stage, hidden)
+    for name in read:
+        read[name] = read[name] * (1 + of(hidden, "sensor_gain", name)) + of(hidden, "sensor_offset", name)
+    return read
