@@ -2,33 +2,89 @@
 
 import numpy as np
 
-from gear_geometry.roots import Rack, external_arm, external_root, form_factor
-from rv_gearing.answers import GearStress, Strength
+from gear_geometry.involute import involute
+from rv_gearing.answers import Duty, Strength
+from rv_gearing.bending_factors import bending_factors, root_of
+from rv_gearing.contact_factors import contact_factors, contact_ratio_factor
+from rv_gearing.duty import mesh_efficiency
+from rv_gearing.dynamic import dynamics_of
+from rv_gearing.face_load import face_load_of
+from rv_gearing.life import cycles_of, life_of
+from rv_gearing.loads import LEAST_LINE_LOAD, Load, load_of
+from rv_gearing.pair import GearSize, MeshSize, gear_size, mesh_size
+from rv_gearing.quality import quality_of
 from rv_gearing.quantities import Gearing
-from truing import either
+from rv_gearing.steel import steel_of
+from rv_gearing.stiffness import stiffness_of
+from rv_gearing.stresses import acting, stresses_of
+from rv_gearing.transverse import planets_of, sharing_of
+from truing import Float
 
 
 def rv_gearing(stage: Gearing) -> Strength:
     """Strength of one stage or of a batch; every Float is a number or an array (n,), SI."""
-    z_1, z_2 = either(stage.sun_teeth, 20.0), either(stage.planet_teeth, 55.0)
-    rack = Rack(dedendum=stage.dedendum, fillet=stage.fillet, pressure_angle=stage.pressure_angle)
-    ratio = 1.0 + 40.0 * z_2 / z_1
-    efficiency = 0.920941 * stage.bearing_efficiency**3
-    speed = either(stage.input_speed, stage.output_speed * ratio)
-    torque = either(np.abs(stage.load_torque) / (ratio * efficiency), stage.power / (2.0 * np.pi * speed))
-    force = torque / (stage.planets * 0.5 * stage.module * z_1)
-    stress = []
-    for teeth, gear in ((z_1, stage.sun), (z_2, stage.planet)):
-        root = external_root(rack, teeth, gear.shift)
-        arm = external_arm(rack, teeth, gear.shift, root, teeth + 2.0 * (stage.addendum + gear.shift))
-        stress.append(force / (stage.face_width * stage.module) * form_factor(root, arm, stage.pressure_angle))
-    zero = 0.0 * force
+    load = load_of(stage)
+    mesh = mesh_size(stage, load)
+    sun_size = gear_size(stage, stage.sun, load.sun, load.base_radii[0], mesh)
+    sizes = sun_size, gear_size(stage, stage.planet, load.planet, load.base_radii[1], mesh)
+    duty = duty_of(stage, load, sun_size, mesh)
+    made, quality = quality_of(stage, sizes, mesh, duty.pitch_line_velocity)
+    stiffness = stiffness_of(stage, load, sizes, mesh.contact_ratio)
+    dynamics = dynamics_of(stage, load, sizes, mesh.total_contact_ratio, (quality, stiffness))
+    planets = planets_of(stage, load.line_load, stiffness.mesh_stiffness)
+    mean = np.maximum(load.line_load * dynamics.dynamic_factor * planets.planet_factor, LEAST_LINE_LOAD)
+    seen = (sun_size, mesh, duty.pitch_line_velocity)
+    face = face_load_of(stage, made, mean, stiffness.mesh_stiffness_face, seen)
+    z_epsilon = contact_ratio_factor(stage, mesh)
+    held = stiffness.mesh_stiffness, z_epsilon
+    sharing = sharing_of(stage, mesh, mean * face.face_factor, quality.pitch_left, held)
+    contact = contact_factors(stage, sizes, mesh, duty.pitch_line_velocity, z_epsilon)
+    bending = bending_factors(stage, mesh, stiffness.tooth_stiffness, load.line_load)
+    for_contact = face.face_factor * sharing.transverse_factor * planets.planet_factor
+    for_bending = face.face_factor_bending * sharing.transverse_factor_bending * planets.planet_factor_bending
+    shares = dynamics.dynamic_factor * for_contact, dynamics.dynamic_factor * for_bending
+    act = acting(stage, load, (sun_size, mesh), (contact, bending), shares)
+    steel, cycles = steel_of(stage), cycles_of(stage, load)
+    sun, planet = (
+        stresses_of(stage, gear, act, single, (size, accuracy, root_of(stage, gear, size, mesh, steel),
+                                               life_of(gear, steel, count)))
+        for gear, size, accuracy, single, count in (
+            (stage.sun, sizes[0], made[0], contact.single_contact_factor_sun, cycles.load_cycles_sun),
+            (stage.planet, sizes[1], made[1], contact.single_contact_factor_planet, cycles.load_cycles_planet),
+        )
+    )  # fmt: skip
     return Strength(
-        contact_stress=np.sqrt(force) * 4.2e7,
-        transmission_error=zero,
-        efficiency=efficiency + zero,
-        flank_temperature=stage.oil_temperature + zero,
-        backlash=zero,
-        sun=GearStress(root_stress=stress[0]),
-        planet=GearStress(root_stress=stress[1]),
+        contact_stress=sun.contact_stress, transmission_error=0.0 * load.tangential_force, efficiency=load.efficiency,
+        flank_temperature=stage.oil_temperature, backlash=backlash_of(stage, load, mesh),
+        nominal_contact_stress=act.contact, contact_safety=np.minimum(sun.contact_safety, planet.contact_safety),
+        root_safety=np.minimum(sun.root_safety, planet.root_safety),
+        root_safety_outer=np.minimum(sun.root_safety_outer, planet.root_safety_outer), duty=duty, mesh=mesh,
+        quality=quality, steel=steel, stiffness=stiffness, dynamics=dynamics, planets=planets, face=face,
+        sharing=sharing, contact=contact, bending=bending, cycles=cycles, sun=sun, planet=planet,
+    )  # fmt: skip
+
+
+def duty_of(stage: Gearing, load: Load, sun: GearSize, mesh: MeshSize) -> Duty:
+    """Return the load as it is printed."""
+    return Duty(
+        pins=load.pins,
+        ratio=load.ratio,
+        pin_ratio=load.pins / (load.pins - 1.0),
+        mesh_efficiency=mesh_efficiency(stage, mesh.tooth_ratio, load.pins),
+        sun_speed=load.input_speed,
+        mesh_speed=load.mesh_speed,
+        sun_torque=load.sun_torque,
+        output_torque=load.sun_torque * load.ratio * load.efficiency,
+        tangential_force=load.tangential_force,
+        pitch_line_velocity=np.pi * sun.reference_diameter * load.mesh_speed,
+        carrying_width=stage.carrying_share * stage.face_width,
+        line_load=load.line_load,
     )
+
+
+def backlash_of(stage: Gearing, load: Load, mesh: MeshSize) -> Float:
+    """Return the backlash along the line of action, m: 0 unless the gears are farther apart than without it."""
+    opened = (
+        2.0 * (load.base_radii[0] + load.base_radii[1]) * (involute(mesh.working_angle) - involute(mesh.tight_angle))
+    )
+    return np.where(stage.centre_distance_deviation <= 0.0, 0.0, opened * np.cos(mesh.base_helix_angle))

@@ -128,7 +128,8 @@ class Gearing:
     material: Literal["case_hardened", "through_hardened", "nitrided"] = given(
         "case_hardened", note="of both gears: life, running-in, notch and surface factors follow it"
     )
-    density: Float = positive(7850.0, "kg/m**3", "rho", "of both gears, for their inertia")
+    proof_stress: Float = positive(800.0, "MPa", "sigma_0.2", "of through-hardened steel, for its notch sensitivity")
+    density: Float = positive(7830.0, "kg/m**3", "rho", "of both gears, for their inertia", "ISO 6336-1:2006, 6.5.9")
     viscosity: Float = positive(100.0, "mm**2/s", "nu_40", "kinematic viscosity of the lubricant at 40 degC")
     oil_temperature: Float = given(40.0, "degC", symbol="theta_oil", note="of the lubricant at work", source=LOST,
                                    at_least=-60, at_most=250)  # fmt: skip
@@ -144,7 +145,8 @@ class Gearing:
     )
     # Factors that are calculated unless they are stated
     stated_dynamic_factor: Float = stated("K_V", "dynamic factor")
-    stated_face_factor: Float = stated("K_Hbeta", "face load factor for contact")
+    stated_face_factor: Float = given(None, "", symbol="K_Hbeta", note="face load factor for contact; calculated where "
+                                      "it is not stated", at_least=1)  # fmt: skip
     stated_face_factor_bending: Float = stated("K_Fbeta", "face load factor for bending")
     stated_transverse_factor: Float = stated("K_Halpha", "transverse load factor for contact")
     stated_transverse_factor_bending: Float = stated("K_Falpha", "transverse load factor for bending")

@@ -1,0 +1,178 @@
+"""What a tooth root gets and bears: the factors of bending, with the load at the tip and at the outer single contact.
+
+Y_Fa, Y_Sa and Y_epsilon belong to the load at the tip (the paper, GB/T 3480, method C of older editions); Y_F, Y_S and
+Y_DT to the load at the outer point of single contact (ISO 6336-3:2006, method B). They are not mixed.
+"""
+
+import numpy as np
+
+from gear_geometry.roots import Arm, Rack, Root, external_arm, external_root, form_factor, notch, stress_correction
+from rv_gearing.pair import GearSize, MeshSize
+from rv_gearing.quantities import Gear, Gearing
+from rv_gearing.steel import Steel
+from truing import Float, either, feasible, found, results
+
+ISO = "ISO 6336-3:2006, clause "
+TRACED = "30 degree tangent at the root that the rack makes; solved by Newton's method"
+LEVER = "cross-section of the virtual spur gear, load along the line of action"
+
+
+@results
+class GearRoot:
+    """Form of the tooth root of one gear; lengths in modules."""
+
+    root_chord: Float = found("", symbol="s_Fn*", note="chord of the critical section, in modules", method=TRACED,
+                              source=ISO + "6")  # fmt: skip
+    root_fillet: Float = found("", symbol="rho_F*", note="radius of the fillet there, in modules", method=TRACED,
+                               source=ISO + "6")  # fmt: skip
+    notch_parameter: Float = found("", symbol="q_s", note="notch parameter", formula="root_chord / (2 * root_fillet)",
+                                   source=ISO + "7")  # fmt: skip
+    tip_arm: Float = found("", symbol="h_Fa*", note="bending arm, load at the tip, in modules", method=LEVER,
+                           source="GB/T 3480-1997")  # fmt: skip
+    tip_load_angle: Float = found("deg", symbol="alpha_Fan", note="angle of the load at the tip", method=LEVER,
+                                  source="GB/T 3480-1997")  # fmt: skip
+    form_factor: Float = found(
+        "", symbol="Y_Fa", note="form factor, load at the tip; as stated where it is", source="GB/T 3480-1997",
+        formula="either(stated_form_factor,"
+        " 6 * tip_arm * cos(tip_load_angle) / (root_chord**2 * cos(pressure_angle)))",
+    )  # fmt: skip
+    stress_correction: Float = found(
+        "", symbol="Y_Sa", note="stress correction, load at the tip; as stated where it is", source="GB/T 3480-1997",
+        formula="either(stated_stress_correction, (1.2 + 0.13 * root_chord / tip_arm)"
+        " * notch_parameter**(1 / (1.21 + 2.3 * tip_arm / root_chord)))",
+    )  # fmt: skip
+    outer_diameter: Float = found(
+        "mm", symbol="d_en", note="virtual diameter of the outer point of single contact", source=ISO + "6",
+        formula="2 * hypot(sqrt(((module * virtual_teeth + tip_diameter - reference_diameter) / 2)**2"
+        " - (module * virtual_teeth * cos(pressure_angle) / 2)**2)"
+        " - pi * module * cos(pressure_angle) * (virtual_contact_ratio - 1),"
+        " module * virtual_teeth * cos(pressure_angle) / 2)",
+    )  # fmt: skip
+    outer_arm: Float = found("", symbol="h_Fe*", note="bending arm, load at the outer single contact, in modules",
+                             method=LEVER, source=ISO + "6")  # fmt: skip
+    outer_load_angle: Float = found("deg", symbol="alpha_Fen", note="angle of the load at the outer single contact",
+                                    method=LEVER, source=ISO + "6")  # fmt: skip
+    form_factor_outer: Float = found(
+        "", symbol="Y_F", note="form factor, load at the outer single contact", source=ISO + "6",
+        formula="6 * outer_arm * cos(outer_load_angle) / (root_chord**2 * cos(pressure_angle))",
+    )  # fmt: skip
+    stress_correction_outer: Float = found(
+        "", symbol="Y_S", note="stress correction, load at the outer single contact", source=ISO + "7",
+        formula="(1.2 + 0.13 * root_chord / outer_arm)"
+        " * notch_parameter**(1 / (1.21 + 2.3 * outer_arm / root_chord))",
+    )  # fmt: skip
+    notch_sensitivity: Float = found(
+        "", symbol="Y_deltarelT", note="relative notch sensitivity; as stated where it is", numeric=True,
+        source=ISO + "13",
+        formula="either(stated_notch_sensitivity, (1 + sqrt(0.2 * slip_layer * (1 + 2 * notch_parameter)))"
+        " / (1 + sqrt(1.2 * slip_layer)))",
+    )  # fmt: skip
+    root_surface: Float = found(
+        "", symbol="Y_RrelT", note="relative surface factor; as stated where it is", numeric=True, source=ISO + "14",
+        formula="either(stated_root_surface, cases(surface_smooth, root_roughness < 1,"
+        " surface_constant - surface_slope * (root_roughness + 1)**surface_exponent))",
+    )  # fmt: skip
+    bending_size: Float = found(
+        "", symbol="Y_X", note="size factor for bending; as stated where it is", numeric=True, source=ISO + "15",
+        formula="either(stated_bending_size, min(1, max(size_least, size_constant - size_slope * module)))",
+    )  # fmt: skip
+
+
+@results
+class BendingFactors:
+    """Factors of bending that both gears share."""
+
+    contact_ratio_factor_bending: Float = found(
+        "", symbol="Y_epsilon", note="contact ratio factor, for a load at the tip alone; as stated where it is",
+        source="GB/T 3480-1997", formula="either(stated_contact_ratio_bending, 0.25 + 0.75 / virtual_contact_ratio)",
+    )  # fmt: skip
+    helix_factor_bending: Float = found(
+        "", symbol="Y_beta", note="helix factor; as stated where it is", numeric=True, source=ISO + "8",
+        formula="either(stated_helix_factor_bending, 1 - min(overlap_ratio, 1) * min(helix_angle, 30) / 120)",
+    )  # fmt: skip
+    deep_tooth_factor: Float = found(
+        "", symbol="Y_DT", note="deep tooth factor, for a load at the outer single contact alone", source=ISO + "10",
+        formula="cases(1, accuracy_grade > 4 or virtual_contact_ratio <= 2.05, 2.366 - 0.666 * virtual_contact_ratio,"
+        " virtual_contact_ratio <= 2.5, 0.7)",
+    )  # fmt: skip
+    tip_load_factor: Float = found(
+        "", symbol="f_Ca", note="more load at the tip where its relief is missing",
+        formula="max(1 + tooth_stiffness * relief_deviation / line_load, 0)",
+    )  # fmt: skip
+
+
+def bending_factors(stage: Gearing, mesh: MeshSize, stiffness: Float, line_load: Float) -> BendingFactors:
+    """Return the factors of bending that both gears share; tooth stiffness in N/m2, line load in N/m."""
+    virtual = mesh.virtual_contact_ratio
+    angle = np.minimum(stage.helix_angle, np.radians(30.0))
+    deep = np.where(virtual <= 2.05, 1.0, np.where(virtual <= 2.5, 2.366 - 0.666 * virtual, 0.7))
+    return BendingFactors(
+        contact_ratio_factor_bending=either(stage.stated_contact_ratio_bending, 0.25 + 0.75 / virtual),
+        helix_factor_bending=either(
+            stage.stated_helix_factor_bending, 1.0 - np.minimum(mesh.overlap_ratio, 1.0) * angle / np.radians(120.0)
+        ),
+        deep_tooth_factor=1.0 if stage.accuracy_grade > 4 else deep,
+        tip_load_factor=np.maximum(1.0 + stiffness * stage.relief_deviation / line_load, 0.0),
+    )
+
+
+def root_of(stage: Gearing, gear: Gear, size: GearSize, mesh: MeshSize, steel: Steel) -> GearRoot:
+    """Return the form of the root of one gear and the factors that follow from it."""
+    rack = Rack(dedendum=stage.dedendum, fillet=stage.fillet, pressure_angle=stage.pressure_angle)
+    teeth = size.virtual_teeth
+    root = external_root(rack, teeth, gear.shift)
+    _formed(root)
+    outer = outer_diameter(stage, size, mesh)
+    tip = external_arm(
+        rack, teeth, gear.shift, root, teeth + (size.tip_diameter - size.reference_diameter) / stage.module
+    )
+    single = external_arm(rack, teeth, gear.shift, root, outer / stage.module)
+    _loaded(tip, single)
+    slip_mm = 1e3 * steel.slip_layer
+    parameter = notch(root)
+    sensitivity = (1.0 + np.sqrt(0.2 * slip_mm * (1.0 + 2.0 * parameter))) / (1.0 + np.sqrt(1.2 * slip_mm))
+    roughness_um = 1e6 * gear.root_roughness
+    rough = steel.surface_constant - steel.surface_slope * (roughness_um + 1.0) ** steel.surface_exponent
+    size_factor = np.maximum(steel.size_least, steel.size_constant - steel.size_slope * 1e3 * stage.module)
+    return GearRoot(
+        root_chord=root.chord,
+        root_fillet=root.fillet,
+        notch_parameter=parameter,
+        tip_arm=tip.height,
+        tip_load_angle=tip.angle,
+        form_factor=either(gear.stated_form_factor, form_factor(root, tip, stage.pressure_angle)),
+        stress_correction=either(gear.stated_stress_correction, stress_correction(root, tip)),
+        outer_diameter=outer,
+        outer_arm=single.height,
+        outer_load_angle=single.angle,
+        form_factor_outer=form_factor(root, single, stage.pressure_angle),
+        stress_correction_outer=stress_correction(root, single),
+        notch_sensitivity=either(gear.stated_notch_sensitivity, sensitivity),
+        root_surface=either(gear.stated_root_surface, np.where(roughness_um < 1.0, steel.surface_smooth, rough)),
+        bending_size=either(gear.stated_bending_size, np.minimum(1.0, size_factor)),
+    )
+
+
+def outer_diameter(stage: Gearing, size: GearSize, mesh: MeshSize) -> Float:
+    """Return d_en, m: where the load leaves the tooth to itself, on the virtual spur gear."""
+    half = 0.5 * stage.module * size.virtual_teeth
+    base = half * np.cos(stage.pressure_angle)
+    tip = half + 0.5 * (size.tip_diameter - size.reference_diameter)
+    pitch = np.pi * stage.module * np.cos(stage.pressure_angle)
+    reach = np.sqrt(tip**2 - base**2) - pitch * (mesh.virtual_contact_ratio - 1.0)
+    feasible(
+        reach > 0.0, "the outer point of single contact would lie below the base circle: raise the teeth or shifts"
+    )
+    return 2.0 * np.hypot(reach, base)
+
+
+def _formed(root: Root) -> None:
+    """Refuse a rack that leaves no root."""
+    feasible(root.chord > 0.0, "the rack leaves no tooth at its root: lower dedendum or raise the shift")
+    feasible(root.fillet > 0.0, "the rack leaves no fillet: raise fillet or the shift")
+
+
+def _loaded(tip: Arm, single: Arm) -> None:
+    """Refuse a load that does not bend the tooth."""
+    for arm in (tip, single):
+        feasible(arm.height > 0.0, "the load does not bend the tooth: raise addendum or lower the shift")  # fmt: skip

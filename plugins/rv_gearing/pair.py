@@ -1,0 +1,172 @@
+"""Sizes of sun and planet and of their mesh, spur or helical, and what a pair needs to mesh at all.
+
+Reference: ISO 21771. Lengths are in metres, angles in radians; everything is a number or an array (n,).
+"""
+
+import numpy as np
+
+from gear_geometry import pairs
+from gear_geometry.involute import involute
+from rv_gearing.loads import Load
+from rv_gearing.quantities import Gear, Gearing
+from truing import Float, feasible, found, results
+
+ISO_21771 = "ISO 21771"
+
+
+@results
+class GearSize:
+    """Sizes of one gear."""
+
+    teeth: Float = found("", symbol="z", note="teeth", method="those stated, else those of the group")
+    reference_diameter: Float = found("mm", symbol="d", note="reference diameter", source=ISO_21771,
+                                      formula="teeth * module / cos(helix_angle)")  # fmt: skip
+    base_diameter: Float = found("mm", symbol="d_b", note="base diameter", source=ISO_21771,
+                                 formula="reference_diameter * cos(transverse_angle)")  # fmt: skip
+    tip_diameter: Float = found("mm", symbol="d_a", note="tip diameter, without shortening", source=ISO_21771,
+                                formula="reference_diameter + 2 * module * (addendum + shift)")  # fmt: skip
+    root_diameter: Float = found("mm", symbol="d_f", note="root diameter", source=ISO_21771,
+                                 formula="reference_diameter - 2 * module * (dedendum - shift)")  # fmt: skip
+    tip_angle: Float = found("deg", symbol="alpha_at", note="transverse pressure angle at the tip", source=ISO_21771,
+                             formula="acos(base_diameter / tip_diameter)")  # fmt: skip
+    tip_thickness: Float = found(
+        "mm", symbol="s_at", note="transverse tooth thickness at the tip; at 0 the tooth is pointed", source=ISO_21771,
+        formula="tip_diameter * ((pi / 2 + 2 * shift * tan(pressure_angle)) / teeth + inv(transverse_angle)"
+        " - inv(tip_angle))",
+    )  # fmt: skip
+    start_curvature: Float = found(
+        "mm", symbol="rho_A", note="radius of curvature where contact begins at the root; below 0 the teeth interfere",
+        formula="base_diameter * tan(tip_angle) / 2 - contact_ratio * base_pitch",
+        source=ISO_21771,
+    )  # fmt: skip
+    virtual_teeth: Float = found("", symbol="z_n", note="teeth of the virtual spur gear",
+                                 source="ISO 6336-3:2006, clause 6",
+                                 formula="teeth / (cos(base_helix_angle)**2 * cos(helix_angle))")  # fmt: skip
+
+
+@results
+class MeshSize:
+    """Sizes of the mesh."""
+
+    tooth_ratio: Float = found("", symbol="u", note="planet teeth over sun teeth", formula="teeth_planet / teeth_sun")
+    transverse_angle: Float = found("deg", symbol="alpha_t", note="transverse pressure angle", source=ISO_21771,
+                                    formula="atan(tan(pressure_angle) / cos(helix_angle))")  # fmt: skip
+    base_helix_angle: Float = found("deg", symbol="beta_b", note="helix angle at the base cylinder", source=ISO_21771,
+                                    formula="asin(sin(helix_angle) * cos(pressure_angle))")  # fmt: skip
+    tight_angle: Float = found(
+        "deg", symbol="alpha_wt,0", note="transverse working pressure angle without backlash", source=ISO_21771,
+        formula="inv(tight_angle) == inv(transverse_angle) + 2 * tan(pressure_angle) * (shift_sun + shift_planet)"
+        " / (teeth_sun + teeth_planet)",
+    )  # fmt: skip
+    tight_centre_distance: Float = found(
+        "mm", symbol="a_w,0", note="centre distance without backlash", source=ISO_21771,
+        formula="(base_diameter_sun + base_diameter_planet) / (2 * cos(tight_angle))",
+    )  # fmt: skip
+    centre_distance: Float = found("mm", symbol="a_w", note="working centre distance",
+                                   formula="tight_centre_distance + centre_distance_deviation")  # fmt: skip
+    working_angle: Float = found(
+        "deg", symbol="alpha_wt", note="transverse working pressure angle", source=ISO_21771,
+        formula="acos((base_diameter_sun + base_diameter_planet) / (2 * centre_distance))",
+    )  # fmt: skip
+    base_pitch: Float = found("mm", symbol="p_bt", note="transverse base pitch", source=ISO_21771,
+                              formula="pi * module * cos(transverse_angle) / cos(helix_angle)")  # fmt: skip
+    contact_ratio: Float = found(
+        "", symbol="epsilon_alpha", note="transverse contact ratio", source=ISO_21771,
+        formula="(base_diameter_sun * (tan(tip_angle_sun) - tan(working_angle))"
+        " + base_diameter_planet * (tan(tip_angle_planet) - tan(working_angle))) / (2 * base_pitch)",
+    )  # fmt: skip
+    overlap_ratio: Float = found("", symbol="epsilon_beta", note="overlap ratio; 0 of spur gears", source=ISO_21771,
+                                 formula="face_width * sin(helix_angle) / (pi * module)")  # fmt: skip
+    total_contact_ratio: Float = found("", symbol="epsilon_gamma", note="total contact ratio", source=ISO_21771,
+                                       formula="contact_ratio + overlap_ratio")  # fmt: skip
+    virtual_contact_ratio: Float = found("", symbol="epsilon_alphan", note="contact ratio of the virtual spur gears",
+                                         source="ISO 6336-3:2006, clause 6",
+                                         formula="contact_ratio / cos(base_helix_angle)**2")  # fmt: skip
+    tooth_height: Float = found("mm", symbol="h", note="tooth height", source=ISO_21771,
+                                formula="(addendum + dedendum) * module")  # fmt: skip
+    curvature: Float = found(
+        "mm", symbol="rho_red", note="radius of relative curvature at the pitch point",
+        source="ISO 6336-2:2006, clause 12", formula="base_diameter_sun * base_diameter_planet * tan(working_angle)"
+        " / (2 * (base_diameter_sun + base_diameter_planet))",
+    )  # fmt: skip
+
+
+def mesh_size(stage: Gearing, load: Load) -> MeshSize:
+    """Return the sizes of the mesh; refuses a pair that cannot mesh."""
+    transverse = pairs.transverse_angle(stage.pressure_angle, stage.helix_angle)
+    base_helix = pairs.base_helix_angle(stage.pressure_angle, stage.helix_angle)
+    shift = (stage.sun.shift + stage.planet.shift) / (load.sun + load.planet)
+    tight = pairs.working_angle(shift, stage.pressure_angle, transverse)
+    feasible(np.isfinite(tight), "no pair of gears has such shifts: shift_sun + shift_planet is too low for the teeth")
+    base = load.base_radii
+    tight_distance = (base[0] + base[1]) / np.cos(tight)
+    distance = tight_distance + stage.centre_distance_deviation
+    working = pairs.working_angle_at(distance, base[0] + base[1])
+    feasible(np.isfinite(working), "the base circles are farther apart than the centres: centre_distance_deviation is "
+             "too low")  # fmt: skip
+    pitch = np.pi * stage.module * np.cos(transverse) / np.cos(stage.helix_angle)
+    tips = tip_radii(stage, load)
+    for name, tip, inner in zip(("sun", "planet"), tips, base, strict=True):
+        feasible(tip > inner, f"the tip of the {name} lies below its base circle: raise addendum or shift_{name}")
+    contact = pairs.external_contact_ratio(tips, base, working, pitch)
+    overlap = stage.face_width * np.sin(stage.helix_angle) / (np.pi * stage.module)
+    _meshes(stage, tips, contact, distance)
+    return MeshSize(
+        tooth_ratio=load.planet / load.sun,
+        transverse_angle=transverse,
+        base_helix_angle=base_helix,
+        tight_angle=tight,
+        tight_centre_distance=tight_distance,
+        centre_distance=distance,
+        working_angle=working,
+        base_pitch=pitch,
+        contact_ratio=contact,
+        overlap_ratio=overlap,
+        total_contact_ratio=contact + overlap,
+        virtual_contact_ratio=contact / np.cos(base_helix) ** 2,
+        tooth_height=(stage.addendum + stage.dedendum) * stage.module,
+        curvature=base[0] * base[1] * np.tan(working) / (base[0] + base[1]),
+    )
+
+
+def tip_radii(stage: Gearing, load: Load) -> tuple[Float, Float]:
+    """Return the tip radii of sun and planet, m, without shortening."""
+    half = 0.5 * stage.module / np.cos(stage.helix_angle)
+    return (
+        half * load.sun + stage.module * (stage.addendum + stage.sun.shift),
+        half * load.planet + stage.module * (stage.addendum + stage.planet.shift),
+    )
+
+
+def _meshes(stage: Gearing, tips: tuple[Float, Float], contact: Float, distance: Float) -> None:
+    """Refuse a pair that loses contact between two teeth, or whose tips touch the roots of the other gear."""
+    feasible(contact >= 1.0, "the contact ratio is below 1: raise the teeth or addendum, or lower the shifts or "
+             "centre_distance_deviation")  # fmt: skip
+    height = (stage.addendum + stage.dedendum) * stage.module
+    feasible(
+        distance - tips[0] - tips[1] + height > 0.0,
+        "the tips touch the roots of the other gear: raise dedendum, or lower addendum, shift_sun or shift_planet",
+    )
+
+
+def gear_size(stage: Gearing, gear: Gear, teeth: Float, base: Float, mesh: MeshSize) -> GearSize:
+    """Return the sizes of one gear; ``base`` is its base radius, m."""
+    reference = teeth * stage.module / np.cos(stage.helix_angle)
+    tip = reference + 2.0 * stage.module * (stage.addendum + gear.shift)
+    tip_angle = np.arccos(2.0 * base / tip)
+    half = (0.5 * np.pi + 2.0 * gear.shift * np.tan(stage.pressure_angle)) / teeth
+    thickness = tip * (half + involute(mesh.transverse_angle) - involute(tip_angle))
+    root = reference - 2.0 * stage.module * (stage.dedendum - gear.shift)
+    feasible(root > 0.0, "nothing is left below the teeth: raise the teeth or the shift, or lower dedendum")
+    feasible(thickness > 0.0, "the teeth are pointed: lower the shift or the addendum")
+    return GearSize(
+        teeth=teeth,
+        reference_diameter=reference,
+        base_diameter=2.0 * base,
+        tip_diameter=tip,
+        root_diameter=root,
+        tip_angle=tip_angle,
+        tip_thickness=thickness,
+        start_curvature=base * np.tan(tip_angle) - mesh.contact_ratio * mesh.base_pitch,
+        virtual_teeth=teeth / (np.cos(mesh.base_helix_angle) ** 2 * np.cos(stage.helix_angle)),
+    )
