@@ -1,0 +1,197 @@
+"""The numbers on the theory page of the roller screw are those that the calculation gives."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gear_geometry.involute import involute
+from gear_geometry.pairs import clear_of_base, internal_sliding, working_angle
+from roller_screw_shift.calculation import roller_screw_shift
+from roller_screw_shift.model import ROLLER_SCREW_SHIFT
+from roller_screw_shift.objectives import objectives_of
+
+PAGE = (Path(__file__).parents[2] / "docs" / "explanation" / "roller_screw_shift.md").read_text(encoding="utf-8")
+WORDS = " ".join(PAGE.split())
+PAPER = ROLLER_SCREW_SHIFT.inputs()
+FOUND = roller_screw_shift(PAPER)
+ALPHA = np.radians(20.0)
+SHIFTS = (0.21, -0.16)  # of roller and ring, as printed
+
+
+def row(start: str) -> list[str]:
+    """The cells of the row of a table that starts so, without its first cell."""
+    line = next(text for text in PAGE.splitlines() if text.startswith(f"| {start}"))
+    return [cell.strip() for cell in line.strip("|").split("|")][1:]
+
+
+def number(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}".replace("-", "−")
+
+
+def printed_constraints(first: str) -> tuple[float, float, float]:
+    """Left sides of the printed (9) to (11), where 1 is the roller or the ring; lengths in mm."""
+    module, addendum, dedendum, distance = 0.5, 0.8, 1.1, 19.80778
+    working = np.arccos(20.0 * np.cos(ALPHA) / distance)
+    teeth, outward = {"roller": 20.0, "ring": 100.0}, {"roller": 1.0, "ring": -1.0}
+    shift = dict(zip(teeth, SHIFTS, strict=True))
+    tip = {name: module * (0.5 * teeth[name] + outward[name] * addendum + shift[name]) for name in teeth}
+    root = {name: module * (0.5 * teeth[name] - outward[name] * dedendum + shift[name]) for name in teeth}
+    squares = tip["ring"] ** 2 - tip["roller"] ** 2
+    crossing = {
+        "roller": np.arccos((squares - distance**2) / (2.0 * distance * tip["roller"])),
+        "ring": np.arccos((squares + distance**2) / (2.0 * distance * tip["ring"])),
+    }
+    at_tip = {name: involute(np.arccos(0.5 * module * teeth[name] * np.cos(ALPHA) / tip[name])) for name in teeth}
+    second = "ring" if first == "roller" else "roller"
+    arcs = [teeth[name] * (crossing[name] + at_tip[name]) for name in (first, second)]
+    interference = arcs[0] - arcs[1] + (teeth[second] - teeth[first]) * involute(working)
+    apart = tip[second] - tip[first] + distance - 0.1 * module
+    clearance = tip[second] - root[first] - distance - 0.1 * module
+    return float(interference), apart, clearance
+
+
+def test_which_gear_is_1_in_the_printed_constraints() -> None:
+    as_roller, as_ring = printed_constraints("roller"), printed_constraints("ring")
+    for place, (start, digits) in enumerate((("(9), at", (4, 4)), ("(10), at", (2, 3)), ("(11), at", (4, 2)))):
+        shown = row(start)
+        assert shown[0] == number(as_roller[place], digits[0])
+        assert shown[1].removesuffix(", violated") == number(as_ring[place], digits[1])
+        assert ("violated" in shown[1]) == (as_ring[place] < (0.05 if place == 0 else 0.0))
+        assert as_roller[place] >= (0.05 if place == 0 else 0.0)
+
+
+@pytest.mark.parametrize("start", ["16/80", "18/90", "20/100", "25/125"])
+def test_the_printed_pair_with_teeth_of_full_depth(start: str) -> None:
+    teeth = tuple(float(text) for text in start.split("/"))
+    for shown, (roller, ring) in zip(row(start), (SHIFTS[::-1], SHIFTS), strict=True):
+        working = working_angle((ring - roller) / (teeth[1] - teeth[0]), ALPHA)
+        tips = tuple(
+            np.arccos(0.5 * count * np.cos(ALPHA) / (0.5 * count + outward + shift))
+            for count, outward, shift in zip(teeth, (1.0, -1.0), (roller, ring), strict=True)
+        )
+        if "interference" in shown:
+            assert clear_of_base((teeth[0], teeth[1]), tips[1], working) <= 0
+            continue
+        slid = internal_sliding((teeth[0], teeth[1]), (tips[0], tips[1]), working)
+        for text, value in zip(re.findall(r"\$ = ([\d.]+)", shown), slid, strict=False):
+            assert text == f"{float(value):.{len(text.split('.')[1])}f}"
+
+
+def test_the_geometry_of_the_printed_optimum() -> None:
+    assert rf"$\alpha_w = {np.degrees(FOUND.working_angle):.4f}°$" in PAGE
+    assert f"$D = {number(float(FOUND.shift_difference), 2).replace('−', '-')}$" in PAGE
+    assert rf"$|\eta_E| = {FOUND.sliding_roller:.4f}$, $|\eta_I| = {FOUND.sliding_ring:.4f}$" in WORDS
+
+
+def test_the_load_is_calibrated_as_the_page_says() -> None:
+    """The upper end of f2, at the lowest shift that keeps all limits, is the printed 33.2 MPa with 51.943 N."""
+    assert f"{float(FOUND.tangential_force):.3f} N for 10 kN" in WORDS
+
+
+@pytest.mark.parametrize(
+    ("start", "low", "high", "weight"), [("f1", 2.68, 5.38, 0.35), ("f2", 0, 33.2, 0.01), ("f3", 0, 3.08, 0.81)]
+)
+def test_the_printed_weights_do_not_follow_from_the_printed_ranges(
+    start: str, low: float, high: float, weight: float
+) -> None:
+    line = next(text for text in PAGE.splitlines() if text.startswith(f"| {start} | {low}"))
+    shown = [cell.strip() for cell in line.strip("|").split("|")][1:]
+    assert shown[1] == f"{4 / (high - low) ** 2:.4f}"
+    assert shown[2] == f"{weight:g}"
+    assert float(shown[3]) == pytest.approx(high - 2 / np.sqrt(weight), abs=6e-3)
+
+
+def test_the_rounded_weight_leaves_the_lower_end_of_f2_open() -> None:
+    """0.01 stands for 0.005 to 0.015."""
+    ends = [33.2 - 2 / np.sqrt(weight) for weight in (0.005, 0.015)]
+    assert f"anything from {ends[0]:.1f} to {ends[1]:.1f} serves" in WORDS
+
+
+def test_the_normalising_curve() -> None:
+    turn = 2 * np.pi * np.array([0.25, 0.5])
+    quarter, half = (turn - np.sin(turn)) / (2 * np.pi)
+    assert f"At a quarter of the range it is {quarter:.4f}, at half {half:.1f}." in WORDS
+
+
+def feasible_shifts(least_contact_ratio: float) -> np.ndarray:
+    """Shifts of the roller that keep all limits, from a fine grid."""
+    from roller_screw_shift.constraints import margins_of
+
+    shifts = np.linspace(-0.5, 1.5, 200_001)
+    pair = ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts, least_contact_ratio=least_contact_ratio)
+    margins = margins_of(pair)
+    kept = np.logical_and.reduce([np.asarray(value) >= 0 for value in vars(margins).values()])
+    return np.asarray(shifts[kept])
+
+
+def test_the_ranges_of_the_objectives() -> None:
+    shifts = feasible_shifts(1.4)
+    goals = objectives_of(ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts))
+    for start, values, digits in (
+        ("range of f1", goals.shift_sum, 3),
+        ("range of f2", np.asarray(goals.stress_difference) * 1e-6, 2),
+        ("range of f3", goals.sliding_difference, 3),
+    ):
+        ends = row(start)[1].replace("−", "-").split(" to ")
+        assert ends == [f"{float(np.min(values)):.{digits}f}", f"{float(np.max(values)):.{digits}f}"]
+    lowest = number(float(np.min(np.asarray(goals.stress_difference))) * 1e-6, 2)
+    assert f"The lower end of f2 found here, {lowest} MPa" in WORDS
+
+
+PRINTED = ((2.68, 5.38), (0.0, 33.2), (0.0, 3.08))
+
+
+def weighed_best(shifts: np.ndarray, weights: str = "own_ranges") -> float:
+    """The shift of least total objective by the formulas of the page."""
+    goals = objectives_of(ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts))
+    values = [np.asarray(goals.shift_sum), np.asarray(goals.stress_difference) * 1e-6,
+              np.asarray(goals.sliding_difference)]  # fmt: skip
+    total = np.zeros(len(shifts))
+    for place, (sense, value) in enumerate(zip((-1, 1, 1), values, strict=True)):
+        low, high = PRINTED[place] if weights == "printed_ranges" else (value.min(), value.max())
+        turn = 2 * np.pi * np.clip((value - low) / (high - low), 0, 1)
+        weight = (0.35, 0.01, 0.81)[place] if weights == "printed" else 4 / (high - low) ** 2
+        total += sense * weight * (turn - np.sin(turn)) / (2 * np.pi)
+    return float(shifts[np.argmin(total)])
+
+
+@pytest.mark.parametrize("weights", ["own_ranges", "printed_ranges", "printed"])
+@pytest.mark.parametrize("limit", [1.4, 1.42])
+def test_every_weighing_ends_at_the_contact_ratio(limit: float, weights: str) -> None:
+    shifts = feasible_shifts(limit)
+    best = weighed_best(shifts, weights)
+    assert best == shifts[-1]
+    contact = roller_screw_shift(ROLLER_SCREW_SHIFT.inputs(roller_shift=best)).contact_ratio
+    assert float(contact) == pytest.approx(limit, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("start", "limit", "digits"),
+    [(r"$x_E$ / $x_I$", 1.4, 4), (r"the same, $\varepsilon_{\min} = 1.42$", 1.42, 4),
+     (r"the same, $\varepsilon_{\min} = 1.2$", 1.2, 3)],
+)  # fmt: skip
+def test_the_lost_limit_decides(start: str, limit: float, digits: int) -> None:
+    shifts = feasible_shifts(limit)
+    best = weighed_best(shifts)
+    ring = best + float(FOUND.shift_difference)
+    assert row(start)[1] == f"{number(best, digits)} / {number(ring, digits)}"
+
+
+def test_equal_sliding_alone() -> None:
+    shifts = feasible_shifts(1.2)
+    goals = objectives_of(ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts))
+    best = float(shifts[np.argmin(goals.sliding_difference)])
+    assert row("equal sliding alone")[1] == f"{number(best, 4)} / {number(best + float(FOUND.shift_difference), 4)}"
+
+
+def test_orders_of_carrier_and_roller() -> None:
+    carrier = 3.0 / (2.0 * 4.0)
+    assert f"$k/(2(k + 1)) = {carrier}$ times per turn" in WORDS
+    assert f"$z_I/z_E$ times as often, {carrier * 5}" in WORDS
+
+
+def test_every_effect_has_its_row() -> None:
+    named = set(re.findall(r"^\| `(\w+)` \| [^|]+ \| [^|]+ \| [^|]+ \|$", PAGE, re.MULTILINE))
+    assert set(ROLLER_SCREW_SHIFT.effects) <= named
