@@ -8,10 +8,7 @@ from rv_gearing.answers import Strength
 from rv_gearing.effects_of_rotation import with_error
 from rv_gearing.loads import load_of
 from rv_gearing.quantities import Gearing
-from truing import Float, either
-
-FULL_LINE_LOAD = 100e3  # N/m
-STIFFNESS = 19.5e9  # N/m², of a spur pair of steel at that load
+from truing import Float
 
 
 def wind_up(stage: Gearing, strength: Strength, *, compliance: Float) -> Strength:
@@ -39,8 +36,10 @@ def wear_drift(stage: Gearing, strength: Strength, *, rate: Float, time: Float) 
 
 
 def mesh_stiffening(stage: Gearing, strength: Strength, *, share: Float) -> Strength:
-    """Teeth give way under their line load; below 100 N/mm they are softer, so the first newtons move them most."""
+    """Teeth give way under their line load; below 100 N/mm they are softer, so the first newtons move them most.
+
+    At a share of 1 by the line load with the application factor over the mesh stiffness of the rating.
+    """
     load = load_of(stage)
-    pliant = np.minimum(load.line_load / FULL_LINE_LOAD, 1.0) ** 0.25
-    stiffness = either(stage.stated_mesh_stiffness, STIFFNESS) * pliant
-    return with_error(strength, share * load.direction * load.line_load / stiffness)
+    deflection = strength.duty.line_load / strength.stiffness.mesh_stiffness
+    return with_error(strength, share * load.direction * deflection)

@@ -1,4 +1,4 @@
-"""First stages with something wrong, or nothing: how they were measured, with what noise, and what a user would have."""
+"""First stages with something wrong, or nothing: how they were measured, with what noise, and what a user has."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field

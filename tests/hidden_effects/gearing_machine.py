@@ -1,13 +1,13 @@
 """The first stage of a reducer on its test rig, with something wrong: what all its gauges would show.
 
-Nothing of the plugin is imported. Torques are N m, speeds r/min, angles degrees, temperatures degC, deviations along the
-line of action um. What an effect does is not the formula of the effect: another law of viscosity, heat summed over the
-contact, wear step by step, counts one by one, waves that are not quite round.
+Nothing of the plugin is imported. Torques are N m, speeds r/min, angles degrees, temperatures degC, deviations along
+the line of action um. What an effect does is not the formula of the effect: another law of viscosity, heat summed over
+the contact, wear step by step, counts one by one, waves that are not quite round.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import cos, hypot, pi, sqrt, tan
+from math import cos, hypot, pi, sqrt
 from typing import TypeAlias
 
 import numpy as np
@@ -16,7 +16,6 @@ from scipy.special import erf
 
 from hidden_effects.gearing_stage import ANGLE, BASE, MODULE, PINS, PLANET, SUN, Array, Stage, pair_of, play_between
 from hidden_effects.gearing_stress import (
-    APPLICATION,
     POISSON,
     YOUNG,
     Loaded,
@@ -71,6 +70,12 @@ def sun_torque(rows: Rows, stage: Stage) -> Array:
     return np.asarray(np.abs(rows.load_torque) / (RATIO * efficiency(stage)))
 
 
+def apart(rows: Rows, hidden: Hidden) -> Array:
+    """How much farther the centres are apart than without play, mm; gears do not come closer than that."""
+    grown = of(hidden, "centre_distance_growth", "expansion") * 1e-6 * MODULE * (SUN + PLANET) / 2
+    return np.asarray(grown * (rows.oil_temperature - 20))
+
+
 def loaded(rows: Rows, stage: Stage, hidden: Hidden) -> Loaded:
     """Force and speed of a mesh; crowned teeth carry over a width whose square grows with the force."""
     force = 1000 * sun_torque(rows, stage) / (2 * MODULE * SUN / 2)
@@ -79,7 +84,7 @@ def loaded(rows: Rows, stage: Stage, hidden: Hidden) -> Loaded:
     for _ in range(50):  # width at which the contact takes the force
         middle = (low + high) / 2
         low, high = np.where(full * middle**2 < force, middle, low), np.where(full * middle**2 < force, high, middle)
-    return Loaded(force, rows.input_speed * (1 - 1 / RATIO), high)
+    return Loaded(force, rows.input_speed * (1 - 1 / RATIO), high, apart(rows, hidden))
 
 
 def strength(rows: Rows, stage: Stage, hidden: Hidden) -> dict[str, Array]:
@@ -137,9 +142,8 @@ def flash(rows: Rows, stage: Stage, hidden: Hidden) -> Array:
         return np.zeros(len(rows))
     load = loaded(rows, stage, hidden)
     pair = pair_of(stage)
-    path = (BASE[0] + BASE[1]) * tan(pair.angle)
-    outer = [sqrt(tip**2 - base**2) for tip, base in zip(pair.tips, BASE, strict=True)]
-    ends = [(path - outer[1], outer[1]), (outer[0], path - outer[0])]
+    path, (sun, planet) = float(pair.path), pair.outer
+    ends = [(path - planet, planet), (sun, path - sun)]
     force, turning = load.line_load(stage) / cos(ANGLE), load.speed * 2 * pi / 60
     rise = [max(contact_heat(w, *end, t) for end in ends) for w, t in zip(force, turning, strict=True)]
     return friction * np.array(rise)
@@ -175,7 +179,7 @@ def counted(rows: Rows, hidden: Hidden) -> Array:
 def given_way(rows: Rows, stage: Stage, hidden: Hidden) -> Array:
     """What teeth give way, um: pressed together until spring and load are in balance."""
     load = loaded(rows, stage, hidden).line_load(stage)
-    full = mesh_stiffness(stage, np.full(1, 100.0))  # at 100 N/mm
+    full = mesh_stiffness(stage, np.full(1, 100.0), pair_of(stage).overlap)  # at 100 N/mm
     low, high = np.zeros(len(rows)), np.full(len(rows), 1000.0)
     for _ in range(60):
         way = (low + high) / 2
@@ -200,11 +204,9 @@ def shown(rows: Rows, stage: Stage, hidden: Hidden) -> dict[str, Array]:
     error = error + play / 2 * erf(sqrt(pi) / 2 * rows.load_torque / scale)
     error = error + rows.side * of(hidden, "wind_up", "compliance") * torque
     error = error + rows.side * of(hidden, "mesh_stiffening", "share") * given_way(rows, stage, hidden)
-    apart = of(hidden, "centre_distance_growth", "expansion") * 1e-6 * MODULE * (SUN + PLANET) / 2
-    apart = apart * (rows.oil_temperature - 20)
     read = strength(rows, stage, hidden)
     read["transmission_error"] = error
-    read["backlash"] = play_between(stage, apart) + play + 2 * depth
+    read["backlash"] = play_between(stage, apart(rows, hidden)) + play + 2 * depth
     read["efficiency"] = efficiency(stage) - held_back(rows, hidden) / torque
     read["flank_temperature"] = rows.oil_temperature + flash(rows, stage, hidden)
     for name in read:

@@ -50,40 +50,51 @@ def bisected(wanted: float) -> float:
     return low
 
 
-@dataclass(frozen=True)
-class Pair:
-    """Sun and planet without backlash: working angle, centre distance, tip radii, contact ratio."""
-
-    angle: float
-    centres: float
-    tips: tuple[float, float]
-    overlap: float
-
-
 @lru_cache(maxsize=64)
-def pair_of(stage: Stage) -> Pair:
+def tight_angle(stage: Stage) -> float:
     """Where both gears touch on both flanks: their thicknesses fill the pitch of the working circles."""
     thick = [MODULE * (pi / 2 + 2 * x * tan(ANGLE)) for x in stage.shifts]
-    tall = tan(ANGLE) - ANGLE
-    filled = [s / (MODULE * z) + tall for s, z in zip(thick, TEETH, strict=True)]  # half angles at the base circle
-    angle = bisected((filled[0] * SUN + filled[1] * PLANET - pi) / (SUN + PLANET))
-    centres = (BASE[0] + BASE[1]) / cos(angle)
-    tips = tuple(MODULE * (z / 2 + 1 + x) for z, x in zip(TEETH, stage.shifts, strict=True))
-    lengths = [sqrt(tip**2 - base**2) for tip, base in zip(tips, BASE, strict=True)]
-    overlap = (sum(lengths) - centres * sin(angle)) / (pi * MODULE * cos(ANGLE))
-    return Pair(angle, centres, (tips[0], tips[1]), overlap)
+    filled = [s / (MODULE * z) + tan(ANGLE) - ANGLE for s, z in zip(thick, TEETH, strict=True)]  # at the base circle
+    return bisected((filled[0] * SUN + filled[1] * PLANET - pi) / (SUN + PLANET))
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Sun and planet so far apart: working angle and contact ratio, arrays, and the radii of the tips."""
+
+    angle: Array
+    tips: tuple[float, float]
+    overlap: Array
+
+    @property
+    def path(self) -> Array:
+        """Between the points where the line of action leaves the base circles."""
+        return np.asarray((BASE[0] + BASE[1]) * np.tan(self.angle))
+
+    @property
+    def outer(self) -> tuple[float, float]:
+        """Radii of curvature of both tips."""
+        one, two = (sqrt(tip**2 - base**2) for tip, base in zip(self.tips, BASE, strict=True))
+        return one, two
+
+
+def pair_of(stage: Stage, apart: Array | float = 0.0) -> Pair:
+    """Sun and planet farther apart by so many mm than without play; never closer."""
+    centres = (BASE[0] + BASE[1]) / cos(tight_angle(stage)) + np.asarray(apart)
+    angle = np.arccos((BASE[0] + BASE[1]) / centres)
+    one, two = (MODULE * (z / 2 + 1 + x) for z, x in zip(TEETH, stage.shifts, strict=True))
+    inside = sqrt(one**2 - BASE[0] ** 2) + sqrt(two**2 - BASE[1] ** 2) - centres * np.sin(angle)
+    return Pair(angle, (one, two), np.asarray(inside / (pi * MODULE * cos(ANGLE))))
 
 
 def play_between(stage: Stage, apart: Array) -> Array:
     """What the teeth leave of the pitch on the working circles, along the line of action, um; ``apart`` in mm."""
-    pair = pair_of(stage)
-    working = np.arccos((BASE[0] + BASE[1]) / (pair.centres + apart))
-    tall = tan(ANGLE) - ANGLE
+    working = pair_of(stage, apart).angle
     left = 2 * pi * BASE[0] / np.cos(working) / SUN
     for base, z, x in zip(BASE, TEETH, stage.shifts, strict=True):
-        half = (pi / 2 + 2 * x * tan(ANGLE)) / z + tall - (np.tan(working) - working)
+        half = (pi / 2 + 2 * x * tan(ANGLE)) / z + tan(ANGLE) - ANGLE - (np.tan(working) - working)
         left = left - 2 * base / np.cos(working) * half
-    return np.asarray(left * np.cos(working) * 1e3)
+    return np.asarray(np.maximum(left * np.cos(working) * 1e3, 0.0))
 
 
 # Tooth roots

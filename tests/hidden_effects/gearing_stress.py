@@ -6,7 +6,7 @@ phases, and two planets share a force as springs of which one touches first.
 """
 
 from dataclasses import dataclass
-from math import cos, hypot, pi, sin, sqrt, tan
+from math import cos, hypot, pi, sqrt
 
 import numpy as np
 
@@ -20,11 +20,12 @@ STRIPS = 200  # of the face
 
 @dataclass(frozen=True)
 class Loaded:
-    """What a mesh carries, arrays (n,): tangential force, speed of the sun against the carrier, share of the face."""
+    """What a mesh carries, arrays (n,): force, speed against the carrier, share of the face; how far it is apart."""
 
     force: Array
     speed: Array
     carrying: Array
+    apart: Array
 
     def line_load(self, stage: Stage) -> Array:
         """With the application factor, N/mm."""
@@ -39,9 +40,9 @@ def tooth_stiffness(stage: Stage, line_load: Array) -> Array:
     return np.asarray(0.8 * (1 + 0.5 * (1.2 - 1.25)) / soft * np.minimum(line_load / 100, 1.0) ** 0.25)
 
 
-def mesh_stiffness(stage: Stage, line_load: Array) -> Array:
+def mesh_stiffness(stage: Stage, line_load: Array, overlap: Array) -> Array:
     """Of the mesh, N/(mm um)."""
-    return tooth_stiffness(stage, line_load) * (0.75 * pair_of(stage).overlap + 0.25)
+    return tooth_stiffness(stage, line_load) * (0.75 * overlap + 0.25)
 
 
 def deviations(stage: Stage, teeth: int) -> tuple[float, float, float]:
@@ -54,21 +55,20 @@ def deviations(stage: Stage, teeth: int) -> tuple[float, float, float]:
 PITCH, PROFILE = (deviations(Stage(), PLANET)[place] * factor for place, factor in ((0, cos(ANGLE)), (1, 1.0)))
 
 
-def own_speed(stage: Stage, line_load: Array) -> Array:
+def own_speed(stage: Stage, stiffness: Array) -> Array:
     """Resonance of the mesh, r/min: a sun between two planets."""
-    tips = pair_of(stage).tips
-    means = [tip + MODULE * (z / 2 - 1.25 + x) for tip, z, x in zip(tips, TEETH, stage.shifts, strict=True)]
+    means = [MODULE * (z + 1 - 1.25 + 2 * x) for z, x in zip(TEETH, stage.shifts, strict=True)]
     sun, planet = (pi / 32 * DENSITY * mean**4 for mean in means)
     mass = 1 / (2 * BASE[0] ** 2 / sun + BASE[1] ** 2 / planet)
-    return np.asarray(30000 / (pi * SUN) * np.sqrt(mesh_stiffness(stage, line_load) / mass))
+    return np.asarray(30000 / (pi * SUN) * np.sqrt(stiffness / mass))
 
 
-def dynamic_factor(stage: Stage, loaded: Loaded) -> Array:
+def dynamic_factor(stage: Stage, loaded: Loaded, stiffness: Array) -> Array:
     """K_V below the resonance of the mesh."""
     load = loaded.line_load(stage)
     specific = tooth_stiffness(stage, load) / load
     growth = 0.32 * specific * 0.925 * PITCH + 0.34 * specific * 0.925 * PROFILE + 0.23
-    return np.asarray(1 + loaded.speed / own_speed(stage, load) * growth)
+    return np.asarray(1 + loaded.speed / own_speed(stage, stiffness) * growth)
 
 
 def swinging(speed: Array, resonance: float, damping: float) -> Array:
@@ -91,9 +91,22 @@ def spread(tilted: Array, stiffness: Array, line_load: Array) -> Array:
     return np.asarray(stiffness * high / line_load)
 
 
+def of_first_planet(lead: float, stiffness: Array, force: Array) -> Array:
+    """Force on the planet that touches first over the mean of two, which lead and lag by ``lead`` um: two springs."""
+    low, high = np.full(len(force), -abs(lead)), abs(lead) + 2 * force / stiffness
+    for _ in range(60):
+        middle = (low + high) / 2
+        both = np.maximum(middle + lead, 0.0) + np.maximum(middle - lead, 0.0)
+        low, high = (
+            np.where(stiffness * both < 2 * force, middle, low),
+            np.where(stiffness * both < 2 * force, high, middle),
+        )
+    return np.asarray(stiffness * (high + lead) / force)
+
+
 @dataclass(frozen=True)
 class Wrong:
-    """What raises the load, arrays (n,) or 0: misalignment, lead of a planet and missing relief in um; dynamics."""
+    """What raises the load: misalignment (um) and dynamics, arrays (n,), lead of a planet and missing relief, um."""
 
     misaligned: Array
     shaken: Array
@@ -103,35 +116,31 @@ class Wrong:
 
 def stresses(stage: Stage, loaded: Loaded, wrong: Wrong) -> dict[str, Array]:
     """Root stress of sun and planet and contact stress of the sun."""
-    width = stage.width * loaded.carrying
-    load = loaded.line_load(stage)
-    stiffness = mesh_stiffness(stage, load)
-    dynamic = dynamic_factor(stage, loaded) + wrong.shaken
-    sharing = SHARING
+    width, load = stage.width * loaded.carrying, loaded.line_load(stage)
+    overlap = pair_of(stage, loaded.apart).overlap
+    stiffness = mesh_stiffness(stage, load, overlap)
+    dynamic = dynamic_factor(stage, loaded, stiffness) + wrong.shaken
+    sharing = np.minimum(SHARING - 1 + of_first_planet(wrong.lead, stiffness * width, loaded.force), 2.0)
     mean = load * dynamic * sharing
     bent = 0.023 * (stage.width / (MODULE * SUN)) ** 2 * mean
     first = 1.33 * bent + 0.5 * hypot(*(deviations(stage, teeth)[2] for teeth in TEETH))
     uneven = spread(0.85 * first + wrong.misaligned, 0.85 * stiffness, mean)
-    slender = 2.25 * MODULE / stage.width
-    overlap = pair_of(stage).overlap
     across = overlap / 2 * (0.9 + 0.4 * stiffness * 0.925 * PITCH / (mean * uneven))
     across = np.clip(across, 1.0, None)
-    bending = 1 + 1.5 * (sharing - 1)
-    root = loaded.force / (width * MODULE) * APPLICATION * dynamic * bending
-    root = root * uneven ** (1 / (1 + slender + slender**2)) * np.minimum(across, overlap / (0.25 * overlap + 0.75))
-    root = root * (0.25 + 0.75 / overlap) * (1 + tooth_stiffness(stage, load) * wrong.relief / load)
-    across = np.minimum(across, 3 / (4 - overlap))
-    contact = pressure(stage, load * dynamic * sharing * uneven * across)
+    slender = 2.25 * MODULE / stage.width
+    root = load * dynamic * (1 + 1.5 * (sharing - 1)) / MODULE * uneven ** (1 / (1 + slender + slender**2))
+    root = root * np.minimum(across, overlap / (0.25 * overlap + 0.75)) * (0.25 + 0.75 / overlap)
+    root = root * (1 + tooth_stiffness(stage, load) * wrong.relief / load)
+    contact = pressure(stage, loaded, mean * uneven * np.minimum(across, 3 / (4 - overlap)))
     forms = [float(np.prod(root_factors(z, x))) for z, x in zip(TEETH, stage.shifts, strict=True)]
     return {"root_stress_sun": root * forms[0], "root_stress_planet": root * forms[1], "contact_stress": contact}
 
 
-def pressure(stage: Stage, line_load: Array) -> Array:
+def pressure(stage: Stage, loaded: Loaded, line_load: Array) -> Array:
     """Hertzian pressure of both flanks where the sun begins to carry alone, after Z_epsilon of the contact ratio."""
-    pair = pair_of(stage)
-    path = (BASE[0] + BASE[1]) * tan(pair.angle)
-    inner = sqrt(pair.tips[0] ** 2 - BASE[0] ** 2) - pi * MODULE * cos(ANGLE)  # of the sun
-    middle = BASE[0] * tan(pair.angle)
-    there = min(inner * (path - inner), middle * (path - middle)) / path
+    pair = pair_of(stage, loaded.apart)
+    inner = pair.outer[0] - pi * MODULE * cos(ANGLE)  # radius of curvature of the sun
+    middle = BASE[0] * np.tan(pair.angle)
+    there = np.minimum(inner * (pair.path - inner), middle * (pair.path - middle)) / pair.path
     normal = line_load / cos(ANGLE) * (4 - pair.overlap) / 3
     return np.asarray(np.sqrt(normal / there * YOUNG / (2 * pi * (1 - POISSON**2))))
