@@ -1,6 +1,5 @@
 """The groups that the search finds: where they lie in the window, and how hard each is loaded."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,10 +32,11 @@ def groups_figure(found: "Found") -> "Figure":
     for edge in (-limit, limit):
         panel.axvline(edge, color=INK, linewidth=0.9, linestyle=(0, (6, 3)))
     panel.text(-limit, high, f" window of the centre distance: {low:.2f} to {high:.2f} mm", va="bottom", fontsize=8)
-    marks = panel.scatter(deviation, centre, s=16, c=groups.pins if _many_pins(found) else BLUE, cmap="viridis",
-                          zorder=4, linewidths=0)  # fmt: skip
-    if _many_pins(found):
+    if len(np.unique(groups.pins)) > 1:
+        marks = panel.scatter(deviation, centre, s=16, c=groups.pins, cmap="viridis", zorder=4, linewidths=0)
         figure.colorbar(marks, ax=panel, label="pins", pad=0.01)
+    else:
+        panel.scatter(deviation, centre, s=16, color=BLUE, zorder=4, linewidths=0)
     _numbers(panel, found, deviation, centre)
     _rated(panel, found, deviation, centre)
     panel.set_xlabel("deviation of the ratio, %")
@@ -46,10 +46,6 @@ def groups_figure(found: "Found") -> "Figure":
     panel.grid(alpha=0.35)
     panel.set_axisbelow(True)
     return figure
-
-
-def _many_pins(found: "Found") -> bool:
-    return len(np.unique(found.groups.pins)) > 1
 
 
 def _numbers(panel: Any, found: "Found", deviation: "Values", centre: "Values") -> None:
@@ -78,32 +74,28 @@ def window_words(found: "Found") -> str:
     return f"Output torque {torque:.2f} N m; pin circle radius by equation 4: {circles}."
 
 
-def stresses_figure(found: "Found", permitted: Sequence[float]) -> "Figure":
-    """Draw root and contact stresses of all groups; ``permitted`` are those of the rated stage: sun and planet root,
-    sun contact, in Pa.
-    """
+def stresses_figure(found: "Found") -> "Figure":
+    """Draw the root and contact stresses of all groups below what each of them may be."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(WIDTH, 4.6), layout="constrained")
-    root, contact = figure.subplots(2, 1, sharex=True)
+    figure = Figure(figsize=(WIDTH, 4.8), layout="constrained")
+    panels = figure.subplots(2, 1, sharex=True)
     order = np.argsort(found.numbers)
     places = np.arange(len(order))
-    drawn = (
-        (root, "root_stress_sun", BLUE, "o", permitted[0], "sun"),
-        (root, "root_stress_planet", ORANGE, "s", permitted[1], "planet"),
-        (contact, "contact_stress", BLUE, "o", permitted[2], "sun"),
-    )
-    for panel, name, colour, marker, limit, words in drawn:
-        values = MPA * found.strength[name][order]
-        panel.plot(places, values, marker, markersize=4, color=colour, label=words)
-        panel.axhline(MPA * limit, color=colour, linewidth=0.9, linestyle=(0, (6, 3)), label=f"{words}, permissible")
-    for panel, label in ((root, "root stress, MPa"), (contact, "contact stress, MPa")):
-        panel.set_ylabel(label)
+    for panel, kind in zip(panels, ("root", "contact"), strict=True):
+        for gear, colour, marker in (("sun", BLUE, "o"), ("planet", ORANGE, "s")):
+            stress, permitted = (
+                MPA * found.strength[f"{word}{kind}_stress_{gear}"][order] for word in ("", "permitted_")
+            )
+            panel.plot(places, stress, marker, markersize=4, color=colour, label=gear)
+            panel.step(places, permitted, where="mid", color=colour, linewidth=1.0, linestyle=(0, (5, 2)),
+                       label=f"{gear}, permissible")  # fmt: skip
+        panel.set_ylabel(f"{kind} stress, MPa")
         panel.set_ylim(0, None)
         panel.grid(alpha=0.35)
         panel.set_axisbelow(True)
-    root.legend(ncols=4, loc="upper center", bbox_to_anchor=(0.5, 1.2), handlelength=1.6, columnspacing=1.3)
-    _ticks(contact, found, order)
+    panels[0].legend(ncols=4, loc="upper center", bbox_to_anchor=(0.5, 1.22), handlelength=1.8, columnspacing=1.3)
+    _ticks(panels[1], found, order)
     return figure
 
 

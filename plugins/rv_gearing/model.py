@@ -1,14 +1,38 @@
 """The gearing as truing knows it: function, error sources, goals, studies and sheet."""
 
 from rv_gearing.calculation import rv_gearing
+from rv_gearing.capacity import Capacity, Safeties, rating
 from rv_gearing.effects import EFFECTS
+from rv_gearing.search import Search, listed
+from rv_gearing.sections import SECTIONS
 from rv_gearing.tolerances import TOLERANCES
-from truing import Model
+from truing import Model, Reliability, Require, Sensitivity
+
+LITERATURE = [
+    "The paper: Han Linshan, Wei Guo, Li Tongtong (韓林山, 魏國, 李彤彤), Automatic gear calculation and strength "
+    "calibration of RV reducer, Henan Science and Technology 2024 (13), p. 29, "
+    "doi 10.19968/j.cnki.hnkj.1003-5168.2024.13.006.",
+    "ISO 6336-1, -2, -3:2006, Calculation of load capacity of spur and helical gears (GB/T 3480).",
+    "ISO 1328-1:1995, Cylindrical gears, ISO system of accuracy. ISO 21771:2007, Cylindrical involute gears.",
+    "Rao Zhengang (饒振綱), Design of planetary gear transmissions, Beijing 2003: sharing among planets.",
+]
+STRESSES = ("contact_stress_sun", "contact_stress_planet", "root_stress_sun", "root_stress_planet")
 
 RV_GEARING = Model(
     name="rv_gearing",
     title="RV reducer: tooth numbers, and strength of the first gear stage",
     function=rv_gearing,
     errors=[*TOLERANCES, *EFFECTS],
+    objectives=[Require(stress, at_most=f"permitted_{stress}") for stress in STRESSES],
+    studies=[
+        Search(gives=listed),
+        Capacity(gives=rating),
+        Safeties(over="load_torque", at="100..2500 N*m", points=49, name="load"),
+        Safeties(over="face_width", at="6..24 mm", points=37, name="face_width"),
+        Sensitivity(of=STRESSES),
+        Reliability(),
+    ],
+    sheet=SECTIONS,
+    cites=LITERATURE,
     summary="Which tooth numbers give the wanted ratio, and do sun and planet carry the load?",
 )

@@ -19,15 +19,19 @@ if TYPE_CHECKING:
 
 Column = Literal[
     "group", "sun", "planet", "pins", "ratio", "deviation", "torque", "centre_distance", "circle_low", "circle_high",
-    "root_stress_sun", "root_stress_planet", "contact_stress", "bending_safety_sun", "bending_safety_planet",
-    "contact_safety_sun", "contact_safety_planet",
+    "root_stress_sun", "root_stress_planet", "contact_stress_sun", "contact_stress_planet", "root_safety_sun",
+    "root_safety_planet", "contact_safety_sun", "contact_safety_planet",
 ]  # fmt: skip
 STRENGTH: tuple[Column, ...] = (
-    "root_stress_sun", "root_stress_planet", "contact_stress", "bending_safety_sun", "bending_safety_planet",
-    "contact_safety_sun", "contact_safety_planet",
+    "root_stress_sun", "root_stress_planet", "contact_stress_sun", "contact_stress_planet", "root_safety_sun",
+    "root_safety_planet", "contact_safety_sun", "contact_safety_planet",
 )  # fmt: skip
 SIZES: tuple[Column, ...] = (
     "sun", "planet", "pins", "ratio", "deviation", "torque", "centre_distance", "circle_low", "circle_high",
+)  # fmt: skip
+PERMITTED = (
+    "permitted_root_stress_sun", "permitted_root_stress_planet", "permitted_contact_stress_sun",
+    "permitted_contact_stress_planet",
 )  # fmt: skip
 PRINTED = {"deviation": ("%", 100.0), "torque": ("N*m", 1.0)} | dict.fromkeys(
     ("centre_distance", "circle_low", "circle_high"), ("mm", 1e3)
@@ -60,17 +64,16 @@ class Listed:
     group_root_stress_planet: Float = found(
         "MPa", symbol="sigma_F2", along="group_number", note="root stress of the planet"
     )
-    group_contact_stress: Float = found(
-        "MPa", symbol="sigma_H1", along="group_number", note="contact stress of the sun"
-    )
-    group_bending_safety_sun: Float = found("", symbol="S_F1", along="group_number", note="safety of the sun, breakage")
-    group_bending_safety_planet: Float = found(
-        "", symbol="S_F2", along="group_number", note="safety of the planet, breakage"
-    )
+    group_contact_stress_sun: Float = found("MPa", symbol="sigma_H1", along="group_number",
+                                            note="contact stress of the sun")  # fmt: skip
+    group_contact_stress_planet: Float = found("MPa", symbol="sigma_H2", along="group_number",
+                                               note="contact stress of the planet")  # fmt: skip
+    group_root_safety_sun: Float = found("", symbol="S_F1", along="group_number", note="safety of the sun, breakage")
+    group_root_safety_planet: Float = found("", symbol="S_F2", along="group_number",
+                                            note="safety of the planet, breakage")  # fmt: skip
     group_contact_safety_sun: Float = found("", symbol="S_H1", along="group_number", note="safety of the sun, pitting")
-    group_contact_safety_planet: Float = found(
-        "", symbol="S_H2", along="group_number", note="safety of the planet, pitting"
-    )
+    group_contact_safety_planet: Float = found("", symbol="S_H2", along="group_number",
+                                               note="safety of the planet, pitting")  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,10 +114,11 @@ class Search:
 
 def _strength(bench: "Bench", groups: Groups) -> dict[str, "Values"]:
     """Stresses and safeties of every group under the load of the inputs; NaN where a group cannot be rated."""
-    known = [name for name in STRENGTH if name in bench.setup.model.own_result_fields]
+    asked = (*STRENGTH, *PERMITTED)
+    known = [name for name in asked if name in bench.setup.model.own_result_fields]
     columns = {"sun_teeth": groups.sun, "planet_teeth": groups.planet, "pin_teeth": groups.pins}
     answers = bench.rows(columns, len(groups), *known) if len(groups) else {}
-    return {name: np.asarray(answers.get(name, np.full(len(groups), np.nan))) for name in STRENGTH}
+    return {name: np.asarray(answers.get(name, np.full(len(groups), np.nan))) for name in asked}
 
 
 def _rated(stage: Gearing, groups: Groups) -> int | None:
