@@ -1,0 +1,243 @@
+"""Geometry of roller and ring: printed digits, both readings of the paper's labels, gears traced point by point."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from traced_gears import (
+    ALPHA,
+    Couple,
+    Flanks,
+    deepest_overlap,
+    free_turn,
+    path_of_contact,
+    sliding_of_surfaces,
+)
+
+from gear_geometry.pairs import clear_of_base, internal_sliding, working_angle
+from roller_screw_shift.geometry import (
+    APART,
+    backlash,
+    contact_ratio,
+    crossing_of,
+    geometry_of,
+    involute_margin,
+    sliding,
+    tip_land,
+)
+from roller_screw_shift.loads import load_of
+from roller_screw_shift.model import ROLLER_SCREW_SHIFT
+from roller_screw_shift.quantities import Pair
+
+# The default pair at x_E = 0.21, as an independent program printed it: six digits
+REGRESSION = {
+    "working_angle": 0.321344, "contact_ratio": 1.423027, "tip_angle_roller": 0.548150, "tip_angle_ring": 0.290545,
+    "crossing_angle_roller": 0.611395, "crossing_angle_ring": 0.129231, "tip_clearance": 0.6299,
+    "form_factor_roller": 2.12002, "stress_correction_roller": 1.86315, "form_factor_ring": 1.83107,
+    "stress_correction_ring": 2.84399, "sliding_roller": 0.8287, "sliding_ring": 0.5719, "margin_roller_root": 0.2144,
+    "ring_shift": -0.16, "margin_opposite_tips": 77.5456,
+}  # fmt: skip
+
+# Specific sliding of roller and ring for the printed shifts at h_a = 1, either label on either gear; None: interference
+READINGS = [
+    ((16, 80), -0.16, 0.21, None),
+    ((18, 90), -0.16, 0.21, None),
+    ((20, 100), -0.16, 0.21, None),
+    ((25, 125), -0.16, 0.21, (3.650, 0.293)),
+    ((16, 80), 0.21, -0.16, (58.1, None)),
+    ((18, 90), 0.21, -0.16, (4.313, 0.697)),
+    ((20, 100), 0.21, -0.16, (2.246, 0.641)),
+    ((25, 125), 0.21, -0.16, (1.025, 0.536)),
+]
+
+
+def pair_of(**changed: object) -> Pair:
+    """A pair with the defaults but for these inputs."""
+    made: Pair = ROLLER_SCREW_SHIFT.inputs(**changed)
+    return made
+
+
+def traced(pair: Pair) -> Couple:
+    """The pair as mounted, for tracing: lengths in modules, flanks by the shifts found without backlash."""
+    geometry, module = geometry_of(pair), float(pair.module)
+    return Couple(
+        Flanks(float(pair.roller_teeth), float(pair.roller_shift), float(pair.pressure_angle)),
+        Flanks(float(pair.ring_teeth), float(geometry.ring_shift), float(pair.pressure_angle)),
+        float(geometry.roller.tip_radius) / module,
+        float(geometry.ring.tip_radius) / module,
+        float(geometry.mounted_distance) / module,
+    )
+
+
+# Teeth, centre distance over the one without shifts, shift of the roller, addendum: tips that pass and tips that do not
+TIPS = [
+    (30, 38, 0.97, 0.5, 1.0), (30, 38, 1.0, 0.0, 1.0), (30, 38, 1.0, 0.5, 1.0), (40, 48, 0.97, 1.0, 1.0),
+    (40, 48, 1.05, 0.5, 1.0), (60, 68, 0.97, -0.5, 0.8), (60, 68, 0.97, 1.0, 0.8), (60, 68, 0.97, 1.5, 0.8),
+    (60, 68, 1.0, 0.0, 1.0), (100, 108, 0.97, 0.5, 0.8), (100, 108, 1.0, 0.0, 0.8),
+]  # fmt: skip
+
+
+def small_difference(roller: float, ring: float, stretch: float, shift: float, addendum: float) -> Pair:
+    """A pair of few teeth difference, where tips may meet."""
+    return pair_of(
+        roller_teeth=float(roller),
+        ring_teeth=float(ring),
+        centre_distance=0.5e-3 * 0.5 * (ring - roller) * stretch,
+        roller_shift=shift,
+        addendum=addendum,
+    )
+
+
+@pytest.mark.parametrize("name", REGRESSION)
+def test_the_default_pair_has_the_digits_of_an_independent_program(name: str) -> None:
+    result = ROLLER_SCREW_SHIFT.read_results(ROLLER_SCREW_SHIFT.function(pair_of()))[name]
+    digits = len(str(REGRESSION[name]).partition(".")[2])
+    assert float(result) == pytest.approx(REGRESSION[name], abs=0.51 * 10.0**-digits)
+
+
+def test_the_tip_land_of_the_default_pair() -> None:
+    pair = pair_of()
+    assert tip_land(pair, geometry_of(pair)) / pair.module == pytest.approx(0.85162, abs=5e-6)
+
+
+@pytest.mark.parametrize(("teeth", "roller_shift", "ring_shift", "expected"), READINGS)
+def test_both_readings_of_the_labels(
+    teeth: tuple[float, float], roller_shift: float, ring_shift: float, expected: tuple[float, float | None] | None
+) -> None:
+    """With the ring at +0.21 full-depth pairs interfere: the paper's index 1 must be the roller."""
+    working = working_angle((ring_shift - roller_shift) / (teeth[1] - teeth[0]), ALPHA)
+    tips = (
+        np.arccos(0.5 * teeth[0] * np.cos(ALPHA) / (0.5 * teeth[0] + 1.0 + roller_shift)),
+        np.arccos(0.5 * teeth[1] * np.cos(ALPHA) / (0.5 * teeth[1] - 1.0 + ring_shift)),
+    )
+    roller, ring = internal_sliding(teeth, tips, working)
+    assert (clear_of_base(teeth, tips[1], working) > 0.0) == (expected is not None)
+    if expected is None:
+        assert np.isnan(roller)
+        return
+    assert roller == pytest.approx(expected[0], abs=0.05 if expected[0] > 10 else 5e-4)
+    if expected[1] is not None:
+        assert ring == pytest.approx(expected[1], abs=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("equation", "as_roller", "as_ring"), [(9, 0.6299, -0.6299), (10, 38.77, 0.743), (11, 0.1072, -39.82)]
+)
+def test_the_constraints_hold_only_if_1_is_the_roller(equation: int, as_roller: float, as_ring: float) -> None:
+    """Equations 9 to 11 as printed, with its index 1 read as roller and as ring; lengths in mm."""
+    geometry = geometry_of(pair_of())
+    gears = {"roller": geometry.roller, "ring": geometry.ring}
+    crossing, distance, involute = crossing_of(geometry), geometry.mounted_distance, lambda a: np.tan(a) - a
+    for first, second, expected in (("roller", "ring", as_roller), ("ring", "roller", as_ring)):
+        one, two = gears[first], gears[second]
+        printed = {
+            9: one.teeth * (getattr(crossing, first) + involute(one.tip_angle))
+            - two.teeth * (getattr(crossing, second) + involute(two.tip_angle))
+            + (two.teeth - one.teeth) * involute(geometry.mounted_angle),
+            10: 1e3 * (two.tip_radius - one.tip_radius + distance) - 0.1 * 0.5,
+            11: 1e3 * (two.tip_radius - one.root_radius - distance) - 0.1 * 0.5,
+        }
+        assert printed[equation] == pytest.approx(expected, rel=6e-4)
+
+
+def test_without_backlash_the_pair_keeps_both_equations_of_the_standard() -> None:
+    pair = pair_of(roller_shift=np.linspace(-0.05, 0.25, 7))
+    geometry = geometry_of(pair)
+    reference = 0.5 * pair.module * (pair.ring_teeth - pair.roller_teeth)
+    assert pair.centre_distance * np.cos(geometry.working_angle) == pytest.approx(
+        reference * np.cos(pair.pressure_angle), rel=1e-14
+    )
+    found = working_angle((geometry.ring_shift - pair.roller_shift) / 80.0, pair.pressure_angle)
+    assert found == pytest.approx(np.full(7, float(geometry.working_angle)), rel=1e-13)
+    assert geometry.ring_shift - pair.roller_shift == pytest.approx(np.full(7, -0.37), abs=1e-5)
+
+
+def test_a_positive_shift_of_the_ring_is_outward() -> None:
+    """The ring follows the roller: tip, root and gap of the ring grow with its shift."""
+    near, far = geometry_of(pair_of(roller_shift=0.0)), geometry_of(pair_of(roller_shift=0.2))
+    assert far.ring_shift > near.ring_shift
+    assert far.ring.tip_radius - near.ring.tip_radius == pytest.approx(0.2 * 0.5e-3, rel=1e-9)
+    assert far.ring.root_radius - near.ring.root_radius == pytest.approx(0.2 * 0.5e-3, rel=1e-9)
+
+
+@pytest.mark.parametrize("deviation", [-40e-6, 0.0, 25e-6])
+def test_sliding_and_contact_ratio_are_those_of_the_pair_as_mounted(deviation: float) -> None:
+    pair = pair_of(centre_distance_deviation=deviation)
+    geometry, couple = geometry_of(pair), traced(pair)
+    at_roller_tip, at_ring_tip = path_of_contact(couple)
+    length = np.hypot(*(at_roller_tip - at_ring_tip)) / (np.pi * np.cos(ALPHA))
+    assert contact_ratio(geometry) == pytest.approx(length, rel=1e-10)
+    roller, ring = sliding(geometry)
+    assert -float(roller) == pytest.approx(sliding_of_surfaces(couple, at_ring_tip)[0], rel=1e-9)
+    assert -float(ring) == pytest.approx(sliding_of_surfaces(couple, at_roller_tip)[1], rel=1e-9)
+
+
+def test_specific_sliding_of_the_printed_shifts() -> None:
+    """-0.828725 from surface speeds belongs to a difference of the shifts of exactly -0.37."""
+    working = working_angle(-0.37 / 80.0, ALPHA)
+    pair = pair_of(centre_distance=0.02 * np.cos(ALPHA) / np.cos(working))
+    at_ring_tip = path_of_contact(traced(pair))[1]
+    assert sliding_of_surfaces(traced(pair), at_ring_tip)[0] == pytest.approx(-0.828725, abs=5e-7)
+    assert sliding(geometry_of(pair))[0] == pytest.approx(0.828725, abs=5e-7)
+
+
+@pytest.mark.parametrize(("roller", "ring", "stretch", "shift", "addendum"), TIPS)
+def test_tips_overlap_by_what_their_clearance_lacks(
+    roller: float, ring: float, stretch: float, shift: float, addendum: float
+) -> None:
+    pair = small_difference(roller, ring, stretch, shift, addendum)
+    clearance = float(crossing_of(geometry_of(pair)).clearance)
+    deepest = deepest_overlap(traced(pair))
+    assert involute_margin(geometry_of(pair)) > 0.0
+    assert deepest == pytest.approx(max(0.0, -clearance), abs=2e-4)
+
+
+def test_some_of_these_tips_meet_and_some_do_not() -> None:
+    found = [float(crossing_of(geometry_of(small_difference(*each))).clearance) for each in TIPS]
+    assert min(found) < -0.1
+    assert max(found) > 0.1
+
+
+def test_tips_whose_circles_do_not_cross_have_a_whole_pitch() -> None:
+    pair = pair_of(centre_distance=0.0195)  # the roller is too far inside to reach the teeth of the ring
+    far = geometry_of(replace(pair, addendum=0.05))
+    assert far.mounted_distance + far.roller.tip_radius < far.ring.tip_radius
+    assert float(crossing_of(far).clearance) == pytest.approx(2.0 * np.pi)
+    assert pytest.approx(2.0 * np.pi) == APART
+    assert contact_ratio(far) < 0.0
+
+
+@pytest.mark.parametrize("deviation", [-40e-6, -2e-6, 0.0, 2e-6, 40e-6])
+def test_backlash_is_the_play_of_the_roller_in_the_ring(deviation: float) -> None:
+    """Turned by hand from flank to flank; centres farther apart press the roller into the ring."""
+    pair = pair_of(centre_distance_deviation=deviation)
+    geometry = geometry_of(pair)
+    pitch_radius = geometry.mounted_distance * 20.0 / 80.0
+    play = free_turn(traced(pair)) * pitch_radius
+    assert float(backlash(geometry)) == pytest.approx(play, abs=2e-11)
+    assert deviation * play <= 0.0
+
+
+@pytest.mark.parametrize("deviation", [-2e-6, 2e-6])
+def test_backlash_of_a_small_deviation_is_linear(deviation: float) -> None:
+    geometry = geometry_of(pair_of(centre_distance_deviation=deviation))
+    assert float(backlash(geometry)) == pytest.approx(-2 * deviation * np.tan(geometry.working_angle), rel=1e-3)
+
+
+def test_the_shift_of_the_ring_does_not_follow_a_deviation() -> None:
+    near, far = geometry_of(pair_of()), geometry_of(pair_of(centre_distance_deviation=30e-6))
+    assert far.ring_shift == near.ring_shift
+    assert far.ring.tip_radius == near.ring.tip_radius
+    assert far.mounted_angle > near.mounted_angle == near.working_angle
+    assert float(backlash(near)) == 0.0
+
+
+def test_turns_of_carrier_and_roller_are_those_of_threads_that_roll() -> None:
+    """The nut stands still: the roller's thread touches it at rest and the screw at the screw's speed."""
+    pair = pair_of()
+    screw, roller = float(pair.screw_diameter), float(pair.roller_diameter)
+    carrier = 0.5 * screw / (screw + roller)  # centre of the roller at half the speed of the screw's pitch point
+    spin = carrier - carrier * (screw + 2.0 * roller) / roller  # about its own axis: rolls in the nut
+    load = load_of(pair)
+    assert load.carrier_order == pytest.approx(carrier) == pytest.approx(0.375)
+    assert load.roller_order == pytest.approx(carrier - spin) == pytest.approx(1.875)
