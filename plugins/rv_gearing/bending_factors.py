@@ -7,8 +7,8 @@ Y_DT to the load at the outer point of single contact (ISO 6336-3:2006, method B
 import numpy as np
 
 from gear_geometry.roots import Arm, Rack, Root, external_arm, external_root, form_factor, notch, stress_correction
-from rv_gearing.pair import GearSize, MeshSize
-from rv_gearing.quantities import Gear, Gearing
+from rv_gearing.pair import GearSize, MeshSize, Which
+from rv_gearing.quantities import Gearing
 from rv_gearing.steel import Steel
 from truing import Float, either, feasible, found, results
 
@@ -116,18 +116,19 @@ def bending_factors(stage: Gearing, mesh: MeshSize, stiffness: Float, line_load:
     )
 
 
-def root_of(stage: Gearing, gear: Gear, size: GearSize, mesh: MeshSize, steel: Steel) -> GearRoot:
+def root_of(stage: Gearing, size: GearSize, mesh: MeshSize, steel: Steel, which: Which) -> GearRoot:
     """Return the form of the root of one gear and the factors that follow from it."""
+    gear = stage.sun if which == "sun" else stage.planet
     rack = Rack(dedendum=stage.dedendum, fillet=stage.fillet, pressure_angle=stage.pressure_angle)
     teeth = size.virtual_teeth
     root = external_root(rack, teeth, gear.shift)
-    _formed(root)
-    outer = outer_diameter(stage, size, mesh)
+    _formed(root, which)
+    outer = outer_diameter(stage, size, mesh, which)
     tip = external_arm(
         rack, teeth, gear.shift, root, teeth + (size.tip_diameter - size.reference_diameter) / stage.module
     )
     single = external_arm(rack, teeth, gear.shift, root, outer / stage.module)
-    _loaded(tip, single)
+    _loaded(tip, single, which)
     slip_mm = 1e3 * steel.slip_layer
     parameter = notch(root)
     sensitivity = (1.0 + np.sqrt(0.2 * slip_mm * (1.0 + 2.0 * parameter))) / (1.0 + np.sqrt(1.2 * slip_mm))
@@ -153,7 +154,7 @@ def root_of(stage: Gearing, gear: Gear, size: GearSize, mesh: MeshSize, steel: S
     )
 
 
-def outer_diameter(stage: Gearing, size: GearSize, mesh: MeshSize) -> Float:
+def outer_diameter(stage: Gearing, size: GearSize, mesh: MeshSize, which: Which) -> Float:
     """Return d_en, m: where the load leaves the tooth to itself, on the virtual spur gear."""
     half = 0.5 * stage.module * size.virtual_teeth
     base = half * np.cos(stage.pressure_angle)
@@ -161,18 +162,19 @@ def outer_diameter(stage: Gearing, size: GearSize, mesh: MeshSize) -> Float:
     pitch = np.pi * stage.module * np.cos(stage.pressure_angle)
     reach = np.sqrt(tip**2 - base**2) - pitch * (mesh.virtual_contact_ratio - 1.0)
     feasible(
-        reach > 0.0, "the outer point of single contact would lie below the base circle: raise the teeth or shifts"
+        reach > 0.0,
+        f"the outer single contact of the {which} would lie below its base circle: raise its teeth or shift_{which}",
     )
     return 2.0 * np.hypot(reach, base)
 
 
-def _formed(root: Root) -> None:
+def _formed(root: Root, which: Which) -> None:
     """Refuse a rack that leaves no root."""
-    feasible(root.chord > 0.0, "the rack leaves no tooth at its root: lower dedendum or raise the shift")
-    feasible(root.fillet > 0.0, "the rack leaves no fillet: raise fillet or the shift")
+    sentence = f"the rack leaves no root to the teeth of the {which}: lower dedendum or fillet, or raise shift_{which}"
+    feasible((root.chord > 0.0) & (root.fillet > 0.0), sentence)
 
 
-def _loaded(tip: Arm, single: Arm) -> None:
+def _loaded(tip: Arm, single: Arm, which: Which) -> None:
     """Refuse a load that does not bend the tooth."""
-    for arm in (tip, single):
-        feasible(arm.height > 0.0, "the load does not bend the tooth: raise addendum or lower the shift")  # fmt: skip
+    sentence = f"the load does not bend the teeth of the {which}, its arm is 0 or less: raise addendum or dedendum"
+    feasible((tip.height > 0.0) & (single.height > 0.0), sentence)

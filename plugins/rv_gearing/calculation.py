@@ -25,8 +25,8 @@ def rv_gearing(stage: Gearing) -> Strength:
     """Strength of one stage or of a batch; every Float is a number or an array (n,), SI."""
     load = load_of(stage)
     mesh = mesh_size(stage, load)
-    sun_size = gear_size(stage, stage.sun, load.sun, load.base_radii[0], mesh)
-    sizes = sun_size, gear_size(stage, stage.planet, load.planet, load.base_radii[1], mesh)
+    sun_size = gear_size(stage, load, mesh, "sun")
+    sizes = sun_size, gear_size(stage, load, mesh, "planet")
     duty = duty_of(stage, load, sun_size, mesh)
     made, quality = quality_of(stage, sizes, mesh, duty.pitch_line_velocity)
     stiffness = stiffness_of(stage, load, sizes, mesh.contact_ratio)
@@ -45,13 +45,14 @@ def rv_gearing(stage: Gearing) -> Strength:
     shares = dynamics.dynamic_factor * for_contact, dynamics.dynamic_factor * for_bending
     act = acting(stage, load, (sun_size, mesh), (contact, bending), shares)
     steel, cycles = steel_of(stage), cycles_of(stage, load)
-    sun, planet = (
-        stresses_of(stage, gear, act, single, (size, accuracy, root_of(stage, gear, size, mesh, steel),
-                                               life_of(gear, steel, count)))
-        for gear, size, accuracy, single, count in (
-            (stage.sun, sizes[0], made[0], contact.single_contact_factor_sun, cycles.load_cycles_sun),
-            (stage.planet, sizes[1], made[1], contact.single_contact_factor_planet, cycles.load_cycles_planet),
-        )
+    roots = root_of(stage, sun_size, mesh, steel, "sun"), root_of(stage, sizes[1], mesh, steel, "planet")
+    sun = stresses_of(
+        stage, stage.sun, act, contact.single_contact_factor_sun,
+        (sun_size, made[0], roots[0], life_of(stage.sun, steel, cycles.load_cycles_sun)),
+    )  # fmt: skip
+    planet = stresses_of(
+        stage, stage.planet, act, contact.single_contact_factor_planet,
+        (sizes[1], made[1], roots[1], life_of(stage.planet, steel, cycles.load_cycles_planet)),
     )  # fmt: skip
     return Strength(
         contact_stress=sun.contact_stress, transmission_error=0.0 * load.tangential_force, efficiency=load.efficiency,

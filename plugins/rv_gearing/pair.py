@@ -3,6 +3,8 @@
 Reference: ISO 21771. Lengths are in metres, angles in radians; everything is a number or an array (n,).
 """
 
+from typing import Literal
+
 import numpy as np
 
 from gear_geometry import pairs
@@ -12,6 +14,7 @@ from rv_gearing.quantities import Gear, Gearing
 from truing import Float, feasible, found, results
 
 ISO_21771 = "ISO 21771"
+Which = Literal["sun", "planet"]
 
 
 @results
@@ -27,6 +30,12 @@ class GearSize:
                                 formula="reference_diameter + 2 * module * (addendum + shift)")  # fmt: skip
     root_diameter: Float = found("mm", symbol="d_f", note="root diameter", source=ISO_21771,
                                  formula="reference_diameter - 2 * module * (dedendum - shift)")  # fmt: skip
+    form_diameter: Float = found(
+        "mm", symbol="d_Ff", note="where the involute that the rack makes begins; the base diameter where it undercuts",
+        source=ISO_21771,
+        formula="hypot(base_diameter, max(reference_diameter * sin(transverse_angle)"
+        " - 2 * module * (dedendum - shift - fillet * (1 - sin(pressure_angle))) / sin(transverse_angle), 0))",
+    )  # fmt: skip
     tip_angle: Float = found("deg", symbol="alpha_at", note="transverse pressure angle at the tip", source=ISO_21771,
                              formula="acos(base_diameter / tip_diameter)")  # fmt: skip
     tip_thickness: Float = found(
@@ -149,24 +158,35 @@ def _meshes(stage: Gearing, tips: tuple[Float, Float], contact: Float, distance:
     )
 
 
-def gear_size(stage: Gearing, gear: Gear, teeth: Float, base: Float, mesh: MeshSize) -> GearSize:
-    """Return the sizes of one gear; ``base`` is its base radius, m."""
+def gear_size(stage: Gearing, load: Load, mesh: MeshSize, which: Which) -> GearSize:
+    """Return the sizes of one gear."""
+    at_sun = which == "sun"
+    gear, base = (stage.sun, load.base_radii[0]) if at_sun else (stage.planet, load.base_radii[1])
+    teeth = load.sun if at_sun else load.planet
     reference = teeth * stage.module / np.cos(stage.helix_angle)
     tip = reference + 2.0 * stage.module * (stage.addendum + gear.shift)
     tip_angle = np.arccos(2.0 * base / tip)
     half = (0.5 * np.pi + 2.0 * gear.shift * np.tan(stage.pressure_angle)) / teeth
     thickness = tip * (half + involute(mesh.transverse_angle) - involute(tip_angle))
     root = reference - 2.0 * stage.module * (stage.dedendum - gear.shift)
-    feasible(root > 0.0, "nothing is left below the teeth: raise the teeth or the shift, or lower dedendum")
-    feasible(thickness > 0.0, "the teeth are pointed: lower the shift or the addendum")
+    feasible(root > 0.0, f"nothing is left below the teeth of the {which}: raise its teeth or shift_{which}")
+    feasible(thickness > 0.0, f"the teeth of the {which} are pointed: lower shift_{which} or addendum")
     return GearSize(
         teeth=teeth,
         reference_diameter=reference,
         base_diameter=2.0 * base,
         tip_diameter=tip,
         root_diameter=root,
+        form_diameter=form_diameter(stage, gear, reference, mesh.transverse_angle),
         tip_angle=tip_angle,
         tip_thickness=thickness,
         start_curvature=base * np.tan(tip_angle) - mesh.contact_ratio * mesh.base_pitch,
         virtual_teeth=teeth / (np.cos(mesh.base_helix_angle) ** 2 * np.cos(stage.helix_angle)),
     )
+
+
+def form_diameter(stage: Gearing, gear: Gear, reference: Float, transverse: Float) -> Float:
+    """Return the diameter at which the involute begins, m, for a reference diameter, m, and the transverse angle."""
+    straight = stage.dedendum - gear.shift - stage.fillet * (1.0 - np.sin(stage.pressure_angle))
+    reach = reference * np.sin(transverse) - 2.0 * stage.module * straight / np.sin(transverse)
+    return np.hypot(reference * np.cos(transverse), np.maximum(reach, 0.0))
