@@ -55,8 +55,8 @@ LOAD: list[Effect[Pair, Meshing]] = [
         needs=[SCREW_SPEED],
         unknowns=[
             Unknown("excitation", 0, 0.5, "", note="error of the teeth times stiffness over the load; 0.02 to 0.1"),
-            Unknown("resonance_speed", 100, 10000, "rpm", note="of the screw"),
-            Unknown("damping", 0.02, 0.3, "", note="damping ratio; 0.04 to 0.1"),
+            Unknown("resonance_speed", 200, 6000, "rpm", note="of the screw"),
+            Unknown("damping", 0.03, 0.3, "", note="damping ratio; 0.04 to 0.1"),
         ],
         looks_like="both root stresses have a peak at one speed of the screw, by the same share at any load",
         why="the teeth shake the rollers on the stiffness of their mesh, once per tooth",

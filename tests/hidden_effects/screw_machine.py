@@ -1,0 +1,242 @@
+"""A roller screw that is tilted, shaken, worn, warm and out of round: its mesh from the equations alone.
+
+Nothing of the plugin is imported. Lengths are mm, errors um, forces N, stresses MPa, times h. Loads are shared between
+slices of a face, and between rollers, by halving intervals until they balance; wear is added up over blocks of cycles;
+friction is integrated along the path of contact; backlash is what is left between tooth and space.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import acos, cos, pi, radians, tan
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array: TypeAlias = NDArray[np.float64]
+Hidden: TypeAlias = Mapping[str, Mapping[str, float]]  # effect -> unknown, in the units of the registry
+
+TEETH, RING_TEETH, MODULE, ALPHA = 20, 100, 0.5, radians(20)
+CENTRES, ADDENDUM, SHIFT, RING_SHIFT = 19.80778, 0.8, 0.21, -0.16
+FACE, ROLLERS, LEAD = 4.0, 10, 10.0
+SHARE, STIFFNESS = 5.1943e-3, 14.0  # of the axial load; N/(mm um)
+ROLLER_FACTOR, RING_FACTOR = 2.12002 * 1.86315, 1.83107 * 2.84399  # form times stress correction of this design
+CARRIER, ROLLER = 3 / 8, 15 / 8  # turns per turn of the screw, d_s/d_r = 3
+WIDTHS = {"face_width": 0.1, "centre_distance_deviation": 0.02}  # of the tolerances, mm: six standard deviations
+SLICES = 200
+SECOND = 0.03  # second harmonic of the error of the teeth over the first
+
+
+@dataclass(frozen=True)
+class Rows:
+    """What was set and measured beside the results, arrays (n,): h, kN, r/min, degC, deg, cycles."""
+
+    time: Array
+    axial_load: Array
+    screw_speed: Array
+    temperature: Array
+    screw_angle: Array
+    cycles: Array
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def taken(self, places: "NDArray[np.intp] | slice") -> "Rows":
+        """Some of the rows."""
+        return Rows(**{name: values[places] for name, values in vars(self).items()})
+
+
+def of(hidden: Hidden, effect: str, unknown: str) -> float:
+    """An unknown of an effect, in the unit of the registry; 0 where the effect is not hidden."""
+    return float(hidden.get(effect, {}).get(unknown, 0.0))
+
+
+def inv(angle: Array | float) -> Array:
+    """Involute function."""
+    return np.asarray(np.tan(angle) - angle)
+
+
+# Load
+
+
+def force(rows: Rows) -> Array:
+    """Tangential load of a mesh at the mean, N."""
+    return np.asarray(SHARE * 1e3 * np.abs(rows.axial_load))
+
+
+def balanced(approach: Array, gaps: Array, stiffness: Array | float) -> Array:
+    """Forces of springs behind gaps (n, k), um, that share a load (n, 1) given as ``approach`` of all of them, N."""
+    low, high = np.full_like(approach, -1e3), np.full_like(approach, 1e3)
+    each = gaps * 0
+    for _ in range(50):
+        middle = (low + high) / 2
+        each = np.maximum(middle - gaps, 0) * stiffness
+        is_more = each.sum(axis=1, keepdims=True) > approach
+        high, low = np.where(is_more, middle, high), np.where(is_more, low, middle)
+    return np.asarray(each)
+
+
+def crowding(rows: Rows, width: float, hidden: Hidden) -> Array:
+    """Largest line load over the mean, of a face that is out of line."""
+    gap = (
+        of(hidden, "face_misalignment", "misalignment") + of(hidden, "face_misalignment", "per_load") * rows.axial_load
+    )
+    across = (np.arange(SLICES) + 0.5) / SLICES
+    gaps = np.abs(gap)[:, None] * across
+    each = balanced(force(rows)[:, None], gaps, STIFFNESS * width / SLICES)
+    edge = 1.5 * each[:, 0] - 0.5 * each[:, 1]  # half a slice farther out
+    return np.asarray(edge * SLICES / force(rows))
+
+
+def sharing(rows: Rows, width: float, hidden: Hidden) -> Array:
+    """Load of this roller over the mean, with its flank ahead of those of all others."""
+    gaps = np.zeros((len(rows), ROLLERS))
+    gaps[:, 0] = -of(hidden, "roller_load_sharing", "lead")
+    each = balanced(ROLLERS * force(rows)[:, None], gaps, STIFFNESS * width)
+    return np.asarray(each[:, 0] / force(rows))
+
+
+def shaking(rows: Rows, hidden: Hidden) -> Array:
+    """Largest load over one mesh, over that at rest: a mass on the mesh, shaken by an error with two harmonics."""
+    own = of(hidden, "mesh_resonance", "resonance_speed") or 1e9
+    damping = of(hidden, "mesh_resonance", "damping")
+    phase = np.linspace(0, 2 * pi, 400, endpoint=False)
+    swing = np.zeros((len(rows), len(phase)))
+    for harmonic, part in ((1, 1.0), (2, SECOND)):
+        ratio = harmonic * rows.screw_speed[:, None] / own
+        answer = part * ratio**2 / (1 - ratio**2 + 2j * damping * ratio)
+        swing += np.real(answer * np.exp(1j * harmonic * phase))
+    return np.asarray(1 + of(hidden, "mesh_resonance", "excitation") * np.max(swing, axis=1))
+
+
+def bearing_share(rows: Rows, hidden: Hidden) -> Array:
+    """Share of the face that carries; the groove leaves the mesh a little faster than a cosine would."""
+    angle = np.radians(ROLLER * rows.screw_angle - of(hidden, "interrupted_tooth", "phase"))
+    return np.asarray(1 - of(hidden, "interrupted_tooth", "lost") * ((1 + np.cos(angle)) / 2) ** 1.1)
+
+
+# Geometry
+
+
+def mounted(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> tuple[Array, Array]:
+    """Centre distance, mm, and working pressure angle as mounted and as warm as it is."""
+    strain = of(hidden, "thermal_centre_distance", "expansion") * 1e-6 * (rows.temperature - 20)
+    centres = CENTRES * (1 + strain) + off.get("centre_distance_deviation", 0.0)
+    return centres, np.arccos(MODULE * (RING_TEETH - TEETH) / 2 * cos(ALPHA) / centres)
+
+
+def width_at(radius: Array, teeth: int, shift: float) -> Array:
+    """Tooth of a gear, or space of a ring, as an arc on a circle (the tooth of an external gear fills the space)."""
+    reference = MODULE * teeth / 2
+    half = (pi / 2 + 2 * shift * tan(ALPHA)) / teeth
+    there = np.arccos(reference * cos(ALPHA) / radius)
+    return np.asarray(2 * radius * (half + inv(ALPHA) - inv(there)))
+
+
+def tight_ring_shift() -> float:
+    """Shift of the ring at which nothing is left between tooth and space on the drawing, by halving."""
+    working = acos(MODULE * (RING_TEETH - TEETH) / 2 * cos(ALPHA) / CENTRES)
+    ring = np.array(MODULE * RING_TEETH / 2 * cos(ALPHA) / cos(working))
+    roller = np.array(MODULE * TEETH / 2 * cos(ALPHA) / cos(working))
+    low, high = RING_SHIFT - 0.1, RING_SHIFT + 0.1
+    for _ in range(60):
+        middle = (low + high) / 2
+        is_loose = width_at(ring, RING_TEETH, middle) > width_at(roller, TEETH, SHIFT)
+        low, high = (low, middle) if is_loose else (middle, high)
+    return middle
+
+
+def play(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> Array:
+    """Backlash on the pitch circle as mounted, um."""
+    _, working = mounted(rows, off, hidden)
+    ring = MODULE * RING_TEETH / 2 * cos(ALPHA) / np.cos(working)
+    space = width_at(ring, RING_TEETH, tight_ring_shift())
+    return np.asarray(1e3 * (space - width_at(ring * TEETH / RING_TEETH, TEETH, SHIFT)))
+
+
+def ring_tip(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> tuple[Array, Array]:
+    """Radii of curvature of roller and ring where the tip of the ring meets the roller, mm."""
+    centres, working = mounted(rows, off, hidden)
+    base = MODULE * RING_TEETH / 2 * cos(ALPHA)
+    ring = np.sqrt((MODULE * (RING_TEETH / 2 - ADDENDUM + tight_ring_shift())) ** 2 - base**2)
+    return ring - centres * np.sin(working), np.full(len(rows), ring)
+
+
+def roller_tip(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> tuple[Array, Array]:
+    """Radii of curvature of roller and ring where the tip of the roller meets the ring, mm."""
+    centres, working = mounted(rows, off, hidden)
+    roller = np.sqrt((MODULE * (TEETH / 2 + ADDENDUM + SHIFT)) ** 2 - (MODULE * TEETH / 2 * cos(ALPHA)) ** 2)
+    return np.full(len(rows), roller), roller + centres * np.sin(working)
+
+
+# Wear, friction, motion
+
+
+def wear(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> Array:
+    """Depth that the flank of the roller has lost, um, block of cycles by block."""
+    roller, ring = ring_tip(rows, off, hidden)
+    past = 1 - roller * RING_TEETH / (ring * TEETH)  # of the speeds along both flanks: 1 - v_E/v_I
+    sliding = np.abs(past / (1 - past))
+    blocks, depth = 50, np.zeros(len(rows))
+    for _ in range(blocks):
+        depth += of(hidden, "flank_wear", "rate") * force(rows) / 51.943 * sliding * rows.cycles / blocks / 1e6
+    return depth
+
+
+def friction(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> Array:
+    """Torque at the screw by which the flanks of all rollers rub on one ring, N m."""
+    _, working = mounted(rows, off, hidden)
+    start, end = ring_tip(rows, off, hidden)[0], roller_tip(rows, off, hidden)[0]
+    pitch = MODULE * TEETH / 2 * cos(ALPHA) * np.tan(working)
+    base_pitch = pi * MODULE * cos(ALPHA)
+    screw = np.abs(rows.screw_speed) * 2 * pi / 60
+    carrier = CARRIER * screw
+    turn = carrier * RING_TEETH / TEETH  # of a roller against the carrier
+    at = start[:, None] + (end - start)[:, None] * (np.arange(4000) + 0.5) / 4000
+    others = (at - base_pitch > start[:, None]).astype(float) + (at + base_pitch < end[:, None])
+    slip = np.abs(at - pitch[:, None]) * (turn - carrier)[:, None] * 1e-3  # m/s
+    mean = (slip / (1 + others)).mean(axis=1) * (end - start) / base_pitch
+    normal = force(rows) / np.cos(working)
+    roller, ring = pitch, pitch * RING_TEETH / TEETH
+    around = 1e-3 * carrier * MODULE * RING_TEETH / 2 * cos(ALPHA) / np.cos(working)
+    lined = force(rows) / cos(ALPHA) / FACE / (2 * around * np.sin(working) * roller * ring / (ring - roller))
+    oil = 0.88 * np.exp(np.interp(rows.temperature, [20, 30, 40, 50, 60, 80], np.log([335, 175, 100, 61.5, 40, 19.5])))
+    coefficient = 0.048 * lined**0.2 * oil**-0.05 * 0.8**0.25
+    lost = ROLLERS * coefficient * normal * mean
+    return np.asarray(of(hidden, "mesh_friction", "factor") * np.sign(rows.screw_speed) * lost / screw)
+
+
+def error(rows: Rows, hidden: Hidden) -> Array:
+    """Transmission error, um: the reach of a circle from a point beside its centre."""
+    found = np.zeros(len(rows))
+    for name, order, radius in (("roller_runout", ROLLER, 5e3), ("carrier_runout", CARRIER, 20e3)):
+        angle = np.radians(order * rows.screw_angle)
+        x, y = of(hidden, name, "cosine"), of(hidden, name, "sine")
+        found += np.hypot(radius * np.cos(angle) + x, radius * np.sin(angle) + y) - radius
+    return found
+
+
+def creep(rows: Rows, hidden: Hidden) -> Array:
+    """How far a roller has gone along the screw, um, tooth by tooth of the ring."""
+    teeth = np.round(rows.screw_angle / 360 * CARRIER * RING_TEETH)
+    return np.asarray(of(hidden, "axial_migration", "mismatch") * LEAD * teeth / (CARRIER * RING_TEETH))
+
+
+def shown(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> dict[str, Array]:
+    """What the gauges would show without noise: MPa, um, N m; ``off`` in mm."""
+    width = FACE + off.get("face_width", 0.0)
+    load = force(rows) / (width * MODULE) * crowding(rows, width, hidden) * sharing(rows, width, hidden)
+    load = load * shaking(rows, hidden) / bearing_share(rows, hidden)
+    depth = wear(rows, off, hidden)
+    read = {
+        "root_stress_roller": load * ROLLER_FACTOR,
+        "root_stress_ring": load * RING_FACTOR * (1 + of(hidden, "rim_compliance", "softness")),
+        "transmission_error": error(rows, hidden),
+        "wear_depth": depth,
+        "axial_shift": creep(rows, hidden),
+        "friction_torque": friction(rows, off, hidden),
+        "backlash": play(rows, off, hidden) + depth + depth,
+    }
+    for name in read:
+        read[name] = read[name] * (1 + of(hidden, "sensor_gain", name)) + of(hidden, "sensor_offset", name)
+    return read
