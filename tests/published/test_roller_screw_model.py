@@ -1,0 +1,143 @@
+"""The roller screw as a calculation: stresses by hand and as beams, objectives, neutral inputs, loads, batches."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from traced_gears import ALPHA, Flanks, line_of_action_meets, swept_root
+
+from roller_screw_shift.answers import Meshing
+from roller_screw_shift.constraints import margins_of
+from roller_screw_shift.loads import load_of
+from roller_screw_shift.model import ROLLER_SCREW_SHIFT
+from roller_screw_shift.objectives import objectives_of
+from roller_screw_shift.quantities import Pair
+from truing.evaluate import evaluate_rows
+from truing.setup import default_setup
+
+# Neutral input, a value, what it makes of the root stress of the roller and of the ring
+SOCKETS = [
+    ("face_load_factor", 1.3, 1.3, 1.3),
+    ("dynamic_factor", 1.1, 1.1, 1.1),
+    ("sharing_factor", 1.25, 1.25, 1.25),
+    ("carrying_share", 0.8, 1.25, 1.25),
+    ("rim_factor", 1.6, 1.0, 1.6),
+]
+ZERO = ("transmission_error", "wear_depth", "axial_shift", "friction_torque", "backlash")
+DESIGN = ("shift_sum", "stress_difference", "sliding_difference")
+
+
+def pair_of(**changed: object) -> Pair:
+    """A pair with the defaults but for these inputs."""
+    made: Pair = ROLLER_SCREW_SHIFT.inputs(**changed)
+    return made
+
+
+def answer_of(pair: Pair) -> Meshing:
+    """What the calculation answers for one pair."""
+    answer: Meshing = ROLLER_SCREW_SHIFT.function(pair)
+    return answer
+
+
+def test_stresses_by_hand() -> None:
+    """51.943 N over 4 mm of 0.5 mm modules, times factors that an independent program printed to six digits."""
+    answer = answer_of(pair_of())
+    unit = 51.943 / (4.0 * 0.5)
+    assert float(answer.tangential_force) == pytest.approx(51.943, rel=1e-12)
+    assert float(answer.root_stress_roller) / 1e6 == pytest.approx(unit * 2.12002 * 1.86315, rel=5e-6)
+    assert float(answer.root_stress_ring) / 1e6 == pytest.approx(unit * 1.83107 * 2.84399, rel=5e-6)
+    assert answer.root_stress_roller == answer.nominal_stress_roller
+    assert answer.root_stress_ring == answer.nominal_stress_ring
+
+
+@pytest.mark.parametrize("shift", [-0.2, 0.0, 0.21, 0.5])
+def test_the_nominal_stress_of_the_roller_is_that_of_a_beam(shift: float) -> None:
+    """A force along the line of action at the tip bends the tooth, as traced, about the section at its root."""
+    pair, flanks = pair_of(roller_shift=shift, centre_distance=0.02), Flanks(20.0, shift)
+    answer, tip = answer_of(pair), 10.0 + 0.8 + shift
+    chord, _, depth = swept_root(1.1, 0.3, flanks)
+    meets = line_of_action_meets(flanks, tip, 1.0)
+    across = flanks.base / meets  # cosine of the angle between the force and the normal of the axis
+    force = 51.943 / np.cos(ALPHA)
+    bending = force * across * (meets - depth) * 0.5e-3 / (4e-3 * (chord * 0.5e-3) ** 2 / 6.0)
+    nominal = float(answer.nominal_stress_roller / answer.stress_correction_roller)
+    assert nominal == pytest.approx(bending, rel=1e-6)
+
+
+def test_neither_teeth_nor_shift_of_the_ring_matter_to_its_stress() -> None:
+    one, other = pair_of(), pair_of(roller_shift=0.3, ring_teeth=90.0, centre_distance=0.0175)
+    assert answer_of(one).form_factor_ring == answer_of(other).form_factor_ring
+    assert answer_of(one).root_stress_ring == answer_of(other).root_stress_ring
+
+
+@pytest.mark.parametrize(("name", "value", "roller", "ring"), SOCKETS)
+def test_neutral_inputs_act_on_the_stresses_and_not_on_the_choice_of_the_shift(
+    name: str, value: float, roller: float, ring: float
+) -> None:
+    base, pair = answer_of(pair_of()), pair_of(**{name: value})
+    answer = answer_of(pair)
+    assert answer.root_stress_roller / base.root_stress_roller == pytest.approx(roller, rel=1e-14)
+    assert answer.root_stress_ring / base.root_stress_ring == pytest.approx(ring, rel=1e-14)
+    for each in DESIGN:
+        assert getattr(answer, each) == getattr(base, each)
+        assert getattr(objectives_of(pair), each) == getattr(base, each)
+
+
+def test_what_effects_act_on_is_0() -> None:
+    answer = answer_of(pair_of())
+    assert [float(getattr(answer, name)) for name in ZERO] == [0.0] * 5
+
+
+def test_no_load_gives_no_stress_and_all_else_as_before() -> None:
+    loaded, idle = answer_of(pair_of()), answer_of(pair_of(axial_load=0.0))
+    stresses = {each.name for each in fields(loaded) if "stress_r" in each.name or each.name == "nominal_stress_ring"}
+    stresses |= {"nominal_stress_roller", "stress_difference", "tangential_force"}
+    for each in fields(loaded):
+        changes = each.name in stresses and "correction" not in each.name
+        assert float(getattr(idle, each.name)) == (0.0 if changes else float(getattr(loaded, each.name)))
+
+
+def test_a_load_the_other_way_stresses_alike() -> None:
+    pair = pair_of(axial_load=np.array([-10e3, 0.0, 10e3]))
+    answer, load = answer_of(pair), load_of(pair)
+    assert list(np.asarray(load.direction)) == [-1.0, 1.0, 1.0]
+    assert np.asarray(load.tangential_force) == pytest.approx([51.943, 0.0, 51.943])
+    stress = np.asarray(answer.root_stress_roller)
+    assert stress[0] == stress[2] > stress[1] == 0.0
+
+
+def test_objectives_are_those_of_the_answer_in_one_call_and_one_by_one() -> None:
+    shifts = np.linspace(-0.05, 0.25, 7)
+    many = objectives_of(pair_of(roller_shift=shifts))
+    for place, shift in enumerate(shifts):
+        answer = answer_of(pair_of(roller_shift=float(shift)))
+        for name in DESIGN:
+            assert np.asarray(getattr(many, name))[place] == pytest.approx(float(getattr(answer, name)), rel=1e-13)
+
+
+def test_the_ranges_of_the_objectives_where_every_limit_is_kept() -> None:
+    """Ends of the three ranges, found by an independent program on shifts 0.0025 apart; stresses in MPa."""
+    pair = pair_of(roller_shift=np.arange(-800, 1201) * 0.0025)
+    margins = np.array([np.broadcast_to(each, 2001) for each in vars(margins_of(pair)).values()])
+    with np.errstate(invalid="ignore"):
+        kept = (margins >= 0.0).all(axis=0)
+    found = objectives_of(pair)
+    sums, stresses, slides = (np.asarray(getattr(found, name))[kept] for name in DESIGN)
+    assert (sums.min(), sums.max()) == pytest.approx((-0.480, 0.135), abs=5.1e-4)
+    assert (stresses.min() / 1e6, stresses.max() / 1e6) == pytest.approx((27.61, 33.20), abs=5.1e-3)
+    assert (slides.min(), slides.max()) == pytest.approx((0.099, 3.034), abs=5.1e-4)
+
+
+def test_sliding_is_equal_where_it_was_found() -> None:
+    shifts = np.linspace(0.25, 0.32, 7001)
+    found = np.asarray(objectives_of(pair_of(roller_shift=shifts)).sliding_difference)
+    assert shifts[np.argmin(found)] == pytest.approx(0.2833, abs=5.1e-5)
+
+
+def test_one_bad_row_of_a_batch_keeps_its_reason() -> None:
+    setup = default_setup(ROLLER_SCREW_SHIFT)
+    rows = evaluate_rows(setup, {"roller_shift": np.array([0.21, -0.5, 0.1])}, 3)
+    assert list(rows.failed) == [False, True, False]
+    assert "involute interference" in rows.reasons[1]
+    alone = answer_of(replace(setup.inputs, roller_shift=0.1))
+    assert rows.results["contact_ratio"][2] == pytest.approx(float(alone.contact_ratio), rel=1e-14)
