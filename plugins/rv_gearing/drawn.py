@@ -111,8 +111,7 @@ def method_b(record: "Run") -> "Sequence[Block]":
             f"Least safety with the load at the tip {tip:.3f}, with that at the outer point of single contact "
             f"{outer:.3f}. These are two conventions, each with its own form factor, stress correction and contact "
             "ratio factor; a factor of one must not be used with those of the other. The first is the paper's and is "
-            "the one that is checked.",
-            "warning",
+            "the one that is checked."
         )
     ]
 

@@ -3,6 +3,8 @@
 from rv_gearing.calculation import rv_gearing
 from rv_gearing.capacity import Capacity, Safeties, rating
 from rv_gearing.effects import EFFECTS
+from rv_gearing.findings import FINDINGS
+from rv_gearing.published import PUBLISHED
 from rv_gearing.search import Search, listed
 from rv_gearing.sections import SECTIONS
 from rv_gearing.tolerances import TOLERANCES
@@ -33,6 +35,8 @@ RV_GEARING = Model(
         Reliability(),
     ],
     sheet=SECTIONS,
+    published=PUBLISHED,
+    findings=FINDINGS,
     cites=LITERATURE,
     summary="Which tooth numbers give the wanted ratio, and do sun and planet carry the load?",
 )

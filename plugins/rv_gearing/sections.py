@@ -46,8 +46,8 @@ SECTIONS = [
         "Load of one mesh",
         "tangential_force", "pitch_line_velocity", "carrying_width", "line_load", "planet_factor",
         "planet_factor_bending",
-        text="The torque of the sun, not that of the output, shared by the planets. K_Hp says by how much the worst "
-        "of them carries more than its share.",
+        text="The torque of the sun, not that of the output, shared by the planets. A factor says by how much "
+        "the worst of them carries more than its share.",
     ),
     Section(
         "Deviations of the teeth",
@@ -86,15 +86,16 @@ SECTIONS = [
         "zone_factor", "elasticity_factor", "contact_ratio_factor", "helix_power", "helix_factor",
         "single_contact_counts", "single_contact_factor_sun", "single_contact_factor_planet",
         "nominal_contact_stress", *both("contact_stress"), "contact_stress",
-        text="At the inner point of single contact of each gear, by Z_B and Z_D; the paper leaves these out and has "
-        "the stress at the pitch point (single_contact = false).",
+        text="At the inner point of single contact of each gear, by the factors of single contact; the paper leaves "
+        "these out and has the stress at the pitch point (single_contact = false).",
     ),
     Section(
         "Root stress, load at the tip",
         *both("virtual_teeth"), "virtual_contact_ratio", *both("root_chord", "root_fillet", "notch_parameter",
         "tip_arm", "tip_load_angle", "form_factor", "stress_correction"), "contact_ratio_factor_bending",
         "helix_factor_bending", "tip_load_factor", *both("nominal_root_stress", "root_stress"),
-        text="The convention of the paper, with Y_Fa, Y_Sa and Y_epsilon.",
+        text="The convention of the paper, with the form factor, stress correction and contact ratio factor that "
+        "belong to it.",
         blocks=drawn.bending,
     ),
     Section(
@@ -102,7 +103,8 @@ SECTIONS = [
         *both("outer_diameter", "outer_arm", "outer_load_angle", "form_factor_outer", "stress_correction_outer"),
         "deep_tooth_factor", *both("nominal_root_stress_outer", "root_stress_outer", "root_safety_outer"),
         "root_safety_outer",
-        text="Method B of ISO 6336-3, with Y_F and Y_S and without Y_epsilon, for comparison.",
+        text="Method B of ISO 6336-3, with a form factor and stress correction of its own and without a contact ratio "
+        "factor, for comparison.",
         blocks=drawn.method_b,
     ),
     Section(
@@ -122,7 +124,7 @@ SECTIONS = [
         "Permissible root stress",
         *both("bending_life_factor", "notch_sensitivity", "root_surface", "bending_size", "permitted_root_stress"),
         text="Planets of this stage mesh with the sun alone: their roots are not bent to both sides in every turn. "
-        "But robots reverse; then sigma_Flim is to be lowered by a mean stress factor, about 0.7.",
+        "But robots reverse; then the endurance limit is to be lowered by a mean stress factor, about 0.7.",
     ),
     Section(
         "Safeties",
