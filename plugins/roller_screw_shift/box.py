@@ -25,13 +25,13 @@ ALIKE = 4e-16  # of the largest cost: what differs by less cannot be told apart
 class Plan:
     """How the cloud is made and when it has settled: ``spread`` is its largest extent along any direction.
 
-    ``most`` costs are asked for at most, ``draws`` of them for the first vertices.
+    At most ``draws`` points are drawn for the first vertices, and ``most`` costs asked for after them.
     """
 
     vertices: int = 9
     reflection: float = 1.3
     spread: float = 1e-8
-    most: int = 100_000
+    most: int = 5000
     draws: int = 50_000
 
     def __post_init__(self) -> None:
@@ -41,8 +41,8 @@ class Plan:
             raise TruingError(f"reflection = {self.reflection:g} must lie above 1: a complex would shrink where it is")
         if not self.spread > 0:
             raise TruingError(f"spread = {self.spread:g} must lie above 0")
-        if min(self.most, self.draws) < self.vertices:
-            raise TruingError("most and draws must allow at least the first vertices")
+        if min(self.most, self.draws) < 1:
+            raise TruingError(f"most = {self.most} and draws = {self.draws} are at least 1")
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,14 +68,14 @@ def complex_method(
     low, high = (np.atleast_1d(np.asarray(end, dtype=float)) for end in span)
     if not (np.isfinite(low).all() and np.isfinite(high).all() and (low < high).all()):
         raise TruingError("the complex method searches between a lower and a higher end, both finite")
-    cloud, asked = _first(cost, (low, high), rng, plan)
-    reflections = 0
+    cloud, drawn = _first(cost, (low, high), rng, plan)
+    asked = reflections = 0
     while not cloud.settled(plan.spread) and asked < plan.most:
         cloud, tries = _stepped(cost, cloud, (low, high), plan)
         asked, reflections = asked + tries, reflections + 1
     best = cloud.best
     return Found(
-        cloud.points[best].copy(), float(cloud.costs[best]), cloud.spread, asked, reflections,
+        cloud.points[best].copy(), float(cloud.costs[best]), cloud.spread, drawn + asked, reflections,
         settled=cloud.settled(plan.spread),
     )  # fmt: skip
 
@@ -124,18 +124,17 @@ def _stepped(cost: Cost, cloud: _Cloud, span: tuple[Values, Values], plan: Plan)
 
     The place to which it comes back begins at that middle and ends at the best vertex, which the worst then joins.
     """
-    worst, best = cloud.worst, cloud.best
-    middle = np.delete(cloud.points, worst, axis=0).mean(axis=0)
-    goal = cloud.points[best]
+    worst = cloud.worst
+    others, costs = np.delete(cloud.points, worst, axis=0), np.delete(cloud.costs, worst)
+    best = int(np.argmin(costs))
+    middle, goal = others.mean(axis=0), others[best]
     point = np.clip(middle + plan.reflection * (middle - cloud.points[worst]), *span)
     value, tries = float(cost(point[None, :])[0]), 1
     while not value < cloud.costs[worst]:
         if np.abs(point - goal).max() < 0.5 * plan.spread:
-            point, value = goal, float(cloud.costs[best])
+            point, value = goal, float(costs[best])
             break
         held = HELD**tries
         point = 0.5 * (point + held * middle + (1.0 - held) * goal)
         value, tries = float(cost(point[None, :])[0]), tries + 1
-    points, costs = cloud.points.copy(), cloud.costs.copy()
-    points[worst], costs[worst] = point, value
-    return _Cloud(points, costs), tries
+    return _Cloud(np.vstack([others, point]), np.append(costs, value)), tries

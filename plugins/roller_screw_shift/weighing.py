@@ -57,6 +57,25 @@ def lower_limit(given: float, high: float) -> float:
 
 
 def total(objectives: NDArray[np.float64], ranges: Ranges, weights: Three) -> NDArray[np.float64]:
-    """Return what is minimised: -w1 fr1 + w2 fr2 + w3 fr3 of objectives (3, ...) in the units of the paper."""
-    parts = zip(objectives, ranges, weights, SENSES, strict=True)
-    return np.asarray(sum(sense * share * normalised(value, reach) for value, reach, share, sense in parts))
+    """Return what is minimised: -w1 fr1 + w2 fr2 + w3 fr3 of objectives (3, n) in the units of the paper.
+
+    An objective of weight 0 is left out, and may be without a range.
+    """
+    added = np.zeros(objectives.shape[1:])
+    for value, reach, share, sense in zip(objectives, ranges, weights, SENSES, strict=True):
+        if share:
+            added = added + sense * share * normalised(value, reach)
+    return added
+
+
+def weights_of(reading: str, ranges: Ranges) -> Three:
+    """Return the weights in one of the readings of the input ``weights``; 0 where an objective has no range.
+
+    Such an objective is the same for every shift: it has nothing to say.
+    """
+    if reading == "own_ranges":
+        found = [weight(reach) if reach[1] > reach[0] else 0.0 for reach in ranges]
+    else:
+        stated = PRINTED_WEIGHTS if reading == "printed" else rule_weights(PRINTED_RANGES)
+        found = [share if high > low else 0.0 for share, (low, high) in zip(stated, ranges, strict=True)]
+    return found[0], found[1], found[2]

@@ -1,0 +1,184 @@
+"""How the choice of the shift is written: results.json, tables and words of the sheet."""
+
+from collections.abc import Mapping, Sequence
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from roller_screw_shift.shifts import before
+from roller_screw_shift.weighing import PRINTED_RANGES, rule_weights
+from truing import Table, Words
+
+if TYPE_CHECKING:
+    from roller_screw_shift.best_shifts import Field
+    from roller_screw_shift.shifts import Chosen
+    from truing import Block
+
+MM, MEGA = 1e3, 1e6
+LIMITS = {
+    "margin_ring_base": ("g1", "base circle of the ring"),
+    "margin_roller_base": ("g2", "base circle of the roller"),
+    "margin_contact_ratio": ("g3", "contact ratio"),
+    "margin_interference": ("g4", "tips in passing"),
+    "margin_opposite_tips": ("g5", "tips on the far side"),
+    "margin_roller_root": ("g6", "root of the roller"),
+    "margin_ring_root": ("g6b", "root of the ring"),
+    "margin_involute": ("g7", "involute interference"),
+    "margin_undercut": ("g8", "undercut"),
+    "margin_tip_land": ("g9", "tip land"),
+    "margin_sliding": ("g10", "difference of sliding"),
+}
+READING = {"own_ranges": "rule, ranges found here", "printed_ranges": "rule, printed ranges", "printed": "as printed"}
+OBJECTIVES = (
+    ("sum of the shifts", "large", ""),
+    ("difference of the root stresses", "small", "MPa"),
+    ("difference of specific sliding", "small", ""),
+)
+ROWS: tuple[tuple[str, str, str, float], ...] = (
+    ("shift of the roller", "roller_shift", "", 1.0),
+    ("shift of the ring", "ring_shift", "", 1.0),
+    ("tip circle of the roller, radius", "tip_radius_roller", "mm", MM),
+    ("tip circle of the ring, radius", "tip_radius_ring", "mm", MM),
+    ("contact ratio", "contact_ratio", "", 1.0),
+    ("tip land of the roller", "tip_land", "mm", MM),
+    ("root stress of the roller, nominal", "nominal_stress_roller", "MPa", 1 / MEGA),
+    ("root stress of the ring, nominal", "nominal_stress_ring", "MPa", 1 / MEGA),
+    ("specific sliding, root of the roller", "sliding_roller", "", 1.0),
+    ("specific sliding, root of the ring", "sliding_ring", "", 1.0),
+    ("sum of the shifts", "shift_sum", "", 1.0),
+    ("difference of the root stresses", "stress_difference", "MPa", 1 / MEGA),
+    ("difference of specific sliding", "sliding_difference", "", 1.0),
+)
+
+
+def spoken(limits: Sequence[str]) -> str:
+    """Return limits by number and name."""
+    return " and ".join(" ".join(LIMITS[name]) for name in limits)
+
+
+def number(value: float) -> float | None:
+    """Return a number as results.json may hold it."""
+    return float(value) if isfinite(value) else None
+
+
+def chosen_json(chosen: "Chosen") -> Mapping[str, Any]:
+    """Return what results.json holds."""
+    entry: dict[str, Any] = {"status": chosen.status, "equal_sliding": number(chosen.equal)}
+    field = chosen.field
+    if field is None:
+        return entry
+    ranges = zip(("shift_sum", "stress_difference", "sliding_difference"), OBJECTIVES, field.ranges, strict=True)
+    entry["intervals"] = [
+        {"low": part.low, "high": part.high, "low_limits": list(part.low_limits), "high_limits": list(part.high_limits)}
+        for part in field.intervals
+    ]
+    entry["ranges"] = {name: {"low": low, "high": high, "unit": unit} for name, (_, _, unit), (low, high) in ranges}
+    entry["weights"] = {"reading": chosen.inputs.weights, "values": list(chosen.weights)}
+    entry["grid"] = {"shift": chosen.grid, "points": len(field.course.shifts)}
+    if chosen.box is not None:
+        box = chosen.box
+        entry["box"] = {
+            "shift": float(box.point[0]), "cost": box.cost, "spread": box.spread, "evaluations": box.evaluations,
+            "reflections": box.reflections, "settled": box.settled,
+        }  # fmt: skip
+    entry["limits"] = list(chosen.limits)
+    entry["stress_factor"] = chosen.factor
+    entry["variants"] = [
+        {"least_contact_ratio": each.least_contact_ratio, "weights": each.reading, "values": list(each.weights),
+         "shift": each.shift, "contact_ratio": each.contact_ratio, "limits": list(each.limits)}
+        for each in chosen.variants
+    ]  # fmt: skip
+    return entry
+
+
+def intervals_words(field: "Field") -> Words:
+    """Say which shifts keep every limit, and what ends them."""
+    parts = []
+    for part in field.intervals:
+        low = f"where {spoken(part.low_limits)} is missed" if part.low_limits else "where the search begins"
+        high = f"where {spoken(part.high_limits)} is missed" if part.high_limits else "where the search ends"
+        parts.append(f"from {signed(part.low)} ({low}) to {signed(part.high)} ({high})")
+    return Words(f"Every limit is kept by shifts of the roller {', and '.join(parts)}.")
+
+
+def weights_table(chosen: "Chosen", field: "Field") -> Table:
+    """Set ranges and weights found here beside those of the paper."""
+    by_rule, printed = rule_weights(PRINTED_RANGES), (0.35, 0.01, 0.81)
+    rows = [
+        (name, sense, unit, _span(found), weight, _span(theirs), rule, stated)
+        for (name, sense, unit), found, weight, theirs, rule, stated in zip(
+            OBJECTIVES, field.ranges, chosen.weights, PRINTED_RANGES, by_rule, printed, strict=True
+        )
+    ]
+    columns = (
+        "objective", "to be", "unit", "range here", "weight taken", "printed range", "its weight by the rule",
+        "printed weight",
+    )  # fmt: skip
+    return Table("Ranges and weights", columns, rows, note=f"Taken: {READING[chosen.inputs.weights]}.")
+
+
+def _span(reach: tuple[float, float]) -> str:
+    return f"{signed(reach[0], '.3f')} to {signed(reach[1], '.3f')}"
+
+
+def compared_table(chosen: "Chosen", field: "Field") -> Table:
+    """Set the pair before, as stated and at the optimum side by side."""
+    compared = chosen.compared or {}
+    rows = [
+        (name, unit, *(number(scale * float(value)) for value in compared[key]))
+        for name, key, unit, scale in ROWS
+        if key in compared
+    ]
+    first = "no shift" if before(field) == 0.0 else "nearest to no shift"
+    return Table("Before and after", ("", "unit", f"{first} of the roller", "as stated", "optimum"), rows)
+
+
+def optimum_words(chosen: "Chosen", field: "Field") -> "list[Block]":
+    """Say where the optimum lies, how it was found, and what holds it there."""
+    blocks: list[Block] = []
+    ring = chosen.shift + field_difference(field)
+    where = f"The optimum is {signed(chosen.shift)} for the roller and {signed(ring)} for the ring. "
+    if chosen.box is not None:
+        box = chosen.box
+        where += (
+            f"Box's method found it with {box.evaluations} evaluations, most of them to draw the first vertices; the "
+            f"grid of {len(field.course.shifts)} shifts says {signed(chosen.grid, '.6f')}, "
+            f"{abs(chosen.shift - chosen.grid):.1e} beside it."
+        )
+    blocks.append(Words(where))
+    held = (
+        f"It stands at a limit: {spoken(chosen.limits)}. There the limit decides, not the weights; its value is lost "
+        "in the paper's equation 8."
+        if chosen.limits == ("margin_contact_ratio",)
+        else f"It stands at a limit: {spoken(chosen.limits)}."
+        if chosen.limits
+        else "It lies within its interval; there the weights decide."
+    )
+    if chosen.factor is not None:
+        held += f" The stresses would have to weigh {chosen.factor:.0f} times as much before the optimum left it."
+    return [*blocks, Words(held)]
+
+
+def field_difference(field: "Field") -> float:
+    """The shift of the ring less that of the roller."""
+    return float(field.course.objectives[0, 0] - 2.0 * field.course.shifts[0])
+
+
+def variants_table(chosen: "Chosen", field: "Field") -> Table:
+    """List the optimum by least contact ratio and weights."""
+    difference = field_difference(field)
+    rows = [
+        (f"{each.least_contact_ratio:g}", READING[each.reading], each.shift, each.shift + difference,
+         each.contact_ratio, spoken(each.limits) or "none")
+        for each in chosen.variants
+    ]  # fmt: skip
+    return Table(
+        "The optimum by least contact ratio and weights",
+        ("least contact ratio", "weights", "roller", "ring", "contact ratio", "limit that holds it"),
+        rows,
+        note="On the grid. The paper prints 0.21 and −0.16.",
+    )
+
+
+def signed(value: float, digits: str = ".4f") -> str:
+    """A number with a true minus."""
+    return f"{value:{digits}}".replace("-", "−")
