@@ -1,5 +1,7 @@
 """The gearing as truing knows it: function, error sources, goals, studies and sheet."""
 
+from pathlib import Path
+
 from rv_gearing.calculation import rv_gearing
 from rv_gearing.capacity import Capacity, Safeties, rating
 from rv_gearing.effects import EFFECTS
@@ -38,5 +40,6 @@ RV_GEARING = Model(
     published=PUBLISHED,
     findings=FINDINGS,
     cites=LITERATURE,
+    example=Path(__file__).with_name("example.toml"),
     summary="Which tooth numbers give the wanted ratio, and do sun and planet carry the load?",
 )
