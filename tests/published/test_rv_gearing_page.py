@@ -4,12 +4,15 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from rv_gearing.calculation import rv_gearing
 from rv_gearing.duty import centre_distance_window, efficiency_of, mesh_efficiency, output_torque, ratio_of
 from rv_gearing.groups import search
 from rv_gearing.loads import load_of
 from rv_gearing.model import RV_GEARING
+from rv_gearing.steel import steel_of
 
 PAGE = (Path(__file__).parents[2] / "docs" / "explanation" / "rv_gearing.md").read_text(encoding="utf-8")
 WORDS = " ".join(PAGE.split())
@@ -33,7 +36,11 @@ def row(start: str) -> list[str]:
     ],
 )
 def test_the_counts_of_the_readings(start: str, inputs: dict[str, Any]) -> None:
-    assert row(start)[-1] == str(len(search(RV_GEARING.inputs(**inputs))))
+    groups = search(RV_GEARING.inputs(**inputs))
+    count, *more = row(start)[-1].split(", of which ")
+    assert count == str(len(groups))
+    for text in more:
+        assert text == f"{sum(groups.ratio == 111)} with just 111"
 
 
 def test_the_list_of_groups() -> None:
@@ -81,6 +88,69 @@ def test_the_load_of_the_example() -> None:
     assert f"$F_t = {load.tangential_force:.1f}$ N" in WORDS
     order = 1.0 - 1.0 / load.ratio
     assert f"has the order {order:.3f} of the input shaft" in WORDS
+
+
+FOUND = rv_gearing(PAPER)
+
+
+def named(results: Any, name: str) -> float:
+    """The result of this name, wherever it stands among the parts."""
+    known = vars(results)
+    if name in known:
+        return float(known[name])
+    parts = [part for part in known.values() if hasattr(part, "__dataclass_fields__")]
+    return next((value for value in (named(part, name) for part in parts) if not np.isnan(value)), np.nan)
+
+
+@pytest.mark.parametrize(
+    ("symbols", "name", "digits"),
+    [
+        ("v", "pitch_line_velocity", 3), (r"\varepsilon_\alpha", "contact_ratio", 4), ("N", "resonance_ratio", 4),
+        ("K_V", "dynamic_factor", 4), (r"K_{H\beta}", "face_factor", 4), (r"K_{F\beta}", "face_factor_bending", 4),
+        (r"K_{H\alpha} = K_{F\alpha}", "transverse_factor", 4), (r"K_{H\alpha} = K_{F\alpha}",
+        "transverse_factor_bending", 4), ("K_{Fp}", "planet_factor_bending", 2),
+    ],
+)  # fmt: skip
+def test_the_factors_of_the_example(symbols: str, name: str, digits: int) -> None:
+    assert f"${symbols} = {named(FOUND, name):.{digits}f}$" in WORDS
+
+
+@pytest.mark.parametrize("gear", ["sun 20", "planet 55"])
+def test_the_stresses_of_the_example(gear: str) -> None:
+    found = getattr(FOUND, gear.split()[0])
+    values = [found.root_stress, found.permitted_root_stress, found.contact_stress, found.permitted_contact_stress]
+    factors = [f"{found.root.form_factor:.4f}", f"{found.root.stress_correction:.4f}"]
+    assert row(gear) == [*factors, *(f"{1e-6 * value:.1f}" for value in values)]
+
+
+def test_what_is_said_of_the_example_and_of_group_5() -> None:
+    sun = FOUND.sun
+    assert "half a percent to spare" in WORDS
+    assert 1.0 - sun.contact_stress / sun.permitted_contact_stress == pytest.approx(0.005, abs=6e-4)
+    assert 2.7 < sun.permitted_root_stress / sun.root_stress < 3.2
+    fifth = rv_gearing(RV_GEARING.inputs(group=5))
+    roots = [f"{1e-6 * gear.root_stress:.1f}" for gear in (fifth.sun, fifth.planet)]
+    flanks = [f"{1e-6 * gear.contact_stress:.1f}" for gear in (fifth.sun, fifth.planet)]
+    assert f"{roots[0]} and {roots[1]} MPa at the roots, {flanks[0]} and {flanks[1]} MPa at the flanks" in WORDS
+
+
+def test_the_outer_point_of_single_contact() -> None:
+    diameter = FOUND.sun.root.outer_diameter / PAPER.module
+    assert f"{diameter:.4f} modules for the sun of 20 teeth, where the tip is at 22" in WORDS
+
+
+@pytest.mark.parametrize(("material", "place"), [("case_hardened", 0), ("through_hardened", 1), ("nitrided", 2)])
+def test_the_constants_of_the_materials(material: str, place: int) -> None:
+    steel = steel_of(RV_GEARING.inputs(material=material))
+    assert row(r"$Z_{NT}$ at most")[place] == f"{steel.contact_life_most:g}"
+    knee = {5e7: r"5\cdot10^7", 2e6: r"2\cdot10^6"}[float(steel.contact_life_knee)]
+    assert row(r"$Z_{NT}$ limited")[place] == f"$({knee}/N)^{{{steel.contact_life_slope:g}}}$"
+    assert row(r"$Z_{NT}$ beyond")[place] == f"$({knee}/N)^{{{steel.contact_life_tail:g}}}$"
+    assert row(r"$Y_{NT}$ at most")[place] == f"{steel.bending_life_most:g}"
+    assert row(r"$Y_{NT}$ to")[place] == f"{steel.bending_life_slope:g}"
+    size = f"${steel.size_constant:g} - {steel.size_slope:g}m_n \\ge {steel.size_least:g}$"
+    assert row("$Y_X$, at most 1")[place] == size
+    assert row("$Y_{RrelT}$ below")[place] == f"{steel.surface_smooth:g}"
 
 
 def test_every_effect_has_its_row() -> None:
