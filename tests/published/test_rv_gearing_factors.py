@@ -1,0 +1,512 @@
+"""Every factor of the first stage against the standards written out a second time, and how the factors behave."""
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+import rv_gearing_by_hand as by_hand
+
+from rv_gearing.calculation import rv_gearing
+from rv_gearing.dynamic import by_range, coefficients, resonance_limit
+from rv_gearing.life import life_factor
+from rv_gearing.model import RV_GEARING
+from rv_gearing.steel import CURVES, steel_of
+from truing.declare.batch import watching
+from truing.errors import InfeasibleError
+from truing.units import from_si
+
+TEETH = {"sun_teeth": 20.0, "planet_teeth": 55.0}
+
+
+def results(**stated: Any) -> dict[str, Any]:
+    """All results by name, SI."""
+    with np.errstate(all="ignore"):
+        found = RV_GEARING.read_results(rv_gearing(RV_GEARING.inputs(**stated)))
+    return {name: value if np.ndim(value) else float(value) for name, value in found.items()}
+
+
+def in_units(found: dict[str, Any], name: str) -> Any:
+    return from_si(found[name], RV_GEARING.own_result_fields[name].unit)
+
+
+# The standards by hand, plain floats, for random pairs
+
+
+def random_case(seed: int) -> by_hand.Case:
+    """A pair of gears somewhere in the range of the standards; the faces and helices give overlaps from 0 to 3."""
+    rng = np.random.default_rng(seed)
+    sun = int(rng.integers(18, 40))
+    m = float(rng.choice([1.0, 1.25, 4.0, 8.0, 20.0]))
+    ha, hf = rng.uniform(0.95, 1.05), rng.uniform(1.2, 1.35)
+    return {
+        "m": m, "z": (sun, int(sun * rng.uniform(1.2, 5.0))), "x": tuple(rng.uniform(-0.1, 0.4, 2)),
+        "beta": float(rng.choice([0.0, rng.uniform(2.0, 32.0)])), "alpha": rng.uniform(18.0, 22.0), "ha": ha, "hf": hf,
+        "rho_f": rng.uniform(0.2, 0.33), "b": m * rng.uniform(5.0, 30.0), "apart": float(rng.choice([0.0, 0.004 * m])),
+        "np": int(rng.integers(1, 4)), "T1": m**3 * 10.0 ** rng.uniform(-0.5, 1.7), "KA": rng.uniform(1.0, 2.0),
+        "n_rel": 10.0 ** rng.uniform(1.0, 2.5) * 100.0 / m, "KHp": rng.uniform(1.0, 1.3),
+        "Lh": 10.0 ** rng.uniform(-2, 5),
+        "Q": int(rng.integers(3, 10)), "Ca": rng.uniform(0.0, 30.0), "form": str(rng.choice(list(by_hand.WEIGHTS))),
+        "material": str(rng.choice(list(CURVES))), "rho": rng.uniform(7000.0, 8000.0),
+        "q": tuple(rng.uniform(0, 0.7, 2)),
+        "E": tuple(rng.uniform(150e3, 210e3, 2)), "nu": tuple(rng.uniform(0.25, 0.33, 2)),
+        "sH": tuple(rng.uniform(500.0, 1600.0, 2)), "sF": tuple(rng.uniform(200.0, 500.0, 2)),
+        "Rz": tuple(rng.uniform(1.0, 10.0, 2)), "RzF": tuple(rng.uniform(0.5, 20.0, 2)),
+        "nu40": rng.uniform(20.0, 500.0),
+        "SH": rng.uniform(1.0, 1.4), "SF": rng.uniform(1.2, 2.0),
+    }  # fmt: skip
+
+
+def stated(c: by_hand.Case) -> dict[str, Any]:
+    """The same pair as inputs of the calculation."""
+    pairs: dict[str, tuple[Any, str]] = {
+        "shift": (c["x"], ""), "bore_ratio": (c["q"], ""), "contact_limit": (c["sH"], "MPa"),
+        "bending_limit": (c["sF"], "MPa"), "young_modulus": (c["E"], "MPa"), "poisson_ratio": (c["nu"], ""),
+        "flank_roughness": (c["Rz"], "um"), "root_roughness": (c["RzF"], "um"),
+    }  # fmt: skip
+    of_gears = {
+        f"{key}_{name}": f"{value!r} {unit}".strip()
+        for key, (values, unit) in pairs.items()
+        for name, value in zip(("sun", "planet"), map(float, values), strict=True)
+    }
+    return of_gears | {
+        "module": f"{c['m']} mm", "sun_teeth": float(c["z"][0]), "planet_teeth": float(c["z"][1]), "pin_teeth": 40.0,
+        "helix_angle": f"{c['beta']!r} deg", "pressure_angle": f"{c['alpha']!r} deg", "addendum": c["ha"],
+        "dedendum": c["hf"], "fillet": c["rho_f"], "face_width": f"{c['b']!r} mm",
+        "centre_distance_deviation": f"{c['apart']!r} mm", "planets": c["np"],
+        "stated_sun_torque": f"{c['T1']!r} N*m", "application_factor": c["KA"], "planet_load_factor": c["KHp"],
+        "stated_mesh_speed": f"{c['n_rel']!r} rpm", "working_life": f"{c['Lh']!r} h", "accuracy_grade": c["Q"],
+        "tip_relief": f"{c['Ca']!r} um", "flank_form": c["form"], "material": c["material"],
+        "density": f"{c['rho']!r} kg/m**3", "viscosity": f"{c['nu40']!r} mm**2/s", "least_contact_safety": c["SH"],
+        "least_bending_safety": c["SF"],
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_every_factor_is_that_of_the_standards_written_out_by_hand(seed: int) -> None:
+    case = random_case(seed)
+    found, expected = results(**stated(case)), by_hand.rate(case)
+    for name, value in expected.items():
+        assert float(in_units(found, name)) == pytest.approx(value, rel=1e-9, abs=1e-15), name
+
+
+def test_the_random_pairs_reach_every_branch() -> None:
+    """Otherwise the comparison above would be silent about some."""
+    cases = [random_case(seed) for seed in range(40)]
+    all_found = [by_hand.rate(case) for case in cases]
+    ratios = np.array([found["resonance_ratio"] for found in all_found])
+    limits = np.array([found["resonance_limit"] for found in all_found])
+    overlaps = np.array([found["overlap_ratio"] for found in all_found])
+    totals = overlaps + np.array([found["contact_ratio"] for found in all_found])
+    loads = np.array([found["line_load"] for found in all_found])
+    for truths in (
+        ratios < limits, (ratios > limits) & (ratios < 1.15), ratios > 1.5, overlaps == 0.0,
+        (overlaps > 0.0) & (overlaps < 1.0), overlaps > 1.0, totals < 2.0, totals > 2.5, loads < 100.0, loads > 100.0,
+        np.array([found["face_factor"] > 2.0 for found in all_found]),
+        np.array([found["transverse_factor"] == 1.0 for found in all_found]),
+        np.array([found["transverse_factor"] > 1.0 for found in all_found]),
+        np.array([found["single_contact_factor_sun"] > 1.0 for found in all_found]),
+        np.array([found["contact_life_factor_sun"] > 1.0 for found in all_found]),
+        np.array([case["Q"] < 6 and case["Ca"] > 0.0 for case in cases]),
+    ):  # fmt: skip
+        assert truths.any()
+    assert {case["material"] for case in cases} == set(CURVES)
+    assert {case["form"] for case in cases} == set(by_hand.WEIGHTS)
+
+
+# The dynamic factor over its ranges, ISO 6336-1:2006, 6.5
+
+
+TABLE_8 = [  # total contact ratio; C_v2, C_v3, C_v4, C_v6, C_v7 worked out from table 8 by hand
+    (1.2, 0.34, 0.23, 0.90, 0.47, 0.75),
+    (1.75, 0.34, 0.23, 0.90, 0.47, 0.7866116524),  # 0.875 - 0.125/sqrt(2)
+    (2.0, 0.34, 0.23, 0.90, 0.47, 0.875),
+    (2.5, 0.2590909091, 0.1021276596, 0.4198113208, 0.1578947368, 1.0),
+    (3.3, 0.19, 0.0551724138, 0.2177419355, 0.0769230769, 1.0),
+]
+
+
+@pytest.mark.parametrize("row", TABLE_8)
+def test_coefficients_of_the_dynamic_factor(row: tuple[float, ...]) -> None:
+    assert coefficients(row[0]) == pytest.approx(row[1:], rel=1e-9)
+
+
+def test_coefficients_hardly_jump_where_the_table_changes() -> None:
+    below, above = (list(map(float, coefficients(ratio))) for ratio in (2.0, 2.0 + 1e-9))
+    assert above[:4] == pytest.approx(
+        below[:4], rel=0.08
+    )  # both columns of the table at 2: 0.34/0.335, 0.23/0.218, ...
+    assert above[4] == pytest.approx(below[4], rel=1e-8)
+    for edge in (1.5, 2.5):
+        assert float(coefficients(edge)[4]) == pytest.approx(float(coefficients(edge + 1e-9)[4]), rel=1e-8)
+
+
+def test_dynamic_factor_is_continuous_from_the_resonance_on() -> None:
+    factors = (0.9, 2.4, 1.7)
+    for edge in (1.15, 1.5):
+        sides = [float(by_range(edge + step, 0.85, factors)) for step in (-1e-9, 0.0, 1e-9)]
+        assert sides == pytest.approx([sides[1]] * 3, abs=1e-7)
+    ratios = np.linspace(1.15, 1.5, 8)
+    assert by_range(ratios, 0.85, factors) == pytest.approx(np.interp(ratios, [1.15, 1.5], [2.4, 1.7]))
+
+
+def test_dynamic_factor_jumps_up_at_the_limit_of_resonance_only() -> None:
+    """The standard lets it: C_v3 N below against C_v4 above."""
+    slow, resonant = 0.9, 2.4
+    assert by_range(0.85, 0.85, (slow, resonant, 1.7)) == pytest.approx(1.0 + 0.85 * slow)
+    assert by_range(0.85 + 1e-9, 0.85, (slow, resonant, 1.7)) == resonant
+
+
+@pytest.mark.parametrize(("load", "limit"), [(250.0, 0.85), (100.0, 0.85), (25.0, 0.675), (1.0, 0.535)])
+def test_limit_of_resonance_falls_with_the_load(load: float, limit: float) -> None:
+    assert float(resonance_limit(load * 1e3)) == pytest.approx(limit)
+
+
+def test_dynamic_factor_follows_the_speed() -> None:
+    speeds = np.linspace(100.0, 150000.0, 500) / 60.0
+    found = results(**TEETH, stated_mesh_speed=speeds, stated_sun_torque=40.0)
+    ratio, factor = found["resonance_ratio"], found["dynamic_factor"]
+    below = ratio <= found["resonance_limit"]
+    assert np.allclose(factor[below] - 1.0, found["dynamic_slow"] * ratio[below], rtol=1e-9)
+    assert np.ptp(factor[(ratio > found["resonance_limit"]) & (ratio <= 1.15)]) < 1e-12
+    assert np.ptp(factor[ratio >= 1.5]) == 0.0
+    assert (ratio > 1.5).any()
+
+
+# Life and material
+
+
+@pytest.mark.parametrize(
+    ("material", "contact", "bending"),
+    [  # cycles and life factor at the corners of ISO 6336-2:2006, table 2, and ISO 6336-3:2006, table 1
+        ("case_hardened", [(1e4, 1.6), (1e5, 1.6), (5e7, 1.0), (1e10, 0.85)], [(1e3, 2.5), (3e6, 1.0), (1e10, 0.85)]),
+        ("through_hardened", [(1e5, 1.6), (5e7, 1.0), (1e10, 0.85)], [(1e4, 2.5), (3e6, 1.0), (1e10, 0.85)]),
+        ("nitrided", [(1e5, 1.3), (2e6, 1.0), (1e10, 0.85)], [(1e3, 1.6), (3e6, 1.0), (1e10, 0.85)]),
+    ],
+)  # fmt: skip
+def test_life_factors_pass_through_the_corners_of_the_tables(
+    material: str, contact: list[tuple[float, float]], bending: list[tuple[float, float]]
+) -> None:
+    steel = steel_of(RV_GEARING.inputs(material=material))
+    for cycles, factor in contact:
+        slopes = steel.contact_life_slope, steel.contact_life_tail
+        found = life_factor(cycles, steel.contact_life_knee, slopes, steel.contact_life_most)
+        assert float(found) == pytest.approx(factor, rel=6e-3)  # the exponents of GB/T 3480 are rounded
+    for cycles, factor in bending:
+        found = life_factor(cycles, 3e6, (steel.bending_life_slope, 0.02), steel.bending_life_most)
+        assert float(found) == pytest.approx(factor, rel=6e-3)
+
+
+def test_life_factors_fall_with_the_cycles() -> None:
+    hours = np.logspace(-3, 6, 200) * 3600.0
+    for material in CURVES:
+        found = results(**TEETH, working_life=hours, material=material)
+        for name in ("contact_life_factor_sun", "bending_life_factor_planet"):
+            assert np.all(np.diff(found[name]) <= 1e-15)
+            assert found[name][-1] < 0.9 < 1.2 < found[name][0]
+
+
+@pytest.mark.parametrize(
+    ("stress", "layer"), [(400.0, 0.0281), (500.0, 0.0281), (600.0, 0.0194), (800.0, 0.0064), (1000.0, 0.0014)]
+)
+def test_slip_layer_of_through_hardened_steel(stress: float, layer: float) -> None:
+    """ISO 6336-3:2006, table of the slip layer."""
+    found = results(**TEETH, material="through_hardened", proof_stress=stress * 1e6)
+    assert in_units(found, "slip_layer") == pytest.approx(layer)
+
+
+@pytest.mark.parametrize(
+    ("material", "module", "factor"),
+    [("case_hardened", 5.0, 1.0), ("case_hardened", 15.0, 0.9), ("case_hardened", 40.0, 0.8), ("nitrided", 25.0, 0.8),
+     ("through_hardened", 4.0, 1.0), ("through_hardened", 20.0, 0.91), ("through_hardened", 35.0, 0.85)],
+)  # fmt: skip
+def test_size_factor(material: str, module: float, factor: float) -> None:
+    """ISO 6336-3:2006, clause 15."""
+    found = results(**TEETH, material=material, module=module * 1e-3, face_width=module * 10e-3)
+    assert found["bending_size_sun"] == pytest.approx(factor)
+
+
+def test_identities_of_strength_factors() -> None:
+    """The reference test gears: q_s = 2.5, R_z = 10 um, cycles at the knees."""
+    steel = steel_of(RV_GEARING.inputs())
+    assert float(life_factor(5e7, 5e7, (0.0756, 0.0306), steel.contact_life_most)) == 1.0
+    assert float(life_factor(3e6, 3e6, (0.115, 0.02), steel.bending_life_most)) == 1.0
+    for material in CURVES:
+        found = results(**TEETH, material=material, root_roughness_sun=10e-6)
+        assert found["root_surface_sun"] == pytest.approx(1.0, abs=0.015)
+        layer, q_s = in_units(found, "slip_layer"), 2.5
+        assert (1 + np.sqrt(0.2 * layer * (1 + 2 * q_s))) / (1 + np.sqrt(1.2 * layer)) == 1.0
+    shifts = np.linspace(-0.2, 0.6, 4000)  # among the shifts is one whose root has the notch of the test gears
+    found = results(sun_teeth=60.0, planet_teeth=90.0, shift_sun=shifts)
+    near = np.argmin(np.abs(found["notch_parameter_sun"] - 2.5))
+    assert found["notch_parameter_sun"][near] == pytest.approx(2.5, abs=1e-3)
+    assert found["notch_sensitivity_sun"][near] == pytest.approx(1.0, abs=1e-5)
+
+
+# What is stated instead
+
+
+STATED = {
+    "stated_dynamic_factor": (1.31, "dynamic_factor", "root_stress_sun"),
+    "stated_face_factor": (1.32, "face_factor", "contact_stress_planet"),
+    "stated_face_factor_bending": (1.33, "face_factor_bending", "root_stress_outer_planet"),
+    "stated_transverse_factor": (1.34, "transverse_factor", "contact_stress"),
+    "stated_transverse_factor_bending": (1.35, "transverse_factor_bending", "root_stress_planet"),
+    "stated_planet_load_bending": (1.36, "planet_factor_bending", "root_stress_sun"),
+    "stated_zone_factor": (2.37, "zone_factor", "contact_stress"),
+    "stated_elasticity_factor": (181.4e3, "elasticity_factor", "contact_stress"),
+    "stated_contact_ratio_factor": (0.91, "contact_ratio_factor", "contact_stress"),
+    "stated_helix_factor": (0.98, "helix_factor", "contact_stress"),
+    "stated_lubricant_factor": (0.92, "lubricant_factor", "permitted_contact_stress_sun"),
+    "stated_velocity_factor": (0.93, "velocity_factor", "permitted_contact_stress_planet"),
+    "stated_roughness_factor": (0.94, "roughness_factor", "contact_safety_sun"),
+    "stated_contact_ratio_bending": (0.75, "contact_ratio_factor_bending", "root_stress_sun"),
+    "stated_helix_factor_bending": (0.96, "helix_factor_bending", "root_stress_outer_sun"),
+    "stated_mesh_stiffness": (20e9, "mesh_stiffness", "face_factor"),
+    "stated_sun_torque": (20.0, "sun_torque", "tangential_force"),
+    "stated_mesh_speed": (10.0, "mesh_speed", "load_cycles_planet"),
+    "stated_form_factor_sun": (2.7, "form_factor_sun", "root_stress_sun"),
+    "stated_stress_correction_planet": (1.6, "stress_correction_planet", "root_safety_planet"),
+    "stated_contact_life_sun": (1.1, "contact_life_factor_sun", "contact_safety"),
+    "stated_bending_life_sun": (0.8, "bending_life_factor_sun", "root_safety_outer_sun"),
+    "stated_notch_sensitivity_planet": (0.9, "notch_sensitivity_planet", "permitted_root_stress_planet"),
+    "stated_root_surface_sun": (0.9, "root_surface_sun", "root_safety"),
+    "stated_bending_size_planet": (0.9, "bending_size_planet", "permitted_root_stress_planet"),
+    "stated_single_contact_planet": (1.2, "single_contact_factor_planet", "contact_stress_planet"),
+    "stated_single_contact_sun": (1.2, "single_contact_factor_sun", "contact_stress"),
+    "input_speed": (20.0, "sun_speed", "pitch_line_velocity"),
+    "load_torque": (-900.0, "output_torque", "tangential_force"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", STATED)
+def test_what_is_stated_is_used_and_what_follows_follows(name: str) -> None:
+    value, result, follower = STATED[name]
+    base, changed = results(**TEETH), results(**TEETH, **{name: value})
+    assert changed[result] == pytest.approx(abs(value), rel=1e-12)
+    assert abs(changed[follower] / base[follower] - 1.0) > 1e-3
+    two = results(**TEETH, **{name: np.array([np.nan, value])})  # some rows of a batch stated, others not
+    for each in (result, follower):
+        assert two[each] == pytest.approx([base[each], changed[each]], rel=1e-12)
+
+
+def test_every_optional_factor_is_tried() -> None:
+    optional = {
+        name for name, item in RV_GEARING.input_fields.items() if item.is_optional and name.startswith("stated_")
+    }
+    both = {name.removesuffix("_sun").removesuffix("_planet") for name in optional}
+    assert both == {name.removesuffix("_sun").removesuffix("_planet") for name in STATED if name.startswith("stated_")}
+
+
+def test_single_contact_can_be_switched_off() -> None:
+    """The paper leaves Z_B and Z_D out."""
+    on, off = results(**TEETH), results(**TEETH, single_contact=False)
+    assert off["single_contact_factor_sun"] == off["single_contact_factor_planet"] == 1.0
+    assert on["contact_stress"] / off["contact_stress"] == pytest.approx(on["single_contact_factor_sun"])
+
+
+def test_helix_factor_of_the_older_reading() -> None:
+    found = [results(**TEETH, helix_angle=0.2, helix_reading=reading)["helix_factor"] for reading in ("iso", "gb_1997")]
+    assert found == pytest.approx([1.0 / np.sqrt(np.cos(0.2)), np.sqrt(np.cos(0.2))])
+
+
+# Where effects act
+
+
+def test_misalignment_acts_in_the_face_factor() -> None:
+    """K_Hbeta = 1 + F_betay c_gammabeta/(2 F_m/b), and twice the root of that beyond 2."""
+    extra = np.array([0.0, 1e-6, 20e-6])
+    found = results(**TEETH, extra_misalignment=extra)
+    ratio = (found["misalignment"][0] + extra) * found["mesh_stiffness_face"] / (2.0 * found["mean_line_load"])
+    assert found["face_factor"] == pytest.approx([1.0 + ratio[0], 1.0 + ratio[1], 2.0 * np.sqrt(ratio[2])])
+    assert np.all(np.diff(found["root_stress_planet"]) > 0.0)
+
+
+def test_misalignment_acts_beside_a_stated_face_factor_too() -> None:
+    found = results(**TEETH, stated_face_factor=1.2, extra_misalignment=np.array([0.0, 2e-6]))
+    more = 2e-6 * found["mesh_stiffness_face"] / (2.0 * found["mean_line_load"])
+    assert found["face_factor"] == pytest.approx([1.2, 1.2 + more])
+
+
+def test_dynamic_factor_takes_what_is_added() -> None:
+    base, more = results(**TEETH), results(**TEETH, extra_dynamic_factor=0.25)
+    assert more["dynamic_factor"] == pytest.approx(base["dynamic_factor"] + 0.25)
+    assert results(**TEETH, stated_dynamic_factor=1.1, extra_dynamic_factor=0.25)["dynamic_factor"] == pytest.approx(
+        1.35
+    )
+
+
+def test_sharing_error_loads_one_planet_more_but_never_with_more_than_all() -> None:
+    errors = np.array([0.0, 1e-6, 1e-3, -1e-3])
+    found = results(**TEETH, sharing_error=errors)
+    specific = found["tangential_force"] / 12e-3
+    expected = 1.1 + 1e-6 * found["mesh_stiffness"] / specific
+    assert found["planet_factor"] == pytest.approx([1.1, expected, 2.0, 0.0])
+    assert found["contact_stress"][3] == found["root_stress_sun"][3] == 0.0
+    assert found["planet_factor_bending"][1] == pytest.approx(1.0 + 1.5 * (expected - 1.0))
+
+
+def test_a_share_of_the_width_carries_more() -> None:
+    """With all load factors stated the root stress goes with 1 over the width, the contact stress with its root."""
+    fixed = {"stated_dynamic_factor": 1.0, "stated_face_factor": 1.0, "stated_transverse_factor": 1.0,
+             "stated_transverse_factor_bending": 1.0}  # fmt: skip
+    found = results(**TEETH, **fixed, carrying_share=np.array([1.0, 0.5]))
+    assert found["root_stress_sun"][1] / found["root_stress_sun"][0] == pytest.approx(2.0)
+    assert found["root_stress_outer_sun"][1] / found["root_stress_outer_sun"][0] == pytest.approx(2.0)
+    assert found["contact_stress"][1] / found["contact_stress"][0] == pytest.approx(np.sqrt(2.0))
+    assert found["line_load"][1] / found["line_load"][0] == pytest.approx(2.0)
+
+
+def test_missing_relief_loads_the_tip_alone() -> None:
+    found = results(**TEETH, relief_deviation=np.array([0.0, 2e-6, -1e-3]))
+    more = found["tooth_stiffness"] * 2e-6 / found["line_load"]
+    assert found["root_stress_sun"] / found["root_stress_sun"][0] == pytest.approx([1.0, 1.0 + more, 0.0])
+    assert (
+        np.ptp(np.broadcast_to(found["root_stress_outer_sun"], 3))
+        == np.ptp(np.broadcast_to(found["contact_stress"], 3))
+        == 0.0
+    )
+
+
+@pytest.mark.parametrize("helix", [0.0, 0.25])
+def test_gears_moved_apart_have_backlash(helix: float) -> None:
+    """Exact: gap of both involutes along the line of action; nearly 2 Delta a sin alpha_t cos beta_b."""
+    moved = np.array([-20e-6, 0.0, 1e-6, 20e-6, 60e-6])
+    found = results(**TEETH, helix_angle=helix, centre_distance_deviation=moved)
+    nearly = 2.0 * moved * np.sin(found["tight_angle"]) * np.cos(found["base_helix_angle"])
+    assert found["backlash"] == pytest.approx(np.maximum(nearly, 0.0), rel=5e-3, abs=1e-18)
+    assert list(found["backlash"][:2]) == [0.0, 0.0]
+    assert np.all(np.diff(found["contact_ratio"]) < 0.0)
+    assert np.all(np.diff(found["working_angle"]) > 0.0)
+    radii = (found["base_diameter_sun"] + found["base_diameter_planet"]) / 2.0
+    assert radii / np.cos(found["working_angle"]) == pytest.approx(found["tight_centre_distance"] + moved, rel=1e-12)
+
+
+# Batches, limits and directions
+
+
+def test_a_batch_is_the_loop_over_its_rows() -> None:
+    """Spur and helical, near and beyond an overlap of 1, with some factors stated; numbers and arrays mixed."""
+    rng = np.random.default_rng(5)
+    rows = 24
+    columns = {
+        "sun_teeth": rng.integers(18, 40, rows) * 1.0, "planet_teeth": rng.integers(45, 120, rows) * 1.0,
+        "shift_sun": rng.uniform(-0.1, 0.5, rows),
+        "helix_angle": np.where(rng.random(rows) < 0.4, 0.0, rng.uniform(0, 0.5, rows)),
+        "face_width": rng.uniform(5e-3, 30e-3, rows), "load_torque": rng.uniform(-2000.0, 2000.0, rows),
+        "input_speed": rng.uniform(1.0, 900.0, rows), "centre_distance_deviation": rng.uniform(-5e-6, 50e-6, rows),
+        "stated_face_factor": np.where(rng.random(rows) < 0.5, np.nan, 1.3),
+        "sharing_error": rng.uniform(-2e-6, 5e-6, rows),
+        "contact_limit_planet": rng.uniform(600e6, 1500e6, rows),
+    }  # fmt: skip
+    for fixed in ({"accuracy_grade": 4}, {"material": "through_hardened", "single_contact": False}):
+        batch = results(**columns, **fixed)
+        for row in range(rows):
+            alone = results(**{name: float(values[row]) for name, values in columns.items()}, **fixed)
+            for name, value in alone.items():
+                together = np.broadcast_to(batch[name], (rows,))[row]
+                assert together == pytest.approx(value, rel=1e-12, abs=1e-300), name
+
+
+def test_any_single_array_gives_a_row_for_each_value() -> None:
+    alone = results(**TEETH)
+    for name, item in RV_GEARING.input_fields.items():
+        if not item.varies or item.is_optional:
+            continue
+        value = float(RV_GEARING.read_inputs(RV_GEARING.inputs())[name])
+        found = results(**TEETH, **{name: np.full(3, value)})
+        for result in ("root_stress_sun", "contact_stress_planet", "backlash", "efficiency"):
+            assert np.broadcast_to(found[result], (3,)) == pytest.approx([alone[result]] * 3, rel=1e-12), name
+
+
+def test_nothing_is_loaded_without_torque() -> None:
+    found = results(**TEETH, load_torque=np.array([-500.0, -1e-9, 0.0, 1e-9, 500.0]))
+    for name, values in found.items():
+        assert np.all(np.isfinite(values)), name
+    for name in ("root_stress_sun", "root_stress_planet", "contact_stress", "root_stress_outer_sun"):
+        assert found[name][2] == 0.0
+        assert found[name][0] == found[name][4] > 1e6
+        assert found[name][1] < 1e6
+    assert list(found["root_safety"][1:4]) == [1000.0] * 3
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "up", "down"),
+    [
+        ("load_torque", np.linspace(50.0, 3000.0, 30), ["root_stress_sun", "contact_stress"],
+         ["root_safety", "contact_safety", "face_factor"]),
+        ("face_width", np.linspace(5e-3, 15e-3, 30), ["overlap_ratio"], ["root_stress_sun", "nominal_contact_stress"]),
+        ("application_factor", np.linspace(1.0, 2.5, 30), ["root_stress_outer_planet"], ["root_safety_sun"]),
+        ("viscosity", np.linspace(20e-6, 500e-6, 30), ["permitted_contact_stress_sun"], []),
+        ("flank_roughness_sun", np.linspace(1e-6, 10e-6, 30), [], ["permitted_contact_stress_planet"]),
+        ("root_roughness_sun", np.linspace(1.1e-6, 20e-6, 30), [], ["root_safety_sun"]),
+        ("shift_sun", np.linspace(0.0, 0.5, 30), ["root_safety_sun", "tip_diameter_sun"], ["root_stress_sun"]),
+        ("fillet", np.linspace(0.1, 0.4, 30), ["root_fillet_sun"], ["stress_correction_sun"]),
+        ("working_life", np.logspace(5, 8, 30), [], ["contact_safety", "root_safety"]),
+        ("least_bending_safety", np.linspace(1.0, 2.0, 30), [], ["permitted_root_stress_sun"]),
+        ("planet_load_factor", np.linspace(1.0, 1.6, 30), ["root_stress_sun", "contact_stress"], []),
+        ("young_modulus_sun", np.linspace(100e9, 220e9, 30), ["elasticity_factor", "mesh_stiffness"], []),
+        ("bore_ratio_sun", np.linspace(0.0, 0.8, 30), ["resonance_speed"], ["inertia_sun"]),
+    ],
+)  # fmt: skip
+def test_directions(name: str, values: Any, up: list[str], down: list[str]) -> None:
+    found = results(**TEETH, helix_angle=0.1, **{name: values})
+    for result in up:
+        assert np.all(np.diff(found[result]) > 0.0), result
+    for result in down:
+        assert np.all(np.diff(found[result]) < 0.0), result
+
+
+def test_coarser_grades_and_bare_flanks_load_the_teeth_more() -> None:
+    grades = [results(**TEETH, accuracy_grade=grade) for grade in range(3, 11)]
+    for finer, coarser in pairwise(grades):
+        assert coarser["face_factor"] > finer["face_factor"]
+        assert coarser["pitch_error"] / finer["pitch_error"] == pytest.approx(np.sqrt(2.0))
+    forms = [results(**TEETH, flank_form=form)["face_factor"] for form in ("crowned", "end_relief", "none")]
+    assert forms == sorted(forms)
+    materials = [results(**TEETH, material=each)["face_running_in"] for each in ("case_hardened", "nitrided")]
+    assert materials[0] == materials[1]
+
+
+# What cannot be
+
+
+REFUSED = [
+    ({"addendum": 0.3}, "the contact ratio is below 1"),
+    ({"centre_distance_deviation": 1e-3}, "the contact ratio is below 1"),
+    ({"shift_sun": -1.2, "shift_planet": 1.2, "addendum": 0.3}, "the tip of the sun lies below its base circle"),
+    ({"shift_sun": -1.0}, "single contact of the planet"),
+    ({"sun_teeth": 6.0, "planet_teeth": 12.0}, "single contact of the sun"),
+    ({"shift_sun": -1.4, "shift_planet": -1.4, "sun_teeth": 6.0, "planet_teeth": 6.0}, "shift_sun + shift_planet"),
+    ({"sun_teeth": 7.0, "planet_teeth": 12.0, "shift_sun": 0.5}, "the teeth of the sun are pointed"),
+    ({"dedendum": 3.0}, "the rack leaves no root"),
+    ({"fillet": 0.9}, "the rack leaves no root"),
+    ({"shift_sun": 2.0}, "the tips touch the roots"),
+    ({"addendum": 1.6}, "the tips touch the roots"),
+    ({"stated_dynamic_factor": 0.5, "extra_dynamic_factor": -0.6}, "extra_dynamic_factor"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("changed", "sentence"), REFUSED)
+def test_impossible_pairs_are_refused_by_name(changed: dict[str, float], sentence: str) -> None:
+    with pytest.raises(InfeasibleError, match=sentence.replace("+", r"\+")) as refusal:
+        results(**TEETH | changed)
+    assert any(name in str(refusal.value) for name in RV_GEARING.input_fields) or "teeth" in str(refusal.value)
+
+
+def test_one_impossible_row_does_not_spoil_the_others() -> None:
+    shifts = np.array([0.0, 2.0, 0.2])
+    with watching(3) as log:
+        found = results(**TEETH, shift_sun=shifts)
+    assert list(log.codes > 0) == [False, True, False]
+    assert "tips touch the roots" in str(log.reason(1))
+    assert found["root_stress_sun"][[0, 2]] == pytest.approx(
+        [results(**TEETH, shift_sun=float(each))["root_stress_sun"] for each in shifts[[0, 2]]]
+    )
+
+
+def test_a_pair_without_inner_single_contact_can_be_rated_without_it() -> None:
+    """Where the radicand of Z_B is negative the factor is refused, and the paper's reading is not."""
+    stage = RV_GEARING.inputs(sun_teeth=6.0, planet_teeth=12.0)
+    assert rv_gearing(replace(stage, single_contact=False)).contact_stress > 0.0
