@@ -15,6 +15,8 @@ from truing import Float
 
 NORMAL = np.pi / 6.0  # rad; between the normal of the fillet and the axis of the tooth, for a tangent of 60 degrees
 STEPS = 30
+CLOSE = 1e-11  # rad
+FARTHEST = 0.5 * np.pi  # rad
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,7 +34,8 @@ def cut_ring_root(cutter: Cutter, teeth: Float, shift: Float, pressure_angle: Fl
 
     The rounding of the cutter's tip has its centre on an involute of the same base circle; while the pitch circles roll
     on one another the normal of the fillet goes through the pitch point, and Euler and Savary give its curvature. NaN
-    where the tip is pointed before it is round, or where cutter and ring do not mesh.
+    where the tip is pointed before it is round, where cutter and ring do not mesh, or have their pitch points at the
+    very centre of the rounding.
     """
     working = working_angle((shift - cutter.shift) / (teeth - cutter.teeth), pressure_angle)
     base, place = 0.5 * cutter.teeth * np.cos(pressure_angle), 0.5 * cutter.teeth + cutter.shift + cutter.addendum
@@ -59,20 +62,31 @@ def _half_angle(cutter: Cutter, radius: Float, base: Float, pressure_angle: Floa
 def _turned(ratio: Float, constant: Float, slope: Float) -> Float:
     """Solve nu(t) - slope t + constant = 0 by Newton; nu is the direction of the rounding seen from the pitch point.
 
-    ``ratio`` is the radius of the rounding's centre over the pitch radius of the cutter.
+    ``ratio`` is the radius of the rounding's centre over the pitch radius of the cutter; below 1 the centre lies on the
+    near side of the pitch point, and nu is where the line through both goes outward. NaN where nothing is found.
     """
     angle = (NORMAL - 0.0 * constant) * (ratio - 1.0) / ratio
-    for _ in range(STEPS):
-        away = 1.0 + ratio**2 - 2.0 * ratio * np.cos(angle)
-        direction = np.arctan2(ratio * np.sin(angle), ratio * np.cos(angle) - 1.0)
-        angle = angle - (direction - slope * angle + constant) / (ratio * (ratio - np.cos(angle)) / away - slope)
-    return angle
+    with np.errstate(all="ignore"):
+        for _ in range(STEPS):
+            away = 1.0 + ratio**2 - 2.0 * ratio * np.cos(angle)
+            missed = _direction(ratio, angle) - slope * angle + constant
+            angle = angle - missed / (ratio * (ratio - np.cos(angle)) / away - slope)
+        missed = _direction(ratio, angle) - slope * angle + constant
+    return np.where((np.abs(missed) <= CLOSE) & (np.abs(angle) < FARTHEST), angle, np.nan)
+
+
+def _direction(ratio: Float, angle: Float) -> Float:
+    direction: Float = np.arctan(ratio * np.sin(angle) / (ratio * np.cos(angle) - 1.0))
+    return direction
 
 
 def _trochoid(centre: Float, pitch: Float, turned: Float, distance: Float) -> Float:
-    """Return the radius of curvature of the path of the rounding's centre (Euler and Savary)."""
+    """Return the radius of curvature of the path of the rounding's centre (Euler and Savary).
+
+    Lengths are counted from the pitch point outward: below 0 where the centre lies on the near side.
+    """
     outward = centre * np.cos(turned) - pitch
-    away = np.hypot(centre * np.sin(turned), outward)
+    away = np.copysign(np.hypot(centre * np.sin(turned), outward), outward)
     rolling = pitch * (pitch + distance) / distance  # 1 / (1/pitch of the cutter - 1/pitch of the ring)
     return away**2 / (away + rolling * outward / away)
 

@@ -9,6 +9,8 @@ BASE = "0 in the calculation; effects act here"
 INVOLUTE = "ISO 21771"
 TOOTH = "ISO 6336-3: rack, tangent of 30°, load at the tip"
 SUBSTITUTE = "GB/T 3480-1997: the tooth of a substitute rack, load at the tip"
+ENVELOPE = "ISO 6336-3: envelope of the rounded tip of the cutter, tangent of 60°, load at the tip"
+CUT = "0 without a cutter; else of the ring as cut: "
 RULE = "common design rule"
 
 
@@ -144,21 +146,35 @@ class Meshing:
         formula="(1.2 + 0.13 * root_chord_roller / bending_arm_roller)"
         " * notch_roller**(1 / (1.21 + 2.3 * bending_arm_roller / root_chord_roller))",
     )  # fmt: skip
+    cut_chord_ring: Float = found("", symbol="s_FI,0*", note=CUT + "critical section, in modules", method=ENVELOPE)
+    cut_fillet_ring: Float = found("", symbol="rho_FI,0*", note=CUT + "radius of the fillet there", method=ENVELOPE)
+    cut_arm_ring: Float = found("", symbol="h_FI,0*", note=CUT + "bending arm, in modules", method=ENVELOPE)
+    cut_angle_ring: Float = found("deg", symbol="alpha_FI,0", note=CUT + "angle of the load at the tip",
+                                  method=ENVELOPE)  # fmt: skip
     root_chord_ring: Float = found(
         "", symbol="s_FI*", note="critical section of the ring, in modules", source=SUBSTITUTE,
-        formula="2 * (pi / 4 + (addendum + clearance - ring_fillet) * tan(pressure_angle)"
-        " + ring_fillet / cos(pressure_angle) - ring_fillet * cos(pi / 6))",
+        formula="cases(cut_chord_ring, cutter_teeth > 0,"
+        " 2 * (pi / 4 + (addendum + clearance - ring_fillet) * tan(pressure_angle)"
+        " + ring_fillet / cos(pressure_angle) - ring_fillet * cos(pi / 6)))",
     )  # fmt: skip
+    root_fillet_ring: Float = found("", symbol="rho_FI*", note="radius of its fillet there, in modules",
+                                    formula="cases(cut_fillet_ring, cutter_teeth > 0, ring_fillet)",
+                                    source=SUBSTITUTE)  # fmt: skip
+    load_angle_ring: Float = found("deg", symbol="alpha_FI", note="of the load at the tip of the ring",
+                                   formula="cases(cut_angle_ring, cutter_teeth > 0, pressure_angle)",
+                                   source=SUBSTITUTE)  # fmt: skip
     bending_arm_ring: Float = found(
         "", symbol="h_FI*", note="bending arm of the ring, in modules", source=SUBSTITUTE,
-        formula="2 * addendum + clearance - (pi / 4 - addendum * tan(pressure_angle)) * tan(pressure_angle)"
-        " - ring_fillet / 2",
+        formula="cases(cut_arm_ring, cutter_teeth > 0, 2 * addendum + clearance"
+        " - (pi / 4 - addendum * tan(pressure_angle)) * tan(pressure_angle) - ring_fillet / 2)",
     )  # fmt: skip
-    form_factor_ring: Float = found("", symbol="Y_Fa,I", note="form factor of the ring: neither its teeth nor its "
-                                    "shift matter", source=SUBSTITUTE,
-                                    formula="6 * bending_arm_ring / root_chord_ring**2")  # fmt: skip
+    form_factor_ring: Float = found(
+        "", symbol="Y_Fa,I", note="form factor of the ring; as a rack it depends on neither teeth nor shift",
+        source=SUBSTITUTE,
+        formula="6 * bending_arm_ring * cos(load_angle_ring) / (root_chord_ring**2 * cos(pressure_angle))",
+    )  # fmt: skip
     notch_ring: Float = found("", symbol="q_s,I", note="notch parameter of the ring; stated for 1 to 8",
-                              formula="root_chord_ring / (2 * ring_fillet)", source=SUBSTITUTE)  # fmt: skip
+                              formula="root_chord_ring / (2 * root_fillet_ring)", source=SUBSTITUTE)  # fmt: skip
     stress_correction_ring: Float = found(
         "", symbol="Y_Sa,I", note="stress correction factor of the ring", source=SUBSTITUTE,
         formula="(1.2 + 0.13 * root_chord_ring / bending_arm_ring)"

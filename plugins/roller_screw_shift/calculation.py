@@ -11,14 +11,14 @@ from roller_screw_shift.constraints import margins_at
 from roller_screw_shift.feasibility import require_pair, require_roots
 from roller_screw_shift.loads import load_of
 from roller_screw_shift.quantities import Pair
-from roller_screw_shift.strength import Tooth, acting, ring_tooth, roller_fillet, roller_tooth
+from roller_screw_shift.strength import Tooth, acting, is_cut, ring_tooth, roller_fillet, roller_tooth
 
 
 def roller_screw_shift(pair: Pair) -> Meshing:
     """The pair at one shift or at a batch of them; every Float is a number or an array (n,), SI."""
     geometry, fillet = geo.geometry_of(pair), roller_fillet(pair)
     require_pair(pair, geometry)
-    roller, ring = roller_tooth(pair), ring_tooth(pair)
+    roller, ring = roller_tooth(pair), ring_tooth(pair, geometry)
     require_roots(pair, roller, ring, fillet)
     return Meshing(
         **_circles(geometry),
@@ -28,9 +28,8 @@ def roller_screw_shift(pair: Pair) -> Meshing:
         fillet_height_roller=fillet.height,
         tangent_constant_roller=fillet.constant,
         tangent_angle_roller=fillet.angle,
-        load_angle_roller=roller.arm.angle,
-        root_fillet_roller=roller.root.fillet,
         **_roots(roller, ring),
+        **_cut(pair, ring),
         root_stress_roller=roller.stress * acting(pair),
         root_stress_ring=ring.stress * acting(pair) * pair.rim_factor,
         shift_sum=pair.roller_shift + geometry.ring_shift,
@@ -72,9 +71,17 @@ def _roots(roller: Tooth, ring: Tooth) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for gear, tooth in (("roller", roller), ("ring", ring)):
         found[f"root_chord_{gear}"] = tooth.root.chord
+        found[f"root_fillet_{gear}"] = tooth.root.fillet
+        found[f"load_angle_{gear}"] = tooth.arm.angle
         found[f"bending_arm_{gear}"] = tooth.arm.height
         found[f"form_factor_{gear}"] = tooth.form
         found[f"notch_{gear}"] = notch(tooth.root)
         found[f"stress_correction_{gear}"] = tooth.correction
         found[f"nominal_stress_{gear}"] = tooth.stress
     return found
+
+
+def _cut(pair: Pair, ring: Tooth) -> dict[str, Any]:
+    """Return the section that a cutter leaves by the names of its results; 0 where the ring is taken as a rack."""
+    section = {"chord": ring.root.chord, "fillet": ring.root.fillet, "arm": ring.arm.height, "angle": ring.arm.angle}
+    return {f"cut_{name}_ring": np.where(is_cut(pair), value, 0.0) for name, value in section.items()}

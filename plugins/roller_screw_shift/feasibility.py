@@ -5,7 +5,7 @@ import numpy as np
 from gear_geometry.roots import Fillet, gap_offset
 from roller_screw_shift.geometry import Geometry, involute_margin
 from roller_screw_shift.quantities import Pair
-from roller_screw_shift.strength import Tooth, ring_rack
+from roller_screw_shift.strength import Tooth, is_cut, ring_rack
 from truing import Float, feasible
 
 FEWEST = 8  # teeth of the ring beyond those of the roller
@@ -45,11 +45,19 @@ def require_pair(pair: Pair, geometry: Geometry) -> None:
 
 def require_roots(pair: Pair, roller: Tooth, ring: Tooth, fillet: Fillet) -> None:
     """Refuse teeth without a critical section; ``fillet`` is that of the rack of the roller."""
-    for gear, offset in (("roller", fillet.offset), ("ring", gap_offset(ring_rack(pair)))):
+    for gear, offset, cut in (("roller", fillet.offset, False), ("ring", gap_offset(ring_rack(pair)), is_cut(pair))):
         feasible(
-            np.asarray(offset) >= 0.0,
+            cut | (np.asarray(offset) >= 0.0),
             f"the rack of the {gear} is pointed before it is round: reduce {gear}_fillet, addendum or clearance",
         )
+    feasible(
+        ~is_cut(pair) | (pair.cutter_teeth <= pair.ring_teeth - FEWEST),
+        f"the cutter does not fit into the ring: cutter_teeth must be at least {FEWEST} below ring_teeth",
+    )
+    feasible(
+        ~is_cut(pair) | np.isfinite(ring.root.chord + ring.arm.height),
+        "the cutter makes no such ring: its tip is pointed before it is round; reduce cutter_fillet or cutter_addendum",
+    )
     feasible(
         np.isfinite(fillet.angle),
         "the fillet of the roller has no tangent of 30 degrees: reduce roller_shift or enlarge roller_teeth",

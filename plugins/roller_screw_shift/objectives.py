@@ -26,7 +26,7 @@ def objectives_of(pair: Pair) -> Objectives:
     """
     with np.errstate(all="ignore"):
         geometry = geometry_of(pair)
-        difference = np.abs(roller_tooth(pair).stress - ring_tooth(pair).stress)
+        difference = np.abs(roller_tooth(pair).stress - ring_tooth(pair, geometry).stress)
         return Objectives(
             shift_sum=pair.roller_shift + geometry.ring_shift,
             stress_difference=difference,

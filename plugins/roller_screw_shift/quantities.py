@@ -45,6 +45,14 @@ class Pair:
                                  source=SET, at_least=0, at_most=1)  # fmt: skip
     ring_fillet: Float = given(0.15, "", symbol="rho_I*", note="fillet radius of the substitute rack of the ring",
                                source="GB/T 3480-1997", at_least=0, at_most=1)  # fmt: skip
+    cutter_teeth: Float = given(None, "", symbol="z_0", note="teeth of the shaper cutter that makes the ring; without "
+                                "them the ring is a substitute rack", at_least=8, at_most=1000, whole=True)  # fmt: skip
+    cutter_shift: Float = given(0.0, "", symbol="x_0", note="profile shift of the cutter: worn ones have less",
+                                at_least=-1, at_most=1)  # fmt: skip
+    cutter_addendum: Float = given(None, "", symbol="h_a0*", note="addendum of the cutter, in modules; else that of "
+                                   "the ring and its clearance", above=0, at_most=3)  # fmt: skip
+    cutter_fillet: Float = given(0.15, "", symbol="rho_a0*", note="radius at the tip of the cutter, in modules",
+                                 source="as that of the substitute rack", above=0, at_most=1)  # fmt: skip
     centre_distance: Float = size(19.80778, "a_w", "working centre distance, fixed by the threads", CALIBRATED_SHIFTS)
     face_width: Float = size(4.0, "b", "face width")
     roller_shift: Float = given(

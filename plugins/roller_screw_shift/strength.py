@@ -3,7 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from gear_geometry.cut_rings import Cutter, cut_ring_arm, cut_ring_root
 from gear_geometry.roots import (
     Arm,
     Fillet,
@@ -17,9 +19,10 @@ from gear_geometry.roots import (
     ring_root,
     stress_correction,
 )
+from roller_screw_shift.geometry import Geometry
 from roller_screw_shift.loads import load_of
 from roller_screw_shift.quantities import Pair
-from truing import Float
+from truing import Float, either
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,11 +62,35 @@ def roller_tooth(pair: Pair) -> Tooth:
     return _tooth(pair, root, external_arm(rack, teeth, shift, root, teeth + 2.0 * (pair.addendum + shift)))
 
 
-def ring_tooth(pair: Pair) -> Tooth:
-    """Return the tooth of the ring as that of a substitute rack. Source: GB/T 3480-1997."""
+def ring_tooth(pair: Pair, geometry: Geometry) -> Tooth:
+    """Return the tooth of the ring: that of a substitute rack, or where a cutter is given the one that it leaves.
+
+    Sources: GB/T 3480-1997 (as DIN 3990-3), section at the tangent of 30 degrees; ISO 6336-3, at that of 60 degrees.
+    """
     rack = ring_rack(pair)
     root = ring_root(rack)
-    return _tooth(pair, root, ring_arm(rack, root, pair.addendum))
+    arm = ring_arm(rack, root, pair.addendum)
+    cut = is_cut(pair)
+    if np.any(cut):
+        cut_root, cut_arm = cut_section(pair, geometry)
+        root = Root(**{name: np.where(cut, value, getattr(root, name)) for name, value in vars(cut_root).items()})
+        arm = Arm(**{name: np.where(cut, value, getattr(arm, name)) for name, value in vars(cut_arm).items()})
+    return _tooth(pair, root, arm)
+
+
+def is_cut(pair: Pair) -> NDArray[np.bool_]:
+    """Return whether the ring is made by a cutter; else it is taken as a rack."""
+    return ~np.isnan(np.asarray(pair.cutter_teeth, dtype=float))
+
+
+def cut_section(pair: Pair, geometry: Geometry) -> tuple[Root, Arm]:
+    """Return section and arm of the ring as its cutter leaves it; NaN where none is given or it makes no such ring."""
+    addendum = either(pair.cutter_addendum, pair.addendum + pair.clearance)
+    cutter = Cutter(teeth=pair.cutter_teeth, shift=pair.cutter_shift, addendum=addendum, fillet=pair.cutter_fillet)
+    with np.errstate(all="ignore"):
+        root = cut_ring_root(cutter, pair.ring_teeth, geometry.ring_shift, pair.pressure_angle)
+        tip = geometry.ring.tip_radius / pair.module
+        return root, cut_ring_arm(root, pair.ring_teeth, geometry.ring_shift, tip, pair.pressure_angle)
 
 
 def _tooth(pair: Pair, root: Root, arm: Arm) -> Tooth:

@@ -12,6 +12,9 @@ CASES = [
     (Cutter(teeth=25.0, shift=0.1, addendum=1.1, fillet=0.15), 100.0, -0.16),
     (Cutter(teeth=18.0, shift=0.2, addendum=1.25, fillet=0.2), 60.0, 0.4),
     (Cutter(teeth=40.0, shift=-0.1, addendum=1.25, fillet=0.25), 160.0, 0.0),
+    # a large shift of the ring: the centre of the rounding lies within the working pitch circle of the cutter
+    (Cutter(teeth=32.0, shift=-0.23, addendum=1.27, fillet=0.2456), 53.0, 0.387),
+    (Cutter(teeth=40.0, shift=-0.2, addendum=1.25, fillet=0.25), 80.0, 2.5),
 ]
 
 
@@ -104,6 +107,20 @@ def test_the_force_at_the_tip_meets_the_axis_of_the_tooth_where_its_line_does(
 def test_a_cutter_whose_tip_is_pointed_before_it_is_round_makes_nothing() -> None:
     root = cut_ring_root(Cutter(teeth=25.0, shift=0.0, addendum=1.25, fillet=0.5), 100.0, 0.0, ALPHA)
     assert np.isnan(root.chord)
+
+
+def test_all_rings_of_a_wide_range_have_a_section_of_their_size_or_none() -> None:
+    rng = np.random.default_rng(7)
+    teeth = rng.integers(8, 80, 4000).astype(float)
+    cutter = Cutter(teeth=teeth, shift=rng.uniform(-1.0, 1.0, 4000), addendum=1.1, fillet=rng.uniform(0.01, 0.4, 4000))
+    with np.errstate(invalid="ignore"):
+        root = cut_ring_root(cutter, teeth + rng.integers(8, 120, 4000), rng.uniform(-0.5, 3.0, 4000), ALPHA)
+    chord, fillet = np.asarray(root.chord), np.asarray(root.fillet)
+    made = np.isfinite(chord)
+    assert 0.5 < made.mean() < 1.0
+    assert chord[made].min() > 1.5
+    assert chord[made].max() < 4.0
+    assert fillet[made].min() > 0.0
 
 
 def test_a_batch_is_the_same_as_one_by_one() -> None:

@@ -30,6 +30,8 @@ REFUSED = [
     ({"ring_fillet": 0.6}, "rack of the ring is pointed before it is round: reduce ring_fillet"),
     ({"roller_shift": 2.2, "roller_teeth": 9.0, "ring_teeth": 89.0}, "no tangent of 30 degrees: reduce roller_shift"),
     ({"ring_fillet": 0.0}, "the root of the ring has no radius: ring_fillet must be greater than 0"),
+    ({"cutter_teeth": 93.0}, "cutter_teeth must be at least 8 below ring_teeth"),
+    ({"cutter_teeth": 25.0, "cutter_fillet": 0.6}, "the cutter makes no such ring: its tip is pointed"),
     ({"addendum": 0.02, "clearance": 0.0, "roller_fillet": 0.2}, "has no arm about its root: enlarge addendum"),
 ]
 

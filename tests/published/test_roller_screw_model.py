@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from traced_gears import ALPHA, Flanks, line_of_action_meets, swept_root
 
+from gear_geometry.cut_rings import Cutter, cut_ring_arm, cut_ring_root
+from gear_geometry.roots import form_factor, stress_correction
 from roller_screw_shift.answers import Meshing
 from roller_screw_shift.constraints import margins_of
 from roller_screw_shift.loads import load_of
@@ -13,6 +15,7 @@ from roller_screw_shift.model import ROLLER_SCREW_SHIFT
 from roller_screw_shift.objectives import objectives_of
 from roller_screw_shift.quantities import Pair
 from truing.evaluate import evaluate_rows
+from truing.formulas import evaluate, parse
 from truing.setup import default_setup
 
 # Neutral input, a value, what it makes of the root stress of the roller and of the ring
@@ -62,6 +65,43 @@ def test_the_nominal_stress_of_the_roller_is_that_of_a_beam(shift: float) -> Non
     bending = force * across * (meets - depth) * 0.5e-3 / (4e-3 * (chord * 0.5e-3) ** 2 / 6.0)
     nominal = float(answer.nominal_stress_roller / answer.stress_correction_roller)
     assert nominal == pytest.approx(bending, rel=1e-6)
+
+
+@pytest.mark.parametrize(("teeth", "shift", "addendum"), [(25.0, 0.0, None), (20.0, 0.2, 1.15)])
+def test_a_ring_that_a_cutter_makes(teeth: float, shift: float, addendum: float | None) -> None:
+    """Section and arm are those of the swept cutter (tested with gear geometry), and every printed formula holds."""
+    pair = pair_of(
+        cutter_teeth=teeth, cutter_shift=shift, **({} if addendum is None else {"cutter_addendum": addendum})
+    )
+    answer = answer_of(pair)
+    cutter = Cutter(teeth=teeth, shift=shift, addendum=addendum or 0.8 + 0.3, fillet=0.15)
+    root = cut_ring_root(cutter, 100.0, answer.ring_shift, ALPHA)
+    arm = cut_ring_arm(root, 100.0, answer.ring_shift, answer.tip_radius_ring / 0.5e-3, ALPHA)
+    expected = 51.943 / 2.0 * form_factor(root, arm, ALPHA) * stress_correction(root, arm)
+    assert float(answer.root_stress_ring) / 1e6 == pytest.approx(float(expected), rel=1e-12)
+    values = {**ROLLER_SCREW_SHIFT.read_inputs(pair), **ROLLER_SCREW_SHIFT.read_results(answer)}
+    for name, item in ROLLER_SCREW_SHIFT.own_result_fields.items():
+        if text := getattr(item.spec, "formula", ""):
+            missed = evaluate(parse(text), values)
+            wanted = 0.0 if parse(text).left is not None else float(values[name])
+            assert missed == pytest.approx(wanted, rel=1e-9, abs=1e-12), name
+
+
+def test_with_a_cutter_the_difference_of_the_stresses_reaches_0() -> None:
+    """The printed range of the second objective begins at 0, which the substitute rack cannot give."""
+    shifts = np.linspace(-0.05, 0.25, 301)
+    rack = np.asarray(objectives_of(pair_of(roller_shift=shifts)).stress_difference)
+    cut = np.asarray(objectives_of(pair_of(roller_shift=shifts, cutter_teeth=25.0)).stress_difference)
+    assert rack.min() > 27e6
+    assert cut.min() < 0.1e6
+
+
+def test_some_rings_of_a_batch_are_cut() -> None:
+    answer = answer_of(pair_of(cutter_teeth=np.array([np.nan, 25.0, np.nan])))
+    stress, chord = np.asarray(answer.root_stress_ring), np.asarray(answer.cut_chord_ring)
+    assert stress[0] == stress[2] == float(answer_of(pair_of()).root_stress_ring)
+    assert stress[1] == float(answer_of(pair_of(cutter_teeth=25.0)).root_stress_ring)
+    assert chord[0] == chord[2] == 0.0 < chord[1]
 
 
 def test_neither_teeth_nor_shift_of_the_ring_matter_to_its_stress() -> None:
