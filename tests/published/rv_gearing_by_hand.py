@@ -249,7 +249,8 @@ def rate(c: Case) -> Case:
     deep = 1.0 if eps_an <= 2.05 or c["Q"] > 4 else 2.366 - 0.666 * eps_an if eps_an <= 2.5 else 0.7
     found: Case = {
         "centre_distance": g["a"], "working_angle": degrees(g["alpha_wt"]), "contact_ratio": eps_a,
-        "overlap_ratio": eps_b, "backlash": 1000 * g["backlash"], "tangential_force": force, "pitch_line_velocity": v, "line_load": w,
+        "overlap_ratio": eps_b, "backlash": 1000 * g["backlash"], "tangential_force": force,
+        "pitch_line_velocity": v, "line_load": w,
         "tooth_stiffness": stiff[0], "mesh_stiffness": stiff[1], "pitch_left": left[0], "profile_left": left[1],
         "resonance_ratio": k["resonance_ratio"], "resonance_limit": k["resonance_limit"], "dynamic_factor": k["K_V"],
         "resonance_speed": k["resonance_speed"], "reduced_mass": k["reduced_mass"], "face_factor": k_hb,
