@@ -1,9 +1,9 @@
 """How much faster is the strength of many first stages in one array call than stage by stage?
 
-Run it: ``python -m pytest tests/benchmarks/bench_rv_gearing.py --benchmark-enable -s``, or as a script, which prints the
-figures. The baseline calls the calculation itself once for each stage, with plain numbers and the inputs ready made, on
-a sample of the stages, and is scaled to all of them. Both are measured alternately in one process, in time of the
-processor, and the least of each counts.
+Run it: ``python -m pytest tests/benchmarks/bench_rv_gearing.py --benchmark-enable -s``, or as a script, which prints
+the figures. The baseline calls the calculation itself once for each stage, with plain numbers and the inputs ready
+made, on a sample of the stages, and is scaled to all of them. Both are measured alternately in one process, in time of
+the processor, and the least of each counts.
 """
 
 import time

@@ -15,6 +15,9 @@ from rv_gearing.model import RV_GEARING
 from rv_gearing.steel import CURVES, steel_of
 from truing.declare.batch import watching
 from truing.errors import InfeasibleError
+from truing.setup import default_setup
+from truing.testing.formulas import formulas_equal_the_function, formulas_have_the_unit
+from truing.testing.subject import Subject
 from truing.units import from_si
 
 TEETH = {"sun_teeth": 20.0, "planet_teeth": 55.0}
@@ -113,6 +116,21 @@ def test_the_random_pairs_reach_every_branch() -> None:
         assert truths.any()
     assert {case["material"] for case in cases} == set(CURVES)
     assert {case["form"] for case in cases} == set(by_hand.WEIGHTS)
+
+
+@pytest.mark.parametrize("seed", range(100, 116))
+def test_every_printed_formula_is_what_is_calculated_in_every_branch(seed: int) -> None:
+    """The kit compares them near the defaults, a spur pair; here far from them, with factors stated and effects on."""
+    rng = np.random.default_rng(seed)
+    known: dict[str, Any] = {name: item[0] for name, item in STATED.items() if rng.random() < 0.3}
+    known |= {"extra_misalignment": rng.uniform(-5e-6, 20e-6), "sharing_error": rng.uniform(-1e-6, 5e-6),
+              "relief_deviation": rng.uniform(-1e-6, 5e-6), "carrying_share": rng.uniform(0.3, 1.0),
+              "extra_dynamic_factor": rng.uniform(0.0, 0.5), "single_contact": bool(rng.random() < 0.7)}  # fmt: skip
+    inputs = RV_GEARING.inputs(**stated(random_case(seed)) | known)
+    subject = Subject(RV_GEARING)
+    subject.__dict__["setup"] = replace(default_setup(RV_GEARING), inputs=inputs)
+    formulas_have_the_unit(subject)
+    formulas_equal_the_function(subject)
 
 
 # The dynamic factor over its ranges, ISO 6336-1:2006, 6.5
