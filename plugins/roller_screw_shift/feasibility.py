@@ -1,6 +1,7 @@
 """What a pair needs before it can be calculated: the sentence names the inputs and what to do."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gear_geometry.roots import Fillet, gap_offset
 from roller_screw_shift.geometry import Geometry, involute_margin
@@ -77,6 +78,7 @@ def require_roots(pair: Pair, roller: Tooth, ring: Tooth, fillet: Fillet) -> Non
         )
 
 
-def _real(angle: Float) -> Float:
+def _real(angle: Float) -> NDArray[np.bool_]:
     """Whether an angle exists and is one of a pair that turns."""
-    return np.asarray(angle) > 0.0
+    real: NDArray[np.bool_] = np.asarray(angle) > 0.0
+    return real
