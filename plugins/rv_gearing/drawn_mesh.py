@@ -7,7 +7,7 @@ import numpy as np
 
 from gear_geometry.roots import Rack
 from rv_gearing.drawn_look import BLUE, GREY, INK, MM, ORANGE, PLANET_FILL, SUN_FILL, WIDTH, number, rack_of
-from rv_gearing.tooth_form import gear, half_space, turned
+from rv_gearing.tooth_form import gear, half_space, tooth, turned
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -16,15 +16,20 @@ if TYPE_CHECKING:
     from rv_gearing.quantities import Gearing
     from rv_gearing.tooth_form import Values
 
+COARSE, FINE = 10, 90  # points of a flank
 CLOSE = 3.1  # modules around the pitch point that are shown of the mesh
 NAMES = {"A": (-9, -11), "B": (-9, 6), "C": (8, -10), "D": (7, -11), "E": (7, 5)}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Wheel:
-    """One gear in the transverse section: outline (2, points) and radii in mm; the flank stands on the pitch point."""
+    """One gear in the transverse section, in mm; a flank stands on the pitch point.
+
+    ``outline`` (2, points) is the whole gear, coarsely; ``teeth`` those around the pitch point, finely.
+    """
 
     outline: "Values"
+    teeth: "Values"
     base: float
     tip: float
     pitch: float
@@ -82,8 +87,23 @@ def _wheel(record: "Run", stage: "Gearing", name: str, pitch: float, unit: float
     teeth, tip = number(record, f"teeth_{name}"), MM * number(record, f"tip_diameter_{name}") / 2.0
     rack, shift = _transverse(record, stage, name)
     half = float(np.pi / teeth - half_space(rack, teeth, shift, np.array([pitch / unit]))[0])
-    outline = unit * turned(gear(rack, teeth, shift, tip / unit), half + (np.pi if name == "planet" else 0.0))
-    return Wheel(outline=outline, base=MM * number(record, f"base_diameter_{name}") / 2.0, tip=tip, pitch=pitch)
+    turn = half + (np.pi if name == "planet" else 0.0)
+    coarse, fine = (tooth(rack, teeth, shift, tip / unit, points) for points in (COARSE, FINE))
+    return Wheel(
+        outline=unit * turned(gear(coarse, teeth), turn),
+        teeth=unit * turned(gear(fine, teeth, _around(teeth, pitch / unit)), turn),
+        base=MM * number(record, f"base_diameter_{name}") / 2.0,
+        tip=tip,
+        pitch=pitch,
+    )
+
+
+def _around(teeth: float, pitch: float) -> int | None:
+    """How many teeth to either side of the pitch point fill the view; None for all of a small gear."""
+    inner = pitch - CLOSE
+    if inner < 0.5 * CLOSE:
+        return None
+    return int(np.ceil(np.arctan2(1.1 * CLOSE, inner) * teeth / (2.0 * np.pi))) + 1
 
 
 def _transverse(record: "Run", stage: "Gearing", name: str) -> tuple[Rack, float]:
@@ -141,8 +161,8 @@ def _close(panel: Any, meshing: Meshing) -> None:
     """Flanks around the pitch point, the line of action between the base circles and the path of contact on it."""
     from matplotlib.patches import Circle
 
-    _fill(panel, meshing.sun.outline, (SUN_FILL, BLUE), 1.2)
-    _fill(panel, meshing.planet.outline + np.array([[0.0], [meshing.distance]]), (PLANET_FILL, ORANGE), 1.2)
+    _fill(panel, meshing.sun.teeth, (SUN_FILL, BLUE), 1.2)
+    _fill(panel, meshing.planet.teeth + np.array([[0.0], [meshing.distance]]), (PLANET_FILL, ORANGE), 1.2)
     for height, wheel, colour in ((0.0, meshing.sun, BLUE), (meshing.distance, meshing.planet, ORANGE)):
         for radius, dashes in ((wheel.base, (0, (1, 2))), (wheel.pitch, (0, (7, 2, 1, 2)))):
             panel.add_patch(

@@ -38,12 +38,12 @@ def undercut(rack: Rack, teeth: float, shift: float) -> bool:
     return bool(depth > 0.5 * teeth * np.sin(alpha) ** 2)
 
 
-def trochoid(rack: Rack, teeth: float, shift: float) -> "tuple[Values, Values]":
+def trochoid(rack: Rack, teeth: float, shift: float, points: int = FINE) -> "tuple[Values, Values]":
     """Return radius and half angle of the space along the fillet, from the root circle outward."""
     alpha, rho, reference = rack.pressure_angle, rack.fillet, 0.5 * teeth
     across = 0.25 * np.pi - rack.dedendum * np.tan(alpha) - (1.0 - np.sin(alpha)) * rho / np.cos(alpha)
     inward = rho - rack.dedendum + shift  # centre of the rounded tip from the rolling line, outward above 0
-    roll = np.linspace(across / reference, (across + inward / np.tan(alpha)) / reference, FINE)
+    roll = np.linspace(across / reference, (across + inward / np.tan(alpha)) / reference, points)
     to_tip = np.array([across - reference * roll, np.full_like(roll, inward)])
     length = np.hypot(*to_tip)
     unit = np.where(length > 0.0, to_tip / np.maximum(length, 1e-300), np.array([[0.0], [-1.0]]))
@@ -54,16 +54,20 @@ def trochoid(rack: Rack, teeth: float, shift: float) -> "tuple[Values, Values]":
     return np.maximum.accumulate(radius[:outermost]), angle[:outermost]
 
 
-def tooth(rack: Rack, teeth: float, shift: float, tip_radius: float) -> "Values":
-    """Return the outline of one tooth (2, points) from the middle of one space over the tip to that of the next."""
+def tooth(rack: Rack, teeth: float, shift: float, tip_radius: float, points: int = 2 * FINE) -> "Values":
+    """Return the outline of one tooth (2, k) from the middle of one space over the tip to that of the next.
+
+    ``points`` stand on each flank with its fillet; further ones, a tenth of them, on half the root and half the tip.
+    """
     root = 0.5 * teeth - rack.dedendum + shift
-    spread = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 2 * FINE))
+    spread = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, points))
     radii = root + (tip_radius - root) * spread
     half_tooth = np.maximum(np.pi / teeth - half_space(rack, teeth, shift, radii), 0.0)
-    floor = np.linspace(np.pi / teeth, half_tooth[0], 6, endpoint=False)
-    top = np.linspace(half_tooth[-1], 0.0, 6)[1:]
+    few = max(points // 10, 2)
+    floor = np.linspace(np.pi / teeth, half_tooth[0], few, endpoint=False)
+    top = np.linspace(half_tooth[-1], 0.0, few)[1:]
     angle = np.concatenate([floor, half_tooth, top])
-    radius = np.concatenate([np.full(6, root), radii, np.full(5, tip_radius)])
+    radius = np.concatenate([np.full(few, root), radii, np.full(few - 1, tip_radius)])
     right = np.array([radius * np.sin(angle), radius * np.cos(angle)])
     left = right[:, ::-1] * np.array([[-1.0], [1.0]])
     return np.concatenate([right, left[:, 1:]], axis=1)[:, ::-1]
@@ -75,8 +79,13 @@ def turned(points: "Values", angle: float) -> "Values":
     return np.array([[cosine, -sine], [sine, cosine]]) @ points
 
 
-def gear(rack: Rack, teeth: float, shift: float, tip_radius: float) -> "Values":
-    """Return the closed outline of the whole gear (2, points); a tooth points along +y."""
-    one = tooth(rack, teeth, shift, tip_radius)
+def gear(one: "Values", teeth: float, around: int | None = None) -> "Values":
+    """Return the outline of a gear (2, points) from that of one of its teeth; a tooth points along +y.
+
+    Closed, or with ``around`` so many teeth to either side of that tooth, and the centre of the gear.
+    """
     pitch = 2.0 * np.pi / teeth
-    return np.concatenate([turned(one, -place * pitch) for place in range(round(teeth))], axis=1)
+    if around is None or 2 * around + 1 >= round(teeth):
+        return np.concatenate([turned(one, -place * pitch) for place in range(round(teeth))], axis=1)
+    some = [turned(one, -place * pitch) for place in range(-around, around + 1)]
+    return np.concatenate([*some, np.zeros((2, 1))], axis=1)

@@ -1,0 +1,330 @@
+"""Studies and figures of the gearing: what they list and draw is what holds.
+
+Teeth are compared with the tangent of 30 degrees found on their own outline, the mesh with the contact ratio, and lists
+with single calculations.
+"""
+
+import json
+import warnings
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from gear_geometry.roots import Rack, external_root
+from rv_gearing import drawn
+from rv_gearing.calculation import rv_gearing
+from rv_gearing.capacity import SAFETIES, Capacity, Reserve, Safeties, rating
+from rv_gearing.drawn_groups import groups_figure, stresses_figure
+from rv_gearing.drawn_mesh import mesh_figure, meshing_of
+from rv_gearing.drawn_tooth import notched_of
+from rv_gearing.model import RV_GEARING
+from rv_gearing.search import SIZES, STRENGTH, Column, Found, Search, listed
+from rv_gearing.tooth_form import half_space, tooth, trochoid, undercut
+from truing import Drawing, Swept, Table, TruingError, Words
+from truing.calculation import Calculation, calculate
+from truing.report.figures import draw
+from truing.setup import default_setup
+
+RACK = Rack(dedendum=1.25, fillet=0.38, pressure_angle=np.radians(20.0))
+
+
+def run(*studies: Any, **inputs: Any) -> Calculation:
+    return calculate(replace(default_setup(RV_GEARING, **inputs), studies=studies))
+
+
+def found(calculation: Calculation) -> Found:
+    outcome = calculation.outcomes["search"]
+    assert isinstance(outcome, Found)
+    return outcome
+
+
+# ---- the list of groups -------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def whole() -> Calculation:
+    """All studies of the list and of the safeties, with their defaults."""
+    wanted = {"search", "capacity", "load", "face_width"}
+    return run(*(study for study in RV_GEARING.studies if study.name in wanted))
+
+
+@pytest.mark.parametrize("number", [1, 5, 13, 25])
+def test_strength_in_the_list_is_that_of_a_calculation_of_its_own(whole: Calculation, number: int) -> None:
+    alone = RV_GEARING.read_results(rv_gearing(RV_GEARING.inputs(group=number)))
+    for name in STRENGTH:
+        assert found(whole).strength[name][number - 1] == pytest.approx(float(alone[name]), rel=1e-12)
+
+
+def test_the_list_is_a_result_of_the_run(whole: Calculation) -> None:
+    assert (whole.answers["group_count"], whole.answers["exact_count"]) == (25, 5)
+    assert whole.answers["group_number"].tolist() == list(range(1, 26))
+    assert whole.answers["group_sun_teeth"][4] == 23
+    assert whole.answers["group_planet_teeth"][4] == 63
+    for name in (*SIZES[2:], *STRENGTH):
+        assert whole.answers[f"group_{name}"].tolist() == found(whole).column(name).tolist()
+
+
+@pytest.mark.parametrize("column", ["group", *SIZES, *STRENGTH])
+@pytest.mark.parametrize("descending", [False, True])
+def test_the_list_is_sorted_by_any_column(whole: Calculation, column: Column, descending: bool) -> None:
+    told = replace(found(whole), sort_by=column, descending=descending).sorted()
+    key = np.abs(told.column(column)) if column == "deviation" else told.column(column)
+    assert np.all(np.diff(-key if descending else key) >= 0)
+    assert sorted(told.numbers) == list(range(1, 26))
+    at = told.numbers.tolist().index(7.0)
+    assert (told.groups.sun[at], told.groups.planet[at]) == (25, 69)
+
+
+def test_groups_with_just_the_wanted_ratio_keep_their_numbers() -> None:
+    told = found(run(Search(exact_only=True)))
+    assert (told.count, told.exact) == (25, 5)
+    assert told.numbers.tolist() == [1, 6, 11, 18, 25]
+    assert np.all(told.groups.ratio == 111.0)
+
+
+def test_the_rated_group_is_told() -> None:
+    assert found(run(Search(), group=5)).rated == 5
+    assert found(run(Search(), sun_teeth=28, planet_teeth=77)).rated == 11
+    stated = run(Search(), sun_teeth=14, planet_teeth=61, shift_sun=0.3)
+    assert found(stated).rated is None
+    assert any("stated teeth are none of the 25 groups" in words for words in found(stated).warnings())
+
+
+def test_an_empty_list_is_said_and_the_stated_teeth_are_rated() -> None:
+    calculation = run(Search(gives=listed), target_ratio=5000.0, sun_teeth=20, planet_teeth=55)
+    assert calculation.answers["group_count"] == 0
+    assert calculation.answers["group_ratio"].shape == (0,)
+    assert "no group of tooth numbers meets" in " ".join(found(calculation).warnings())
+    first = drawn.search(calculation.record)[0]
+    assert isinstance(first, Words)
+    assert first.text.startswith("No group of tooth numbers")
+    assert drawn.comparison(calculation.record) == []
+    assert float(calculation.answers["root_stress_sun"]) > 0
+    assert json.loads(json.dumps(found(calculation).as_json()))["count"] == 0
+
+
+def test_a_group_that_cannot_be_rated_stays_in_the_list() -> None:
+    """With this shift the smallest suns have pointed teeth; their strength is empty, not an error."""
+    calculation = run(Search(), sun_teeth=36, planet_teeth=99, shift_sun=1.3, shift_planet=-1.3)
+    told = found(calculation)
+    empty = np.isnan(told.strength["root_stress_sun"])
+    assert np.flatnonzero(empty).tolist() == [0, 1]
+    assert None in told.as_json()["groups"]["root_stress_sun"]["values"]
+    json.dumps(told.as_json(), allow_nan=False)
+    assert any(isinstance(block, Table) for block in drawn.comparison(calculation.record))
+
+
+def test_a_column_that_is_none_is_refused() -> None:
+    with pytest.raises(TruingError, match="the groups have no column 'price'"):
+        Search(sort_by="price")  # type: ignore[arg-type]
+
+
+# ---- capacity and courses -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("place", range(4))
+def test_at_its_torque_a_safety_is_just_what_is_asked(whole: Calculation, place: int) -> None:
+    reserve = whole.outcomes["capacity"]
+    assert isinstance(reserve, Reserve)
+    at = rv_gearing(RV_GEARING.inputs(load_torque=float(reserve.torque[place])))
+    safety = float(RV_GEARING.read_results(at)[SAFETIES[place]])
+    assert safety == pytest.approx(1.25 if place < 2 else 1.1, rel=1e-9)
+
+
+def test_the_flank_of_the_sun_governs_and_its_life_ends_first(whole: Calculation) -> None:
+    reserve = whole.outcomes["capacity"]
+    assert isinstance(reserve, Reserve)
+    assert reserve.governing == "pitting of the sun"
+    worn = rv_gearing(RV_GEARING.inputs(working_life=float(reserve.life[2])))
+    assert float(worn.sun.contact_safety) == pytest.approx(1.1, rel=1e-9)
+    assert np.isinf(reserve.life[:2]).all()
+    assert reserve.as_json()["limits"]["root_safety_sun"]["working_life"]["value"] is None
+    given = rating(reserve)
+    assert given.torque_capacity == min(reserve.torque)
+    more = float(given.torque_capacity) / float(whole.answers["output_torque"])
+    assert float(given.power_capacity) == pytest.approx(2260 * more, rel=1e-3)
+
+
+def test_a_stated_torque_of_the_sun_is_what_is_raised() -> None:
+    """The same load, stated at the sun instead of by the power."""
+    by_power, stated = (
+        run(Capacity(), **inputs).outcomes["capacity"]
+        for inputs in ({}, {"stated_sun_torque": float(rv_gearing(RV_GEARING.inputs()).duty.sun_torque)})
+    )
+    assert isinstance(by_power, Reserve)
+    assert isinstance(stated, Reserve)
+    assert stated.torque == pytest.approx(by_power.torque, rel=1e-9)
+
+
+def test_a_stage_that_is_too_weak_at_any_load_says_so() -> None:
+    reserve = run(Capacity(), bending_limit_sun="0.001 MPa").outcomes["capacity"]
+    assert isinstance(reserve, Reserve)
+    assert reserve.torque[0] == 0
+    table = reserve.blocks()[0]
+    assert isinstance(table, Table)
+    assert "always below" in table.rows[0]
+
+
+def test_an_idle_stage_has_a_capacity_too() -> None:
+    reserve = run(Capacity(gives=rating), load_torque=0.0).outcomes["capacity"]
+    loaded = run(Capacity(), load_torque=500.0).outcomes["capacity"]
+    assert isinstance(reserve, Reserve)
+    assert isinstance(loaded, Reserve)
+    assert reserve.torque == pytest.approx(loaded.torque, rel=1e-9)
+
+
+def test_courses_hold_the_four_safeties_and_fall_with_the_load(whole: Calculation) -> None:
+    for name, sign in (("load", -1.0), ("face_width", 1.0)):
+        swept = whole.outcomes[name]
+        assert isinstance(swept, Swept)
+        assert set(swept.results) == set(SAFETIES)
+        assert all(np.all(sign * np.diff(values) > 0) for values in swept.results.values())
+    swept = whole.outcomes["load"]
+    assert isinstance(swept, Swept)
+    alone = rv_gearing(RV_GEARING.inputs(load_torque=float(swept.axis[10])))
+    assert swept.results["contact_safety_sun"][10] == pytest.approx(float(alone.sun.contact_safety), rel=1e-12)
+
+
+# ---- teeth and mesh as they are drawn -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("teeth", "shift"), [(20, 0.0), (55, 0.0), (17, 0.3), (99, -0.4), (14, 0.4), (12, 0.1)])
+def test_the_outline_has_the_chord_of_the_standard(teeth: int, shift: float) -> None:
+    """The point of the trochoid whose tangent stands at 30 degrees to the axis of the tooth, found on the outline."""
+    radius, space = trochoid(RACK, teeth, shift, points=20_001)
+    across = radius * np.sin(np.pi / teeth - space)
+    up = radius * np.cos(np.pi / teeth - space)
+    slope = np.degrees(np.arctan2(-np.diff(across), np.diff(up)))  # of the tangent to the axis
+    middle = 0.5 * (across[1:] + across[:-1])
+    place = int(np.argmin(np.abs(slope - 30.0)))
+    root = external_root(RACK, float(teeth), shift)
+    assert 2.0 * middle[place] == pytest.approx(float(root.chord), rel=2e-4)
+    assert up[place] == pytest.approx(float(root.depth), rel=2e-4)
+
+
+@pytest.mark.parametrize(("teeth", "shift"), [(20, 0.0), (55, 0.2), (17, 0.3), (8, 0.0)])
+def test_the_outline_has_root_tip_and_thickness(teeth: int, shift: float) -> None:
+    """Thickness at the reference circle: pi/2 + 2 x tan alpha modules."""
+    outline = tooth(RACK, teeth, shift, 0.5 * teeth + 1.0 + shift)
+    radii = np.hypot(*outline)
+    assert (radii.min(), radii.max()) == (
+        pytest.approx(0.5 * teeth - 1.25 + shift),
+        pytest.approx(0.5 * teeth + 1 + shift),
+    )
+    space = half_space(RACK, teeth, shift, np.array([0.5 * teeth]))[0]
+    assert teeth * (np.pi / teeth - space) == pytest.approx(np.pi / 2 + 2 * shift * np.tan(np.radians(20)), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("teeth", "shift", "cut"), [(18, 0.0, False), (17, 0.0, True), (9, 0.0, True), (9, 0.5, False)]
+)
+def test_undercut_is_known_and_joins_without_a_step(teeth: int, shift: float, cut: bool) -> None:
+    """A rack that is straight down to one module undercuts below 2/sin^2(20) = 17.1 teeth, less with shift."""
+    assert undercut(RACK, teeth, shift) is cut
+    radii = np.linspace(0.5 * teeth - 1.25 + shift + 1e-6, 0.5 * teeth + 1.0 + shift, 4001)
+    space = half_space(RACK, teeth, shift, radii)
+    steps = np.abs(np.diff(radii[50:] * space[50:]))
+    assert steps.max() < 0.02
+
+
+PAIRS: list[dict[str, Any]] = [
+    {},
+    {"group": 25, "planets": 3},
+    {"sun_teeth": 14, "planet_teeth": 61, "shift_sun": 0.3, "shift_planet": -0.1},
+    {"sun_teeth": 17, "planet_teeth": 103, "module": "8 mm", "helix_angle": "15.8 deg", "shift_sun": 0.145},
+]
+
+
+@pytest.mark.parametrize("inputs", PAIRS)
+def test_flanks_touch_and_do_not_overlap(inputs: dict[str, Any]) -> None:
+    """Distances of the drawn outlines around the pitch point; a hundredth of a module is the step of the outline."""
+    from matplotlib.path import Path
+
+    calculation = run(**inputs)
+    meshing = meshing_of(calculation.record, calculation.record.inputs)
+    planet = meshing.planet.teeth + np.array([[0.0], [meshing.distance]])
+    close = np.abs(meshing.sun.teeth - np.array([[0.0], [meshing.sun.pitch]])).max(axis=0) < 3 * meshing.module
+    own = meshing.sun.teeth[:, close]
+    away = np.array([np.hypot(*(planet - point[:, None])).min() for point in own.T])
+    assert away.min() < 0.03 * meshing.module
+    inside = Path(planet.T).contains_points(own.T)
+    assert not np.any(inside) or away[inside].max() < 0.02 * meshing.module
+
+
+@pytest.mark.parametrize("inputs", PAIRS)
+def test_the_path_of_contact_is_as_long_as_the_contact_ratio_says(inputs: dict[str, Any]) -> None:
+    calculation = run(**inputs)
+    meshing = meshing_of(calculation.record, calculation.record.inputs)
+    path = meshing.path()
+    ratio = float(calculation.answers["contact_ratio"])
+    assert (path["E"] - path["A"]) / meshing.base_pitch == pytest.approx(ratio, rel=1e-12)
+    assert path["A"] < path["B"] < path["D"] < path["E"]
+    for name, centre, wheel in (("E", 0.0, meshing.sun), ("A", meshing.distance, meshing.planet)):
+        across, up = meshing.place(path[name])
+        assert np.hypot(across, up - centre) == pytest.approx(wheel.tip, rel=1e-12)
+
+
+def test_the_drawn_forces_have_the_arms_of_the_calculation() -> None:
+    calculation = run()
+    for one in notched_of(calculation.record, calculation.record.inputs):
+        assert one.single is not None
+        for kind, (_, arm) in (("tip", one.tip), ("outer", one.single)):
+            assert float(arm.height) == pytest.approx(float(calculation.answers[f"{kind}_arm_{one.name}"]), rel=1e-12)
+    diameter = notched_of(calculation.record, calculation.record.inputs)[0].single
+    assert diameter is not None
+    assert diameter[0] == pytest.approx(20.2414, abs=5e-5)  # modules
+
+
+# ---- figures -------------------------------------------------------------------------------------------------------
+
+
+def test_the_figure_of_the_groups_shows_each_and_rings_the_rated_one(whole: Calculation) -> None:
+    panel = groups_figure(found(whole)).axes[0]
+    shown = np.asarray(panel.collections[-1].get_offsets())
+    assert shown[:, 1] == pytest.approx(1e3 * found(whole).groups.centre_distance)
+    assert shown[:, 0] == pytest.approx(100 * (found(whole).groups.ratio / 111 - 1))
+    ring = next(line for line in panel.get_lines() if line.get_fillstyle() == "none")
+    assert list(ring.get_xydata()[0]) == [pytest.approx(0.0, abs=1e-9), pytest.approx(46.875)]
+    texts = [text.get_text() for text in panel.texts]
+    assert {str(number) for number in range(1, 26)} <= set(texts)
+    assert any("46.21 to 84.82 mm" in text for text in texts)
+
+
+def test_the_figure_of_stresses_has_every_group_below_its_limit(whole: Calculation) -> None:
+    for panel, kind in zip(stresses_figure(found(whole)).axes, ("root", "contact"), strict=True):
+        lines = {line.get_label(): np.asarray(line.get_ydata(), dtype=float) for line in panel.get_lines()}
+        for gear in ("sun", "planet"):
+            assert lines[gear] == pytest.approx(found(whole).strength[f"{kind}_stress_{gear}"] / 1e6)
+            assert np.all(lines[gear] < lines[f"{gear}, permissible"])
+
+
+@pytest.mark.parametrize(
+    ("inputs", "figures"),
+    [({}, 5), (PAIRS[2], 5), (PAIRS[3], 3), ({"fewest_pins": 20, "most_pins": 80, "load_torque": -900.0}, 5)],
+)
+def test_every_figure_is_drawn_without_a_complaint(inputs: dict[str, Any], figures: int) -> None:
+    """The pair of module 8 mm fits no window: no group, and nothing to draw of groups."""
+    studies = (
+        Search(sort_by="contact_safety_sun"),
+        Capacity(),
+        Safeties(over="power", at="1..4 kW", points=7, name="power"),
+    )
+    calculation = run(*studies, **inputs)
+    sections = (drawn.search, drawn.geometry, drawn.bending, drawn.method_b, drawn.courses, drawn.comparison)
+    count = 0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for section in sections:
+            for block in section(calculation.record):
+                if isinstance(block, Drawing):
+                    count += 1
+                    assert draw(block.draw, title=block.title, ident=f"f{count}").startswith("<svg")
+    assert count == figures
+
+
+def test_a_figure_of_the_mesh_shows_as_many_planets_as_there_are() -> None:
+    calculation = run(group=25, planets=3)
+    panel = mesh_figure(meshing_of(calculation.record, calculation.record.inputs)).axes[0]
+    assert len(panel.patches) == 1 + 3 + 1  # sun, planets, circle of the cranks
