@@ -150,9 +150,10 @@ def weighed_best(shifts: np.ndarray, weights: str = "own_ranges") -> float:
               np.asarray(goals.sliding_difference)]  # fmt: skip
     total = np.zeros(len(shifts))
     for place, (sense, value) in enumerate(zip((-1, 1, 1), values, strict=True)):
-        low, high = PRINTED[place] if weights == "printed_ranges" else (value.min(), value.max())
-        turn = 2 * np.pi * np.clip((value - low) / (high - low), 0, 1)
-        weight = (0.35, 0.01, 0.81)[place] if weights == "printed" else 4 / (high - low) ** 2
+        low, high = value.min(), value.max()
+        turn = 2 * np.pi * (value - low) / (high - low)
+        first, last = PRINTED[place] if weights == "printed_ranges" else (low, high)
+        weight = (0.35, 0.01, 0.81)[place] if weights == "printed" else 4 / (last - first) ** 2
         total += sense * weight * (turn - np.sin(turn)) / (2 * np.pi)
     return float(shifts[np.argmin(total)])
 
@@ -170,13 +171,29 @@ def test_every_weighing_ends_at_the_contact_ratio(limit: float, weights: str) ->
 @pytest.mark.parametrize(
     ("start", "limit", "digits"),
     [(r"$x_E$ / $x_I$", 1.4, 4), (r"the same, $\varepsilon_{\min} = 1.42$", 1.42, 4),
-     (r"the same, $\varepsilon_{\min} = 1.2$", 1.2, 3)],
+     (r"the same, $\varepsilon_{\min} = 1.423$", 1.423, 4), (r"the same, $\varepsilon_{\min} = 1.2$", 1.2, 3)],
 )  # fmt: skip
 def test_the_lost_limit_decides(start: str, limit: float, digits: int) -> None:
     shifts = feasible_shifts(limit)
     best = weighed_best(shifts)
     ring = best + float(FOUND.shift_difference)
     assert row(start)[1] == f"{number(best, digits)} / {number(ring, digits)}"
+
+
+def test_the_weights_lead_elsewhere_where_no_limit_holds_the_optimum() -> None:
+    shifts = feasible_shifts(1.2)
+    own, ranges, weights = (weighed_best(shifts, name) for name in ("own_ranges", "printed_ranges", "printed"))
+    assert f"$x_E$ = {own:.3f} (own ranges), {ranges:.3f} (printed ranges) and {weights:.3f} (printed weights)" in WORDS
+    assert f"The contact ratio of its pair is {float(FOUND.contact_ratio):.3f}." in WORDS
+
+
+def test_a_cutter_makes_the_range_of_f2_begin_at_0() -> None:
+    shifts = feasible_shifts(1.4)
+    rack = objectives_of(ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts))
+    cut = objectives_of(ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts, cutter_teeth=25))
+    assert np.min(rack.stress_difference) > 27e6
+    assert "keeps it above 27 MPa" in WORDS
+    assert np.min(cut.stress_difference) < 1e-3 * np.max(cut.stress_difference)
 
 
 def test_equal_sliding_alone() -> None:

@@ -1,0 +1,228 @@
+"""The roller screw through the command line: the example, its optimum, cases, and the numbers of the paper."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Callable
+from contextlib import redirect_stdout
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from shared import Calc
+from truing import Kernel
+from truing.calculation import Calculation, calculate
+from truing.inputs_file import setup_from_settings
+
+Table = Callable[..., list[dict[str, float]]]
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+    """Write the example file and run it, once, with a small search for the front."""
+    from truing.cli import main
+
+    folder = tmp_path_factory.mktemp("screw")
+    inputs, output = folder / "screw.toml", folder / "run"
+    assert main(["init", "roller_screw_shift", "-o", str(inputs), "-q"]) == 0
+    few = [word for size in ("population=16", "generations=6") for word in ("--set", f"studies.optimise.{size}")]
+    said = io.StringIO()
+    with redirect_stdout(said):
+        assert main(["run", "roller_screw_shift", "--inputs", str(inputs), "-o", str(output), "--json", *few]) == 0
+    return output, json.loads(said.getvalue())
+
+
+@pytest.fixture
+def table(calc: Calc, tmp_path: Path) -> Table:
+    """Print results row by row for a CSV of inputs, with settings on the command line."""
+
+    def run(rows: str, *settings: str) -> list[dict[str, float]]:
+        (tmp_path / "screw.toml").write_text('plugin = "roller_screw_shift"\n')
+        (tmp_path / "rows.csv").write_text(rows)
+        words = [word for setting in settings for word in ("--set", setting)]
+        answer = calc("table", "roller_screw_shift", "--inputs", "screw.toml", "--rows", "rows.csv", *words)
+        assert answer.code == 0, answer.err
+        head, *found = csv.reader(io.StringIO(answer.out))
+        names = [name.split(" [")[0] for name in head]
+        return [dict(zip(names, map(float, row), strict=True)) for row in found]
+
+    return run
+
+
+def shifted(*settings: str) -> Calculation:
+    """Calculate with settings as of ``--set``, and only the choice of the shift; no sheet."""
+    offer = Kernel.installed().offers["roller_screw_shift"]
+    pairs = dict(text.split("=", 1) for text in settings)
+    return calculate(setup_from_settings(offer, {**pairs, "studies.run": '["shift"]'}))
+
+
+def value(found: dict[str, Any], name: str) -> Any:
+    return found["results"][name]["value"]
+
+
+def test_the_example_is_the_printed_pair(example: tuple[Path, dict[str, Any]]) -> None:
+    """Geometry, sliding and form factors at a shift of 0.21, calculated independently beforehand."""
+    folder, found = example
+    degree = 180 / 3.141592653589793
+    expected = {
+        "ring_shift": -0.16, "working_angle": 0.321344 * degree, "contact_ratio": 1.423027,
+        "tip_angle_roller": 0.548150 * degree, "tip_angle_ring": 0.290545 * degree,
+        "crossing_angle_roller": 0.611395 * degree, "crossing_angle_ring": 0.129231 * degree,
+        "tip_land": 0.5 * 0.85162, "sliding_roller": 0.828725, "sliding_ring": 0.5719, "form_factor_roller": 2.12002,
+        "stress_correction_roller": 1.86315, "form_factor_ring": 1.83107, "stress_correction_ring": 2.84399,
+        "tangential_force": 51.943, "shift_sum": 0.05,
+    }  # fmt: skip
+    for name, number in expected.items():
+        assert value(found, name) == pytest.approx(number, rel=2e-4), name
+    for name in ("transmission_error", "wear_depth", "axial_shift", "friction_torque", "backlash"):
+        assert value(found, name) == 0, name
+    assert all(check["passed"] and check["margin"] > 0 for check in found["checks"])
+    assert len(found["checks"]) == 11
+    assert {path.name for path in folder.iterdir()} >= {"inputs.toml", "results.json", "run.json", "sheet.html"}
+
+
+def test_the_optimum_stands_at_the_contact_ratio_by_box_and_by_grid(example: tuple[Path, dict[str, Any]]) -> None:
+    _, found = example
+    assert value(found, "optimal_shift_roller") == pytest.approx(0.2525, abs=2e-3)
+    assert value(found, "optimal_shift_ring") == pytest.approx(-0.1175, abs=2e-3)
+    assert value(found, "optimal_contact_ratio") == pytest.approx(1.4, abs=1e-5)
+    assert value(found, "grid_shift") == pytest.approx(value(found, "optimal_shift_roller"), abs=1e-5)
+    assert value(found, "most_stress_difference") == pytest.approx(33.2, abs=0.05)
+    assert found["studies"]["shift"]["limits"] == ["margin_contact_ratio"]
+
+
+def test_no_design_of_the_front_beats_another(example: tuple[Path, dict[str, Any]]) -> None:
+    """A large sum is bought with a difference of the stresses."""
+    _, found = example
+    front = found["studies"]["optimise"]["front"]
+    assert len(front) > 3
+    assert all(design["feasible"] for design in front)
+    goals = [
+        (-design["objectives"]["shift_sum"], design["objectives"]["stress_difference"],
+         design["objectives"]["sliding_difference"]) for design in front
+    ]  # fmt: skip
+    for one in goals:
+        assert not any(other != one and all(a <= b for a, b in zip(other, one, strict=True)) for other in goals)
+
+
+@pytest.mark.parametrize(
+    ("settings", "shift", "apart"),
+    [
+        # contact ratio asked for; what the paper prints is 0.21
+        (("least_contact_ratio=1.42",), 0.21, 0.006),
+        (("least_contact_ratio=1.2",), 0.613, 2e-3),
+        (("weights=printed_ranges",), 0.2525, 2e-3),
+        (("weights=printed",), 0.2525, 2e-3),
+    ],
+)
+def test_the_limit_of_the_contact_ratio_decides(settings: tuple[str, ...], shift: float, apart: float) -> None:
+    assert shifted(*settings).answers["optimal_shift_roller"] == pytest.approx(shift, abs=apart)
+
+
+@pytest.mark.parametrize(
+    ("reading", "weights"),
+    [("printed", (0.35, 0.01, 0.81)), ("printed_ranges", (4 / 2.7**2, 4 / 33.2**2, 4 / 3.08**2))],
+)
+def test_weights_as_printed_and_by_the_rule(reading: str, weights: tuple[float, ...]) -> None:
+    answers = shifted(f"weights={reading}").answers
+    found = [answers["weight_sum"], answers["weight_stress"] * 1e12, answers["weight_sliding"]]
+    assert found == pytest.approx(weights, rel=1e-12)
+
+
+def test_where_no_shift_keeps_every_limit_the_sentence_says_what_is_missed() -> None:
+    found = shifted("least_contact_ratio=2.5")
+    assert any("keeps every limit" in text and "margin_contact_ratio" in text for text in found.warnings)
+
+
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ("span=[1.0, -1.0]", "span"),
+        ("points=3", "points = 3"),
+        ("ratios=[0.5]", "ratios"),
+        ("vertices=2", "vertices = 2"),
+        ("reflection=0.9", "reflection"),
+        ("spread=0", "spread"),
+    ],
+)
+def test_a_study_that_cannot_be(calc: Calc, tmp_path: Path, setting: str, words: str) -> None:
+    name, text = setting.split("=")
+    (tmp_path / "screw.toml").write_text(f'plugin = "roller_screw_shift"\n[studies.shift]\n{name} = {text}\n')
+    answer = calc("run", "roller_screw_shift", "--inputs", "screw.toml")
+    assert (answer.code, answer.out) == (2, "")
+    assert answer.err.startswith("screw.toml:")
+    assert words in answer.err
+    assert [path.name for path in tmp_path.iterdir()] == ["screw.toml"]
+
+
+def test_cases_over_shifts_name_the_one_that_is_too_large(calc: Calc, tmp_path: Path) -> None:
+    (tmp_path / "shifts.csv").write_text("roller_shift\n0\n0.21\n0.4\n-0.5\n")
+    few = ("--set", "studies.run=[]", "--json", "-o", "run")
+    answer = calc("run", "roller_screw_shift", "--cases", "shifts.csv", *few)
+    assert answer.code == 1
+    found = json.loads(answer.out)
+    ratios = [case["checks"] for case in found["cases"][:3]]
+    passed = [next(c["passed"] for c in checks if c["name"] == "margin_contact_ratio") for checks in ratios]
+    assert passed == [True, True, False]
+    (failed,) = found["failed"]
+    assert failed["row"] == 4
+    assert "involute interference" in failed["reason"]
+
+
+def test_loads_of_both_signs_and_none(table: Table) -> None:
+    """Stresses are in proportion to the load, of whatever sign."""
+    back, idle, forth, double = table("axial_load [N]\n-10000\n0\n10000\n20000\n")
+    for name in ("root_stress_roller", "root_stress_ring"):
+        assert idle[name] == 0
+        assert back[name] == forth[name] > 50
+        assert double[name] == pytest.approx(2 * forth[name], rel=1e-12)
+
+
+def test_centres_farther_apart_jam_a_pair_without_backlash(table: Table) -> None:
+    """First order: -2 tan(alpha_w) of the change."""
+    near, far = table("centre_distance_deviation [um]\n-10\n10\n")
+    assert near["backlash"] == pytest.approx(2 * 0.33288 * 10, rel=0.01)
+    assert far["backlash"] == pytest.approx(-2 * 0.33288 * 10, rel=0.01)
+
+
+def test_a_neutral_factor_acts_on_its_stress_alone(table: Table) -> None:
+    plain, soft, shared = table("rim_factor,sharing_factor\n1,1\n1.5,1\n1,1.25\n")
+    assert soft["root_stress_ring"] == pytest.approx(1.5 * plain["root_stress_ring"])
+    assert soft["root_stress_roller"] == plain["root_stress_roller"]
+    assert shared["root_stress_roller"] == pytest.approx(1.25 * plain["root_stress_roller"])
+    assert soft["stress_difference"] == shared["stress_difference"] == plain["stress_difference"]
+
+
+def test_describe_names_what_is_declared(calc: Calc) -> None:
+    answer = calc("describe", "roller_screw_shift", "--json")
+    assert answer.code == 0
+    found = json.loads(answer.out)
+    inputs, results, effects = ({item["name"] for item in found[kind]} for kind in ("inputs", "results", "effects"))
+    assert {"roller_teeth", "ring_teeth", "roller_shift", "axial_load", "centre_distance", "weights"} <= inputs
+    assert {
+        "root_stress_roller", "root_stress_ring", "transmission_error", "wear_depth", "axial_shift", "friction_torque",
+        "backlash", "ring_shift", "shift_sum", "margin_undercut",
+    } <= results  # fmt: skip
+    assert {
+        "face_misalignment", "mesh_resonance", "roller_load_sharing", "thermal_centre_distance", "rim_compliance",
+        "roller_runout", "carrier_runout", "interrupted_tooth", "flank_wear", "mesh_friction", "axial_migration",
+    } <= effects  # fmt: skip
+    assert {"shift", "optimise"} <= set(found["studies"])
+
+
+def test_verify_prints_every_row_with_its_verdict(calc: Calc) -> None:
+    answer = calc("verify", "roller_screw_shift", "--json")
+    assert answer.code == 0, answer.err
+    found = json.loads(answer.out)
+    assert all(row["as_stated"] for row in found["rows"])
+    assert all(row["why"] for row in found["rows"] if row["verdict"] == "differs")
+    rows = {row["name"]: row for row in found["rows"]}
+    for name in ("sum of the shifts", "stress difference", "sliding difference"):
+        assert rows[f"weight of the {name}"]["verdict"] == "differs"
+    assert rows["largest stress difference"]["ratio"] == pytest.approx(1, abs=2e-3)
+    titles = " ".join(finding["title"] for finding in found["findings"])
+    for words in ("Table 1", "Indices 1 and 2", "printed weights", "contact ratio"):
+        assert words in titles
