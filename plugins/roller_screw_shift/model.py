@@ -5,6 +5,7 @@ from roller_screw_shift.choice import choice
 from roller_screw_shift.effects import EFFECTS
 from roller_screw_shift.findings import FINDINGS
 from roller_screw_shift.published import PUBLISHED
+from roller_screw_shift.sections import SECTIONS
 from roller_screw_shift.shifts import Shifting
 from roller_screw_shift.tolerances import TOLERANCES
 from truing import Maximise, Minimise, Model, Optimise, Require, Vary
@@ -28,6 +29,7 @@ ROLLER_SCREW_SHIFT = Model(
         *(Require(name, at_least="0 rad" if name == "margin_interference" else "0") for name in MARGINS),
     ],
     studies=[Shifting(gives=choice), Optimise(population=60, generations=40)],
+    sheet=SECTIONS,
     published=PUBLISHED,
     findings=FINDINGS,
     summary="Which profile shift of roller and ring balances strength and sliding, and does the pair mesh at all?",

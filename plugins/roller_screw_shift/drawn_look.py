@@ -1,0 +1,47 @@
+"""What the figures share: colours, sizes, and the outcomes of a run."""
+
+from typing import TYPE_CHECKING, Any
+
+from roller_screw_shift.quantities import Pair
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from roller_screw_shift.answers import Meshing
+    from truing import Record
+
+    Run = Record[Pair, Meshing]
+
+BLUE, ORANGE, GREEN, INK, GREY, PALE = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c", "#e8eff5"
+WIDTH = 6.4
+MM = 1e3
+
+
+def outcome_of(record: "Run", kind: type[Any]) -> Any:
+    """The outcome of the first study of this kind, None where none ran."""
+    return next((found for found in record.studies.values() if isinstance(found, kind)), None)
+
+
+def acting(record: "Run") -> Pair:
+    """The inputs as effects leave them, from the first study that knows them; else those of the run."""
+    for outcome in record.studies.values():
+        inputs = getattr(outcome, "inputs", None)
+        if isinstance(inputs, Pair):
+            return inputs
+    return record.inputs
+
+
+def panels(rows: int, height: float, **options: Any) -> "tuple[Figure, Any]":
+    """A figure as wide as the sheet with panels below one another."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    return figure, figure.subplots(rows, 1, squeeze=False, **options)[:, 0]
+
+
+def quiet(panel: Any, x_label: str = "", y_label: str = "") -> None:
+    """Labels and a grid behind the lines."""
+    panel.set_xlabel(x_label)
+    panel.set_ylabel(y_label)
+    panel.grid(alpha=0.4)
+    panel.set_axisbelow(True)
