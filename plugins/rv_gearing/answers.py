@@ -18,7 +18,9 @@ from truing import Float, found, part, results
 
 BASE = "0 in the calculation; effects act here"
 PART_2 = "equation 13 of the paper; ISO 6336-2:2006, clause 5"
-PART_3 = "equations 9 and 10 of the paper; GB/T 3480-1997"
+PART_3 = "equation 10 of the paper; GB/T 3480-1997"
+BEARS_2 = "equation 14 of the paper; ISO 6336-2:2006, clause 5"
+BEARS_3 = "equation 11 of the paper; ISO 6336-3:2006, clause 5"
 METHOD_B = "ISO 6336-3:2006, clause 5, method B"
 MOST_SAFETY = 1000.0  # a stage without load is that safe
 
@@ -82,12 +84,12 @@ class GearStress:
         " * transverse_factor_bending * planet_factor_bending",
     )  # fmt: skip
     permitted_root_stress: Float = found(
-        "MPa", symbol="sigma_FP", note="permitted root stress", source=PART_3,
+        "MPa", symbol="sigma_FP", note="permitted root stress", source=BEARS_3,
         formula="bending_limit * stress_correction_of_test * bending_life_factor * notch_sensitivity * root_surface"
         " * bending_size / least_bending_safety",
     )  # fmt: skip
     root_safety: Float = found(
-        "", symbol="S_F", note="safety against breakage, load at the tip; 1000 at most", source=PART_3,
+        "", symbol="S_F", note="safety against breakage, load at the tip; 1000 at most", source=BEARS_3,
         formula="min(permitted_root_stress * least_bending_safety / root_stress, 1000)",
     )  # fmt: skip
     root_safety_outer: Float = found(
@@ -100,12 +102,12 @@ class GearStress:
         " * face_factor * transverse_factor * planet_factor)",
     )  # fmt: skip
     permitted_contact_stress: Float = found(
-        "MPa", symbol="sigma_HP", note="permitted contact stress", source=PART_2,
+        "MPa", symbol="sigma_HP", note="permitted contact stress", source=BEARS_2,
         formula="contact_limit * contact_life_factor * lubricant_factor * velocity_factor * roughness_factor"
         " * work_hardening_factor * contact_size_factor / least_contact_safety",
     )  # fmt: skip
     contact_safety: Float = found(
-        "", symbol="S_H", note="safety against pitting; 1000 at most", source=PART_2,
+        "", symbol="S_H", note="safety against pitting; 1000 at most", source=BEARS_2,
         formula="min(permitted_contact_stress * least_contact_safety / contact_stress, 1000)",
     )  # fmt: skip
     size: GearSize = part(GearSize, suffix="")

@@ -11,7 +11,9 @@ import rv_gearing_by_hand as by_hand
 from rv_gearing.calculation import rv_gearing
 from rv_gearing.dynamic import by_range, coefficients, resonance_limit
 from rv_gearing.life import life_factor
+from rv_gearing.loads import load_of
 from rv_gearing.model import RV_GEARING
+from rv_gearing.quality import run_in
 from rv_gearing.steel import CURVES, steel_of
 from truing.declare.batch import watching
 from truing.errors import InfeasibleError
@@ -260,6 +262,52 @@ def test_identities_of_strength_factors() -> None:
     near = np.argmin(np.abs(found["notch_parameter_sun"] - 2.5))
     assert found["notch_parameter_sun"][near] == pytest.approx(2.5, abs=1e-3)
     assert found["notch_sensitivity_sun"][near] == pytest.approx(1.0, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("velocity", "deviation", "taken"),
+    [
+        (1.0, 20.0, 4.0),
+        (5.0, 100.0, 20.0),
+        (5.01, 100.0, 16.0),
+        (10.0, 100.0, 16.0),
+        (10.01, 100.0, 8.0),
+        (50.0, 20.0, 4.0),
+    ],
+)
+def test_through_hardened_gears_run_in_less_the_faster_they_run(
+    velocity: float, deviation: float, taken: float
+) -> None:
+    """ISO 6336-1:2006, 8.3.5: 160 f_pb/sigma_Hlim, at most 12800/sigma_Hlim above 5 m/s and half of it above 10 m/s."""
+    stage = RV_GEARING.inputs(material="through_hardened", contact_limit_sun="800 MPa")
+    assert float(run_in(stage, stage.sun, deviation * 1e-6, velocity)) == pytest.approx(taken * 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("limit", "lubricant", "exponent"),
+    [(849.9, 0.83, 0.15), (850.0, 0.83 - 1.4e-5, 0.15), (1025.0, 0.87 - 1.4e-5, 0.115), (1200.0, 0.91 - 1.4e-5, 0.08),
+     (1200.1, 0.91, 0.08)],
+)  # fmt: skip
+def test_constants_of_the_lubricant_film_follow_the_softer_gear(
+    limit: float, lubricant: float, exponent: float
+) -> None:
+    """ISO 6336-2:2006, clause 12: straight between 850 and 1200 MPa."""
+    found = results(**TEETH, contact_limit_planet=limit * 1e6)
+    assert found["lubricant_constant"] == pytest.approx(lubricant, abs=2e-6)
+    assert found["roughness_exponent"] == pytest.approx(exponent, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("material", "factor"), [("case_hardened", 1.12), ("through_hardened", 1.12), ("nitrided", 1.025)]
+)
+def test_smooth_roots(material: str, factor: float) -> None:
+    """ISO 6336-3:2006, clause 14, below 1 um."""
+    assert results(**TEETH, material=material, root_roughness_sun=0.99e-6)["root_surface_sun"] == factor
+
+
+def test_direction_of_the_load() -> None:
+    torques = np.array([-5.0, -1e-9, 0.0, 5.0, np.nan])
+    assert list(load_of(RV_GEARING.inputs(**TEETH, load_torque=torques)).direction) == [-1.0, -1.0, 1.0, 1.0, 1.0]
 
 
 # What is stated instead
