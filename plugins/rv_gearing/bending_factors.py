@@ -62,7 +62,7 @@ class GearRoot:
         " * notch_parameter**(1 / (1.21 + 2.3 * outer_arm / root_chord))",
     )  # fmt: skip
     notch_sensitivity: Float = found(
-        "", symbol="Y_deltarelT", note="relative notch sensitivity; as stated where it is", numeric=True,
+        "", symbol="Y_delta relT", note="relative notch sensitivity; as stated where it is", numeric=True,
         source=ISO + "13",
         formula="either(stated_notch_sensitivity, (1 + sqrt(0.2 * slip_layer * (1 + 2 * notch_parameter)))"
         " / (1 + sqrt(1.2 * slip_layer)))",

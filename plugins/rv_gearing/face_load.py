@@ -33,11 +33,11 @@ class FaceLoad:
     making_deviation: Float = found("um", symbol="f_ma", note="misalignment as made", source=CLAUSE,
                                     formula="hypot(helix_deviation_sun, helix_deviation_planet)")  # fmt: skip
     least_misalignment: Float = found(
-        "um", symbol="F_betax,min", note="least initial misalignment", numeric=True, source="ISO 6336-1:2006, 7.5.2",
+        "um", symbol="F_beta x,min", note="least initial misalignment", numeric=True, source="ISO 6336-1:2006, 7.5.2",
         formula="max(0.005 * mean_line_load, 0.5 * max(helix_deviation_sun, helix_deviation_planet))",
     )  # fmt: skip
     initial_misalignment: Float = found(
-        "um", symbol="F_betax", note="misalignment before running in", source="ISO 6336-1:2006, 7.5.2",
+        "um", symbol="F_beta x", note="misalignment before running in", source="ISO 6336-1:2006, 7.5.2",
         formula="max(1.33 * bending_weight * deflection + making_weight * making_deviation, least_misalignment)",
     )  # fmt: skip
     face_running_in: Float = found(
@@ -45,7 +45,7 @@ class FaceLoad:
         method="case-hardened and nitrided: 0.15 F_betax, at most 6 um; through-hardened: 320 F_betax/sigma_Hlim, "
         "limited above 5 m/s",
     )  # fmt: skip
-    misalignment: Float = found("um", symbol="F_betay", note="misalignment after running in", source=CLAUSE,
+    misalignment: Float = found("um", symbol="F_beta y", note="misalignment after running in", source=CLAUSE,
                                 formula="abs(initial_misalignment - face_running_in + extra_misalignment)")  # fmt: skip
     misalignment_ratio: Float = found(
         "", symbol="r", note="misalignment over twice the mean deflection; from K_Hbeta where that is stated",
@@ -54,7 +54,7 @@ class FaceLoad:
         " + extra_misalignment * mesh_stiffness_face / (2 * mean_line_load)),"
         " misalignment * mesh_stiffness_face / (2 * mean_line_load))",
     )  # fmt: skip
-    face_factor: Float = found("", symbol="K_Hbeta", note="face load factor for contact; as stated where it is",
+    face_factor: Float = found("", symbol="K_H beta", note="face load factor for contact; as stated where it is",
                                source=CLAUSE, formula="cases(1 + misalignment_ratio, misalignment_ratio <= 1,"
                                " 2 * sqrt(misalignment_ratio))")  # fmt: skip
     face_exponent: Float = found(
@@ -62,7 +62,7 @@ class FaceLoad:
         formula="1 / (1 + min(tooth_height / face_width, 1 / 3) + min(tooth_height / face_width, 1 / 3)**2)",
     )  # fmt: skip
     face_factor_bending: Float = found(
-        "", symbol="K_Fbeta", note="face load factor for bending; as stated where it is",
+        "", symbol="K_F beta", note="face load factor for bending; as stated where it is",
         source="ISO 6336-1:2006, clause 7", formula="either(stated_face_factor_bending, face_factor**face_exponent)",
     )  # fmt: skip
 

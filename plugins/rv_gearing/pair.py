@@ -88,7 +88,7 @@ class MeshSize:
                                  formula="face_width * sin(helix_angle) / (pi * module)")  # fmt: skip
     total_contact_ratio: Float = found("", symbol="epsilon_gamma", note="total contact ratio", source=ISO_21771,
                                        formula="contact_ratio + overlap_ratio")  # fmt: skip
-    virtual_contact_ratio: Float = found("", symbol="epsilon_alphan", note="contact ratio of the virtual spur gears",
+    virtual_contact_ratio: Float = found("", symbol="epsilon_alpha n", note="contact ratio of the virtual spur gears",
                                          source="ISO 6336-3:2006, clause 6",
                                          formula="contact_ratio / cos(base_helix_angle)**2")  # fmt: skip
     tooth_height: Float = found("mm", symbol="h", note="tooth height", source=ISO_21771,

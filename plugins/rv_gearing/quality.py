@@ -24,11 +24,11 @@ class GearQuality:
     pitch_deviation: Float = found("um", symbol="f_pt", note="single pitch deviation", numeric=True, source=ISO_1328,
                                    formula="(0.3 * (module + 0.4 * sqrt(reference_diameter)) + 4)" + GRADE)  # fmt: skip
     profile_deviation: Float = found(
-        "um", symbol="f_falpha", note="profile form deviation", numeric=True, source=ISO_1328,
+        "um", symbol="f_f alpha ", note="profile form deviation", numeric=True, source=ISO_1328,
         formula="(2.5 * sqrt(module) + 0.17 * sqrt(reference_diameter) + 0.5)" + GRADE,
     )  # fmt: skip
     helix_deviation: Float = found(
-        "um", symbol="f_Hbeta", note="helix slope deviation", numeric=True, source=ISO_1328,
+        "um", symbol="f_H beta ", note="helix slope deviation", numeric=True, source=ISO_1328,
         formula="(0.07 * sqrt(reference_diameter) + 0.45 * sqrt(face_width) + 3)" + GRADE,
     )  # fmt: skip
     pitch_running_in: Float = found(
@@ -50,14 +50,14 @@ class MeshQuality:
         "um", symbol="f_pb", note="transverse base pitch deviation", source=ISO_1328,
         formula="max(pitch_deviation_sun, pitch_deviation_planet) * cos(transverse_angle)",
     )  # fmt: skip
-    profile_error: Float = found("um", symbol="f_falpha", note="profile form deviation of the worse gear",
+    profile_error: Float = found("um", symbol="f_f alpha", note="profile form deviation of the worse gear",
                                  formula="max(profile_deviation_sun, profile_deviation_planet)")  # fmt: skip
     running_in: Float = found("um", symbol="y_alpha", note="running-in allowance of the pitch", source=RUNNING_IN,
                               formula="(pitch_running_in_sun + pitch_running_in_planet) / 2")  # fmt: skip
     pitch_left: Float = found("um", symbol="f_pb,eff", note="effective base pitch deviation", source=RUNNING_IN,
                               formula="pitch_error - running_in")  # fmt: skip
     profile_left: Float = found(
-        "um", symbol="f_falpha,eff", note="effective profile form deviation", source="ISO 6336-1:2006, 6.5.4",
+        "um", symbol="f_f alpha,eff", note="effective profile form deviation", source="ISO 6336-1:2006, 6.5.4",
         formula="profile_error - (profile_running_in_sun + profile_running_in_planet) / 2",
     )  # fmt: skip
 

@@ -8,7 +8,7 @@ from typing import Literal
 from truing import Float, given, inputs, part
 
 PAPER = "section 2 of the paper"
-LOST = "not printed in the paper; usual for a first stage of this size"
+LOST = "not in the paper; usual"
 LARGEST = 10000.0  # mm, um: a size above it was meant in another unit
 
 
@@ -48,7 +48,7 @@ class Gear:
     stated_stress_correction: Float = stated("Y_Sa", "stress correction factor, load at the tip")
     stated_contact_life: Float = stated("Z_NT", "life factor for contact")
     stated_bending_life: Float = stated("Y_NT", "life factor for bending")
-    stated_notch_sensitivity: Float = stated("Y_deltarelT", "relative notch sensitivity factor")
+    stated_notch_sensitivity: Float = stated("Y_delta relT", "relative notch sensitivity factor")
     stated_root_surface: Float = stated("Y_RrelT", "relative surface factor of the root")
     stated_bending_size: Float = stated("Y_X", "size factor for bending")
     stated_single_contact: Float = stated("Z_B,D", "single pair contact factor, Z_B of the sun and Z_D of the planet")
@@ -118,7 +118,9 @@ class Gearing:
     face_width: Float = given(12.0, "mm", symbol="b", note="common face width", source=LOST, above=0, below=LARGEST)
     addendum: Float = positive(1.0, "", "h_a*", "addendum of the rack, in modules")
     dedendum: Float = positive(1.25, "", "h_f*", "dedendum of the rack, in modules")
-    fillet: Float = given(0.38, "", symbol="rho*", note="fillet radius of the rack", source=LOST, at_least=0, at_most=1)
+    fillet: Float = given(
+        0.38, "", symbol="rho_f*", note="fillet radius of the rack", source=LOST, at_least=0, at_most=1
+    )
     accuracy_grade: int = given(6, symbol="Q", note="grade of ISO 1328-1:1995", source=LOST, at_least=1, at_most=12)
     flank_form: Literal["none", "crowned", "helix_corrected", "crowned_and_corrected", "end_relief"] = given(
         "crowned", note="how the flank is modified along its width"
@@ -145,11 +147,11 @@ class Gearing:
     )
     # Factors that are calculated unless they are stated
     stated_dynamic_factor: Float = stated("K_V", "dynamic factor")
-    stated_face_factor: Float = given(None, "", symbol="K_Hbeta", note="face load factor for contact; calculated where "
-                                      "it is not stated", at_least=1)  # fmt: skip
-    stated_face_factor_bending: Float = stated("K_Fbeta", "face load factor for bending")
-    stated_transverse_factor: Float = stated("K_Halpha", "transverse load factor for contact")
-    stated_transverse_factor_bending: Float = stated("K_Falpha", "transverse load factor for bending")
+    stated_face_factor: Float = given(None, "", symbol="K_H beta", note="face load factor for contact; calculated "
+                                      "where it is not stated", at_least=1)  # fmt: skip
+    stated_face_factor_bending: Float = stated("K_F beta", "face load factor for bending")
+    stated_transverse_factor: Float = stated("K_H alpha", "transverse load factor for contact")
+    stated_transverse_factor_bending: Float = stated("K_F alpha", "transverse load factor for bending")
     stated_planet_load_bending: Float = stated("K_Fp", "uneven sharing among the planets, for bending")
     stated_zone_factor: Float = stated("Z_H", "zone factor")
     stated_elasticity_factor: Float = given(

@@ -39,10 +39,10 @@ class Stiffness:
         formula="0.8 * rack_factor * cos(helix_angle) * modulus_factor * low_load_factor * theoretical_stiffness",
     )  # fmt: skip
     mesh_stiffness: Float = found(
-        "N/(mm*um)", symbol="c_gammaalpha", note="mean mesh stiffness", source="ISO 6336-1:2006, 9.3.2",
+        "N/(mm*um)", symbol="c_gamma alpha", note="mean mesh stiffness", source="ISO 6336-1:2006, 9.3.2",
         formula="either(stated_mesh_stiffness, tooth_stiffness * (0.75 * contact_ratio + 0.25))",
     )  # fmt: skip
-    mesh_stiffness_face: Float = found("N/(mm*um)", symbol="c_gammabeta", note="mesh stiffness for the face factor",
+    mesh_stiffness_face: Float = found("N/(mm*um)", symbol="c_gamma beta", note="mesh stiffness for the face factor",
                                        source="ISO 6336-1:2006, 9.3.2", formula="0.85 * mesh_stiffness")  # fmt: skip
 
 

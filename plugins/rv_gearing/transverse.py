@@ -42,12 +42,12 @@ class Sharing:
         " * mesh_stiffness * pitch_left / transverse_line_load)",
     )  # fmt: skip
     transverse_factor: Float = found(
-        "", symbol="K_Halpha", note="transverse load factor for contact, within its bounds; as stated where it is",
+        "", symbol="K_H alpha", note="transverse load factor for contact, within its bounds; as stated where it is",
         source=CLAUSE, formula="either(stated_transverse_factor, max(min(transverse_base,"
         " total_contact_ratio / (contact_ratio * contact_ratio_factor**2)), 1))",
     )  # fmt: skip
     transverse_factor_bending: Float = found(
-        "", symbol="K_Falpha", note="transverse load factor for bending, within its bounds; as stated where it is",
+        "", symbol="K_F alpha", note="transverse load factor for bending, within its bounds; as stated where it is",
         source=CLAUSE, formula="either(stated_transverse_factor_bending, max(min(transverse_base,"
         " total_contact_ratio / (0.25 * contact_ratio + 0.75)), 1))",
     )  # fmt: skip

@@ -24,6 +24,7 @@ from rv_gearing.search import SIZES, STRENGTH, Column, Found, Search, listed
 from rv_gearing.tooth_form import half_space, tooth, trochoid, undercut
 from truing import Drawing, Swept, Table, TruingError, Words
 from truing.calculation import Calculation, calculate
+from truing.report.content import check_rows
 from truing.report.figures import draw
 from truing.setup import default_setup
 
@@ -328,3 +329,9 @@ def test_a_figure_of_the_mesh_shows_as_many_planets_as_there_are() -> None:
     calculation = run(group=25, planets=3)
     panel = mesh_figure(meshing_of(calculation.record, calculation.record.inputs)).axes[0]
     assert len(panel.patches) == 1 + 3 + 1  # sun, planets, circle of the cranks
+
+
+def test_a_limit_that_is_a_result_is_printed_as_one(whole: Calculation) -> None:
+    """The permitted contact stress of the sun, 1093.394 MPa, with as many digits as a stress has."""
+    printed = {row.name: row.limit.text for row in check_rows(whole)}
+    assert printed["contact_stress_sun"] == "1093.4"

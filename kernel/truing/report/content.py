@@ -154,10 +154,12 @@ def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
     setup = calculation.setup
     fields = setup.model.result_fields
     requires = _requires(setup)
-    chances = {check_name(item, requires): item for item in requires if _is_chance(item)}
+    named = {check_name(item, requires): item for item in requires}
     for check in calculation.checks:
         item = fields.get(check.name) or fields.get(check.name.partition(" ")[0])
-        chance = chances.get(check.name)
+        require = named.get(check.name)
+        chance = require if require is not None and _is_chance(require) else None
+        calculated = require is not None and chance is None and require.limit in fields
         unit = unit_text(check.unit)
         number = format_number(check.margin, 3)
         yield CheckRow(
@@ -166,7 +168,7 @@ def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
             note=item.spec.note if item is not None else check.note,
             relation=_relation(check, setup),
             value=Value(format_number(check.value, RESULT_DIGITS), unit),
-            limit=Value(format_number(check.limit, STATED_DIGITS), unit),
+            limit=Value(format_number(check.limit, RESULT_DIGITS if calculated else STATED_DIGITS), unit),
             margin=_margin(check, number),
             passed=bool(check.passed),
             chance=_chance_words(chance, check.note, calculation) if chance is not None else "",
