@@ -3,7 +3,7 @@
 import numpy as np
 
 from gear_geometry.involute import involute
-from rv_gearing.answers import Duty, Strength
+from rv_gearing.answers import Duty, GearStress, Strength
 from rv_gearing.bending_factors import bending_factors, root_of
 from rv_gearing.contact_factors import contact_factors, contact_ratio_factor
 from rv_gearing.duty import mesh_efficiency
@@ -11,12 +11,12 @@ from rv_gearing.dynamic import dynamics_of
 from rv_gearing.face_load import face_load_of
 from rv_gearing.life import cycles_of, life_of
 from rv_gearing.loads import LEAST_LINE_LOAD, Load, load_of
-from rv_gearing.pair import GearSize, MeshSize, gear_size, mesh_size
-from rv_gearing.quality import quality_of
+from rv_gearing.pair import GearSize, MeshSize, Which, gear_size, mesh_size
+from rv_gearing.quality import GearQuality, quality_of
 from rv_gearing.quantities import Gearing
-from rv_gearing.steel import steel_of
+from rv_gearing.steel import Steel, steel_of
 from rv_gearing.stiffness import stiffness_of
-from rv_gearing.stresses import acting, stresses_of
+from rv_gearing.stresses import Acting, acting, stresses_of
 from rv_gearing.transverse import planets_of, sharing_of
 from truing import Float
 
@@ -45,14 +45,12 @@ def rv_gearing(stage: Gearing) -> Strength:
     shares = dynamics.dynamic_factor * for_contact, dynamics.dynamic_factor * for_bending
     act = acting(stage, load, (sun_size, mesh), (contact, bending), shares)
     steel, cycles = steel_of(stage), cycles_of(stage, load)
-    roots = root_of(stage, sun_size, mesh, steel, "sun"), root_of(stage, sizes[1], mesh, steel, "planet")
-    sun = stresses_of(
-        stage, stage.sun, act, contact.single_contact_factor_sun,
-        (sun_size, made[0], roots[0], life_of(stage.sun, steel, cycles.load_cycles_sun)),
-    )  # fmt: skip
-    planet = stresses_of(
-        stage, stage.planet, act, contact.single_contact_factor_planet,
-        (sizes[1], made[1], roots[1], life_of(stage.planet, steel, cycles.load_cycles_planet)),
+    sun = gear_of(
+        stage, mesh, act, steel, (sun_size, made[0], contact.single_contact_factor_sun, cycles.load_cycles_sun)
+    )
+    planet = gear_of(
+        stage, mesh, act, steel, (sizes[1], made[1], contact.single_contact_factor_planet, cycles.load_cycles_planet),
+        which="planet",
     )  # fmt: skip
     return Strength(
         contact_stress=sun.contact_stress, transmission_error=0.0 * load.tangential_force, efficiency=load.efficiency,
@@ -63,6 +61,17 @@ def rv_gearing(stage: Gearing) -> Strength:
         quality=quality, steel=steel, stiffness=stiffness, dynamics=dynamics, planets=planets, face=face,
         sharing=sharing, contact=contact, bending=bending, cycles=cycles, sun=sun, planet=planet,
     )  # fmt: skip
+
+
+def gear_of(
+    stage: Gearing, mesh: MeshSize, act: Acting, steel: Steel, known: tuple[GearSize, GearQuality, Float, Float],
+    *, which: Which = "sun",
+) -> GearStress:  # fmt: skip
+    """Return root, life, stresses and safeties of one gear; known are size, quality, Z_B or Z_D, and load cycles."""
+    size, made, single_contact, cycles = known
+    gear = stage.sun if which == "sun" else stage.planet
+    root, life = root_of(stage, size, mesh, steel, which), life_of(gear, steel, cycles)
+    return stresses_of(stage, gear, act, single_contact, (size, made, root, life))
 
 
 def duty_of(stage: Gearing, load: Load, sun: GearSize, mesh: MeshSize) -> Duty:
