@@ -16,6 +16,7 @@ from roller_screw_shift.weighing import Ranges
 Values = NDArray[np.float64]
 MEGA = 1e6
 HALVINGS = 60
+NO_OBJECTIVES = "objectives"
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +40,9 @@ class Course:
         return first, second, third
 
     def missed(self, place: int) -> tuple[str, ...]:
-        """The limits that this shift misses."""
-        return tuple(name for name, margin in self.margins.items() if not margin[place] >= 0.0)
+        """The limits that this shift misses, or that it has no objectives."""
+        names = tuple(name for name, margin in self.margins.items() if not margin[place] >= 0.0)
+        return names or (() if np.isfinite(self.objectives[:, place]).all() else (NO_OBJECTIVES,))
 
 
 @dataclass(frozen=True)

@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 CONVENTION = (
     "Signs: E is the roller (an external gear), I the ring (an internal one, its number of teeth counted positive). A "
     "shift above 0 moves the profile of either gear away from its own axis: tip and root circles of both grow with "
-    "their shifts. Of an internal pair the centre distance fixes the difference x_I − x_E. ISO 21771 counts the teeth "
-    "of a ring negative, and then its shift with the other sign: there the same pair has x_E + x_I over z_E + z_I. "
-    "Whoever adds up shifts by that rule must turn the sign of the ring's."
+    "their shifts. Of an internal pair the centre distance fixes the difference of the shifts, ring less roller. ISO "
+    "21771 counts the teeth of a ring negative, and its shift with the other sign: there the same pair has the sum of "
+    "the shifts over the sum of the teeth. Whoever adds up shifts by that rule must turn the sign of the ring's."
 )
 PATH = (
     "To scale, both without backlash. Green: the part of the line of action on which teeth touch, from the tip of the "
@@ -35,8 +35,9 @@ PATH = (
     "the ring a round one of the radius stated."
 )
 SLIDING = (
-    "Specific sliding, 1 − v_other/v_own with the speeds along the flanks. It is 0 at the pitch point; the objective "
-    "compares the magnitudes at the two ends, where each root meets the tip of the other gear."
+    "Specific sliding: 1 less the speed of the other gear along its flank over one's own. The curves belong to the "
+    "centre distance; the shift moves the ends of the path along them. Marks: root of the roller (left) and of "
+    "the ring (right), each where the tip of the other gear meets it; the objective compares their magnitudes."
 )
 PLANES = (
     "With one variable the front of the three objectives is a line. Where the stresses differ least (left) the sum is "
@@ -80,8 +81,8 @@ def limits(record: "Run") -> "Sequence[Block]":
     if chosen is None:
         return []
     caption = (
-        "Above: where each limit is kept. Below: the margins that come near 0; the others stay far above. Shaded: all "
-        "limits are kept."
+        "Above: where each limit is kept. Below: the margins that change sign in the picture. Shaded: all limits are "
+        "kept."
     )
     figure = Drawing("Limits over the shift", partial(limits_figure, chosen), caption)
     if chosen.field is None:

@@ -17,8 +17,8 @@ POINTS = 1201
 BESIDE = 0.35  # of a shift, shown on either side of what is allowed
 ROLLER = "profile shift of the roller $x_E$"
 LABELS = ("sum of the shifts $f_1$", "stress difference\n$f_2$, MPa", "sliding difference\n$f_3$")
-SHADES = (BLUE, ORANGE, GREEN, "#7a4f9a", "#b0892c", "#4f86b3", GREY)
-HIGHEST = 1.6  # margins above are far from their limits
+SHADES = (BLUE, GREEN, "#7a4f9a", "#b0892c", "#4f86b3", GREY)
+HIGHEST = 1.0  # margins above are far from their limits
 
 
 def shown(chosen: "Chosen") -> Values:
@@ -95,15 +95,16 @@ def _bars(panel: Any, course: Course) -> None:
 
 
 def _lines(panel: Any, course: Course) -> None:
-    """The margins that come near their limits."""
-    near = 0
-    for name, margin in course.margins.items():
-        if not np.isfinite(margin).any() or np.nanmin(margin) > 0.5 * HIGHEST:
-            continue
-        dash = "-" if near < len(SHADES) else "--"
-        panel.plot(course.shifts, margin, color=SHADES[near % len(SHADES)], linestyle=dash, linewidth=1.3,
-                   label=" ".join(LIMITS[name]))  # fmt: skip
-        near += 1
+    """The margins that change sign in the picture."""
+    shown = [(name, margin) for name, margin in course.margins.items() if _crosses(margin)]
+    for number, (name, margin) in enumerate(shown):
+        colour = SHADES[number % len(SHADES)]
+        panel.plot(course.shifts, margin, color=colour, linewidth=1.6, label=" ".join(LIMITS[name]))
     panel.axhline(0.0, color=INK, linewidth=0.9)
-    panel.set_ylim(-0.25 * HIGHEST, HIGHEST)
+    panel.set_ylim(-0.3 * HIGHEST, HIGHEST)
     quiet(panel, "", "margin")
+
+
+def _crosses(margin: Values) -> bool:
+    """Whether a limit is kept somewhere in the picture and missed elsewhere."""
+    return bool((margin >= 0.0).any() and (margin < 0.0).any())

@@ -101,15 +101,25 @@ def path_of(pair: Pair) -> Path:
     return Path(place, 1.0 - at_ring / (ratio * at_roller), 1.0 - ratio * at_roller / at_ring)
 
 
+LOOKS = (("o", "white"), ("X", INK), ("D", ORANGE))
+
+
 def sliding_figure(pair: Pair, shifts: "Sequence[tuple[str, float]]") -> "Figure":
-    """Draw the specific sliding of both gears along the path of contact, at each of these shifts."""
-    figure, (panel,) = panels(1, 3.6)
-    for (words, shift), dash in zip(shifts, ((0, (2, 2)), (0, (6, 2)), "-"), strict=False):
-        path = path_of(replace(pair, roller_shift=shift))
-        for values, colour, gear in ((path.roller, BLUE, "roller"), (path.ring, ORANGE, "ring")):
-            panel.plot(MM * path.place, values, color=colour, linestyle=dash, label=f"{gear}, {words}")
+    """Draw the specific sliding of both gears along the path of contact, and where the path ends by these shifts.
+
+    The shift moves the ends of the path; the curves between them stay.
+    """
+    figure, (panel,) = panels(1, 3.8)
+    paths = [path_of(replace(pair, roller_shift=shift)) for _, shift in shifts]
+    for path in paths:
+        panel.plot(MM * path.place, path.roller, color=BLUE, label="roller" if path is paths[0] else "")
+        panel.plot(MM * path.place, path.ring, color=ORANGE, label="ring" if path is paths[0] else "")
+    for (words, shift), path, (marker, face) in zip(shifts, paths, LOOKS, strict=False):
+        ends = MM * path.place[[0, -1]], [path.roller[0], path.ring[-1]]
+        told = f"{words}, {signed(shift, '.4g')}: {signed(ends[1][0], '.2f')} and {signed(ends[1][1], '.2f')}"
+        panel.plot(*ends, marker, markersize=7, markerfacecolor=face, markeredgecolor=INK, linestyle="", label=told)
     panel.axhline(0.0, color=INK, linewidth=0.8)
     panel.axvline(0.0, color=GREY, linewidth=0.8)
     quiet(panel, "place on the path of contact from the pitch point outward, mm", "specific sliding")
-    panel.legend(fontsize=7.5, ncols=2)
+    panel.legend(fontsize=7.5, loc="lower right")
     return figure

@@ -1,5 +1,7 @@
 """The pair of roller and ring as truing knows it: function, error sources, goals, studies and sheet."""
 
+from pathlib import Path
+
 from roller_screw_shift.calculation import roller_screw_shift
 from roller_screw_shift.choice import choice
 from roller_screw_shift.effects import EFFECTS
@@ -10,6 +12,15 @@ from roller_screw_shift.shifts import Shifting
 from roller_screw_shift.tolerances import TOLERANCES
 from truing import Maximise, Minimise, Model, Optimise, Require, Vary
 
+LITERATURE = [
+    "The paper: Gao Yang, Yang Jiajun, Liang Han, Deng Bo, Zhu Jisheng (高揚, 楊家軍, 梁漢, 鄧波, 朱繼生), Optimization "
+    "of Planetary Roller Screw Gear Modification Coefficient, Journal of Hubei University of Technology 30(4), 2015, p. "
+    "58.",
+    "Box, M. J., A new method of constrained optimization and a comparison with other methods, The Computer Journal 8 "
+    "(1965), p. 42.",
+    "Guin, J. A., Modification of the complex method of constrained optimization, The Computer Journal 10 (1968), p. "
+    "416.",
+]
 MARGINS = (
     "margin_ring_base", "margin_roller_base", "margin_contact_ratio", "margin_interference", "margin_opposite_tips",
     "margin_roller_root", "margin_ring_root", "margin_involute", "margin_undercut", "margin_tip_land",
@@ -32,5 +43,7 @@ ROLLER_SCREW_SHIFT = Model(
     sheet=SECTIONS,
     published=PUBLISHED,
     findings=FINDINGS,
+    cites=LITERATURE,
+    example=Path(__file__).with_name("example.toml"),
     summary="Which profile shift of roller and ring balances strength and sliding, and does the pair mesh at all?",
 )

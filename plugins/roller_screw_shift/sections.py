@@ -20,10 +20,16 @@ SECTIONS = [
         "tangential_force", "fillet_offset_roller", "fillet_height_roller", "tangent_constant_roller",
         "tangent_angle_roller", "root_chord_roller", "root_fillet_roller", "load_angle_roller", "bending_arm_roller",
         "form_factor_roller", "notch_roller", "stress_correction_roller", "root_chord_ring", "bending_arm_ring",
-        "form_factor_ring", "notch_ring", "stress_correction_ring", "nominal_stress_roller", "nominal_stress_ring",
-        "root_stress_roller", "root_stress_ring",
+        "load_angle_ring", "form_factor_ring", "root_fillet_ring", "notch_ring", "stress_correction_ring",
+        "nominal_stress_roller", "nominal_stress_ring", "root_stress_roller", "root_stress_ring",
         text="The load acts at the tip of the tooth. The section of the roller is where a tangent of 30° touches its "
-        "fillet; that of the ring is taken from a substitute rack, so neither its teeth nor its shift matter.",
+        "fillet. That of the ring is taken from a substitute rack, so that neither its teeth nor its shift matter, "
+        "unless the teeth of a shaper cutter are stated: then it is the section that this cutter leaves.",
+    ),
+    Section(
+        "The ring as cut",
+        "cut_chord_ring", "cut_fillet_ring", "cut_arm_ring", "cut_angle_ring",
+        level="full",
     ),
     Section(
         "Sliding of the flanks",
@@ -43,11 +49,8 @@ SECTIONS = [
     ),
     Section(
         "The best shift",
-        "shift_sum", "stress_difference", "sliding_difference", "least_sum", "most_sum", "least_stress_difference",
-        "most_stress_difference", "least_sliding", "most_sliding", "weight_sum", "weight_stress", "weight_sliding",
-        "optimal_shift_roller", "optimal_shift_ring", "optimal_sum", "optimal_stress_difference",
-        "optimal_sliding_difference", "optimal_contact_ratio", "optimal_margin", "limit_distance", "grid_shift",
-        "grid_distance", "evaluations", "equal_sliding_roller", "equal_sliding_ring",
+        "shift_sum", "stress_difference", "sliding_difference", "optimal_shift_roller", "optimal_shift_ring",
+        "optimal_contact_ratio", "limit_distance",
         text="As in the paper: each objective is brought to 0 to 1 over its range, all are weighed and added, and "
         "Box's complex method with nine vertices looks for the least sum. A dense grid checks it.",
         blocks=drawn.choice,
@@ -57,6 +60,14 @@ SECTIONS = [
         text="The same problem without weights: the designs that no other beats in all three objectives. Weights "
         "choose one of them; the study 'optimise' below finds them by NSGA-II.",
         blocks=drawn.weights,
+    ),
+    Section(
+        "The choice in numbers",
+        "least_sum", "most_sum", "least_stress_difference", "most_stress_difference", "least_sliding", "most_sliding",
+        "weight_sum", "weight_stress", "weight_sliding", "optimal_sum", "optimal_stress_difference",
+        "optimal_sliding_difference", "optimal_margin", "grid_shift", "grid_distance", "evaluations",
+        "equal_sliding_roller", "equal_sliding_ring",
+        level="full",
     ),
     Section(
         "What effects act on",

@@ -99,7 +99,8 @@ class Shifting:
         course = course_of(pair, np.linspace(*span, self.points))
         worst = np.array([np.where(np.isfinite(each), each, -np.inf) for each in course.margins.values()])
         place = int(np.argmax(worst.min(axis=0)))
-        misses = " and ".join(f"{name} ({course.margins[name][place]:.3g})" for name in course.missed(place))
+        missed = (name for name in course.missed(place) if name in course.margins)
+        misses = " and ".join(f"{name} ({course.margins[name][place]:.3g})" for name in missed) or "a root"
         return (
             f"no shift of the roller from {span[0]:g} to {span[1]:g} keeps every limit; the nearest, "
             f"{course.shifts[place]:.4g}, misses {misses}"

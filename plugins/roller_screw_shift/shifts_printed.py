@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from truing import Block
 
 MM, MEGA = 1e3, 1e6
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 LIMITS = {
     "margin_ring_base": ("g1", "base circle of the ring"),
     "margin_roller_base": ("g2", "base circle of the roller"),
@@ -52,7 +53,7 @@ ROWS: tuple[tuple[str, str, str, float], ...] = (
 
 def spoken(limits: Sequence[str]) -> str:
     """Return limits by number and name."""
-    return " and ".join(" ".join(LIMITS[name]) for name in limits)
+    return " and ".join(" ".join(LIMITS.get(name, ("a root that", "does not exist"))) for name in limits)
 
 
 def number(value: float) -> float | None:
@@ -142,7 +143,7 @@ def optimum_words(chosen: "Chosen", field: "Field") -> "list[Block]":
         where += (
             f"Box's method found it with {box.evaluations} evaluations, most of them to draw the first vertices; the "
             f"grid of {len(field.course.shifts)} shifts says {signed(chosen.grid, '.6f')}, "
-            f"{abs(chosen.shift - chosen.grid):.1e} beside it."
+            f"{small(abs(chosen.shift - chosen.grid))} beside it."
         )
     blocks.append(Words(where))
     held = (
@@ -177,6 +178,16 @@ def variants_table(chosen: "Chosen", field: "Field") -> Table:
         rows,
         note="On the grid. The paper prints 0.21 and −0.16.",
     )
+
+
+def small(value: float) -> str:
+    """A small number in words of the sheet."""
+    from math import floor, log10
+
+    if not value:
+        return "nothing"
+    power = floor(log10(value))
+    return f"{value / 10.0**power:.1f}·10{str(power).translate(RAISED)}"
 
 
 def signed(value: float, digits: str = ".4f") -> str:
