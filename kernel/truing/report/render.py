@@ -160,7 +160,7 @@ def _value_html(value: Value) -> str:
 
 
 def _ratio(row: ComparedRow) -> str:
-    return f"{row.ratio:.4f}" if row.ratio is not None else "–"
+    return f"{row.ratio:.4f}".replace("-", "−") if row.ratio is not None else "–"
 
 
 def _paper_digits(row: ComparedRow) -> tuple[str, str]:

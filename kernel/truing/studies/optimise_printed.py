@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from truing.studies.optimise import Design, Optimum
 
 SHOWN = 20
+FLAT = 1e-6
 WIDEST = 7
 """So many columns with long names fit on A4 and letter."""
 
@@ -182,7 +183,10 @@ def _comparison_note(optimum: Optimum) -> str:
         return "With one objective the knee is the best design."
     if len(optimum.front) == 1:
         return "The front is a single design: it is the best in every objective."
-    return "The knee lies farthest from the chord between the ends of the front, each objective brought to 0 to 1."
+    plane = "chord between the ends" if len(optimum.aims) == 2 else "plane through the ends"
+    if optimum.distance <= FLAT:
+        return f"The front has no knee: none of its designs lies before the {plane}. Shown is the nearest one."
+    return f"The knee lies farthest from the {plane} of the front, each objective brought to 0 to 1."
 
 
 def _percent(value: float) -> Any:
