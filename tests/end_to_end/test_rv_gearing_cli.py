@@ -107,7 +107,8 @@ def test_the_list_of_groups_is_a_result(example: tuple[Path, dict[str, Any]]) ->
     ("settings", "count"), [(("ratio_tolerance=0.04",), 102), (("fewest_pins=30", "most_pins=60"), 422)]
 )
 def test_wider_readings_of_the_search(calc: Calc, settings: tuple[str, ...], count: int) -> None:
-    words = [word for setting in (*settings, 'studies.run=["search"]') for word in ("--set", setting)]
+    short = ("sheet.detail=short", 'studies.run=["search"]')
+    words = [word for setting in (*settings, *short) for word in ("--set", setting)]
     found = json.loads(calc("run", "rv_gearing", "-o", "run", "--json", *words).out)
     assert value(found, "group_count") == found["studies"]["search"]["count"] == count
 
@@ -159,7 +160,8 @@ def test_a_group_is_its_teeth(table: Table) -> None:
 def test_the_strength_of_all_groups_as_cases(calc: Calc, tmp_path: Path) -> None:
     """Larger gears carry more; a number beyond the list fails alone, and the others go on."""
     (tmp_path / "groups.csv").write_text("group\n" + "".join(f"{number}\n" for number in range(1, 27)))
-    answer = calc("run", "rv_gearing", "-o", "run", "--cases", "groups.csv", "--set", "studies.run=[]", "--json")
+    short = ("--set", "sheet.detail=short", "--set", "studies.run=[]", "--json")
+    answer = calc("run", "rv_gearing", "-o", "run", "--cases", "groups.csv", *short)
     assert answer.code == 1
     found = json.loads(answer.out)
     safeties = [case["results"]["contact_safety"]["value"] for case in found["cases"][:25]]
