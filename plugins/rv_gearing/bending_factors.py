@@ -21,13 +21,13 @@ LEVER = "cross-section of the virtual spur gear, load along the line of action"
 class GearRoot:
     """Form of the tooth root of one gear; lengths in modules."""
 
-    root_chord: Float = found("", symbol="s_Fn*", note="chord of the critical section, in modules", method=TRACED,
+    root_chord: Float = found("", symbol="s_Fn", note="chord of the critical section, in modules", method=TRACED,
                               source=ISO + "6")  # fmt: skip
-    root_fillet: Float = found("", symbol="rho_F*", note="radius of the fillet there, in modules", method=TRACED,
+    root_fillet: Float = found("", symbol="rho_F", note="radius of the fillet there, in modules", method=TRACED,
                                source=ISO + "6")  # fmt: skip
     notch_parameter: Float = found("", symbol="q_s", note="notch parameter", formula="root_chord / (2 * root_fillet)",
                                    source=ISO + "7")  # fmt: skip
-    tip_arm: Float = found("", symbol="h_Fa*", note="bending arm, load at the tip, in modules", method=LEVER,
+    tip_arm: Float = found("", symbol="h_Fa", note="bending arm, load at the tip, in modules", method=LEVER,
                            source="GB/T 3480-1997")  # fmt: skip
     tip_load_angle: Float = found("deg", symbol="alpha_Fan", note="angle of the load at the tip", method=LEVER,
                                   source="GB/T 3480-1997")  # fmt: skip
@@ -41,14 +41,18 @@ class GearRoot:
         formula="either(stated_stress_correction, (1.2 + 0.13 * root_chord / tip_arm)"
         " * notch_parameter**(1 / (1.21 + 2.3 * tip_arm / root_chord)))",
     )  # fmt: skip
+    virtual_tip_diameter: Float = found("mm", symbol="d_an", note="tip diameter of the virtual spur gear",
+                                        source=ISO + "6", formula="module * virtual_teeth + tip_diameter"
+                                        " - reference_diameter")  # fmt: skip
+    virtual_base_diameter: Float = found("mm", symbol="d_bn", note="base diameter of the virtual spur gear",
+                                         source=ISO + "6",
+                                         formula="module * virtual_teeth * cos(pressure_angle)")  # fmt: skip
     outer_diameter: Float = found(
         "mm", symbol="d_en", note="virtual diameter of the outer point of single contact", source=ISO + "6",
-        formula="2 * hypot(sqrt(((module * virtual_teeth + tip_diameter - reference_diameter) / 2)**2"
-        " - (module * virtual_teeth * cos(pressure_angle) / 2)**2)"
-        " - pi * module * cos(pressure_angle) * (virtual_contact_ratio - 1),"
-        " module * virtual_teeth * cos(pressure_angle) / 2)",
+        formula="2 * hypot(sqrt(virtual_tip_diameter**2 - virtual_base_diameter**2) / 2"
+        " - pi * module * cos(pressure_angle) * (virtual_contact_ratio - 1), virtual_base_diameter / 2)",
     )  # fmt: skip
-    outer_arm: Float = found("", symbol="h_Fe*", note="bending arm, load at the outer single contact, in modules",
+    outer_arm: Float = found("", symbol="h_Fe", note="bending arm, load at the outer single contact, in modules",
                              method=LEVER, source=ISO + "6")  # fmt: skip
     outer_load_angle: Float = found("deg", symbol="alpha_Fen", note="angle of the load at the outer single contact",
                                     method=LEVER, source=ISO + "6")  # fmt: skip
@@ -123,10 +127,10 @@ def root_of(stage: Gearing, size: GearSize, mesh: MeshSize, steel: Steel, which:
     teeth = size.virtual_teeth
     root = external_root(rack, teeth, gear.shift)
     _formed(root, which)
-    outer = outer_diameter(stage, size, mesh, which)
-    tip = external_arm(
-        rack, teeth, gear.shift, root, teeth + (size.tip_diameter - size.reference_diameter) / stage.module
-    )
+    virtual_tip = stage.module * teeth + size.tip_diameter - size.reference_diameter
+    virtual_base = stage.module * teeth * np.cos(stage.pressure_angle)
+    outer = outer_diameter(stage, (virtual_tip, virtual_base), mesh, which)
+    tip = external_arm(rack, teeth, gear.shift, root, virtual_tip / stage.module)
     single = external_arm(rack, teeth, gear.shift, root, outer / stage.module)
     _loaded(tip, single, which)
     slip_mm = 1e3 * steel.slip_layer
@@ -143,6 +147,8 @@ def root_of(stage: Gearing, size: GearSize, mesh: MeshSize, steel: Steel, which:
         tip_load_angle=tip.angle,
         form_factor=either(gear.stated_form_factor, form_factor(root, tip, stage.pressure_angle)),
         stress_correction=either(gear.stated_stress_correction, stress_correction(root, tip)),
+        virtual_tip_diameter=virtual_tip,
+        virtual_base_diameter=virtual_base,
         outer_diameter=outer,
         outer_arm=single.height,
         outer_load_angle=single.angle,
@@ -154,11 +160,11 @@ def root_of(stage: Gearing, size: GearSize, mesh: MeshSize, steel: Steel, which:
     )
 
 
-def outer_diameter(stage: Gearing, size: GearSize, mesh: MeshSize, which: Which) -> Float:
-    """Return d_en, m: where the load leaves the tooth to itself, on the virtual spur gear."""
-    half = 0.5 * stage.module * size.virtual_teeth
-    base = half * np.cos(stage.pressure_angle)
-    tip = half + 0.5 * (size.tip_diameter - size.reference_diameter)
+def outer_diameter(stage: Gearing, virtual: tuple[Float, Float], mesh: MeshSize, which: Which) -> Float:
+    """Return d_en, m: where the load leaves the tooth to itself, on the virtual spur gear of these tip and base
+    diameters.
+    """
+    tip, base = 0.5 * virtual[0], 0.5 * virtual[1]
     pitch = np.pi * stage.module * np.cos(stage.pressure_angle)
     reach = np.sqrt(tip**2 - base**2) - pitch * (mesh.virtual_contact_ratio - 1.0)
     feasible(

@@ -22,7 +22,7 @@ SLOW, FAST = 5.0, 10.0  # m/s
 class FaceLoad:
     """Misalignment of the flanks and the face load factors."""
 
-    mean_line_load: Float = found("N/mm", symbol="F_m/b", note="mean line load with K_A, K_V and K_Hp",
+    mean_line_load: Float = found("N/mm", symbol="w_m", note="mean line load with K_A, K_V and K_Hp",
                                   numeric=True, formula="max(line_load * dynamic_factor * planet_factor, 0.001)",
                                   source=CLAUSE)  # fmt: skip
     bending_weight: Float = found("", symbol="B_1", note="weight of the deflection", method=FORM, source=CLAUSE)
@@ -46,17 +46,23 @@ class FaceLoad:
         "limited above 5 m/s",
     )  # fmt: skip
     misalignment: Float = found("um", symbol="F_beta y", note="misalignment after running in", source=CLAUSE,
-                                formula="abs(initial_misalignment - face_running_in + extra_misalignment)")  # fmt: skip
-    misalignment_ratio: Float = found(
-        "", symbol="r", note="misalignment over twice the mean deflection; from K_Hbeta where that is stated",
-        source=CLAUSE,
-        formula="either(abs(cases(stated_face_factor - 1, stated_face_factor <= 2, (stated_face_factor / 2)**2)"
-        " + extra_misalignment * mesh_stiffness_face / (2 * mean_line_load)),"
-        " misalignment * mesh_stiffness_face / (2 * mean_line_load))",
+                                formula="initial_misalignment - face_running_in")  # fmt: skip
+    misalignment_ratio: Float = found("", symbol="r", note="misalignment over twice the mean deflection",
+                                      formula="misalignment * mesh_stiffness_face / (2 * mean_line_load)",
+                                      source=CLAUSE)  # fmt: skip
+    face_factor_alone: Float = found(
+        "", symbol="K_H beta,0", note="face load factor of these deviations; as stated where it is", source=CLAUSE,
+        formula="either(stated_face_factor,"
+        " cases(1 + misalignment_ratio, misalignment_ratio <= 1, 2 * sqrt(misalignment_ratio)))",
     )  # fmt: skip
-    face_factor: Float = found("", symbol="K_H beta", note="face load factor for contact; as stated where it is",
-                               source=CLAUSE, formula="cases(1 + misalignment_ratio, misalignment_ratio <= 1,"
-                               " 2 * sqrt(misalignment_ratio))")  # fmt: skip
+    whole_ratio: Float = found(
+        "", symbol="r_w", note="the same with the misalignment that comes on top, which may act against it",
+        formula="abs(cases(face_factor_alone - 1, face_factor_alone <= 2, (face_factor_alone / 2)**2)"
+        " + extra_misalignment * mesh_stiffness_face / (2 * mean_line_load))",
+        source=CLAUSE,
+    )  # fmt: skip
+    face_factor: Float = found("", symbol="K_H beta", note="face load factor for contact", source=CLAUSE,
+                               formula="cases(1 + whole_ratio, whole_ratio <= 1, 2 * sqrt(whole_ratio))")  # fmt: skip
     face_exponent: Float = found(
         "", symbol="N_F", note="exponent of the face load factor for bending", source="ISO 6336-1:2006, clause 7",
         formula="1 / (1 + min(tooth_height / face_width, 1 / 3) + min(tooth_height / face_width, 1 / 3)**2)",
@@ -82,18 +88,18 @@ def face_load_of(
     least = np.maximum(5e-12 * line_load, 0.5 * np.maximum(made[0].helix_deviation, made[1].helix_deviation))
     initial = np.maximum(1.33 * weights[0] * bent + weights[1] * making, least)
     ran_in = 0.5 * sum(_run_in(stage, gear, initial, velocity) for gear in (stage.sun, stage.planet))
-    misaligned = np.abs(initial - ran_in + stage.extra_misalignment)
     per_length = stiffness / (2.0 * line_load)
-    known = np.where(
-        stage.stated_face_factor <= 2.0, stage.stated_face_factor - 1.0, (0.5 * stage.stated_face_factor) ** 2
-    )
-    ratio = either(np.abs(known + stage.extra_misalignment * per_length), misaligned * per_length)
+    ratio = (initial - ran_in) * per_length
+    alone = either(stage.stated_face_factor, face_factor(ratio))
+    known = np.where(alone <= 2.0, alone - 1.0, (0.5 * alone) ** 2)
+    whole = np.abs(known + stage.extra_misalignment * per_length)
     slenderness = np.minimum(mesh.tooth_height / stage.face_width, 1.0 / 3.0)
-    factor, exponent = face_factor(ratio), 1.0 / (1.0 + slenderness + slenderness**2)
+    factor, exponent = face_factor(whole), 1.0 / (1.0 + slenderness + slenderness**2)
     return FaceLoad(
         mean_line_load=line_load, bending_weight=weights[0], making_weight=weights[1], deflection=bent,
         making_deviation=making, least_misalignment=least, initial_misalignment=initial, face_running_in=ran_in,
-        misalignment=misaligned, misalignment_ratio=ratio, face_factor=factor, face_exponent=exponent,
+        misalignment=initial - ran_in, misalignment_ratio=ratio, face_factor_alone=alone, whole_ratio=whole,
+        face_factor=factor, face_exponent=exponent,
         face_factor_bending=either(stage.stated_face_factor_bending, factor**exponent),
     )  # fmt: skip
 

@@ -26,7 +26,8 @@ def positive(value: float, unit: str, symbol: str, note: str, source: str = LOST
 
 def stated(symbol: str, note: str) -> float:
     """Declare a factor that is calculated unless it is stated here."""
-    declared: float = given(None, "", symbol=symbol, note=f"{note}; calculated where it is not stated", above=0)
+    note = f"{note}; calculated where it is not stated"
+    declared: float = given(None, "", symbol=f"{symbol},st", note=note, above=0)
     return declared
 
 
@@ -51,7 +52,7 @@ class Gear:
     stated_notch_sensitivity: Float = stated("Y_delta relT", "relative notch sensitivity factor")
     stated_root_surface: Float = stated("Y_RrelT", "relative surface factor of the root")
     stated_bending_size: Float = stated("Y_X", "size factor for bending")
-    stated_single_contact: Float = stated("Z_B,D", "single pair contact factor, Z_B of the sun and Z_D of the planet")
+    stated_single_contact: Float = stated("Z_BD", "single pair contact factor, Z_B of the sun and Z_D of the planet")
 
 
 @inputs
@@ -98,17 +99,21 @@ class Gearing:
         None, "N*m", symbol="T_2", note="torque at the output, with the sign of its direction; without it that of the "
         "power",
     )  # fmt: skip
-    input_speed: Float = given(None, "rpm", symbol="n_1", note="speed of the sun; without it that of the output speed",
+    input_speed: Float = given(None, "rpm", symbol="n_in", note="speed of the sun; without it that of the output speed",
                                above=0)  # fmt: skip
-    stated_sun_torque: Float = given(None, "N*m", symbol="T_1", note="torque of the sun, in place of all the above",
+    stated_sun_torque: Float = given(None, "N*m", symbol="T_1,st", note="torque of the sun, in place of all the above",
                                      at_least=0)  # fmt: skip
     stated_mesh_speed: Float = given(
-        None, "rpm", symbol="n_rel", note="speed of the sun relative to the carrier, in place of all the above", above=0
+        None,
+        "rpm",
+        symbol="n_rel,st",
+        note="speed of the sun relative to the carrier, in place of all the above",
+        above=0,
     )
     planets: int = given(2, symbol="n_p", note="planets that share the torque", source=LOST, at_least=1, at_most=12)
     application_factor: Float = positive(1.25, "", "K_A", "1 uniform, 1.25 light, 1.5 moderate, 1.75 heavy shocks")
     planet_load_factor: Float = given(
-        1.10, "", symbol="K_Hp", note="uneven sharing among the planets: 1.05 to 1.2 with a floating sun, 1.3 to 1.6 "
+        1.10, "", symbol="K_Hp,0", note="uneven sharing among the planets: 1.05 to 1.2 with a floating sun, 1.3 to 1.6 "
         "without", source=LOST, at_least=1,
     )  # fmt: skip
     working_life: Float = positive(6000.0, "h", "L_h", "working time that is asked for")
@@ -147,7 +152,7 @@ class Gearing:
     )
     # Factors that are calculated unless they are stated
     stated_dynamic_factor: Float = stated("K_V", "dynamic factor")
-    stated_face_factor: Float = given(None, "", symbol="K_H beta", note="face load factor for contact; calculated "
+    stated_face_factor: Float = given(None, "", symbol="K_H beta,st", note="face load factor for contact; calculated "
                                       "where it is not stated", at_least=1)  # fmt: skip
     stated_face_factor_bending: Float = stated("K_F beta", "face load factor for bending")
     stated_transverse_factor: Float = stated("K_H alpha", "transverse load factor for contact")
@@ -155,7 +160,7 @@ class Gearing:
     stated_planet_load_bending: Float = stated("K_Fp", "uneven sharing among the planets, for bending")
     stated_zone_factor: Float = stated("Z_H", "zone factor")
     stated_elasticity_factor: Float = given(
-        None, "MPa**0.5", symbol="Z_E", note="elasticity factor; calculated where it is not stated", above=0
+        None, "MPa**0.5", symbol="Z_E,st", note="elasticity factor; calculated where it is not stated", above=0
     )
     stated_contact_ratio_factor: Float = stated("Z_epsilon", "contact ratio factor for contact")
     stated_helix_factor: Float = stated("Z_beta", "helix factor for contact")
@@ -167,7 +172,7 @@ class Gearing:
     stated_contact_ratio_bending: Float = stated("Y_epsilon", "contact ratio factor for bending, load at the tip")
     stated_helix_factor_bending: Float = stated("Y_beta", "helix factor for bending")
     stated_mesh_stiffness: Float = given(
-        None, "N/(mm*um)", symbol="c_gamma", note="mean mesh stiffness; calculated where it is not stated", above=0
+        None, "N/(mm*um)", symbol="c_gamma,st", note="mean mesh stiffness; calculated where it is not stated", above=0
     )
     # Neutral inputs: effects reach the calculation through them
     extra_misalignment: Float = given(0.0, "um", symbol="F_beta,0", note="neutral 0: misalignment over the face width, "

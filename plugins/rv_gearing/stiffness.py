@@ -29,7 +29,7 @@ class Stiffness:
         formula="(1 + 0.5 * (1.2 - dedendum)) * (1 - 0.02 * (20 - pressure_angle))",
     )  # fmt: skip
     modulus_factor: Float = found(
-        "", symbol="E/E_St", note="moduli of both gears against steel", numeric=True, source=CLAUSE,
+        "", symbol="zeta", note="moduli of both gears against steel", numeric=True, source=CLAUSE,
         formula="2 * young_modulus_sun * young_modulus_planet / ((young_modulus_sun + young_modulus_planet) * 206)",
     )  # fmt: skip
     low_load_factor: Float = found("", symbol="c_w", note="softer contact below 100 N/mm", numeric=True, source=CLAUSE,

@@ -33,7 +33,7 @@ class PlanetSharing:
 class Sharing:
     """How unevenly the teeth share."""
 
-    transverse_line_load: Float = found("N/mm", symbol="F_tH/b", note="line load that parts the teeth", source=CLAUSE,
+    transverse_line_load: Float = found("N/mm", symbol="w_tH", note="line load that parts the teeth", source=CLAUSE,
                                         formula="mean_line_load * face_factor")  # fmt: skip
     transverse_base: Float = found(
         "", symbol="K_alpha", note="transverse load factor before its bounds", source="ISO 6336-1:2006, 8.3.2",
