@@ -139,7 +139,7 @@ def courses(record: "Run") -> "Sequence[Block]":
             continue
         over = AXES.get(swept.over, (swept.over.replace("_", " "), 1.0))[0].split(",")[0]
         here = _here(record, swept.over)
-        caption = "Dotted: what is asked of each. Full lines fall with the load, broken ones with its root."
+        caption = "Dotted: what is asked of each. Breakage goes with the load, pitting with its square root."
         title = f"Safeties over the {over}"
         blocks.append(Drawing(title, partial(safeties_figure, swept, here), caption if not blocks else ""))
     reserve = outcome_of(record, Reserve)

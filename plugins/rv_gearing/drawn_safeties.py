@@ -18,7 +18,8 @@ LOOKS = {
     "contact_safety_sun": (BLUE, "--", "sun, pitting"),
     "contact_safety_planet": (ORANGE, "--", "planet, pitting"),
 }
-HIGHEST = 6.0
+RANGE = (0.7, 12.0)
+TICKS = (0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0)
 AXES = {
     "load_torque": ("output torque, N m", 1.0),
     "face_width": ("face width, mm", MM),
@@ -48,7 +49,10 @@ def safeties_figure(swept: "Swept", here: float) -> "Figure":
         panel.annotate("this run", (factor * here, 1.0), (3, -9), textcoords="offset points", fontsize=8,
                        xycoords=("data", "axes fraction"))  # fmt: skip
     panel.set_xlim(float(axis.min()), float(axis.max()))
-    panel.set_ylim(0.0, HIGHEST)
+    panel.set_yscale("log")
+    panel.set_ylim(*RANGE)
+    panel.set_yticks(TICKS, [f"{tick:g}" for tick in TICKS])
+    panel.set_yticks([], minor=True)
     panel.set_xlabel(label)
     panel.set_ylabel("safety")
     panel.legend(ncols=4, loc="upper center", bbox_to_anchor=(0.5, 1.15), handlelength=1.8, columnspacing=1.2)

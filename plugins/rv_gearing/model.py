@@ -34,7 +34,7 @@ RV_GEARING = Model(
         Safeties(over="load_torque", at="100..2500 N*m", points=49, name="load"),
         Safeties(over="face_width", at="6..24 mm", points=37, name="face_width"),
         Sensitivity(of=STRESSES),
-        Reliability(),
+        Reliability(method=("first_order", "monte_carlo")),
     ],
     sheet=SECTIONS,
     published=PUBLISHED,

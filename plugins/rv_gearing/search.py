@@ -1,7 +1,7 @@
 """A study of our own: all groups of tooth numbers that meet the five conditions, sorted as wished, with strength."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -37,6 +37,7 @@ PRINTED = {"deviation": ("%", 100.0), "torque": ("N*m", 1.0)} | dict.fromkeys(
     ("centre_distance", "circle_low", "circle_high"), ("mm", 1e3)
 )
 EXACT = 1e-12
+SCATTER = 0.004  # of the efficiency of a bearing: four standard deviations of its tolerance
 CONDITIONS = "meets all five conditions of section 2 of the paper"
 
 
@@ -106,6 +107,7 @@ class Search:
             numbers=numbers[kept],
             strength=_strength(bench, groups.at(kept)),
             rated=_rated(stage, groups),
+            stable=_stable(stage, groups),
             sort_by=self.sort_by,
             descending=self.descending,
         )
@@ -128,9 +130,25 @@ def _rated(stage: Gearing, groups: Groups) -> int | None:
     return int(np.argmax(same)) + 1 if np.any(same) else None
 
 
+def _stable(stage: Gearing, groups: Groups) -> bool:
+    """Whether the number of the rated group stays with that group while the efficiency scatters a little."""
+    if not np.isnan(stage.sun_teeth):
+        return True
+    own = [each[: stage.group] for each in (groups.sun, groups.planet, groups.pins)]
+    for factor in (1.0 - SCATTER, 1.0 + SCATTER):
+        other = search(replace(stage, bearing_efficiency=np.minimum(stage.bearing_efficiency * factor, 1.0)))
+        others = (other.sun, other.planet, other.pins)
+        if not all(np.array_equal(one, two[: stage.group]) for one, two in zip(own, others, strict=True)):
+            return False
+    return True
+
+
 @dataclass(frozen=True, kw_only=True)
 class Found:
-    """Groups with their numbers and strength, (groups,) in SI; how many there are in all; which is rated."""
+    """Groups with their numbers and strength, (groups,) in SI; how many there are in all; which is rated.
+
+    ``stable`` says that the rated number keeps its teeth while the efficiency of the bearings scatters.
+    """
 
     name: str
     inputs: Gearing
@@ -140,6 +158,7 @@ class Found:
     numbers: "Values"
     strength: Mapping[str, "Values"]
     rated: int | None
+    stable: bool
     sort_by: Column
     descending: bool
 
@@ -151,8 +170,6 @@ class Found:
 
     def sorted(self) -> "Found":
         """Return the same in the order that was asked for; a deviation counts by its size, NaN comes last."""
-        from dataclasses import replace
-
         key = self.column(self.sort_by)
         key = np.abs(key) if self.sort_by == "deviation" else key
         order = np.argsort(-key if self.descending else key, kind="stable")
@@ -194,6 +211,11 @@ class Found:
         if self.rated is None:
             return [
                 f"study '{self.name}': the stated teeth are none of the {self.count} groups that meet all conditions"
+            ]
+        if not self.stable:
+            return [
+                f"study '{self.name}': a group lies so near the edge of the window that number {self.rated} is another "
+                "one with a slightly different efficiency; state sun_teeth, planet_teeth and pin_teeth instead"
             ]
         return ()
 

@@ -39,7 +39,7 @@ SECTIONS = [
         "tooth_ratio", "transverse_angle", "base_helix_angle", *both("reference_diameter", "base_diameter",
         "tip_diameter", "root_diameter"), "tight_angle", "tight_centre_distance", "centre_distance", "working_angle",
         "base_pitch", "curvature", *both("tip_angle"), "contact_ratio", "overlap_ratio", "total_contact_ratio",
-        "tooth_height", *both("tip_thickness", "start_curvature"), "backlash",
+        "tooth_height", *both("tip_thickness", "start_curvature", "form_diameter"), "backlash",
         blocks=drawn.geometry,
     ),
     Section(
@@ -71,7 +71,8 @@ SECTIONS = [
     Section(
         "Face load factors",
         "mean_line_load", "bending_weight", "making_weight", "deflection", "making_deviation", "least_misalignment",
-        "initial_misalignment", "face_running_in", "misalignment", "misalignment_ratio", "face_factor",
+        "initial_misalignment", "face_running_in", "misalignment", "misalignment_ratio",
+        "face_factor_alone", "whole_ratio", "face_factor",
         "face_exponent", "face_factor_bending",
         text="Method C of ISO 6336-1. In small gears under a small load the deviations count for more than the load, "
         "and the factor becomes large. Where it was measured or calculated otherwise, state it: 1.1 to 1.3 is usual "
@@ -100,7 +101,8 @@ SECTIONS = [
     ),
     Section(
         "Root stress, load at the outer single contact",
-        *both("outer_diameter", "outer_arm", "outer_load_angle", "form_factor_outer", "stress_correction_outer"),
+        *both("virtual_tip_diameter", "virtual_base_diameter", "outer_diameter", "outer_arm",
+               "outer_load_angle", "form_factor_outer", "stress_correction_outer"),
         "deep_tooth_factor", *both("nominal_root_stress_outer", "root_stress_outer", "root_safety_outer"),
         "root_safety_outer",
         text="Method B of ISO 6336-3, with a form factor and stress correction of its own and without a contact ratio "

@@ -93,6 +93,16 @@ def test_the_rated_group_is_told() -> None:
     assert any("stated teeth are none of the 25 groups" in words for words in found(stated).warnings())
 
 
+@pytest.mark.parametrize(
+    ("power", "group", "stable"), [("2.26 kW", 1, True), ("2.345 kW", 1, False), ("2.2 kW", 9, True)]
+)
+def test_a_number_that_hangs_on_the_scatter_of_the_efficiency_is_said(power: str, group: int, stable: bool) -> None:
+    """20/55 needs 46.875 mm; the window begins there at 1341.7 N m, which 2.345 kW give with 0.991 of a bearing."""
+    told = found(run(Search(), power=power, group=group))
+    assert bool(told.warnings()) is not stable
+    assert found(run(Search(), power=power, sun_teeth=20, planet_teeth=55)).warnings() == ()
+
+
 def test_an_empty_list_is_said_and_the_stated_teeth_are_rated() -> None:
     calculation = run(Search(gives=listed), target_ratio=5000.0, sun_teeth=20, planet_teeth=55)
     assert calculation.answers["group_count"] == 0
