@@ -13,6 +13,7 @@ from roller_screw_shift.shifts_printed import (
     compared_table,
     intervals_words,
     optimum_words,
+    printed_table,
     variants_table,
     weights_table,
 )
@@ -98,6 +99,7 @@ def choice(record: "Run") -> "Sequence[Block]":
     caption = "The first objective is to be large, the others are to be small."
     return [
         weights_table(chosen, chosen.field),
+        printed_table(),
         Drawing("Objectives over the shift", partial(objectives_figure, chosen), caption),
         *optimum_words(chosen, chosen.field),
         compared_table(chosen, chosen.field),

@@ -13,9 +13,9 @@ from roller_screw_shift.tolerances import TOLERANCES
 from truing import Maximise, Minimise, Model, Optimise, Require, Vary
 
 LITERATURE = [
-    "The paper: Gao Yang, Yang Jiajun, Liang Han, Deng Bo, Zhu Jisheng (高揚, 楊家軍, 梁漢, 鄧波, 朱繼生), Optimization "
-    "of Planetary Roller Screw Gear Modification Coefficient, Journal of Hubei University of Technology 30(4), 2015, p. "
-    "58.",
+    "The paper: Gao Yang, Yang Jiajun, Liang Han, Deng Bo, Zhu Jisheng (高揚, 楊家軍, 梁漢, 鄧波, 朱繼生), "
+    "Optimization of Planetary Roller Screw Gear Modification Coefficient, Journal of Hubei University of Technology "
+    "30(4), 2015, p. 58.",
     "Box, M. J., A new method of constrained optimization and a comparison with other methods, The Computer Journal 8 "
     "(1965), p. 42.",
     "Guin, J. A., Modification of the complex method of constrained optimization, The Computer Journal 10 (1968), p. "

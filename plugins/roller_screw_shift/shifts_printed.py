@@ -5,7 +5,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from roller_screw_shift.shifts import before
-from roller_screw_shift.weighing import PRINTED_RANGES, rule_weights
+from roller_screw_shift.weighing import PRINTED_RANGES, PRINTED_WEIGHTS, lower_limit, rule_weights
 from truing import Table, Words
 
 if TYPE_CHECKING:
@@ -102,23 +102,26 @@ def intervals_words(field: "Field") -> Words:
 
 
 def weights_table(chosen: "Chosen", field: "Field") -> Table:
-    """Set ranges and weights found here beside those of the paper."""
-    by_rule, printed = rule_weights(PRINTED_RANGES), (0.35, 0.01, 0.81)
+    """List the ranges found here and the weights taken."""
     rows = [
-        (name, sense, unit, _span(found), weight, _span(theirs), rule, stated)
-        for (name, sense, unit), found, weight, theirs, rule, stated in zip(
-            OBJECTIVES, field.ranges, chosen.weights, PRINTED_RANGES, by_rule, printed, strict=True
+        (name, sense, unit, signed(low), signed(high), weight)
+        for (name, sense, unit), (low, high), weight in zip(OBJECTIVES, field.ranges, chosen.weights, strict=True)
+    ]
+    columns = ("objective", "to be", "unit", "from", "to", "weight taken")
+    return Table("Ranges and weights", columns, rows, note=f"Weights: {READING[chosen.inputs.weights]}.")
+
+
+def printed_table() -> Table:
+    """List what the paper prints of ranges and weights, and what its rule makes of it."""
+    rows = [
+        (name, unit, low, high, stated, by_rule, lower_limit(stated, high))
+        for (name, _, unit), (low, high), stated, by_rule in zip(
+            OBJECTIVES, PRINTED_RANGES, PRINTED_WEIGHTS, rule_weights(PRINTED_RANGES), strict=True
         )
     ]
-    columns = (
-        "objective", "to be", "unit", "range here", "weight taken", "printed range", "its weight by the rule",
-        "printed weight",
-    )  # fmt: skip
-    return Table("Ranges and weights", columns, rows, note=f"Taken: {READING[chosen.inputs.weights]}.")
-
-
-def _span(reach: tuple[float, float]) -> str:
-    return f"{signed(reach[0], '.3f')} to {signed(reach[1], '.3f')}"
+    columns = ("printed", "unit", "from", "to", "weight", "weight by its rule", "or from")
+    note = "The printed weight would follow by the rule if the range began where the last column says."
+    return Table("Ranges and weights in the paper", columns, rows, note=note)
 
 
 def compared_table(chosen: "Chosen", field: "Field") -> Table:
