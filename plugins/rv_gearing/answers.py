@@ -42,10 +42,13 @@ class Duty:
                              formula="either(input_speed, output_speed * ratio)")  # fmt: skip
     mesh_speed: Float = found("rpm", symbol="n_rel", note="speed of the sun relative to the carrier",
                               formula="either(stated_mesh_speed, sun_speed * (1 - 1 / ratio))")  # fmt: skip
+    asked_torque: Float = found(
+        "N*m", symbol="T_a", note="torque asked for at the output: as given, else that of the power", numeric=True,
+        formula="abs(either(load_torque, 9550 * power / sun_speed * ratio * mesh_efficiency * bearing_efficiency**3))",
+    )  # fmt: skip
     sun_torque: Float = found(
-        "N*m", symbol="T_1", note="torque of the sun", numeric=True,
-        formula="either(stated_sun_torque, either(abs(load_torque)"
-        " / (ratio * mesh_efficiency * bearing_efficiency**3), 9550 * power / sun_speed))",
+        "N*m", symbol="T_1", note="torque of the sun; as stated where it is",
+        formula="either(stated_sun_torque, asked_torque / (ratio * mesh_efficiency * bearing_efficiency**3))",
     )  # fmt: skip
     output_torque: Float = found("N*m", symbol="T_2", note="torque at the output",
                                  formula="sun_torque * ratio * mesh_efficiency * bearing_efficiency**3")  # fmt: skip

@@ -83,6 +83,7 @@ def duty_of(stage: Gearing, load: Load, sun: GearSize, mesh: MeshSize) -> Duty:
         mesh_efficiency=mesh_efficiency(stage, mesh.tooth_ratio, load.pins),
         sun_speed=load.input_speed,
         mesh_speed=load.mesh_speed,
+        asked_torque=load.asked_torque,
         sun_torque=load.sun_torque,
         output_torque=load.sun_torque * load.ratio * load.efficiency,
         tangential_force=load.tangential_force,

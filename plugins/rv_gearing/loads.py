@@ -26,6 +26,7 @@ class Load:
     pins: Float
     ratio: Float
     efficiency: Float
+    asked_torque: Float
     sun_torque: Float
     input_speed: Float
     mesh_speed: Float
@@ -45,8 +46,9 @@ def load_of(stage: Gearing) -> Load:
     ratio = ratio_of(teeth.sun, teeth.planet, teeth.pins)
     efficiency = efficiency_of(stage, teeth.sun, teeth.planet, teeth.pins)
     speed = either(stage.input_speed, stage.output_speed * ratio)
-    from_output = np.abs(stage.load_torque) / (ratio * efficiency)
-    torque = either(stage.stated_sun_torque, either(from_output, torque_of(stage.power, speed)))
+    reduction = ratio * efficiency
+    asked = np.abs(either(stage.load_torque, torque_of(stage.power, speed) * reduction))
+    torque = either(stage.stated_sun_torque, asked / reduction)
     radii = reference_radii(stage, teeth.sun, teeth.planet)
     force = torque / (stage.planets * radii[0])
     inward = np.cos(transverse_angle(stage.pressure_angle, stage.helix_angle))
@@ -56,6 +58,7 @@ def load_of(stage: Gearing) -> Load:
         pins=teeth.pins,
         ratio=ratio,
         efficiency=efficiency,
+        asked_torque=asked,
         sun_torque=torque,
         input_speed=speed,
         mesh_speed=either(stage.stated_mesh_speed, speed * (1.0 - 1.0 / ratio)),

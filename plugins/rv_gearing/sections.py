@@ -16,7 +16,7 @@ SECTIONS = [
     Section(
         "Ratio, efficiency and torque",
         *both("teeth"), "pins", "ratio", "pin_ratio", "mesh_efficiency", "efficiency", "sun_speed", "mesh_speed",
-        "sun_torque", "output_torque",
+        "asked_torque", "sun_torque", "output_torque",
         text="A sun drives planets, each planet turns a crank, and the cranks drive cycloid discs in a ring of pins "
         "that stands still; the output is the carrier of the cranks. The mesh of sun and planet turns with it, so its "
         "speed is that of the sun relative to the carrier.",
