@@ -5,8 +5,10 @@ with single calculations.
 """
 
 import json
+import re
 import warnings
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,8 +24,9 @@ from rv_gearing.drawn_tooth import notched_of
 from rv_gearing.model import RV_GEARING
 from rv_gearing.search import SIZES, STRENGTH, Column, Found, Search, listed
 from rv_gearing.tooth_form import half_space, tooth, trochoid, undercut
-from truing import Drawing, Swept, Table, TruingError, Words
+from truing import Drawing, Kernel, Swept, Table, TruingError, Words
 from truing.calculation import Calculation, calculate
+from truing.inputs_file import setup_from_text
 from truing.report.content import check_rows
 from truing.report.figures import draw
 from truing.setup import default_setup
@@ -97,7 +100,7 @@ def test_the_rated_group_is_told() -> None:
     ("power", "group", "stable"), [("2.26 kW", 1, True), ("2.345 kW", 1, False), ("2.2 kW", 9, True)]
 )
 def test_a_number_that_hangs_on_the_scatter_of_the_efficiency_is_said(power: str, group: int, stable: bool) -> None:
-    """20/55 needs 46.875 mm; the window begins there at 1341.7 N m, which 2.345 kW give with 0.991 of a bearing."""
+    """20/55 needs 46.875 mm; the window begins there at 1341.7 N m, which 2.345 kW give with 0.992 of a bearing."""
     told = found(run(Search(), power=power, group=group))
     assert bool(told.warnings()) is not stable
     assert found(run(Search(), power=power, sun_teeth=20, planet_teeth=55)).warnings() == ()
@@ -251,7 +254,7 @@ PAIRS: list[dict[str, Any]] = [
 @pytest.mark.parametrize("inputs", PAIRS)
 def test_flanks_touch_and_do_not_overlap(inputs: dict[str, Any]) -> None:
     """Distances of the drawn outlines around the pitch point; a hundredth of a module is the step of the outline."""
-    from matplotlib.path import Path
+    from matplotlib.path import Path as Outline
 
     calculation = run(**inputs)
     meshing = meshing_of(calculation.record, calculation.record.inputs)
@@ -260,7 +263,7 @@ def test_flanks_touch_and_do_not_overlap(inputs: dict[str, Any]) -> None:
     own = meshing.sun.teeth[:, close]
     away = np.array([np.hypot(*(planet - point[:, None])).min() for point in own.T])
     assert away.min() < 0.03 * meshing.module
-    inside = Path(planet.T).contains_points(own.T)
+    inside = Outline(planet.T).contains_points(own.T)
     assert not np.any(inside) or away[inside].max() < 0.02 * meshing.module
 
 
@@ -345,3 +348,26 @@ def test_a_limit_that_is_a_result_is_printed_as_one(whole: Calculation) -> None:
     """The permitted contact stress of the sun, 1093.394 MPa, with as many digits as a stress has."""
     printed = {row.name: row.limit.text for row in check_rows(whole)}
     assert printed["contact_stress_sun"] == "1093.4"
+
+
+def test_every_result_stands_in_a_section() -> None:
+    named = [name for section in RV_GEARING.sheet for name in section.names]
+    assert set(RV_GEARING.result_fields) == set(named)
+    assert len(named) == len(set(named))
+
+
+def test_the_example_names_every_input_effect_unknown_condition_and_study() -> None:
+    """Each line that is not read is read here too: the file with all of them on is calculated."""
+    text = RV_GEARING.example.read_text(encoding="utf-8") if RV_GEARING.example else ""
+    words = set(re.findall(r"^(?:# )?(\w+) = ", text, re.MULTILINE))
+    unknowns = {unknown.name for effect in RV_GEARING.effects.values() for unknown in effect.unknowns}
+    assert set(RV_GEARING.input_fields) | set(RV_GEARING.conditions) | unknowns <= words
+    assert {f"# [effects.{name}]" for name in RV_GEARING.effects} <= set(text.splitlines())
+    lines = [line[2:] if re.match(r"# (\w+ = |\[)", line) else line for line in text.splitlines()]
+    everything = "\n".join(lines).replace("draws = 1000000", "draws = 200")
+    offer = Kernel.installed().offer("rv_gearing")
+    setup = setup_from_text(everything, offer, file="example.toml", folder=Path())
+    assert len(setup.effects) == len(RV_GEARING.effects) == 17
+    answers = calculate(setup).answers
+    assert answers["transmission_error"] > 0
+    assert answers["flank_temperature"] > 320
