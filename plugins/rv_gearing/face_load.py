@@ -45,24 +45,28 @@ class FaceLoad:
         method="case-hardened and nitrided: 0.15 F_betax, at most 6 um; through-hardened: 320 F_betax/sigma_Hlim, "
         "limited above 5 m/s",
     )  # fmt: skip
-    misalignment: Float = found("um", symbol="F_beta y", note="misalignment after running in", source=CLAUSE,
-                                formula="initial_misalignment - face_running_in")  # fmt: skip
-    misalignment_ratio: Float = found("", symbol="r", note="misalignment over twice the mean deflection",
-                                      formula="misalignment * mesh_stiffness_face / (2 * mean_line_load)",
-                                      source=CLAUSE)  # fmt: skip
+    settled_misalignment: Float = found("um", symbol="F_beta y,0", note="misalignment after running in", source=CLAUSE,
+                                        formula="initial_misalignment - face_running_in")  # fmt: skip
+    settled_ratio: Float = found("", symbol="r_0", note="the same over twice the mean deflection",
+                                 formula="settled_misalignment * mesh_stiffness_face / (2 * mean_line_load)",
+                                 source=CLAUSE)  # fmt: skip
     face_factor_alone: Float = found(
         "", symbol="K_H beta,0", note="face load factor of these deviations; as stated where it is", source=CLAUSE,
         formula="either(stated_face_factor,"
-        " cases(1 + misalignment_ratio, misalignment_ratio <= 1, 2 * sqrt(misalignment_ratio)))",
+        " cases(1 + settled_ratio, settled_ratio <= 1, 2 * sqrt(settled_ratio)))",
     )  # fmt: skip
-    whole_ratio: Float = found(
-        "", symbol="r_w", note="the same with the misalignment that comes on top, which may act against it",
+    misalignment: Float = found(
+        "um", symbol="F_beta y", note="misalignment by this factor and what comes on top, which may act against it",
         formula="abs(cases(face_factor_alone - 1, face_factor_alone <= 2, (face_factor_alone / 2)**2)"
-        " + extra_misalignment * mesh_stiffness_face / (2 * mean_line_load))",
+        " * 2 * mean_line_load / mesh_stiffness_face + extra_misalignment)",
         source=CLAUSE,
     )  # fmt: skip
+    misalignment_ratio: Float = found("", symbol="r", note="the same over twice the mean deflection",
+                                      formula="misalignment * mesh_stiffness_face / (2 * mean_line_load)",
+                                      source=CLAUSE)  # fmt: skip
     face_factor: Float = found("", symbol="K_H beta", note="face load factor for contact", source=CLAUSE,
-                               formula="cases(1 + whole_ratio, whole_ratio <= 1, 2 * sqrt(whole_ratio))")  # fmt: skip
+                               formula="cases(1 + misalignment_ratio, misalignment_ratio <= 1,"
+                               " 2 * sqrt(misalignment_ratio))")  # fmt: skip
     face_exponent: Float = found(
         "", symbol="N_F", note="exponent of the face load factor for bending", source="ISO 6336-1:2006, clause 7",
         formula="1 / (1 + min(tooth_height / face_width, 1 / 3) + min(tooth_height / face_width, 1 / 3)**2)",
@@ -89,17 +93,18 @@ def face_load_of(
     initial = np.maximum(1.33 * weights[0] * bent + weights[1] * making, least)
     ran_in = 0.5 * sum(_run_in(stage, gear, initial, velocity) for gear in (stage.sun, stage.planet))
     per_length = stiffness / (2.0 * line_load)
-    ratio = (initial - ran_in) * per_length
-    alone = either(stage.stated_face_factor, face_factor(ratio))
+    settled = initial - ran_in
+    alone = either(stage.stated_face_factor, face_factor(settled * per_length))
     known = np.where(alone <= 2.0, alone - 1.0, (0.5 * alone) ** 2)
-    whole = np.abs(known + stage.extra_misalignment * per_length)
+    misaligned = np.abs(known / per_length + stage.extra_misalignment)
+    ratio = misaligned * per_length
     slenderness = np.minimum(mesh.tooth_height / stage.face_width, 1.0 / 3.0)
-    factor, exponent = face_factor(whole), 1.0 / (1.0 + slenderness + slenderness**2)
+    factor, exponent = face_factor(ratio), 1.0 / (1.0 + slenderness + slenderness**2)
     return FaceLoad(
         mean_line_load=line_load, bending_weight=weights[0], making_weight=weights[1], deflection=bent,
         making_deviation=making, least_misalignment=least, initial_misalignment=initial, face_running_in=ran_in,
-        misalignment=initial - ran_in, misalignment_ratio=ratio, face_factor_alone=alone, whole_ratio=whole,
-        face_factor=factor, face_exponent=exponent,
+        settled_misalignment=settled, settled_ratio=settled * per_length, face_factor_alone=alone,
+        misalignment=misaligned, misalignment_ratio=ratio, face_factor=factor, face_exponent=exponent,
         face_factor_bending=either(stage.stated_face_factor_bending, factor**exponent),
     )  # fmt: skip
 

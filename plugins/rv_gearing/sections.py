@@ -71,8 +71,8 @@ SECTIONS = [
     Section(
         "Face load factors",
         "mean_line_load", "bending_weight", "making_weight", "deflection", "making_deviation", "least_misalignment",
-        "initial_misalignment", "face_running_in", "misalignment", "misalignment_ratio",
-        "face_factor_alone", "whole_ratio", "face_factor",
+        "initial_misalignment", "face_running_in", "settled_misalignment", "settled_ratio",
+        "face_factor_alone", "misalignment", "misalignment_ratio", "face_factor",
         "face_exponent", "face_factor_bending",
         text="Method C of ISO 6336-1. In small gears under a small load the deviations count for more than the load, "
         "and the factor becomes large. Where it was measured or calculated otherwise, state it: 1.1 to 1.3 is usual "
