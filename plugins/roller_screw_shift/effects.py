@@ -39,8 +39,8 @@ LOAD: list[Effect[Pair, Meshing]] = [
         "face_misalignment",
         on_inputs=face_misalignment,
         unknowns=[
-            Unknown("misalignment", 0, 50, "um", note="gap at one end of the face without load; 0.2 to 2 mrad of tilt"),
-            Unknown("per_load", 0, 5, "um/kN", note="what the gap gains with the axial load"),
+            Unknown("misalignment", 0, 20, "um", note="gap at one end of the face without load; 0.2 to 2 mrad of tilt"),
+            Unknown("per_load", 0, 2, "um/kN", note="what the gap gains with the axial load"),
         ],
         parts=[("misalignment",), ("per_load",)],
         looks_like="both root stresses too high by one amount at any load, like an offset or a roller ahead of the "
@@ -66,7 +66,7 @@ LOAD: list[Effect[Pair, Meshing]] = [
         "roller_load_sharing",
         on_inputs=roller_load_sharing,
         unknowns=[
-            Unknown("lead", -50, 50, "um", note="of the flank of this roller before the mean of the others; 1 to 5"),
+            Unknown("lead", -20, 20, "um", note="of the flank of this roller before the mean of the others; 1 to 5"),
         ],
         looks_like="both root stresses off by one amount at any load, like an offset; a roller that stays behind "
         "carries nothing at small loads",

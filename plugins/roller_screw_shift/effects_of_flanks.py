@@ -61,7 +61,7 @@ def friction_torque(pair: Pair, meshing: Meshing, speed: Float, temperature: Flo
 
 
 def loss_factor(pair: Pair, meshing: Meshing) -> Float:
-    """Return the mean sliding over the speed of the pitch circles, with the load shared evenly by the pairs in mesh.
+    """Return the loss of power of a mesh over its power and mu: sliding, with the load shared evenly by the pairs.
 
     pi (1/z_E - 1/z_I) (1 - eps + eps_E² + eps_I²) of a spur pair with 1 <= eps <= 2. Reference: Ohlendorf 1958.
     """
@@ -75,8 +75,8 @@ def loss_factor(pair: Pair, meshing: Meshing) -> Float:
 def mean_friction(pair: Pair, meshing: Meshing, pitch_speed: Float, temperature: Float) -> Float:
     """Return the mean coefficient of friction of the flanks, from the pitch point; speed in m/s, temperature in K.
 
-    0.048 (F_bt/b / (v_S rho))^0.2 eta^-0.05 Ra^0.25 with N/mm, m/s, mm, mPa s and um. Made for line loads from 150
-    N/mm on; those of a roller are smaller, and the factor of the effect takes up what that does.
+    0.048 (F_bt/b / (v_S rho))^0.2 eta^-0.05 Ra^0.25 with N/mm, m/s, mm, mPa s and um. Fitted to gear drives with
+    larger line loads than a roller has; the factor of the effect takes up what that does.
     Reference: ISO/TR 14179-2.
     """
     sine = np.sin(meshing.mounted_angle)
@@ -86,9 +86,11 @@ def mean_friction(pair: Pair, meshing: Meshing, pitch_speed: Float, temperature:
     line_load = 1e-3 * load_of(pair).tangential_force / (np.cos(pair.pressure_angle) * pair.face_width)  # N/mm
     together = 2.0 * pitch_speed * sine
     oil = (DENSITY * viscosity(temperature)) ** -0.05
-    return 0.048 * (line_load / (together * radius_mm)) ** 0.2 * oil * ROUGHNESS**0.25
+    mean: Float = 0.048 * (line_load / (together * radius_mm)) ** 0.2 * oil * ROUGHNESS**0.25
+    return mean
 
 
 def viscosity(temperature: Float) -> Float:
     """Return the kinematic viscosity of the oil, mm²/s: log log (nu + 0.7) falls with log T. Reference: ASTM D341."""
-    return 10.0 ** (np.log10(VISCOSITY_AT_FORTY + ADDED) * (temperature / FORTY) ** -SLOPE) - ADDED
+    found: Float = 10.0 ** (np.log10(VISCOSITY_AT_FORTY + ADDED) * (temperature / FORTY) ** -SLOPE) - ADDED
+    return found

@@ -20,7 +20,11 @@ if TYPE_CHECKING:
     from truing.kernel import Offer
     from truing.setup import Setup
 
-INPUTS = 'plugin = "roller_screw_shift"\n'
+INPUTS = """plugin = "roller_screw_shift"
+
+[studies.diagnose]
+box = { axial_load = "1..25 kN" }
+"""
 WRITTEN = {
     "time": "h", "axial_load": "kN", "screw_speed": "r/min", "temperature": "degC", "screw_angle": "deg", "cycles": "1",
 }  # fmt: skip

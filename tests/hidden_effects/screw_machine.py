@@ -24,7 +24,7 @@ ROLLER_FACTOR, RING_FACTOR = 2.12002 * 1.86315, 1.83107 * 2.84399  # form times 
 CARRIER, ROLLER = 3 / 8, 15 / 8  # turns per turn of the screw, d_s/d_r = 3
 WIDTHS = {"face_width": 0.1, "centre_distance_deviation": 0.02}  # of the tolerances, mm: six standard deviations
 SLICES = 200
-SECOND = 0.03  # second harmonic of the error of the teeth over the first
+SECOND = 0.02  # second harmonic of the error of the teeth over the first
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ def shaking(rows: Rows, hidden: Hidden) -> Array:
 def bearing_share(rows: Rows, hidden: Hidden) -> Array:
     """Share of the face that carries; the groove leaves the mesh a little faster than a cosine would."""
     angle = np.radians(ROLLER * rows.screw_angle - of(hidden, "interrupted_tooth", "phase"))
-    return np.asarray(1 - of(hidden, "interrupted_tooth", "lost") * ((1 + np.cos(angle)) / 2) ** 1.1)
+    return np.asarray(1 - of(hidden, "interrupted_tooth", "lost") * ((1 + np.cos(angle)) / 2) ** 1.05)
 
 
 # Geometry

@@ -115,7 +115,7 @@ def test_a_tilt_that_grows_with_the_load_is_a_gain(result: str) -> None:
 
 
 def test_a_load_that_reverses_tilts_the_other_way() -> None:
-    both = {"misalignment": UM, "per_load": 0.1 * UM / 1e3}
+    both: dict[str, Any] = {"misalignment": UM, "per_load": 0.1 * UM / 1e3}
     assert factor("face_misalignment", "root_stress_ring", pair_at(-10.0), **both) == pytest.approx(1.0, rel=1e-12)
     assert factor("face_misalignment", "root_stress_ring", pair_at(-4.0), **both) > 1.3
 
@@ -304,7 +304,7 @@ def test_the_oil_is_that_of_its_class(celsius: float, expected: float) -> None:
 )
 def test_friction_opposes_the_turning(load: float, speed: float, expected: float) -> None:
     """Power 1.2 of the load, -0.2 of the speed, the sign of the speed, nothing at rest."""
-    here = {"factor": 1.5, "temperature": 313.15}
+    here: dict[str, Any] = {"factor": 1.5, "temperature": 313.15}
     one = change("mesh_friction", "friction_torque", screw_speed=600 * RPM, **here)
     found = change("mesh_friction", "friction_torque", pair_at(load), screw_speed=speed * RPM, **here)
     assert found == pytest.approx(expected * one, rel=1e-9, abs=1e-15)
@@ -312,7 +312,7 @@ def test_friction_opposes_the_turning(load: float, speed: float, expected: float
 
 def test_warm_oil_rubs_a_little_more() -> None:
     """Reference: (100/11.1)^0.05 from 40 to 100 degC."""
-    here = {"factor": 1.0, "screw_speed": 10.0}
+    here: dict[str, Any] = {"factor": 1.0, "screw_speed": 10.0}
     warm, hot = (change("mesh_friction", "friction_torque", temperature=at, **here) for at in (313.15, 373.15))
     assert hot / warm == pytest.approx(exp(0.05 * log(100 / 11.1)), rel=2e-4)
 
