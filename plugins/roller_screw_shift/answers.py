@@ -68,15 +68,23 @@ class Meshing:
     )  # fmt: skip
     tip_land: Float = found("mm", symbol="s_a", note="width of the tip of the roller's tooth", source=INVOLUTE,
                             formula="2 * tip_radius_roller * half_angle_roller")  # fmt: skip
+    crossing_cosine_roller: Float = found(
+        "", symbol="c_E", note="cosine of the next angle; 1 where the tip circles do not cross", source="equation 9",
+        formula="min((tip_radius_ring**2 - tip_radius_roller**2 - mounted_distance**2)"
+        " / (2 * mounted_distance * tip_radius_roller), 1)",
+    )  # fmt: skip
     crossing_angle_roller: Float = found(
         "deg", symbol="delta_E", note="where the tip circles cross, seen from the roller", source="equation 9",
-        formula="acos(max(-1, min(1, (tip_radius_ring**2 - tip_radius_roller**2 - mounted_distance**2)"
-        " / (2 * mounted_distance * tip_radius_roller))))",
+        formula="acos(crossing_cosine_roller)",
+    )  # fmt: skip
+    crossing_cosine_ring: Float = found(
+        "", symbol="c_I", note="cosine of the next angle; 1 where the tip circles do not cross", source="equation 9",
+        formula="min((tip_radius_ring**2 - tip_radius_roller**2 + mounted_distance**2)"
+        " / (2 * mounted_distance * tip_radius_ring), 1)",
     )  # fmt: skip
     crossing_angle_ring: Float = found(
         "deg", symbol="delta_I", note="where the tip circles cross, seen from the ring", source="equation 9",
-        formula="acos(max(-1, min(1, (tip_radius_ring**2 - tip_radius_roller**2 + mounted_distance**2)"
-        " / (2 * mounted_distance * tip_radius_ring))))",
+        formula="acos(crossing_cosine_ring)",
     )  # fmt: skip
     tip_clearance: Float = found(
         "rad", symbol="G_s", note="clearance of the tips where their circles cross, 2π to a tooth; 2π where they do "

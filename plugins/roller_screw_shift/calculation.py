@@ -57,6 +57,8 @@ def _mesh(pair: Pair, geometry: geo.Geometry) -> dict[str, Any]:
         "contact_ratio": geo.contact_ratio(geometry),
         "half_angle_roller": geo.half_angle_at_tip(pair, geometry),
         "tip_land": geo.tip_land(pair, geometry),
+        "crossing_cosine_roller": np.cos(crossing.roller),
+        "crossing_cosine_ring": np.cos(crossing.ring),
         "crossing_angle_roller": crossing.roller,
         "crossing_angle_ring": crossing.ring,
         "tip_clearance": crossing.clearance,

@@ -9,7 +9,8 @@ SECTIONS = [
         "working_angle", "shift_difference", "ring_shift", "mounted_distance", "mounted_angle", "base_radius_roller",
         "base_radius_ring", "tip_radius_roller", "tip_radius_ring", "root_radius_roller", "root_radius_ring",
         "tip_angle_roller", "tip_angle_ring", "contact_ratio", "half_angle_roller", "tip_land",
-        "crossing_angle_roller", "crossing_angle_ring", "tip_clearance", "backlash",
+        "crossing_cosine_roller", "crossing_angle_roller", "crossing_cosine_ring", "crossing_angle_ring",
+        "tip_clearance", "backlash",
         text="Each roller of the screw carries a gear at its ends that runs inside a ring in the nut and keeps the "
         "roller parallel to the screw. The threads fix the centre distance, so the difference of both shifts is fixed "
         "and one of them remains free.",

@@ -61,45 +61,32 @@ def browser(chromium: Path) -> Iterator[Browser]:
         running.close()
 
 
-SMALL = """
-[studies.reliability]
-draws = 2000
-points = 4
-[studies.new_machines]
-draws = 200
-[studies.surrogate]
-design = 30
-held_out = 10
-restarts = 0
-compare = 100
-[studies.allocation]
-draws = 1000
-[studies.least_costs]
-goals = []
-[studies.optimise]
-population = 12
-generations = 4
-draws = 256
-verify = 1000
-"""
-"""Budgets with which the sheet of the reducer has all its figures and tables, and is made in a few seconds."""
+SHIPPED: dict[str, tuple[str, list[str]]] = {
+    "press": ("press_linkage", []),
+    "reducer": (
+        "rv_wear",
+        [
+            "reliability.draws=2000", "reliability.points=4", "new_machines.draws=200", "surrogate.design=30",
+            "surrogate.held_out=10", "surrogate.restarts=0", "surrogate.compare=100", "least_costs.goals=[]",
+            "optimise.population=12", "optimise.generations=4", "optimise.draws=256", "optimise.verify=1000",
+        ],
+    ),
+    "gearing": ("rv_gearing", ["reliability.draws=2000", "load.points=9", "face_width.points=9"]),
+    "screw": ("roller_screw_shift", ["shift.points=2001", "optimise.population=16", "optimise.generations=4"]),
+}  # fmt: skip
+"""Sheets of shipped examples, with budgets that leave all figures and tables there and take a few seconds."""
 
 
-@pytest.fixture(scope="session", params=["hostile", "hostile-full", "press", "reducer"])
+@pytest.fixture(scope="session", params=["hostile", "hostile-full", *SHIPPED])
 def sheet(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A sheet on disk: one whose every text is hostile, at two levels of detail, and those of press and reducer."""
+    """A sheet on disk: one whose every text is hostile, at two levels of detail, and those of what is shipped."""
     kernel = Kernel.installed()
     kernel.add_file(DATA / "hostile_pin.py")
-    if request.param == "press":
-        offer = kernel.offer("press_linkage")
+    if request.param in SHIPPED:
+        plugin, options = SHIPPED[request.param]
+        offer = kernel.offer(plugin)
         assert offer.model.example is not None
-        setup = read_setup(offer.model.example, offer)
-    elif request.param == "reducer":
-        offer = kernel.offer("rv_wear")
-        assert offer.model.example is not None
-        inputs = tmp_path_factory.mktemp("reducer") / "small.toml"
-        inputs.write_text(offer.model.example.read_text(encoding="utf-8") + SMALL, encoding="utf-8")
-        setup = read_setup(inputs, offer)
+        setup = read_setup(offer.model.example, offer, overrides=[f"studies.{option}" for option in options])
     else:
         offer = kernel.offer("hostile_pin")
         setup = read_setup(DATA / "hostile_pin.toml", offer)
