@@ -18,7 +18,7 @@ def catalogue_table(stage: Gearing) -> Table:
     for printed, sun, planet in RATIOS:
         ratio = float(ratio_of(sun, planet, PINS))
         centre = 1e3 * float(centre_distance_of(stage, sun, planet))
-        rows.append((printed, sun, planet, PINS, ratio, 100.0 * (ratio / printed - 1.0), centre))
+        rows.append((printed, sun, planet, PINS, ratio, round(100.0 * (ratio / printed - 1.0), 3), centre))
     return Table(
         "Ratios of the RV-110E in the catalogue of its maker",
         ("catalogue", "sun", "planet", "pins", "ratio", "deviation", "centre distance"),

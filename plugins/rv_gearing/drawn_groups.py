@@ -31,7 +31,7 @@ def groups_figure(found: "Found") -> "Figure":
         panel.axhline(edge, color=INK, linewidth=0.9, linestyle=(0, (6, 3)))
     for edge in (-limit, limit):
         panel.axvline(edge, color=INK, linewidth=0.9, linestyle=(0, (6, 3)))
-    panel.text(-limit, high, f" window of the centre distance: {low:.2f} to {high:.2f} mm", va="bottom", fontsize=8)
+    panel.set_title(f"window of the centre distance: {low:.2f} to {high:.2f} mm", fontsize=8.5, loc="left")
     if len(np.unique(groups.pins)) > 1:
         marks = panel.scatter(deviation, centre, s=16, c=groups.pins, cmap="viridis", zorder=4, linewidths=0)
         figure.colorbar(marks, ax=panel, label="pins", pad=0.01)
@@ -42,7 +42,7 @@ def groups_figure(found: "Found") -> "Figure":
     panel.set_xlabel("deviation of the ratio, %")
     panel.set_ylabel("centre distance, mm")
     panel.set_xlim(-1.12 * limit, 1.12 * limit)
-    panel.set_ylim(low - 0.08 * (high - low), high + 0.1 * (high - low))
+    panel.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))
     panel.grid(alpha=0.35)
     panel.set_axisbelow(True)
     return figure

@@ -303,7 +303,7 @@ def test_the_figure_of_the_groups_shows_each_and_rings_the_rated_one(whole: Calc
     assert list(ring.get_xydata()[0]) == [pytest.approx(0.0, abs=1e-9), pytest.approx(46.875)]
     texts = [text.get_text() for text in panel.texts]
     assert {str(number) for number in range(1, 26)} <= set(texts)
-    assert any("46.21 to 84.82 mm" in text for text in texts)
+    assert "46.21 to 84.82 mm" in panel.get_title(loc="left")
 
 
 def test_the_figure_of_stresses_has_every_group_below_its_limit(whole: Calculation) -> None:
