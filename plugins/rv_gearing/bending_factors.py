@@ -13,24 +13,48 @@ from rv_gearing.steel import Steel
 from truing import Float, either, feasible, found, results
 
 ISO = "ISO 6336-3:2006, clause "
-TRACED = "30 degree tangent at the root that the rack makes; solved by Newton's method"
-LEVER = "cross-section of the virtual spur gear, load along the line of action"
 
 
 @results
 class GearRoot:
     """Form of the tooth root of one gear; lengths in modules."""
 
-    root_chord: Float = found("", symbol="s_Fn", note="chord of the critical section, in modules", method=TRACED,
-                              source=ISO + "6")  # fmt: skip
-    root_fillet: Float = found("", symbol="rho_F", note="radius of the fillet there, in modules", method=TRACED,
-                               source=ISO + "6")  # fmt: skip
+    root_offset: Float = found("", symbol="G", note="centre of the rack's fillet from its reference line, in modules",
+                               formula="fillet - dedendum + shift", source=ISO + "6")  # fmt: skip
+    root_angle: Float = found(
+        "deg", symbol="theta", note="where the tangent at the root is inclined by 30 degrees", source=ISO + "6",
+        formula="root_angle == 2 / virtual_teeth * (root_offset * tan(root_angle) - pi / 4"
+        " - dedendum * tan(pressure_angle) - (1 - sin(pressure_angle)) * fillet / cos(pressure_angle)) + pi / 3",
+    )  # fmt: skip
+    root_chord: Float = found(
+        "", symbol="s_Fn", note="chord of the critical section, in modules", source=ISO + "6",
+        formula="virtual_teeth * sin(pi / 3 - root_angle) + sqrt(3) * (root_offset / cos(root_angle) - fillet)",
+    )  # fmt: skip
+    root_fillet: Float = found(
+        "", symbol="rho_F", note="radius of the fillet there, in modules", source=ISO + "6",
+        formula="fillet + 2 * root_offset**2 / (cos(root_angle)"
+        " * (virtual_teeth * cos(root_angle)**2 - 2 * root_offset))",
+    )  # fmt: skip
     notch_parameter: Float = found("", symbol="q_s", note="notch parameter", formula="root_chord / (2 * root_fillet)",
                                    source=ISO + "7")  # fmt: skip
-    tip_arm: Float = found("", symbol="h_Fa", note="bending arm, load at the tip, in modules", method=LEVER,
-                           source="GB/T 3480-1997")  # fmt: skip
-    tip_load_angle: Float = found("deg", symbol="alpha_Fan", note="angle of the load at the tip", method=LEVER,
-                                  source="GB/T 3480-1997")  # fmt: skip
+    virtual_tip_diameter: Float = found("mm", symbol="d_an", note="tip diameter of the virtual spur gear",
+                                        source=ISO + "6", formula="module * virtual_teeth + tip_diameter"
+                                        " - reference_diameter")  # fmt: skip
+    virtual_base_diameter: Float = found("mm", symbol="d_bn", note="base diameter of the virtual spur gear",
+                                         source=ISO + "6",
+                                         formula="module * virtual_teeth * cos(pressure_angle)")  # fmt: skip
+    virtual_tip_angle: Float = found("deg", symbol="alpha_an", note="pressure angle at this tip", source=ISO + "6",
+                                     formula="acos(virtual_base_diameter / virtual_tip_diameter)")  # fmt: skip
+    tip_load_angle: Float = found(
+        "deg", symbol="alpha_Fan", note="angle of the load at the tip", source="GB/T 3480-1997",
+        formula="virtual_tip_angle - (pi / 2 + 2 * shift * tan(pressure_angle)) / virtual_teeth - inv(pressure_angle)"
+        " + inv(virtual_tip_angle)",
+    )  # fmt: skip
+    tip_arm: Float = found(
+        "", symbol="h_Fa", note="bending arm, load at the tip, in modules", source="GB/T 3480-1997",
+        formula="(virtual_base_diameter / (module * cos(tip_load_angle)) - virtual_teeth * cos(pi / 3 - root_angle)"
+        " - root_offset / cos(root_angle) + fillet) / 2",
+    )  # fmt: skip
     form_factor: Float = found(
         "", symbol="Y_Fa", note="form factor, load at the tip; as stated where it is", source="GB/T 3480-1997",
         formula="either(stated_form_factor,"
@@ -41,21 +65,23 @@ class GearRoot:
         formula="either(stated_stress_correction, (1.2 + 0.13 * root_chord / tip_arm)"
         " * notch_parameter**(1 / (1.21 + 2.3 * tip_arm / root_chord)))",
     )  # fmt: skip
-    virtual_tip_diameter: Float = found("mm", symbol="d_an", note="tip diameter of the virtual spur gear",
-                                        source=ISO + "6", formula="module * virtual_teeth + tip_diameter"
-                                        " - reference_diameter")  # fmt: skip
-    virtual_base_diameter: Float = found("mm", symbol="d_bn", note="base diameter of the virtual spur gear",
-                                         source=ISO + "6",
-                                         formula="module * virtual_teeth * cos(pressure_angle)")  # fmt: skip
     outer_diameter: Float = found(
         "mm", symbol="d_en", note="virtual diameter of the outer point of single contact", source=ISO + "6",
         formula="2 * hypot(sqrt(virtual_tip_diameter**2 - virtual_base_diameter**2) / 2"
         " - pi * module * cos(pressure_angle) * (virtual_contact_ratio - 1), virtual_base_diameter / 2)",
     )  # fmt: skip
-    outer_arm: Float = found("", symbol="h_Fe", note="bending arm, load at the outer single contact, in modules",
-                             method=LEVER, source=ISO + "6")  # fmt: skip
-    outer_load_angle: Float = found("deg", symbol="alpha_Fen", note="angle of the load at the outer single contact",
-                                    method=LEVER, source=ISO + "6")  # fmt: skip
+    outer_angle: Float = found("deg", symbol="alpha_en", note="pressure angle there", source=ISO + "6",
+                               formula="acos(virtual_base_diameter / outer_diameter)")  # fmt: skip
+    outer_load_angle: Float = found(
+        "deg", symbol="alpha_Fen", note="angle of the load at the outer single contact", source=ISO + "6",
+        formula="outer_angle - (pi / 2 + 2 * shift * tan(pressure_angle)) / virtual_teeth - inv(pressure_angle)"
+        " + inv(outer_angle)",
+    )  # fmt: skip
+    outer_arm: Float = found(
+        "", symbol="h_Fe", note="bending arm, load at the outer single contact, in modules", source=ISO + "6",
+        formula="(virtual_base_diameter / (module * cos(outer_load_angle)) - virtual_teeth * cos(pi / 3 - root_angle)"
+        " - root_offset / cos(root_angle) + fillet) / 2",
+    )  # fmt: skip
     form_factor_outer: Float = found(
         "", symbol="Y_F", note="form factor, load at the outer single contact", source=ISO + "6",
         formula="6 * outer_arm * cos(outer_load_angle) / (root_chord**2 * cos(pressure_angle))",
@@ -133,16 +159,14 @@ def root_of(stage: Gearing, size: GearSize, mesh: MeshSize, steel: Steel, which:
     tip = external_arm(rack, teeth, gear.shift, root, virtual_tip / stage.module)
     single = external_arm(rack, teeth, gear.shift, root, outer / stage.module)
     _loaded(tip, single, which)
-    slip_mm = 1e3 * steel.slip_layer
-    parameter = notch(root)
-    sensitivity = (1.0 + np.sqrt(0.2 * slip_mm * (1.0 + 2.0 * parameter))) / (1.0 + np.sqrt(1.2 * slip_mm))
-    roughness_um = 1e6 * gear.root_roughness
-    rough = steel.surface_constant - steel.surface_slope * (roughness_um + 1.0) ** steel.surface_exponent
-    size_factor = np.maximum(steel.size_least, steel.size_constant - steel.size_slope * 1e3 * stage.module)
+    sensitivity, surface, size_factor = strength_factors(steel, notch(root), gear.root_roughness, stage.module)
     return GearRoot(
+        root_offset=stage.fillet - stage.dedendum + gear.shift,
+        root_angle=np.arcsin((np.sqrt(12.0) * root.depth - root.chord) / (2.0 * teeth)),
         root_chord=root.chord,
         root_fillet=root.fillet,
-        notch_parameter=parameter,
+        notch_parameter=notch(root),
+        virtual_tip_angle=np.arccos(virtual_base / virtual_tip),
         tip_arm=tip.height,
         tip_load_angle=tip.angle,
         form_factor=either(gear.stated_form_factor, form_factor(root, tip, stage.pressure_angle)),
@@ -150,14 +174,24 @@ def root_of(stage: Gearing, size: GearSize, mesh: MeshSize, steel: Steel, which:
         virtual_tip_diameter=virtual_tip,
         virtual_base_diameter=virtual_base,
         outer_diameter=outer,
+        outer_angle=np.arccos(virtual_base / outer),
         outer_arm=single.height,
         outer_load_angle=single.angle,
         form_factor_outer=form_factor(root, single, stage.pressure_angle),
         stress_correction_outer=stress_correction(root, single),
         notch_sensitivity=either(gear.stated_notch_sensitivity, sensitivity),
-        root_surface=either(gear.stated_root_surface, np.where(roughness_um < 1.0, steel.surface_smooth, rough)),
-        bending_size=either(gear.stated_bending_size, np.minimum(1.0, size_factor)),
+        root_surface=either(gear.stated_root_surface, surface),
+        bending_size=either(gear.stated_bending_size, size_factor),
     )
+
+
+def strength_factors(steel: Steel, parameter: Float, roughness: Float, module: Float) -> tuple[Float, Float, Float]:
+    """Return Y_deltarelT, Y_RrelT and Y_X for a notch parameter, a roughness of the root and a module, m."""
+    slip_mm, roughness_um = 1e3 * steel.slip_layer, 1e6 * roughness
+    sensitivity = (1.0 + np.sqrt(0.2 * slip_mm * (1.0 + 2.0 * parameter))) / (1.0 + np.sqrt(1.2 * slip_mm))
+    rough = steel.surface_constant - steel.surface_slope * (roughness_um + 1.0) ** steel.surface_exponent
+    size = np.maximum(steel.size_least, steel.size_constant - steel.size_slope * 1e3 * module)
+    return sensitivity, np.where(roughness_um < 1.0, steel.surface_smooth, rough), np.minimum(1.0, size)
 
 
 def outer_diameter(stage: Gearing, virtual: tuple[Float, Float], mesh: MeshSize, which: Which) -> Float:

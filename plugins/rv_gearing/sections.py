@@ -92,8 +92,9 @@ SECTIONS = [
     ),
     Section(
         "Root stress, load at the tip",
-        *both("virtual_teeth"), "virtual_contact_ratio", *both("root_chord", "root_fillet", "notch_parameter",
-        "tip_arm", "tip_load_angle", "form_factor", "stress_correction"), "contact_ratio_factor_bending",
+        *both("virtual_teeth"), "virtual_contact_ratio", *both("root_offset", "root_angle", "root_chord",
+        "root_fillet", "notch_parameter", "virtual_tip_diameter", "virtual_base_diameter", "virtual_tip_angle",
+        "tip_load_angle", "tip_arm", "form_factor", "stress_correction"), "contact_ratio_factor_bending",
         "helix_factor_bending", "tip_load_factor", *both("nominal_root_stress", "root_stress"),
         text="The convention of the paper, with the form factor, stress correction and contact ratio factor that "
         "belong to it.",
@@ -101,8 +102,8 @@ SECTIONS = [
     ),
     Section(
         "Root stress, load at the outer single contact",
-        *both("virtual_tip_diameter", "virtual_base_diameter", "outer_diameter", "outer_arm",
-               "outer_load_angle", "form_factor_outer", "stress_correction_outer"),
+        *both("outer_diameter", "outer_angle", "outer_load_angle", "outer_arm", "form_factor_outer",
+               "stress_correction_outer"),
         "deep_tooth_factor", *both("nominal_root_stress_outer", "root_stress_outer", "root_safety_outer"),
         "root_safety_outer",
         text="Method B of ISO 6336-3, with a form factor and stress correction of its own and without a contact ratio "
