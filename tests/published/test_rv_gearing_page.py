@@ -134,6 +134,28 @@ def test_what_is_said_of_the_example_and_of_group_5() -> None:
     assert f"{roots[0]} and {roots[1]} MPa at the roots, {flanks[0]} and {flanks[1]} MPa at the flanks" in WORDS
 
 
+def flank_margin(**inputs: Any) -> str:
+    """Margin of the flank of the sun, in percent as the page prints it."""
+    sun = rv_gearing(RV_GEARING.inputs(**inputs)).sun
+    return f"{100 * float(1 - sun.contact_stress / sun.permitted_contact_stress):.1f} %".replace("-", "−")
+
+
+def test_what_is_left_by_other_readings() -> None:
+    assert f"as the paper has it, {flank_margin(single_contact=False)} are left" in WORDS
+    assert f"instead of the calculated one {flank_margin(stated_face_factor=1.2)}." in WORDS
+
+
+@pytest.mark.parametrize("pair", ["25/50", "20/55", "18/57", "15/60", "14/61"])
+def test_the_strength_of_the_catalogue_ratios(pair: str) -> None:
+    sun, planet = (float(text) for text in pair.split("/"))
+    shift, margin = row(f"{pair} |")
+    size = float(shift.strip("±"))
+    teeth = {"sun_teeth": sun, "planet_teeth": planet, "shift_sun": size, "shift_planet": -size}
+    assert margin == flank_margin(**teeth)
+    undercut = 1 - sun / 2 * np.sin(np.radians(20)) ** 2  # of a rack whose straight flank is one module high
+    assert size >= undercut
+
+
 def test_the_outer_point_of_single_contact() -> None:
     diameter = FOUND.sun.root.outer_diameter / PAPER.module
     assert f"{diameter:.4f} modules for the sun of 20 teeth, where the tip is at 22" in WORDS
