@@ -1,5 +1,6 @@
 """Every number that standard, handbooks and catalogue print for the gearing, beside ours, and the findings."""
 
+from dataclasses import replace
 from math import isfinite
 from typing import Any
 
@@ -12,7 +13,12 @@ from rv_gearing.model import RV_GEARING
 from rv_gearing.published import EXAMPLE, HANDBOOK, ISO_ROWS, PUBLISHED, TEXTBOOK
 from rv_gearing.quantities import Gearing
 from truing import Kernel
+from truing.calculation import calculate
 from truing.published import ComparedRow, compare_published
+from truing.report.render import html_of, markdown_of
+from truing.report.sheet import make_sheet
+from truing.runs.provenance import provenance_of
+from truing.setup import default_setup
 
 # Example 1 of the technical report as reconstructed from its inputs by others, for the rows that print more digits.
 RECONSTRUCTED = {
@@ -126,3 +132,14 @@ def test_the_numbers_in_the_findings_are_ours() -> None:
     assert f"{float(first.duty.sun_torque):.2f} instead of {float(first.duty.output_torque):.1f} N m" in said(
         "The torque"
     )
+
+
+def test_settings_of_an_example_are_said_once(rows: dict[str, ComparedRow]) -> None:
+    """Sheet and its Markdown: the further rows of one example say "as above"."""
+    setup = default_setup(RV_GEARING)
+    calculation = calculate(replace(setup, studies=()))
+    shown = [row for row in rows.values() if row.published.where in {EXAMPLE, TEXTBOOK}]
+    sheet = make_sheet(calculation, provenance=provenance_of(setup), verified=shown)
+    for text in (html_of(sheet), markdown_of(sheet)):
+        assert text.count("15.8 deg") == 1
+        assert text.count("as above") == len(shown) - 2
