@@ -52,7 +52,7 @@ FINDINGS = [
     ),
     Finding(
         title="The limit of the contact ratio decides the optimum, not the weights",
-        text="With 1.4 the optimum stands at that limit, at 0.2534 and −0.1166, by every reading of the weights; with "
+        text="With 1.4 the optimum stands at that limit, at 0.2534 and −0.1165, by every reading of the weights; with "
         "1.42 at 0.2157 and −0.1543, near the printed 0.21 and −0.16. The contact ratio of the printed pair is 1.423. "
         "With 1.2 no limit holds it, and the weights decide: 0.614, 0.584 or 0.540 for the roller. With these "
         "sizes the lost limit of equation 8 would lie near 1.42; with others elsewhere.",

@@ -1,0 +1,412 @@
+"""What is stated of the paper's numbers on the roller screw, and the study that chooses the shift.
+
+Expected numbers are equations written a second time with plain floats and solved by other means, the paper's prints, or
+an independent reconstruction that tried shifts in steps of 0.0025.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import acos, cos, isfinite, isnan, pi, radians, sqrt, tan
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from roller_screw_shift.best_shifts import READINGS, Field, box_optimum, field_of, grid_optimum
+from roller_screw_shift.box import Plan
+from roller_screw_shift.courses import equal_sliding, intervals_of
+from roller_screw_shift.findings import FINDINGS
+from roller_screw_shift.model import MARGINS, ROLLER_SCREW_SHIFT
+from roller_screw_shift.published import PUBLISHED
+from roller_screw_shift.quantities import Pair
+from roller_screw_shift.shifts import Shifting
+from roller_screw_shift.weighing import weights_of
+from truing import Kernel, Table, TruingError, Words
+from truing.calculation import Calculation, calculate
+from truing.published import ComparedRow, compare_published
+from truing.setup import default_setup
+
+ALPHA, ROLLER, RING, MODULE, ADDENDUM, CLEARANCE, CENTRES = radians(20.0), 20, 100, 0.5, 0.8, 0.3, 19.80778
+SPAN, POINTS, STEP = (-2.0, 3.0), 2001, 0.0025
+
+
+def inv(angle: float) -> float:
+    return tan(angle) - angle
+
+
+def by_hand(shift: float) -> dict[str, float]:
+    """Contact ratio, both magnitudes of sliding and the shift of the ring, mm and modules, no array."""
+    working = acos(0.5 * MODULE * (RING - ROLLER) * cos(ALPHA) / CENTRES)
+    ring = shift + (RING - ROLLER) * (inv(working) - inv(ALPHA)) / (2 * tan(ALPHA))
+    tip = acos(0.5 * ROLLER * cos(ALPHA) / (0.5 * ROLLER + ADDENDUM + shift))
+    ring_tip = acos(0.5 * RING * cos(ALPHA) / (0.5 * RING - ADDENDUM + ring))
+    at = tan(working)
+    # Radii of curvature over half the module and cos(alpha), at the tip of the ring and at that of the roller.
+    inner, outer = RING * (tan(ring_tip) - at), ROLLER * (tan(tip) - at)
+    ratio = RING / ROLLER
+    return {
+        "ring": ring,
+        "ratio": (outer - inner) / (2 * pi),
+        "roller_sliding": abs(1 - (RING * at + inner) / (ratio * (ROLLER * at + inner))),
+        "ring_sliding": abs(1 - ratio * (ROLLER * at + outer) / (RING * at + outer)),
+    }
+
+
+def difference_of_sliding(shift: float) -> float:
+    at = by_hand(shift)
+    return at["roller_sliding"] - at["ring_sliding"]
+
+
+def shift_at(ratio: float) -> float:
+    """The shift with this contact ratio."""
+    return float(brentq(lambda shift: by_hand(shift)["ratio"] - ratio, -0.2, 1.0, xtol=1e-14))
+
+
+@pytest.fixture(scope="module")
+def rows() -> dict[str, ComparedRow]:
+    """Every printed number beside ours."""
+    found = compare_published(Kernel.installed().offers["roller_screw_shift"])
+    return {row.published.name: row for row in found}
+
+
+def run(*, seed: int = 0, study: Shifting | None = None, **values: Any) -> Calculation:
+    """A run in which the shift is chosen and nothing else asked."""
+    chosen = study or Shifting(points=POINTS, ratios=(), gives=GIVES)
+    return calculate(replace(default_setup(ROLLER_SCREW_SHIFT, **values), studies=(chosen,), seed=seed))
+
+
+GIVES: Any = ROLLER_SCREW_SHIFT.studies[0].gives
+
+
+# The paper
+
+
+def test_every_row_is_as_stated_and_has_a_number(rows: dict[str, ComparedRow]) -> None:
+    assert len(rows) == len(PUBLISHED)
+    assert all(row.as_stated and isfinite(row.value) for row in rows.values())
+
+
+# An independent reconstruction, which tried shifts in steps of 0.0025; so its ends are up to one step short.
+RECONSTRUCTED = {
+    "weight of the sum of the shifts": (0.5487, 5e-5),
+    "weight of the stress difference": (0.0036, 5e-5),
+    "weight of the sliding difference": (0.4217, 5e-5),
+    "smallest sum of the shifts": (-0.480, 2 * STEP),
+    "largest sum of the shifts": (0.135, 2 * STEP),
+    "smallest stress difference": (27.61, 0.05),
+    "largest stress difference": (33.20, 0.03),
+    "smallest sliding difference": (0.099, 0.005),
+    "largest sliding difference": (3.034, 0.06),
+    "optimal shift of the roller": (0.2525, STEP),
+    "optimal shift of the ring": (-0.1175, STEP),
+    "optimal shift of the roller, contact ratio 1.42": (0.2150, STEP),
+    "optimal shift of the ring, contact ratio 1.42": (-0.1550, STEP),
+    "optimal shift of the roller, contact ratio 1.2": (0.613, STEP),
+    "optimal shift of the ring, contact ratio 1.2": (0.243, STEP),
+    "shift of the roller, equal sliding alone": (0.2833, 5e-5),
+    "shift of the ring, equal sliding alone": (-0.0867, 5e-5),
+    "shift of the ring without backlash": (-0.16, 1e-5),
+}
+
+
+@pytest.mark.parametrize("name", RECONSTRUCTED)
+def test_rows_are_those_of_an_independent_reconstruction(rows: dict[str, ComparedRow], name: str) -> None:
+    value, close = RECONSTRUCTED[name]
+    assert rows[name].value == pytest.approx(value, abs=close)
+
+
+@pytest.mark.parametrize(
+    ("words", "ratio"), [("", 1.4), (", printed weights", 1.4), (", contact ratio 1.42", 1.42),
+                         (", contact ratio 1.423", 1.423)],
+)  # fmt: skip
+def test_the_optimum_stands_where_the_contact_ratio_is_the_least(
+    rows: dict[str, ComparedRow], words: str, ratio: float
+) -> None:
+    shift = shift_at(ratio)
+    assert rows[f"optimal shift of the roller{words}"].value == pytest.approx(shift, abs=2e-6)
+    assert rows[f"optimal shift of the ring{words}"].value == pytest.approx(by_hand(shift)["ring"], abs=2e-6)
+
+
+def test_the_numbers_in_the_findings_are_computed() -> None:
+    told = " ".join(finding.text for finding in FINDINGS).replace("−", "-")
+    meshing: Any = ROLLER_SCREW_SHIFT.function(ROLLER_SCREW_SHIFT.inputs())
+    ring_tip, roller_tip = 1e3 * float(meshing.tip_radius_ring), 1e3 * float(meshing.tip_radius_roller)
+    ring_root, roller_root = 1e3 * float(meshing.root_radius_ring), 1e3 * float(meshing.root_radius_roller)
+    curve = np.linspace(0, 2 * pi, 100_001)
+    literal = curve / (2 * pi) - np.sin(curve)
+    equal = brentq(difference_of_sliding, 0.1, 0.6, xtol=1e-14)
+    numbers = {
+        f"{-float(meshing.tip_clearance):.3f} instead of {float(meshing.tip_clearance):.3f}",
+        f"{roller_tip - ring_root - CENTRES - 0.05:.1f} mm instead of {ring_tip - roller_root - CENTRES - 0.05:.3f} mm",
+        f"{roller_tip - ring_tip + CENTRES - 0.05:.3f} instead of {ring_tip - roller_tip + CENTRES - 0.05:.1f}",
+        f"falls to {literal.min():.2f}, rises to {literal.max():.2f}",
+        f"{4 / 2.7**2:.3f}, {4 / 33.2**2:.4f} and {4 / 3.08**2:.3f}",
+        f"{5.38 - 2 / sqrt(0.35):.2f}, {33.2 - 2 / sqrt(0.01):.1f} and {3.08 - 2 / sqrt(0.81):.2f}",
+        f"from {33.2 - 2 / sqrt(0.005):.1f} to {33.2 - 2 / sqrt(0.015):.1f}",
+        f"{by_hand(0.0)['ring']:.3f}, whatever the shift",
+        f"difference {120 / 80 * by_hand(0.0)['ring']:.3f}",
+        f"at {shift_at(1.4):.4f} and {by_hand(shift_at(1.4))['ring']:.4f}, by every",
+        f"{shift_at(1.42):.4f} and {by_hand(shift_at(1.42))['ring']:.4f}",
+        f"printed pair is {by_hand(0.21)['ratio']:.3f}",
+        f"shift of {equal:.4f} at which",
+        f"contact ratio is {by_hand(equal)['ratio']:.3f}",
+        f"difference is {difference_of_sliding(0.21):.2f} or more",
+        f"from {2 * brentq(lambda x: difference_of_sliding(x) - 3.08, -0.15, 0.1) + by_hand(0.0)['ring']:.3f} to",
+    }
+    assert {number for number in numbers if number not in told} == set()
+
+
+FULL_DEPTH = {  # teeth: sliding of the roller with +0.21 on it, and of the ring with -0.16
+    (16, 80): (58.1, 0.765), (18, 90): (4.313, 0.697), (20, 100): (2.246, 0.641), (25, 125): (1.025, 0.536),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("teeth", FULL_DEPTH)
+def test_full_depth_teeth_with_the_printed_labels(teeth: tuple[int, int]) -> None:
+    """With 0.21 on the ring the first three interfere; on the roller none does."""
+    from gear_geometry.pairs import working_angle
+
+    roller, ring = teeth
+
+    def pair(shift: float, ring_shift: float) -> Any:
+        working = working_angle((ring_shift - shift) / (ring - roller), ALPHA)
+        distance = 0.5e-3 * (ring - roller) * cos(ALPHA) / cos(float(working))
+        given = {"roller_teeth": roller, "ring_teeth": ring, "module": 1e-3, "addendum": 1.0, "clearance": 0.25}
+        return ROLLER_SCREW_SHIFT.inputs(**given, centre_distance=distance, roller_shift=shift)
+
+    meshing: Any = ROLLER_SCREW_SHIFT.function(pair(0.21, -0.16))
+    assert meshing.sliding_roller == pytest.approx(FULL_DEPTH[teeth][0], rel=5e-4)
+    assert meshing.sliding_ring == pytest.approx(FULL_DEPTH[teeth][1], abs=5e-4)
+    if roller < 25:
+        with pytest.raises(TruingError, match="involute interference"):
+            ROLLER_SCREW_SHIFT.function(pair(-0.16, 0.21))
+    else:
+        swapped: Any = ROLLER_SCREW_SHIFT.function(pair(-0.16, 0.21))
+        assert (swapped.sliding_roller, swapped.sliding_ring) == pytest.approx((3.650, 0.293), abs=5e-4)
+
+
+# The study
+
+
+@pytest.fixture(scope="module")
+def pair() -> Pair:
+    found: Pair = ROLLER_SCREW_SHIFT.inputs()
+    return found
+
+
+@pytest.mark.parametrize("ratio", [1.2, 1.3, 1.4, 1.5])
+def test_the_interval_ends_where_equations_solved_otherwise_end_it(pair: Pair, ratio: float) -> None:
+    (found,) = intervals_of(replace(pair, least_contact_ratio=ratio), SPAN, POINTS)
+    lowest = brentq(lambda shift: difference_of_sliding(shift) - 3.08, -0.15, 0.1, xtol=1e-14)
+    assert found.low == pytest.approx(lowest, abs=1e-10)
+    assert found.high == pytest.approx(shift_at(ratio), abs=1e-10)
+    assert (found.low_limits, found.high_limits) == (("margin_sliding",), ("margin_contact_ratio",))
+
+
+def test_equal_sliding_is_found_whatever_the_limits(pair: Pair) -> None:
+    wanted = brentq(difference_of_sliding, 0.1, 0.6, xtol=1e-14)
+    assert equal_sliding(pair, SPAN, POINTS) == pytest.approx(wanted, abs=1e-10)
+    assert equal_sliding(replace(pair, least_contact_ratio=2.9), SPAN, POINTS) == pytest.approx(wanted, abs=1e-10)
+    assert isnan(equal_sliding(pair, (0.4, 1.0), 101))
+
+
+@pytest.fixture(scope="module")
+def field(pair: Pair) -> Field:
+    """With a contact ratio of 1.2 the optimum lies within."""
+    found = field_of(replace(pair, least_contact_ratio=1.2), SPAN, 20_001)
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize("reading", READINGS)
+def test_box_from_every_seed_agrees_with_the_grid(field: Field, reading: str) -> None:
+    weights = weights_of(reading, field.ranges)
+    grid = grid_optimum(field, weights)
+    for seed in range(3):
+        found = box_optimum(field, weights, SPAN, np.random.default_rng(seed), Plan())
+        assert found.settled
+        assert found.point[0] == pytest.approx(grid, abs=2e-7)
+
+
+def test_the_optimum_within_is_where_the_weighed_sum_is_level(field: Field, pair: Pair) -> None:
+    """The sum written a second time, its derivative 0 at the optimum."""
+    ranges, weights = field.ranges, weights_of("printed", field.ranges)
+    stress = {}
+    for shift in (0.53, 0.54, 0.55):
+        meshing: Any = ROLLER_SCREW_SHIFT.function(replace(pair, roller_shift=shift))
+        stress[shift] = float(meshing.stress_difference) / 1e6
+    through = np.polyfit(list(stress), list(stress.values()), 2)
+
+    def cost(shift: float) -> float:
+        level = float(np.polyval(through, shift))
+        values = (2 * shift + by_hand(0.0)["ring"], level, abs(difference_of_sliding(shift)))
+        parts = [2 * pi * (value - low) / (high - low) for value, (low, high) in zip(values, ranges, strict=True)]
+        curves = [(part - np.sin(part)) / (2 * pi) for part in parts]
+        return float(-weights[0] * curves[0] + weights[1] * curves[1] + weights[2] * curves[2])
+
+    best = grid_optimum(field, weights)
+    slope = (cost(best + 1e-4) - cost(best - 1e-4)) / 2e-4
+    bend = (cost(best + 1e-3) - 2 * cost(best) + cost(best - 1e-3)) / 1e-6
+    assert abs(slope / bend) < 1e-5
+    assert bend > 0
+
+
+def test_results_of_a_run_by_hand() -> None:
+    answers = run().answers
+    shift = shift_at(1.4)
+    assert answers["highest_shift"] == pytest.approx(shift, abs=1e-10)
+    assert answers["optimal_shift_roller"] == pytest.approx(shift, abs=2e-6)
+    assert answers["most_sum"] == pytest.approx(2 * shift + by_hand(0.0)["ring"], abs=1e-9)
+    assert answers["least_sliding"] == pytest.approx(difference_of_sliding(shift), abs=1e-9)
+    assert answers["optimal_contact_ratio"] == pytest.approx(1.4, abs=2e-6)
+    assert answers["weight_sum"] == pytest.approx(4 / (answers["most_sum"] - answers["least_sum"]) ** 2, rel=1e-12)
+    assert 0 <= answers["limit_distance"] < 2e-6
+    assert 0 <= answers["optimal_margin"] < 2e-6
+    assert answers["grid_distance"] < 2e-6
+    assert 100 < answers["evaluations"] < 2000
+
+
+def test_a_seed_tells_the_run_and_every_seed_the_same_optimum() -> None:
+    documents = [run(seed=seed).outcomes["shift"].as_json() for seed in (0, 0, 1)]
+    assert documents[0] == documents[1]
+    assert documents[0]["box"] != documents[2]["box"]
+    assert documents[0]["box"]["shift"] == pytest.approx(documents[2]["box"]["shift"], abs=2e-6)
+    assert documents[0]["limits"] == ["margin_contact_ratio"]
+
+
+@pytest.mark.parametrize("reading", READINGS)
+def test_weights_by_every_reading(reading: str) -> None:
+    answers = run(weights=reading).answers
+    found = answers["weight_sum"], answers["weight_stress"] * 1e12, answers["weight_sliding"]
+    ranges = [
+        (answers["least_sum"], answers["most_sum"]),
+        (answers["least_stress_difference"] / 1e6, answers["most_stress_difference"] / 1e6),
+        (answers["least_sliding"], answers["most_sliding"]),
+    ]
+    wanted = {
+        "own_ranges": [4 / (high - low) ** 2 for low, high in ranges],
+        "printed_ranges": [4 / 2.7**2, 4 / 33.2**2, 4 / 3.08**2],
+        "printed": [0.35, 0.01, 0.81],
+    }
+    assert found == pytest.approx(wanted[reading], rel=1e-9)
+
+
+def test_no_shift_that_keeps_every_limit_is_a_sentence_and_no_number() -> None:
+    done = run(least_contact_ratio=2.2)
+    chosen: Any = done.outcomes["shift"]
+    (warning,) = chosen.warnings()
+    assert "no shift of the roller from -2 to 3 keeps every limit" in warning
+    assert "margin_contact_ratio (-" in warning
+    assert isnan(done.answers["optimal_shift_roller"])
+    assert chosen.as_json()["status"] == chosen.status
+    assert set(chosen.as_json()) == {"status", "equal_sliding"}
+    assert chosen.checks() == ()
+
+
+def test_without_load_the_stresses_have_nothing_to_say() -> None:
+    done = run(axial_load="0 kN")
+    (warning,) = done.outcomes["shift"].warnings()
+    assert "difference of the root stresses is the same for every shift" in warning
+    assert done.answers["weight_stress"] == 0.0
+    assert done.answers["optimal_shift_roller"] == pytest.approx(shift_at(1.4), abs=2e-6)
+
+
+def test_an_interval_too_thin_for_nine_vertices_leaves_the_grid() -> None:
+    done = run(most_sliding_difference=difference_of_sliding(shift_at(1.4) - 1e-5),
+               study=Shifting(span=(0.2, 0.3), points=20_001, ratios=(), gives=GIVES))  # fmt: skip
+    chosen: Any = done.outcomes["shift"]
+    assert "the grid's optimum stands" in chosen.warnings()[0]
+    assert chosen.shift == pytest.approx(shift_at(1.4), abs=2e-5)
+    assert isnan(done.answers["evaluations"])
+
+
+def test_optimum_by_contact_ratio_and_weights() -> None:
+    chosen: Any = run(study=Shifting(points=POINTS, ratios=(1.2, 1.42))).outcomes["shift"]
+    found = chosen.as_json()["variants"]
+    shifts = {(item["least_contact_ratio"], item["weights"]): item["shift"] for item in found}
+    assert len(shifts) == 9
+    for (ratio, _), shift in shifts.items():
+        if ratio > 1.2:
+            assert shift == pytest.approx(shift_at(ratio), abs=1e-5)
+    assert [round(shifts[1.2, reading], 3) for reading in READINGS] == [0.614, 0.584, 0.540]
+
+
+def test_the_stresses_must_weigh_many_times_as_much_to_leave_the_limit() -> None:
+    """At the ends of the interval the weighed sum is w2 - w1 and w3: beyond w2 = w1 + w3 the far end wins at last."""
+    chosen: Any = run(weights="printed").outcomes["shift"]
+    assert chosen.factor is not None
+    assert 10 < chosen.factor <= (0.35 + 0.81) / 0.01 + 0.1
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"span": (1.0, 1.0)}, "lowest and the highest"),
+        ({"points": 5}, "points = 5"),
+        ({"ratios": (0.9,)}, "least contact ratios"),
+        ({"vertices": 2}, "vertices = 2"),
+        ({"reflection": 0.5}, "reflection"),
+        ({"spread": -1.0}, "spread"),
+    ],
+)
+def test_options_that_make_no_sense_are_refused(options: dict[str, Any], words: str) -> None:
+    with pytest.raises(TruingError, match=words):
+        Shifting(**options)
+
+
+# The front of the three objectives
+
+
+@pytest.fixture(scope="module")
+def optimum() -> Any:
+    """The paper's problem without weights, with a small search."""
+    study: Any = next(study for study in ROLLER_SCREW_SHIFT.studies if study.name == "optimise")
+    small = replace(study, population=24, generations=16)
+    return calculate(replace(default_setup(ROLLER_SCREW_SHIFT), studies=(small,))).outcomes["optimise"]
+
+
+def test_the_front_is_the_interval(optimum: Any) -> None:
+    """More sum and more equal sliding cost more difference of the stresses all along, so no shift beats another."""
+    shifts = np.array([design.inputs["roller_shift"] for design in optimum.front])
+    low = brentq(lambda shift: difference_of_sliding(shift) - 3.08, -0.15, 0.1)
+    assert [aim.sense for aim in optimum.aims] == ["maximise", "minimise", "minimise"]
+    assert {bound.name for bound in optimum.bounds} == set(MARGINS)
+    assert shifts.max() <= shift_at(1.4) < shifts.max() + 0.01
+    assert shifts.min() >= low > shifts.min() - 0.01
+    for design in optimum.front:
+        shift = design.inputs["roller_shift"]
+        assert design.objectives["shift_sum"] == pytest.approx(2 * shift + by_hand(0.0)["ring"], abs=1e-12)
+        assert design.objectives["sliding_difference"] == pytest.approx(difference_of_sliding(shift), abs=1e-9)
+
+
+def test_a_front_without_a_knee_says_so(optimum: Any) -> None:
+    """The sum of the objectives, each 0 to 1, is nowhere below 1: no design lies before the plane."""
+    values = np.array([[design.objectives[aim.name] * aim.sign for aim in optimum.aims] for design in optimum.front])
+    scaled = (values - values.min(axis=0)) / np.ptp(values, axis=0)
+    assert scaled.sum(axis=1).min() > 1 - 1e-9
+    (table,) = [block for block in optimum.blocks() if isinstance(block, Table) and block.title == "Start and knee"]
+    assert table.note.startswith("The front has no knee")
+
+
+# What sections read of it
+
+
+def words_of(section: Callable[[Any], Any], done: Calculation) -> str:
+    return " ".join(block.text for block in section(done.record) if isinstance(block, Words))
+
+
+def test_the_sheet_says_where_the_optimum_lies_and_what_holds_it() -> None:
+    from roller_screw_shift import drawn
+
+    done = run()
+    assert "0.2534 for the roller and −0.1165 for the ring" in words_of(drawn.choice, done)
+    assert "It stands at a limit: g3 contact ratio." in words_of(drawn.choice, done)
+    assert "away from its own axis" in words_of(drawn.signs, done)
+    assert "from −0.0566 (where g10 difference of sliding is missed) to 0.2534" in words_of(drawn.limits, done)
+    inside = run(least_contact_ratio=1.2)
+    assert "It lies within its interval" in words_of(drawn.choice, inside)
+    nowhere = run(least_contact_ratio=2.2)
+    assert "keeps every limit" in words_of(drawn.limits, nowhere)
+    assert drawn.choice(nowhere.record) == []
+    assert drawn.weights(nowhere.record) == []
