@@ -305,6 +305,19 @@ def test_smooth_roots(material: str, factor: float) -> None:
     assert results(**TEETH, material=material, root_roughness_sun=0.99e-6)["root_surface_sun"] == factor
 
 
+@pytest.mark.parametrize(("addendum", "helix"), [(1.0, 0.0), (1.2, 0.35), (1.3, 0.6), (1.4, 0.6)])
+def test_deep_teeth_of_accurate_gears(addendum: float, helix: float) -> None:
+    """ISO 6336-3:2006, clause 10: 1 up to 2.05, straight down to 0.7 at 2.5; 1 from grade 5 on."""
+    deep = {"sun_teeth": 40.0, "planet_teeth": 90.0, "addendum": addendum, "dedendum": addendum + 0.1, "fillet": 0.15}
+    found = results(**deep, helix_angle=helix, accuracy_grade=4)
+    expected = np.interp(found["virtual_contact_ratio"], [2.05, 2.5], [1.0, 0.7])
+    assert found["deep_tooth_factor"] == pytest.approx(expected, abs=2e-3)  # the standard rounds 2.366 and 0.666
+    coarse = results(**deep, helix_angle=helix, accuracy_grade=5)
+    assert coarse["deep_tooth_factor"] == 1.0
+    ratios = [each["nominal_root_stress_outer_sun"] for each in (found, coarse)]
+    assert ratios[0] / ratios[1] == pytest.approx(found["deep_tooth_factor"])
+
+
 def test_direction_of_the_load() -> None:
     torques = np.array([-5.0, -1e-9, 0.0, 5.0, np.nan])
     assert list(load_of(RV_GEARING.inputs(**TEETH, load_torque=torques)).direction) == [-1.0, -1.0, 1.0, 1.0, 1.0]
