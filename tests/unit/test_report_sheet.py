@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from press_linkage.model import PRESS_LINKAGE
 from truing.calculation import Calculation, calculate
 from truing.cases import run_cases
 from truing.executors import open_executor
@@ -23,7 +24,7 @@ from truing.report.render import css_text, html_of, markdown_of
 from truing.report.sheet import logo_of, make_sheet
 from truing.report.templates import template_folder
 from truing.runs.provenance import Provenance, provenance_of
-from truing.setup import Setup
+from truing.setup import Setup, default_setup
 
 DATA = Path(__file__).parents[1] / "data"
 HOSTILE = "<script>alert(1)</script> {{7*7}} $x$ | # `code` [link](https://evil.example) **bold** & \"' # next"
@@ -390,3 +391,21 @@ def test_a_logo_that_is_a_pipe_does_not_keep_the_sheet_waiting(setup: Setup, tmp
     os.mkfifo(tmp_path / "sign.png")
     piped = replace(setup, head={"logo": "sign.png"}, file=str(tmp_path / "in.toml"))
     assert logo_of(piped) == ("", "the logo 'sign.png' is left out: it is no ordinary file")
+
+
+# Inputs that nobody stated
+
+
+def sheet_of_press(provenance: Provenance, detail: str) -> str:
+    calculation = calculate(replace(default_setup(PRESS_LINKAGE), detail=detail, studies=()))
+    return Page(html_of(make_sheet(calculation, provenance=provenance))).text
+
+
+@pytest.mark.parametrize(("detail", "is_named_only"), [("normal", True), ("full", False)])
+def test_inputs_not_given_or_at_0_are_named_in_one_sentence_unless_all_is_asked_for(
+    provenance: Provenance, detail: str, is_named_only: bool
+) -> None:
+    text = sheet_of_press(provenance, detail)
+    assert ("Not given, or left at their default of 0 (inputs.toml names them)" in text) is is_named_only
+    assert ("deviation: crank, A to B" in text) is not is_named_only
+    assert "crank, A to B" in text

@@ -36,6 +36,7 @@ from truing.studies.checks import check_name
 
 PLACES = {"inputs": "on the inputs", "results": "on the results", "reading": "on the reading"}
 LONGEST_SERIES = 8
+NOT_GIVEN = "not given"
 
 
 def input_rows(setup: Setup) -> Iterator[InputRow]:
@@ -67,7 +68,7 @@ def input_value(setup: Setup, item: InputField, value: Any) -> Value:
     if item.kind == "series":
         return series_value(value, unit)
     if value != value:
-        return Value("not given")
+        return Value(NOT_GIVEN)
     return Value(*format_value(value, unit, STATED_DIGITS))
 
 

@@ -205,7 +205,7 @@ class Sheet:
     checks: tuple[CheckRow, ...]
     inputs: tuple[InputRow, ...]
     idle_inputs: tuple[InputRow, ...]
-    """Inputs left at a default of 0, which a sheet that is not a full one only names."""
+    """Inputs not given or left at a default of 0, which a sheet that is not a full one only names."""
     tolerances: tuple[ToleranceRow, ...]
     conditions: tuple[ConditionRow, ...]
     effects: tuple[EffectRow, ...]

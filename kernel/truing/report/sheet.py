@@ -12,7 +12,15 @@ from truing.calculation import Calculation
 from truing.numbers import STATED_DIGITS, format_number, format_value
 from truing.published import ComparedRow, parted
 from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
-from truing.report.content import changed_inputs, check_rows, condition_rows, effect_rows, input_rows, tolerance_rows
+from truing.report.content import (
+    NOT_GIVEN,
+    changed_inputs,
+    check_rows,
+    condition_rows,
+    effect_rows,
+    input_rows,
+    tolerance_rows,
+)
 from truing.report.context import Chapter, Head, InputRow, Sheet, TableView
 from truing.runs.provenance import Provenance
 
@@ -170,9 +178,9 @@ def references(calculation: Calculation) -> Iterator[str]:
 
 
 def _inputs(setup: Setup, detail: str) -> tuple[tuple[InputRow, ...], tuple[InputRow, ...]]:
-    """Part the inputs into rows and, where there are many, those left at a default of 0 without a source."""
+    """Part the inputs into rows and, where there are many, those not given or at a default of 0 without a source."""
     rows = tuple(input_rows(setup))
-    idle = tuple(row for row in rows if not row.stated and row.value.text == "0" and not row.source)
+    idle = tuple(row for row in rows if not row.stated and row.value.text in {"0", NOT_GIVEN} and not row.source)
     if detail == "full" or len(idle) <= FEW:
         return rows, ()
     return tuple(row for row in rows if row not in idle), idle
