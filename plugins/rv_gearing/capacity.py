@@ -169,12 +169,19 @@ def rating(reserve: Reserve) -> Rating:
 
 @dataclass(frozen=True, kw_only=True)
 class Safeties(Sweep):
-    """How the four safeties run along one input."""
+    """How the four safeties run along one input.
+
+    Where the torque of the sun is stated, a load torque means nothing; then the stated one runs to twice its value.
+    """
 
     name: str = "safeties"
 
     def run(self, bench: "Bench") -> Swept:
         """Sweep the input, and keep the safeties of the two gears alone."""
-        swept = super().run(bench)
+        stated = float(bench.inputs.stated_sun_torque)
+        over, at = self.over, self.at
+        if over == "load_torque" and stated > 0.0:
+            over, at = "stated_sun_torque", f"{0.1 * stated!r}..{2.0 * stated!r} N*m"
+        swept = Sweep(over=over, at=at, points=self.points, name=self.name).run(bench)
         kept = {name: swept.results[name] for name in SAFETIES if name in swept.results}
         return replace(swept, results=kept, shown=False)

@@ -22,6 +22,7 @@ RANGE = (0.7, 12.0)
 TICKS = (0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0)
 AXES = {
     "load_torque": ("output torque, N m", 1.0),
+    "stated_sun_torque": ("torque of the sun, N m", 1.0),
     "face_width": ("face width, mm", MM),
     "power": ("input power, kW", 1e-3),
     "working_life": ("working time, h", 1.0 / 3600.0),

@@ -201,6 +201,15 @@ def test_courses_hold_the_four_safeties_and_fall_with_the_load(whole: Calculatio
     assert swept.results["contact_safety_sun"][10] == pytest.approx(float(alone.sun.contact_safety), rel=1e-12)
 
 
+def test_a_course_over_the_load_goes_over_the_torque_of_the_sun_where_that_is_stated() -> None:
+    stated = run(Safeties(over="load_torque", at="100..2500 N*m", points=5, name="load"), stated_sun_torque=20.0)
+    swept = stated.outcomes["load"]
+    assert isinstance(swept, Swept)
+    assert swept.over == "stated_sun_torque"
+    assert swept.axis == pytest.approx([2.0, 11.5, 21.0, 30.5, 40.0])
+    assert np.all(np.diff(swept.results["contact_safety_sun"]) < 0)
+
+
 # ---- teeth and mesh as they are drawn -------------------------------------------------------------------------------
 
 
