@@ -10,7 +10,7 @@ from rv_gearing.stiffness import Stiffness
 from truing import Float, either, feasible, found, results
 
 CLAUSE = "ISO 6336-1:2006, 6.5"
-COEFFICIENT = "ISO 6336-1:2006, 6.5, table 8"
+COEFFICIENT = "ISO 6336-1:2006, 6.5, table of C_v"
 COARSE = 6  # accuracy grade from which tip relief does not count
 FULL_LOAD = 100e3  # N/m
 

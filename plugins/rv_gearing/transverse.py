@@ -36,7 +36,7 @@ class Sharing:
     transverse_line_load: Float = found("N/mm", symbol="w_tH", note="line load that parts the teeth", source=CLAUSE,
                                         formula="mean_line_load * face_factor")  # fmt: skip
     transverse_base: Float = found(
-        "", symbol="K_alpha", note="transverse load factor before its bounds", source="ISO 6336-1:2006, 8.3.2",
+        "", symbol="K_alpha", note="transverse load factor before its bounds", source=CLAUSE,
         formula="cases(total_contact_ratio / 2 * (0.9 + 0.4 * mesh_stiffness * pitch_left / transverse_line_load),"
         " total_contact_ratio <= 2, 0.9 + 0.4 * sqrt(2 * (total_contact_ratio - 1) / total_contact_ratio)"
         " * mesh_stiffness * pitch_left / transverse_line_load)",
