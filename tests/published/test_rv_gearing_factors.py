@@ -138,7 +138,7 @@ def test_every_printed_formula_is_what_is_calculated_in_every_branch(seed: int) 
 # The dynamic factor over its ranges, ISO 6336-1:2006, 6.5
 
 
-TABLE_OF_COEFFICIENTS = [  # total contact ratio; C_v2, C_v3, C_v4, C_v6, C_v7 worked out by hand from the table of the standard
+TABLE_OF_COEFFICIENTS = [  # total contact ratio; C_v2, C_v3, C_v4, C_v6, C_v7 worked out from the standard by hand
     (1.2, 0.34, 0.23, 0.90, 0.47, 0.75),
     (1.75, 0.34, 0.23, 0.90, 0.47, 0.7866116524),  # 0.875 - 0.125/sqrt(2)
     (2.0, 0.34, 0.23, 0.90, 0.47, 0.875),
