@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rv_gearing.quantities import Gearing
-from truing import Block, Float, Sweep, Swept, Table, found, results
+from truing import Block, Float, Sweep, Swept, Table, TruingError, found, results
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,6 +27,10 @@ LIMITS = {
     "contact_safety_sun": "pitting of the sun",
     "contact_safety_planet": "pitting of the planet",
 }
+AROUND = {  # unit in SI, and the range as parts of the value
+    "load_torque": ("N*m", 0.1, 2.0), "stated_sun_torque": ("N*m", 0.1, 2.0), "power": ("W", 0.1, 2.0),
+    "face_width": ("m", 0.5, 2.0), "working_life": ("s", 0.1, 10.0),
+}  # fmt: skip
 SOUGHT = "bisection on the whole calculation"
 
 
@@ -169,19 +173,31 @@ def rating(reserve: Reserve) -> Rating:
 
 @dataclass(frozen=True, kw_only=True)
 class Safeties(Sweep):
-    """How the four safeties run along one input.
+    """How the four safeties run along one input; without ``at`` from a part of its value in the run to a multiple.
 
-    Where the torque of the sun is stated, a load torque means nothing; then the stated one runs to twice its value.
+    Where the torque of the sun is stated, a load torque means nothing; then the stated one takes its place.
     """
 
+    at: str = ""
+    points: int = 49
     name: str = "safeties"
 
     def run(self, bench: "Bench") -> Swept:
         """Sweep the input, and keep the safeties of the two gears alone."""
         stated = float(bench.inputs.stated_sun_torque)
-        over, at = self.over, self.at
-        if over == "load_torque" and stated > 0.0:
-            over, at = "stated_sun_torque", f"{0.1 * stated!r}..{2.0 * stated!r} N*m"
+        at_sun = self.over == "load_torque" and stated > 0.0
+        over = "stated_sun_torque" if at_sun else self.over
+        at = self.at if self.at and not at_sun else _around(bench, over, self.name)
         swept = Sweep(over=over, at=at, points=self.points, name=self.name).run(bench)
         kept = {name: swept.results[name] for name in SAFETIES if name in swept.results}
         return replace(swept, results=kept, shown=False)
+
+
+def _around(bench: "Bench", over: str, study: str) -> str:
+    """A range around the value of the run."""
+    if over not in AROUND:
+        raise TruingError(f"study '{study}': write at = \"low..high unit\", the range of {over}")
+    unit, least, most = AROUND[over]
+    answer = bench.answers["output_torque"] if over == "load_torque" else getattr(bench.inputs, over)
+    value = abs(float(answer)) or 1.0
+    return f"{least * value!r}..{most * value!r} {unit}"

@@ -2,8 +2,6 @@
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rv_gearing.capacity import SAFETIES
 from rv_gearing.drawn_look import BLUE, INK, MM, ORANGE, one_panel
 
@@ -45,7 +43,7 @@ def safeties_figure(swept: "Swept", here: float) -> "Figure":
         above = float(level) == max(float(one) for one, _ in asked)
         panel.annotate(f"${symbol}$", (1.0, float(level)), (3, 4 if above else -4), textcoords="offset points",
                        xycoords=("axes fraction", "data"), fontsize=8, va="center")  # fmt: skip
-    if np.isfinite(here):
+    if swept.axis.min() <= here <= swept.axis.max():
         panel.axvline(factor * here, color=INK, linewidth=0.8, linestyle=(0, (6, 3)))
         panel.annotate("this run", (factor * here, 1.0), (3, -9), textcoords="offset points", fontsize=8,
                        xycoords=("data", "axes fraction"))  # fmt: skip

@@ -31,8 +31,8 @@ RV_GEARING = Model(
     studies=[
         Search(gives=listed),
         Capacity(gives=rating),
-        Safeties(over="load_torque", at="100..2500 N*m", points=49, name="load"),
-        Safeties(over="face_width", at="6..24 mm", points=37, name="face_width"),
+        Safeties(over="load_torque", name="load"),
+        Safeties(over="face_width", name="face_width"),
         Sensitivity(of=STRESSES),
         Reliability(method=("first_order", "monte_carlo")),
     ],

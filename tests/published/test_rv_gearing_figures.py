@@ -197,6 +197,10 @@ def test_courses_hold_the_four_safeties_and_fall_with_the_load(whole: Calculatio
         assert all(np.all(sign * np.diff(values) > 0) for values in swept.results.values())
     swept = whole.outcomes["load"]
     assert isinstance(swept, Swept)
+    torque = float(whole.answers["output_torque"])
+    assert (swept.axis[0], swept.axis[-1]) == (pytest.approx(0.1 * torque), pytest.approx(2 * torque))
+    with pytest.raises(TruingError, match="the range of helix_angle"):
+        run(Safeties(over="helix_angle"))
     alone = rv_gearing(RV_GEARING.inputs(load_torque=float(swept.axis[10])))
     assert swept.results["contact_safety_sun"][10] == pytest.approx(float(alone.sun.contact_safety), rel=1e-12)
 
