@@ -49,9 +49,10 @@ LOAD: list[Effect[Gearing, Strength]] = [
         "face_misalignment",
         on_inputs=face_misalignment,
         unknowns=[
-            Unknown("misalignment", -100, 100, "um", note="over the face width, beside that of the tolerances"),
-            Unknown("per_load", -100, 100, "um/kN", note="what it gains with the tangential force of a mesh"),
+            Unknown("misalignment", -10, 100, "um", note="over the face width, beside that of the tolerances"),
+            Unknown("per_load", -10, 100, "um/kN", note="what it gains with the tangential force of a mesh"),
         ],
+        parts=[("misalignment",), ("per_load",)],
         looks_like="all stresses too high by a share that falls with the load; with shafts that bend, by one share at "
         "any load, which the tolerances or a gain of the gauge may be as well",
         why="sun and planet axes are not parallel: bores of the carrier, bearing play, and a shaft that bends",
@@ -62,8 +63,8 @@ LOAD: list[Effect[Gearing, Strength]] = [
         on_inputs=structural_resonance,
         unknowns=[
             Unknown("strength", 0, 2, "", note="what the dynamic factor gains far below the resonance"),
-            Unknown("resonance_speed", 100, 10000, "rpm", note="of the sun relative to the carrier"),
-            Unknown("damping", 0.02, 0.5, "", note="damping ratio"),
+            Unknown("resonance_speed", 200, 5000, "rpm", note="of the sun relative to the carrier"),
+            Unknown("damping", 0.03, 0.3, "", note="damping ratio"),
         ],
         looks_like="all stresses have a peak at one speed of the input, by the same share at any load",
         why="shaft, carrier or housing have a frequency of their own, which the teeth of the sun meet at that speed",
@@ -81,7 +82,7 @@ LOAD: list[Effect[Gearing, Strength]] = [
     Effect(
         "crowned_contact",
         on_inputs=crowned_contact,
-        unknowns=[Unknown("full_force", 0, 10000, "N", note="tangential force of a mesh from which all width carries")],
+        unknowns=[Unknown("full_line_load", 0, 200, "N/mm", note="tangential force over face width, from which all of it carries")],
         looks_like="all stresses too high at small loads, and right from some load on",
         why="crowned teeth touch in the middle of their width; the contact grows with the load",
         source="Hertz, point contact of crowned flanks that spreads over the face; width as the root of the force",

@@ -33,10 +33,10 @@ def planet_load_sharing(stage: Gearing, *, lead: Float) -> Gearing:
     return replace(stage, sharing_error=stage.sharing_error + lead)
 
 
-def crowned_contact(stage: Gearing, *, full_force: Float) -> Gearing:
-    """Crowned teeth touch over a width that grows with the root of the force, and at ``full_force`` over all of it."""
+def crowned_contact(stage: Gearing, *, full_line_load: Float) -> Gearing:
+    """Crowned teeth touch over a width that grows with the root of the force, until the whole face carries."""
     force = np.maximum(load_of(stage).tangential_force, LEAST_FORCE)
-    share = np.sqrt(force / np.maximum(force, full_force))
+    share = np.sqrt(force / np.maximum(force, full_line_load * stage.face_width))
     return replace(stage, carrying_share=stage.carrying_share * share)
 
 

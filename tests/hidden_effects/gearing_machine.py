@@ -28,6 +28,7 @@ from hidden_effects.gearing_stress import (
 Hidden: TypeAlias = Mapping[str, Mapping[str, float]]  # effect -> unknown, in the units of the registry
 
 RATIO, MESHES = 111.0, 0.920941
+VOGEL = 95  # degC, of mineral oils
 CONDUCTING = sqrt(50 * 3.8e6)  # of steel, N/(m s^0.5 K)
 STEPS = 2000
 
@@ -79,7 +80,7 @@ def apart(rows: Rows, hidden: Hidden) -> Array:
 def loaded(rows: Rows, stage: Stage, hidden: Hidden) -> Loaded:
     """Force and speed of a mesh; crowned teeth carry over a width whose square grows with the force."""
     force = 1000 * sun_torque(rows, stage) / (2 * MODULE * SUN / 2)
-    full = of(hidden, "crowned_contact", "full_force")
+    full = of(hidden, "crowned_contact", "full_line_load") * stage.width
     low, high = np.zeros(len(rows)), np.ones(len(rows))
     for _ in range(50):  # width at which the contact takes the force
         middle = (low + high) / 2
@@ -105,8 +106,8 @@ def strength(rows: Rows, stage: Stage, hidden: Hidden) -> dict[str, Array]:
 
 def viscosity(temperature: Array) -> Array:
     """Of an ISO VG 100 oil by Vogel's law through 100 mm²/s at 40 degC and 11.1 mm²/s at 100 degC."""
-    slope = np.log(100 / 11.1) / (1 / (40 + 110) - 1 / (100 + 110))
-    return np.asarray(100 * np.exp(slope * (1 / (temperature + 110) - 1 / (40 + 110))))
+    slope = np.log(100 / 11.1) / (1 / (40 + VOGEL) - 1 / (100 + VOGEL))
+    return np.asarray(100 * np.exp(slope * (1 / (temperature + VOGEL) - 1 / (40 + VOGEL))))
 
 
 def held_back(rows: Rows, hidden: Hidden) -> Array:
@@ -201,7 +202,7 @@ def shown(rows: Rows, stage: Stage, hidden: Hidden) -> dict[str, Array]:
     play, scale = of(hidden, "lost_motion", "play"), of(hidden, "lost_motion", "torque_scale") or 1.0
     depth, torque = worn(rows, hidden), sun_torque(rows, stage)
     error = turning(rows, hidden) + counted(rows, hidden) + rows.side * depth
-    error = error + play / 2 * erf(sqrt(pi) / 2 * rows.load_torque / scale)
+    error = error + play / 2 * erf(0.83 * rows.load_torque / scale)  # nowhere 0.02 from tanh
     error = error + rows.side * of(hidden, "wind_up", "compliance") * torque
     error = error + rows.side * of(hidden, "mesh_stiffening", "share") * given_way(rows, stage, hidden)
     read = strength(rows, stage, hidden)
