@@ -9,6 +9,7 @@ from truing import Table
 
 PINS = 40
 RATIOS = ((81.0, 25, 50), (111.0, 20, 55), (127.7, 18, 57), (161.0, 15, 60), (175.2, 14, 61))  # printed, sun, planet
+MODULE = 1.25e-3  # m, of the paper
 TORQUE = 1078.0  # N m, of the catalogue at 15 turns per minute
 
 

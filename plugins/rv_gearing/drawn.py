@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rv_gearing.capacity import Reserve
-from rv_gearing.catalogue import catalogue_table
+from rv_gearing.catalogue import MODULE, catalogue_table
 from rv_gearing.drawn_groups import groups_figure, stresses_figure, window_words
 from rv_gearing.drawn_look import acting, number, outcome_of
 from rv_gearing.drawn_mesh import mesh_figure, meshing_of
@@ -42,18 +42,24 @@ def search(record: "Run") -> "Sequence[Block]":
             "No group of tooth numbers meets all five conditions: widen ratio_tolerance, the range of pins or the "
             "window, or change the module. What is rated below are the stated teeth."
         )
-        return [Words(words, "warning"), catalogue_table(found.inputs)]
+        return [Words(words, "warning"), *_catalogue(found)]
     order = f" Sorted by {found.sort_by.replace('_', ' ')}{', the largest first' if found.descending else ''}."
     table = _table(found, "Groups of tooth numbers", SIZES, _rated_words(found) + order)
     if not len(found.groups):
-        return [Words("None of the groups has just the wanted ratio.", "warning"), catalogue_table(found.inputs)]
+        return [Words("None of the groups has just the wanted ratio.", "warning"), *_catalogue(found)]
     caption = "Every group by its number. Both dashed pairs are limits: of the ratio and of the centre distance."
     return [
         table,
         Words(window_words(found)),
         Drawing("Groups in their window", partial(groups_figure, found), caption),
-        catalogue_table(found.inputs),
+        *_catalogue(found),
     ]
+
+
+def _catalogue(found: Found) -> "list[Block]":
+    """The catalogue of the example's size, beside stages of its module."""
+    same = np.isclose(float(found.inputs.module), MODULE) and float(found.inputs.helix_angle) == 0.0
+    return [catalogue_table(found.inputs)] if same else []
 
 
 def _rated_words(found: Found) -> str:

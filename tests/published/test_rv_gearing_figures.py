@@ -115,6 +115,7 @@ def test_an_empty_list_is_said_and_the_stated_teeth_are_rated() -> None:
     assert isinstance(first, Words)
     assert first.text.startswith("No group of tooth numbers")
     assert drawn.comparison(calculation.record) == []
+    assert [block.title for block in drawn.search(run(Search(), **PAIRS[3]).record) if isinstance(block, Table)] == []
     assert float(calculation.answers["root_stress_sun"]) > 0
     assert json.loads(json.dumps(found(calculation).as_json()))["count"] == 0
 
