@@ -128,11 +128,20 @@ def test_every_printed_formula_is_what_is_calculated_in_every_branch(seed: int) 
     known |= {"extra_misalignment": rng.uniform(-5e-6, 20e-6), "sharing_error": rng.uniform(-1e-6, 5e-6),
               "relief_deviation": rng.uniform(-1e-6, 5e-6), "carrying_share": rng.uniform(0.3, 1.0),
               "extra_dynamic_factor": rng.uniform(0.0, 0.5), "single_contact": bool(rng.random() < 0.7)}  # fmt: skip
-    inputs = RV_GEARING.inputs(**stated(random_case(seed)) | known)
+    check_formulas(**stated(random_case(seed)) | known)
+
+
+def check_formulas(**inputs: Any) -> None:
+    """The checks of the kit with these inputs in place of the defaults."""
     subject = Subject(RV_GEARING)
-    subject.__dict__["setup"] = replace(default_setup(RV_GEARING), inputs=inputs)
+    subject.__dict__["setup"] = replace(default_setup(RV_GEARING), inputs=RV_GEARING.inputs(**inputs))
     formulas_have_the_unit(subject)
     formulas_equal_the_function(subject)
+
+
+@pytest.mark.parametrize("torque", [0.0, 1e-12, 1e-3])
+def test_printed_formulas_hold_without_load(torque: float) -> None:
+    check_formulas(**TEETH, stated_sun_torque=torque)
 
 
 # The dynamic factor over its ranges, ISO 6336-1:2006, 6.5
@@ -284,6 +293,17 @@ def test_through_hardened_gears_run_in_less_the_faster_they_run(
     assert float(run_in(stage, stage.sun, deviation * 1e-6, velocity)) == pytest.approx(taken * 1e-6)
 
 
+@pytest.mark.parametrize(("velocity", "taken"), [(4.9, None), (5.1, 51.2), (9.9, 51.2), (10.1, 25.6)])
+def test_through_hardened_flanks_run_in_less_the_faster_they_run(velocity: float, taken: float | None) -> None:
+    """ISO 6336-1:2006, clause 7: 320 F_betax/sigma_Hlim, at most 25600/sigma_Hlim above 5 m/s and half above 10 m/s."""
+    coarse = {"material": "through_hardened", "accuracy_grade": 12, "flank_form": "none", "contact_limit_sun": 500e6,
+              "contact_limit_planet": 500e6}  # fmt: skip
+    found = results(**TEETH, **coarse, stated_mesh_speed=velocity / (np.pi * 0.025))
+    free = 0.64 * in_units(found, "initial_misalignment")
+    assert free > 51.2
+    assert in_units(found, "face_running_in") == pytest.approx(free if taken is None else taken)
+
+
 @pytest.mark.parametrize(
     ("limit", "lubricant", "exponent"),
     [(849.9, 0.83, 0.15), (850.0, 0.83 - 1.4e-5, 0.15), (1025.0, 0.87 - 1.4e-5, 0.115), (1200.0, 0.91 - 1.4e-5, 0.08),
@@ -317,6 +337,7 @@ def test_deep_teeth_of_accurate_gears(addendum: float, helix: float) -> None:
     assert coarse["deep_tooth_factor"] == 1.0
     ratios = [each["nominal_root_stress_outer_sun"] for each in (found, coarse)]
     assert ratios[0] / ratios[1] == pytest.approx(found["deep_tooth_factor"])
+    check_formulas(**deep, helix_angle=helix, accuracy_grade=4)
 
 
 def test_direction_of_the_load() -> None:
