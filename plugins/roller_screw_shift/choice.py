@@ -10,6 +10,7 @@ from truing import Float, found, results
 KEPT = "over all shifts that keep every limit"
 RULE = "one over the square of half the range; or as the input weights states"
 BOX = "Box's complex method on the weighed sum"
+DRAWN = "8192 screws drawn from the tolerances in force"
 
 
 def weight(symbol: str, of: str, unit: str) -> float:
@@ -55,6 +56,10 @@ class Choice:
                                   method="each in its own unit; 0: a limit holds the optimum")  # fmt: skip
     limit_distance: Float = found("", symbol="Delta x_E", note="from the optimum to the nearest shift that misses a "
                                   "limit", method="ends of the interval, halved down to the last digits")  # fmt: skip
+    kept_as_stated: Float = found("%", symbol="n_0", note="screws of the stated shift that keep every limit",
+                                  method=DRAWN)  # fmt: skip
+    kept_at_optimum: Float = found("%", symbol="n_opt", note="screws of the optimal shift that keep every limit",
+                                   method=DRAWN)  # fmt: skip
     grid_shift: Float = found("", symbol="x_E,grid", note="optimal shift of the roller on a dense grid",
                               method="a check of Box's method")  # fmt: skip
     grid_distance: Float = found("", symbol="Delta x_grid", note="between both optima",
@@ -91,6 +96,8 @@ def choice(chosen: Chosen) -> Choice:
         **_weights(chosen.weights),
         **_optimum(chosen, difference),
         limit_distance=max(min(chosen.shift - part.low, part.high - chosen.shift), 0.0),
+        kept_as_stated=chosen.kept[0],
+        kept_at_optimum=chosen.kept[1],
         grid_shift=chosen.grid,
         grid_distance=nan if chosen.box is None else abs(chosen.shift - chosen.grid),
         evaluations=nan if chosen.box is None else float(chosen.box.evaluations),

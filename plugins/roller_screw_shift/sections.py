@@ -51,7 +51,7 @@ SECTIONS = [
     Section(
         "The best shift",
         "shift_sum", "stress_difference", "sliding_difference", "optimal_shift_roller", "optimal_shift_ring",
-        "optimal_contact_ratio", "limit_distance",
+        "optimal_contact_ratio", "limit_distance", "kept_as_stated", "kept_at_optimum",
         text="As in the paper: each objective is brought to 0 to 1 over its range, all are weighed and added, and "
         "Box's complex method with nine vertices looks for the least sum. A dense grid checks it.",
         blocks=drawn.choice,

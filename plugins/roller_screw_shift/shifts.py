@@ -17,6 +17,7 @@ from roller_screw_shift.best_shifts import (
     variants,
 )
 from roller_screw_shift.box import Found, Plan
+from roller_screw_shift.constraints import Margins
 from roller_screw_shift.courses import course_of, equal_sliding
 from roller_screw_shift.quantities import Pair
 from roller_screw_shift.weighing import Three, weights_of
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from truing import Block, Check
 
 FOUND = "found"
+SCREWS = 8192  # drawn to tell what scatter leaves of the margins
 COMPARED = (
     "roller_shift", "ring_shift", "tip_radius_roller", "tip_radius_ring", "contact_ratio", "tip_land",
     "sliding_roller", "sliding_ring", "sliding_difference", "nominal_stress_roller", "nominal_stress_ring",
@@ -70,6 +72,7 @@ class Shifting:
         weights = weights_of(pair.weights, field.ranges)
         grid = grid_optimum(field, weights)
         box, remarks = self._box(bench, field, weights, span)
+        best = grid if box is None else float(box.point[0])
         ratios = sorted({*self.ratios, float(pair.least_contact_ratio)})
         return Chosen(
             pair, span, equal,
@@ -80,7 +83,8 @@ class Shifting:
             grid=grid,
             variants=variants(pair, ratios, span, self.points),
             factor=stress_factor(field, weights, grid),
-            compared=_compared(bench, field, grid if box is None else float(box.point[0])),
+            compared=_compared(bench, field, best),
+            kept=(_kept(bench, float(pair.roller_shift)), _kept(bench, best)),
             remarks=remarks,
         )  # fmt: skip
 
@@ -114,6 +118,14 @@ def _compared(bench: Bench, field: Field, best: float) -> Mapping[str, Any]:
     return {"roller_shift": at, **found}
 
 
+def _kept(bench: Bench, shift: float) -> float:
+    """The share of screws of this shift that keep every limit, with the tolerances in force."""
+    names = tuple(Margins.__dataclass_fields__)
+    columns = {**bench.drawn(SCREWS), "roller_shift": np.full(SCREWS, shift)}
+    found = bench.rows(columns, SCREWS, *names)
+    return float(np.mean(np.all([found[name] >= 0.0 for name in names], axis=0)))
+
+
 def before(field: Field) -> float:
     """The shift to compare with: none at all where that keeps every limit, else the allowed one nearest to none."""
     part = field.around(0.0)
@@ -125,7 +137,8 @@ class Chosen:
     """The optimum by Box's method and on the grid, and where the objectives were weighed.
 
     Without any shift that keeps every limit ``field`` is None and ``status`` says why. ``equal`` is the shift at which
-    both roots slide alike, whatever the limits.
+    both roots slide alike, whatever the limits; ``kept`` the shares of screws, as stated and at the optimum, that keep
+    every limit although their parts scatter.
     """
 
     inputs: Pair
@@ -139,6 +152,7 @@ class Chosen:
     variants: tuple[Variant, ...] = ()
     factor: float | None = None
     compared: Mapping[str, Any] | None = None
+    kept: tuple[float, float] = (float("nan"), float("nan"))
     remarks: tuple[str, ...] = ()
 
     @property

@@ -82,6 +82,7 @@ def chosen_json(chosen: "Chosen") -> Mapping[str, Any]:
             "reflections": box.reflections, "settled": box.settled,
         }  # fmt: skip
     entry["limits"] = list(chosen.limits)
+    entry["kept"] = {"stated": number(chosen.kept[0]), "optimum": number(chosen.kept[1])}
     entry["stress_factor"] = chosen.factor
     entry["variants"] = [
         {"least_contact_ratio": each.least_contact_ratio, "weights": each.reading, "values": list(each.weights),
@@ -159,7 +160,20 @@ def optimum_words(chosen: "Chosen", field: "Field") -> "list[Block]":
     )
     if chosen.factor is not None:
         held += f" The stresses would have to weigh {chosen.factor:.0f} times as much before the optimum left it."
-    return [*blocks, Words(held)]
+    return [*blocks, Words(held), Words(_scatter_words(chosen))]
+
+
+def _scatter_words(chosen: "Chosen") -> str:
+    """Say what the scatter of the parts leaves of the margins."""
+    stated, best = (f"{100 * share:.4g} %" for share in chosen.kept)
+    words = (
+        f"With the tolerances in force {stated} of the screws keep every limit as stated, and {best} at the optimum."
+    )
+    if chosen.limits and chosen.kept[1] < 0.999:
+        words += (
+            " An optimum that stands at a limit leaves nothing for scatter: stay away from it by what the parts need."
+        )
+    return words
 
 
 def field_difference(field: "Field") -> float:

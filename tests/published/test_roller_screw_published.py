@@ -7,6 +7,7 @@ an independent reconstruction that tried shifts in steps of 0.0025.
 from collections.abc import Callable
 from dataclasses import replace
 from math import acos, cos, isfinite, isnan, pi, radians, sqrt, tan
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
@@ -339,6 +340,24 @@ def test_the_stresses_must_weigh_many_times_as_much_to_leave_the_limit() -> None
     assert 10 < chosen.factor <= (0.35 + 0.81) / 0.01 + 0.1
 
 
+def test_an_optimum_at_a_limit_leaves_nothing_for_scatter() -> None:
+    """The contact ratio falls as the centres come apart or together; 10 um are three standard deviations of that."""
+    answers = run().answers
+    assert answers["kept_at_optimum"] == pytest.approx(0.5, abs=4 * 0.5 / sqrt(8192))
+
+    def ratio(deviation: float) -> float:
+        meshing: Any = ROLLER_SCREW_SHIFT.function(ROLLER_SCREW_SHIFT.inputs(centre_distance_deviation=deviation))
+        return float(meshing.contact_ratio)
+
+    margin = by_hand(0.21)["ratio"] - 1.4
+    slope = (ratio(1e-6) - ratio(-1e-6)) / 2e-6
+    wanted = NormalDist().cdf(margin / (abs(slope) * 10e-6 / 3))
+    assert 0.9 < wanted < 1.0
+    spread = sqrt(wanted * (1 - wanted) / 8192)
+    assert answers["kept_as_stated"] == pytest.approx(wanted, abs=4 * spread + 1 / 8192)
+    assert run(least_contact_ratio=1.2).answers["kept_at_optimum"] > 0.98
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -402,6 +421,7 @@ def test_the_sheet_says_where_the_optimum_lies_and_what_holds_it() -> None:
     done = run()
     assert "0.2534 for the roller and −0.1165 for the ring" in words_of(drawn.choice, done)
     assert "It stands at a limit: g3 contact ratio." in words_of(drawn.choice, done)
+    assert "leaves nothing for scatter" in words_of(drawn.choice, done)
     assert "away from its own axis" in words_of(drawn.signs, done)
     assert "from −0.0566 (where g10 difference of sliding is missed) to 0.2534" in words_of(drawn.limits, done)
     inside = run(least_contact_ratio=1.2)
