@@ -16,6 +16,7 @@ from roller_screw_shift.weighing import Ranges
 Values = NDArray[np.float64]
 MEGA = 1e6
 HALVINGS = 60
+PARTS, DIVISIONS = 64, 10  # 64 parts at once, ten times: as many halvings, in a sixth of the calls
 NO_OBJECTIVES = "objectives"
 
 
@@ -70,7 +71,7 @@ def _each(values: Any, shifts: Values) -> Values:
 
 
 def intervals_of(pair: Pair, span: tuple[float, float], points: int) -> tuple[Interval, ...]:
-    """Return where every limit is kept, found on an even grid; ends are halved down to the last digits.
+    """Return where every limit is kept, found on an even grid; ends are divided down to the last digits.
 
     What is narrower than a step of the grid and lies between two of its points is not seen.
     """
@@ -90,12 +91,11 @@ def _end(pair: Pair, shifts: Values, inside: int, way: int) -> tuple[float, tupl
     if not 0 <= inside + way < len(shifts):
         return float(shifts[inside]), ()
     within, beyond = float(shifts[inside]), float(shifts[inside + way])
-    for _ in range(HALVINGS):
-        middle = 0.5 * (within + beyond)
-        if course_of(pair, np.array([middle])).kept[0]:
-            within = middle
-        else:
-            beyond = middle
+    for _ in range(DIVISIONS):
+        between = np.linspace(within, beyond, PARTS + 1)
+        kept = course_of(pair, between[1:-1]).kept
+        missed = PARTS if kept.all() else int(np.argmin(kept)) + 1
+        within, beyond = float(between[missed - 1]), float(between[missed])
     return within, course_of(pair, np.array([beyond])).missed(0)
 
 

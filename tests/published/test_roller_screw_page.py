@@ -9,6 +9,7 @@ import pytest
 from gear_geometry.involute import involute
 from gear_geometry.pairs import clear_of_base, internal_sliding, working_angle
 from roller_screw_shift.calculation import roller_screw_shift
+from roller_screw_shift.constraints import margins_of
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
 from roller_screw_shift.objectives import objectives_of
 
@@ -115,15 +116,17 @@ def test_the_normalising_curve() -> None:
     assert f"At a quarter of the range it is {quarter:.4f}, at half {half:.1f}." in WORDS
 
 
-def feasible_shifts(least_contact_ratio: float) -> np.ndarray:
-    """Shifts of the roller that keep all limits, from a fine grid."""
-    from roller_screw_shift.constraints import margins_of
+def kept(shifts: np.ndarray, least_contact_ratio: float) -> np.ndarray:
+    """Those that keep all limits."""
+    margins = margins_of(ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts, least_contact_ratio=least_contact_ratio))
+    return np.asarray(shifts[np.logical_and.reduce([np.asarray(value) >= 0 for value in vars(margins).values()])])
 
-    shifts = np.linspace(-0.5, 1.5, 200_001)
-    pair = ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts, least_contact_ratio=least_contact_ratio)
-    margins = margins_of(pair)
-    kept = np.logical_and.reduce([np.asarray(value) >= 0 for value in vars(margins).values()])
-    return np.asarray(shifts[kept])
+
+def feasible_shifts(least_contact_ratio: float) -> np.ndarray:
+    """Shifts of the roller that keep all limits, from a fine grid, and from a finer one at its ends."""
+    coarse = kept(np.linspace(-0.5, 1.5, 50_001), least_contact_ratio)
+    ends = [kept(end + np.linspace(-4e-5, 4e-5, 8_001), least_contact_ratio) for end in (coarse[0], coarse[-1])]
+    return np.unique(np.concatenate([coarse, *ends]))
 
 
 def test_the_ranges_of_the_objectives() -> None:
