@@ -31,7 +31,7 @@ def flash_of(stage: Gearing, strength: Strength) -> Float:
     """
     speed = TURN * strength.duty.mesh_speed
     force = strength.duty.line_load / np.cos(strength.mesh.transverse_angle)
-    found = []
+    found: list[Float] = []
     for sun, planet in ends_of_path(strength):
         width = 2.0 * half_width(stage, force, sun * planet / (sun + planet))
         slip = np.abs(np.sqrt(speed * sun) - np.sqrt(speed * planet / strength.mesh.tooth_ratio))
