@@ -47,12 +47,16 @@ class Plan:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """The best vertex (d,), its cost, how wide the cloud still is, and what it took."""
+    """The best vertex (d,), its cost, how wide the cloud still is, and what it took.
+
+    Of the ``evaluations`` so many were ``drawn`` for the first vertices.
+    """
 
     point: Values
     cost: float
     spread: float
     evaluations: int
+    drawn: int
     reflections: int
     settled: bool
 
@@ -75,7 +79,7 @@ def complex_method(
         asked, reflections = asked + tries, reflections + 1
     best = cloud.best
     return Found(
-        cloud.points[best].copy(), float(cloud.costs[best]), cloud.spread, drawn + asked, reflections,
+        cloud.points[best].copy(), float(cloud.costs[best]), cloud.spread, drawn + asked, drawn, reflections,
         settled=cloud.settled(plan.spread),
     )  # fmt: skip
 

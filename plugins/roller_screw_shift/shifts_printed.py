@@ -79,7 +79,7 @@ def chosen_json(chosen: "Chosen") -> Mapping[str, Any]:
         box = chosen.box
         entry["box"] = {
             "shift": float(box.point[0]), "cost": box.cost, "spread": box.spread, "evaluations": box.evaluations,
-            "reflections": box.reflections, "settled": box.settled,
+            "drawn": box.drawn, "reflections": box.reflections, "settled": box.settled,
         }  # fmt: skip
     entry["limits"] = list(chosen.limits)
     entry["kept"] = {"stated": number(chosen.kept[0]), "optimum": number(chosen.kept[1])}
@@ -145,8 +145,8 @@ def optimum_words(chosen: "Chosen", field: "Field") -> "list[Block]":
     if chosen.box is not None:
         box = chosen.box
         where += (
-            f"Box's method found it with {box.evaluations} evaluations, most of them to draw the first vertices; the "
-            f"grid of {len(field.course.shifts)} shifts says {signed(chosen.grid, '.6f')}, "
+            f"Box's method found it with {box.evaluations} evaluations, {box.drawn} to draw the first vertices; "
+            f"the grid of {len(field.course.shifts)} shifts says {signed(chosen.grid, '.6f')}, "
             f"{small(abs(chosen.shift - chosen.grid))} beside it."
         )
     blocks.append(Words(where))
