@@ -139,7 +139,8 @@ def _settled(optimum: Optimum) -> str:
     assert volume is not None  # there is a front
     if volume.exhausted:
         return "The search ended when no design was left that it had not tried."
-    grown = f"the hypervolume grew by {100 * volume.gain:.2g} % in the last {volume.last} generations"
+    way = "grew" if volume.gain >= 0 else "shrank"
+    grown = f"the hypervolume {way} by {100 * abs(volume.gain):.2g} % in the last {volume.last} generations"
     return f"The search has settled: {grown}." if volume.settled else f"The search has not settled: {grown}."
 
 
