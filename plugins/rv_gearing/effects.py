@@ -49,8 +49,8 @@ LOAD: list[Effect[Gearing, Strength]] = [
         "face_misalignment",
         on_inputs=face_misalignment,
         unknowns=[
-            Unknown("misalignment", -10, 100, "um", note="over the face width, beside that of the tolerances"),
-            Unknown("per_load", -10, 100, "um/kN", note="what it gains with the tangential force of a mesh"),
+            Unknown("misalignment", -3, 100, "um", note="over the face width, beside that of the tolerances"),
+            Unknown("per_load", -3, 100, "um/kN", note="what it gains with the tangential force of a mesh"),
         ],
         parts=[("misalignment",), ("per_load",)],
         looks_like="all stresses too high by a share that falls with the load; with shafts that bend, by one share at "

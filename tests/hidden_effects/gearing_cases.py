@@ -15,7 +15,7 @@ KINDS: tuple[Kind, ...] = ("gaussian", "heavy", "autocorrelated", "growing")
 SUN_ROOT, PLANET_ROOT, CONTACT = "root_stress_sun", "root_stress_planet", "contact_stress"
 ERROR, PLAY, LOSS, WARMTH = "transmission_error", "backlash", "efficiency", "flank_temperature"
 UNIT = {SUN_ROOT: "MPa", PLANET_ROOT: "MPa", CONTACT: "MPa", ERROR: "um", PLAY: "um", LOSS: "1", WARMTH: "degC"}
-NOISE = {SUN_ROOT: 2.0, PLANET_ROOT: 2.0, CONTACT: 8.0, ERROR: 0.5, PLAY: 1.0, LOSS: 0.004, WARMTH: 0.5}
+NOISE = {SUN_ROOT: 2.0, PLANET_ROOT: 2.0, CONTACT: 8.0, ERROR: 0.5, PLAY: 1.0, LOSS: 0.004, WARMTH: 1.5}
 HELD_OUT = 300
 TURN_OF_OUTPUT = 39960.0  # deg of the sun
 

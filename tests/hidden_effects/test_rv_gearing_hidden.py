@@ -39,7 +39,7 @@ def fifth_order(rows: Rows) -> dict[str, Array]:
 
 def hot_grease(rows: Rows) -> dict[str, Array]:
     """Flanks that get warm by speed and heat of the oil together."""
-    return {WARMTH: 6e-5 * rows.input_speed * (rows.oil_temperature - 20)}
+    return {WARMTH: 1.5e-4 * rows.input_speed * (rows.oil_temperature - 20)}
 
 
 NOTHING = [
@@ -70,7 +70,7 @@ NAMED = [
         seed=19, hidden={"speed_dependent_loss": {"constant": 0.25, "viscous": 0.2}}, results=(LOSS,),
         design="one_way",
     ),
-    Wish(seed=20, hidden={"flash_temperature": {"friction": 0.04}}, results=(WARMTH,), kind="heavy"),
+    Wish(seed=20, hidden={"flash_temperature": {"friction": 0.06}}, results=(WARMTH,), kind="heavy"),
     Wish(seed=21, hidden={"wind_up": {"compliance": 0.4}}, results=(ERROR,)),
     Wish(seed=34, hidden={"lost_motion": {"play": 12, "torque_scale": 60}}, results=(ERROR, PLAY), design="sweep"),
     Wish(seed=23, hidden={"wear_drift": {"rate": 1.5}}, results=(ERROR, PLAY), kind="growing"),

@@ -261,7 +261,7 @@ def test_a_planet_that_leads_carries_more(lead: float, torque: float, more: floa
 
 @pytest.mark.parametrize(("torque", "share"), [(1285.75, 0.5), (-321.4375, 0.25), (8e3, 1.0)])
 def test_crowned_teeth_carry_over_a_part_of_their_width(torque: float, share: float) -> None:
-    found = strength_of("crowned_contact", f"load_torque={torque} N*m", full_force=4 * 518.52)
+    found = strength_of("crowned_contact", f"load_torque={torque} N*m", full_line_load=4 * 518.52 / 12e-3)
     assert found.duty.carrying_width == pytest.approx(share * 12e-3, rel=1e-4)
 
 
