@@ -82,7 +82,7 @@ LOAD: list[Effect[Gearing, Strength]] = [
     Effect(
         "crowned_contact",
         on_inputs=crowned_contact,
-        unknowns=[Unknown("full_line_load", 0, 200, "N/mm", note="tangential force over face width, from which all of it carries")],
+        unknowns=[Unknown("full_line_load", 0, 200, "N/mm", note="force over width from which all of it carries")],
         looks_like="all stresses too high at small loads, and right from some load on",
         why="crowned teeth touch in the middle of their width; the contact grows with the load",
         source="Hertz, point contact of crowned flanks that spreads over the face; width as the root of the force",
