@@ -106,6 +106,7 @@ def test_a_pair_that_cannot_be(refused: Refused, lines: list[str], words: str) -
         (["roller_fillet = 1.0"], "roller_fillet"),
         (["clearance = 1.0", "addendum = 1.2", "roller_shift = 0.6"], "roller"),
         (["ring_fillet = 1.0"], "ring_fillet"),
+        (["ring_fillet = 0"], "ring_fillet must be greater than 0"),
         # no arm: the force at the tip of the ring meets the axis below the section
         (["addendum = 0.1", "clearance = 0.0", "roller_shift = 0"], "addendum"),
     ],

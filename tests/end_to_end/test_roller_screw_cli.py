@@ -114,6 +114,13 @@ def test_where_no_shift_keeps_every_limit_the_sentence_says_what_is_missed() -> 
     assert any("keeps every limit" in text and "margin_contact_ratio" in text for text in found.warnings)
 
 
+def test_an_objective_without_a_range_is_left_out_and_said() -> None:
+    found = shifted("axial_load=0 N")
+    assert any("difference of the root stresses is the same for every shift" in text for text in found.warnings)
+    assert found.answers["weight_stress"] == 0
+    assert found.answers["optimal_contact_ratio"] >= 1.4 - 1e-6
+
+
 @pytest.mark.parametrize(
     ("setting", "words"),
     [
