@@ -3,7 +3,8 @@
 Run it: ``python tests/benchmarks/bench_diagnosis_roller_screw.py --cases 32 --seed 1000``. A third of the cases hides
 nothing. The others hide one effect at a size drawn between half and the whole of a clear one, on every noise and every
 load range, with the results measured in which it shows or one of them alone. A name counts if it is the verdict alone
-or another name of its curve. Prints counts, the names of what went wrong, and how often an interval held the truth.
+or another name of its curve. Prints counts, the names of what went wrong, how often an interval held the truth, and
+the error on rows that were not fitted over that of the truth itself.
 """
 
 import argparse
@@ -20,6 +21,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np  # noqa: E402
 
+from hidden_effects.rv_asking import Answer  # noqa: E402
 from hidden_effects.screw_asking import diagnosed  # noqa: E402
 from hidden_effects.screw_cases import (  # noqa: E402
     AXIAL,
@@ -63,6 +65,7 @@ class Tally:
     false_alarms: int = 0
     said: Counter[str] = field(default_factory=Counter)
     covered: list[bool] = field(default_factory=list)
+    left: list[float] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
 
 
@@ -95,6 +98,7 @@ def judge(seed: int, tally: Tally) -> None:
     else:
         said = verdict_on(document, next(iter(case.wish.hidden)))
         tally.said[said] += 1
+        tally.left.append(left_over(case, answer))
         if said == "named":
             held(case, document["causes"][0], tally)
     if said not in {"nothing", "named", "same curve"}:
@@ -113,6 +117,16 @@ def verdict_on(document: dict[str, Any], hidden: str) -> str:
     if [hidden] in [other["causes"] for other in document["alternatives"]]:
         return "alternative"
     return str(document["verdict"]) if document["verdict"] != "named" else "another name"
+
+
+def left_over(case: Case, answer: Answer) -> float:
+    """Error on the rows that were not fitted over that of the truth, of the worst result."""
+    true = case.true_readings(case.held)
+    errors = [(case.held_readings[name] - answer.predicted[name], name) for name in case.wish.results]
+    return max(
+        float(np.sqrt(np.mean(error**2) / np.mean((case.held_readings[name] - true[name]) ** 2)))
+        for error, name in errors
+    )
 
 
 def held(case: Case, cause: dict[str, Any], tally: Tally) -> None:
@@ -139,6 +153,7 @@ def main() -> None:
     told = ", ".join(f"{name} {many}" for name, many in tally.said.most_common())
     print(f"one effect hidden: {sum(tally.said.values())}; {told}")
     print(f"intervals that hold the truth: {sum(tally.covered)} of {len(tally.covered)}")
+    print(f"error on rows not fitted, over the truth: median {np.median(tally.left):.3f}, worst {max(tally.left):.2f}")
     print(f"seconds: median {np.median(tally.seconds):.1f}, longest {max(tally.seconds):.1f}")
 
 
