@@ -189,7 +189,7 @@ def friction(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> Array:
     start, end = ring_tip(rows, off, hidden)[0], roller_tip(rows, off, hidden)[0]
     pitch = MODULE * TEETH / 2 * cos(ALPHA) * np.tan(working)
     base_pitch = pi * MODULE * cos(ALPHA)
-    screw = np.abs(rows.screw_speed) * 2 * pi / 60
+    screw = np.maximum(np.abs(rows.screw_speed), 1e-3) * 2 * pi / 60
     carrier = CARRIER * screw
     turn = carrier * RING_TEETH / TEETH  # of a roller against the carrier
     at = start[:, None] + (end - start)[:, None] * (np.arange(4000) + 0.5) / 4000
