@@ -73,7 +73,7 @@ LOAD: list[Effect[Gearing, Strength]] = [
     Effect(
         "planet_load_sharing",
         on_inputs=planet_load_sharing,
-        unknowns=[Unknown("lead", 0, 100, "um", note="of one planet before the others, along the line of action")],
+        unknowns=[Unknown("lead", 0, 100, "um", note="of one planet before the mean of all, along the line of action")],
         looks_like="all stresses too high at small loads, hardly at large ones; root stresses by nearly the same "
         "amount at any load, like an offset",
         why="planets stand unevenly on their cranks; the first one to touch carries until its mesh has given way",

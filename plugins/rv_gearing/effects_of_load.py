@@ -29,7 +29,7 @@ def structural_resonance(stage: Gearing, *, strength: Float, resonance_speed: Fl
 
 
 def planet_load_sharing(stage: Gearing, *, lead: Float) -> Gearing:
-    """One planet is ahead of the others and is loaded more, until its mesh has given way by as much."""
+    """One planet is ahead of the mean of all and is loaded more, until its mesh has given way by as much."""
     return replace(stage, sharing_error=stage.sharing_error + lead)
 
 
