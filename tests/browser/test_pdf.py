@@ -13,6 +13,7 @@ from truing.errors import OutputError
 from truing.report.pdf import find_browser, pdf_bytes, print_pdf
 
 POINT = 25.4 / 72
+ONE = pytest.mark.parametrize("sheet", ["press"], indirect=True)  # what does not depend on the sheet
 
 
 def words_of(pdf: Path) -> str:
@@ -59,12 +60,14 @@ def test_pages_are_numbered_and_named(sheet: Path, printed: Path) -> None:
     assert text.count(title) >= count
 
 
+@ONE
 def test_the_paper_is_a4_unless_letter_is_asked_for(sheet: Path, printed: Path, chromium: Path, tmp_path: Path) -> None:
     assert sizes_of(printed) == {(210, 297)}
     print_pdf(sheet, tmp_path / "letter.pdf", chromium, paper="letter")
     assert sizes_of(tmp_path / "letter.pdf") == {(216, 279)}
 
 
+@ONE
 def test_printing_touches_nothing_but_the_pdf(sheet: Path, chromium: Path, tmp_path: Path) -> None:
     copy = tmp_path / "Ein Blatt & mehr" / "sheet.html"
     copy.parent.mkdir()
