@@ -10,9 +10,9 @@ import pytest
 from numpy.typing import NDArray
 
 from truing import Effect, Float, Model, Unknown, found, given, inputs, results
-from truing.diagnosis.candidates import terms_of
 from truing.diagnosis.chords import are_faint, late_terms
 from truing.diagnosis.engine import diagnose
+from truing.diagnosis.grids import terms_of
 from truing.diagnosis.machine import machine_of
 from truing.diagnosis.problem import problem_of
 from truing.diagnosis.reading import read_records

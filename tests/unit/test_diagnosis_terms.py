@@ -27,8 +27,9 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Unknown
-from truing.diagnosis.candidates import Candidate, Term, candidates_of, grid_of, terms_of
+from truing.diagnosis.candidates import Candidate, Term, candidates_of
 from truing.diagnosis.contest import _finer
+from truing.diagnosis.grids import grid_of, terms_of
 from truing.diagnosis.hypotheses import Hypothesis, Piece, mixed
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.problem import Problem, near, problem_of, terms_for_pairs

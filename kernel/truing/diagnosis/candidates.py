@@ -6,9 +6,8 @@ dimensionless: a column has root mean square 1 in units of the noise, and ``per`
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.sources import Effect, Unknown
@@ -23,12 +22,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 STEP = 1e-3
-GRID = 9
-WIDEST_ANGLE = 0.97
-DENSEST = 17
-PLACES = 100
-NARROWEST = 0.07
-"""Angle between neighbouring curves of a grid, in radians."""
 LONG = 50_000
 KINK = 0.01
 FLAT = 1e-12
@@ -102,30 +95,6 @@ def candidates_of(machine: Machine) -> list[Candidate]:
     return [item for item in found if not item.is_kernel or gauged(item, machine.records.measured)]
 
 
-def grid_of(unknown: Unknown, machine: Machine, count: int = GRID) -> list[float]:
-    """Return the values of a shape that are tried: whole numbers, places of the record, or a grid inside its bounds."""
-    import numpy as np
-
-    low, high = si_bounds(unknown)
-    if unknown.whole:
-        return [float(value) for value in range(round(low), round(high) + 1)]
-    if unknown.along:
-        values = machine.records.rows.columns[unknown.along]
-        places = np.quantile(np.asarray(values, dtype=float), np.linspace(0.01, 0.99, PLACES), method="lower")
-        return sorted({float(value) for value in places} - {float(np.min(np.asarray(values, dtype=float)))})
-    if low > 0:
-        return [float(value) for value in np.geomspace(low, high, count)]
-    return [float(value) for value in np.linspace(low, high, count)]
-
-
-def shapes_of(candidate: Candidate, machine: Machine) -> Iterator[dict[str, float]]:
-    """Return every combination of shape values that is tried."""
-    count = GRID if len(candidate.shapes) < 2 else 5
-    grids = [grid_of(unknown, machine, count) for unknown in candidate.shapes]
-    for values in product(*grids):
-        yield dict(zip((unknown.name for unknown in candidate.shapes), values, strict=True))
-
-
 def curve_at(
     machine: Machine, candidate: Candidate, amplitudes: Mapping[str, float], shape: Mapping[str, float]
 ) -> Curve:
@@ -148,19 +117,6 @@ def _rest(unknown: Unknown) -> float:
     return 0.0 if unknown.is_amplitude else si_bounds(unknown)[0]
 
 
-def terms_of(place: int, candidate: Candidate, machine: Machine, scales: Mapping[str, float]) -> list[Term]:
-    """Return the variants of a candidate that the data excites; none where it excites nothing.
-
-    ``scales`` holds the size of the noise by result. A candidate whose every condition stood still is not excited.
-    """
-    if stands_still(candidate, machine):
-        return []
-    found: list[Term] = []
-    for shape in shapes_of(candidate, machine):
-        found += variants_of(place, candidate, machine, shape, scales)
-    return _refined(found, candidate, machine, scales)
-
-
 def stands_still(candidate: Candidate, machine: Machine) -> bool:
     """Whether nothing that the effect follows has moved; one that acts at the references follows nothing."""
     if candidate.effect.acts_at_reference:
@@ -170,77 +126,11 @@ def stands_still(candidate: Candidate, machine: Machine) -> bool:
     return bool(names) and all(name not in covariates or covariates[name].is_constant for name in names)
 
 
-def _refined(terms: list[Term], candidate: Candidate, machine: Machine, scales: Mapping[str, float]) -> list[Term]:
-    """Put further values between neighbours of a grid whose curves differ too much, and drop those that differ little.
-
-    A grid that is too coarse leaves a residual that a second effect would then explain.
-    """
-    if len(candidate.shapes) != 1 or candidate.shapes[0].whole or candidate.shapes[0].along or len(terms) < 2:
-        return terms
-    name = candidate.shapes[0].name
-    positive = si_bounds(candidate.shapes[0])[0] > 0
-    place = 0
-    while place + 1 < len(terms) and len(terms) < DENSEST:
-        if _cosine(terms[place], terms[place + 1], scales) >= WIDEST_ANGLE:
-            place += 1
-            continue
-        a, b = terms[place].shape[name], terms[place + 1].shape[name]
-        between = (a * b) ** 0.5 if positive else (a + b) / 2
-        new = variants_of(terms[place].candidate, candidate, machine, {name: between}, scales)
-        if not new:
-            place += 1
-        terms = [*terms[: place + 1], *new[:1], *terms[place + 1 :]]
-    return _densified(terms, name, scales, is_log=positive)
-
-
-def _densified(terms: list[Term], name: str, scales: Mapping[str, float], *, is_log: bool) -> list[Term]:
-    """Put values between those of a grid until neighbours are nearly one curve, without calling the model.
-
-    Curves between two values are those of a cubic spline over the grid. Long records keep the grid as it is.
-    """
-    import numpy as np
-    from scipy.interpolate import CubicSpline
-
-    first = terms[0]
-    rows = len(next(iter(first.curves[0].values())))
-    if len(terms) < 4 or rows > LONG or any(term.unknowns != first.unknowns for term in terms):
-        return terms
-    at = np.array([np.log(term.shape[name]) if is_log else term.shape[name] for term in terms])
-    if np.any(np.diff(at) <= 0):
-        return terms
-    splines = [
-        {key: CubicSpline(at, np.array([term.curves[column][key] for term in terms]), axis=0) for key in curve}
-        for column, curve in enumerate(first.curves)
-    ]
-    made: list[Term] = []
-    for term, following, begin, end in zip(terms, terms[1:], at, at[1:], strict=False):
-        made.append(term)
-        angle = np.arccos(min(1.0, _cosine(term, following, scales)))
-        for share in np.linspace(0, 1, int(np.ceil(angle / NARROWEST)) + 1)[1:-1]:
-            value = begin + share * (end - begin)
-            columns = [
-                TermColumn({key: spline(value) for key, spline in curves.items()}, unknown, file, low * per, high * per)
-                for curves, unknown, file, low, high, per in zip(
-                    splines, term.unknowns, term.files, term.low, term.high, term.per, strict=True
-                )
-            ]
-            made += made_term(term.candidate, columns, {name: float(np.exp(value) if is_log else value)}, scales)
-    return [*made, terms[-1]]
-
-
 def stacked(curve: Mapping[str, Values], scales: Mapping[str, float]) -> NDArray[np.float64]:
     """Return a curve of all results one below the other, in units of the noise."""
     import numpy as np
 
     return np.concatenate([np.nan_to_num(np.asarray(curve[name])) / scales[name] for name in scales])
-
-
-def _cosine(first: Term, second: Term, scales: Mapping[str, float]) -> float:
-    import numpy as np
-
-    a = np.column_stack([stacked(curve, scales) for curve in first.curves])
-    b = np.column_stack([stacked(curve, scales) for curve in second.curves])
-    return float(np.linalg.svd(np.linalg.qr(a)[0].T @ np.linalg.qr(b)[0], compute_uv=False).min())
 
 
 def variants_of(

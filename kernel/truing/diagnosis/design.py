@@ -12,9 +12,10 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from truing.declare.fields import InputField
-from truing.diagnosis.candidates import Candidate, Term, new_curves, terms_of
+from truing.diagnosis.candidates import Candidate, Term, new_curves
 from truing.diagnosis.contest import Contest, curve_space, names_of
 from truing.diagnosis.findings import in_unit
+from truing.diagnosis.grids import terms_of
 from truing.diagnosis.hypotheses import Hypothesis
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.noise import SETTINGS, whiten

@@ -7,27 +7,21 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
 
-from truing.diagnosis.candidates import Candidate, Term, candidates_of, terms_of, variants_of
+from truing.diagnosis.candidates import Candidate, Term, candidates_of, variants_of
 from truing.diagnosis.chords import are_faint, bent_terms, late_terms
 from truing.diagnosis.columns import Column, Design, Values, acting
+from truing.diagnosis.grids import terms_of
 from truing.diagnosis.hypotheses import Piece, unbounded
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.readings import followed_by
 from truing.diagnosis.shapes import Library, library_of
 from truing.diagnosis.sight import Sight
+from truing.diagnosis.twins import Parting, Twin
 
 MANY_IN_PAIRS = 20
 SHARES = (0.1, 0.25, 0.5, 0.75)
 FINEST = 1e-4
 FEW_IN_PAIRS = 6
-
-
-@dataclass(frozen=True)
-class Twin:
-    """A cause that is the curve of another one here, where the coefficient of that one has one of these signs."""
-
-    name: str
-    sides: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -136,7 +130,7 @@ def _merged(
             same[place] = []
             for number, twin in enumerate(twins):
                 if twin is not None:
-                    same[twin].append(Twin(every[place].name, _sides(known, (place, number), variants, twin)))
+                    same[twin].append(Twin(every[place].name, _sides(known, (place, number), variants, twin), place))
             left = [number for number, twin in enumerate(twins) if twin is None]
             variants[place] = [variants[place][number] for number in left]
             known.terms[place] = [known.terms[place][number] for number in left]
@@ -144,7 +138,10 @@ def _merged(
             alone.append(place)
             same[place] = []
         elif every[place].name != every[twins[0]].name:
-            same[twins[0]].append(Twin(every[place].name, _sides(known, (place, 0), variants, twins[0])))
+            same[twins[0]].append(Twin(every[place].name, _sides(known, (place, 0), variants, twins[0]), place))
+            rest = _other_side(known, place, variants, twins[0])
+            if rest:
+                variants[place], same[place] = rest, []
     return sorted(same), {place: tuple(dict.fromkeys(twins)) for place, twins in same.items()}
 
 
@@ -163,6 +160,20 @@ def _sides(known: Sight, variant: tuple[int, int], variants: Sequence[Sequence[T
     way = known.products[own[0], known.terms[other][0][0]]
     low, high = (a.low[0], a.high[0]) if way > 0 else (-a.high[0], -a.low[0])
     return (*((-1,) if max(low, b.low[0]) < 0 else ()), *((1,) if min(high, b.high[0]) > 0 else ()))
+
+
+def _other_side(known: Sight, place: int, variants: Sequence[Sequence[Term]], other: int) -> list[Term]:
+    """Return what a candidate can do to the side that a candidate of the same curve cannot reach; nothing if it can."""
+    own, term = known.terms[place][0], variants[place][0]
+    if len(own) > 1:
+        return []
+    way = 1 if known.products[own[0], known.terms[other][0][0]] > 0 else -1
+    reached = {side * way for side in _sides(known, (place, 0), variants, other)}
+    if 1 not in reached and term.high[0] > 0:
+        return [replace(term, low=(max(term.low[0], 0.0),))]
+    if -1 not in reached and term.low[0] < 0:
+        return [replace(term, high=(min(term.high[0], 0.0),))]
+    return []
 
 
 def _registered_orders(every: Sequence[Candidate], variants: Sequence[Sequence[Term]]) -> dict[str, frozenset[int]]:
@@ -272,18 +283,22 @@ def sharpened(problem: Problem, pieces: Sequence[Piece]) -> Problem:
     new: list[Term] = []
     for piece in {(item.owner, item.place): item for item in pieces if item.kind == "term"}.values():
         candidate = problem.candidates[piece.owner]
-        if len(candidate.shapes) != 1 or candidate.shapes[0].whole or candidate.shapes[0].along:
-            continue
-        for shape in _between(problem, piece, candidate.shapes[0].name):
-            new += variants_of(piece.owner, candidate, problem.machine, shape, problem.scales)
+        for unknown in candidate.shapes:
+            if not unknown.whole and not unknown.along:
+                for shape in _between(problem, piece, unknown.name):
+                    new += variants_of(piece.owner, candidate, problem.machine, shape, problem.scales)
     return _with_terms(problem, new)
 
 
 def bent(problem: Problem, fitted: Sequence[tuple[Piece, float]]) -> Problem:
-    """Return the problem with the chords of causes at the coefficients that they were fitted with."""
+    """Return the problem with the chords of causes at the coefficients that they were fitted with.
+
+    Twins of these causes that are other curves at this size are causes of their own from then on.
+    """
     terms = [(problem.terms[piece.place], coefficient) for piece, coefficient in fitted if piece.kind == "term"]
+    gone, twins = Parting(problem.candidates, problem.machine, problem.scales).parted(terms, problem.twins)
     new = bent_terms(terms, problem.terms, problem.candidates, problem.machine, problem.scales)
-    return _with_terms(problem, list(new))
+    return _with_terms(replace(problem, twins=twins), [*gone, *new])
 
 
 def _with_terms(problem: Problem, new: Sequence[Term]) -> Problem:
@@ -295,11 +310,14 @@ def _with_terms(problem: Problem, new: Sequence[Term]) -> Problem:
 
 
 def _between(problem: Problem, piece: Piece, name: str) -> list[dict[str, float]]:
-    """Return values between a shape and its two neighbours on the grid."""
-    grid = sorted({problem.terms[each.place].shape[name] for each in _by_owner(problem)[piece.owner]})
-    at = grid.index(problem.terms[piece.place].shape[name])
+    """Return shapes between one and its two neighbours on the grid of one of its unknowns, the others as they are."""
+    own = problem.terms[piece.place].shape
+    others = {key: value for key, value in own.items() if key != name}
+    every = [problem.terms[each.place].shape for each in _by_owner(problem)[piece.owner]]
+    grid = sorted({shape[name] for shape in every if others.items() <= shape.items()})
+    at = grid.index(own[name])
     values = []
     for near_by in (grid[at - 1] if at else None, grid[at + 1] if at + 1 < len(grid) else None):
         if near_by is not None and abs(near_by - grid[at]) > FINEST * abs(grid[at]):
             values += [grid[at] + (near_by - grid[at]) * share for share in SHARES]
-    return [{name: value} for value in values]
+    return [{**others, name: value} for value in values]

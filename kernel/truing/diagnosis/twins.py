@@ -1,0 +1,126 @@
+"""Causes that draw one curve while they are small: who they are, and which of them part when they are as large as here.
+
+Curves are first compared by their slopes at no effect. A cause that bends parts from one that does not, once it is
+large enough for the data to see it; from then on it competes as one of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from truing.diagnosis.candidates import Candidate, Curve, Term, si_bounds, stacked, variants_of
+from truing.diagnosis.chords import chord, has_chords
+from truing.diagnosis.machine import Machine, directions_of, gram_of
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+VISIBLE = 9.0
+"""Squared, in units of the noise: what one curve must leave of another for both to be told apart (three sigma)."""
+
+
+@dataclass(frozen=True)
+class Twin:
+    """A cause that is the curve of another one here, where the coefficient of that one has one of these signs.
+
+    ``place`` is that of its candidate.
+    """
+
+    name: str
+    sides: tuple[int, ...]
+    place: int
+
+
+Twins = Mapping[int, tuple[Twin, ...]]
+
+
+class Parting:
+    """Compares fitted causes with their twins at the size that they have in the data."""
+
+    def __init__(self, candidates: Sequence[Candidate], machine: Machine, scales: Mapping[str, float]) -> None:
+        self.candidates, self.machine, self.scales = candidates, machine, scales
+
+    def parted(self, fitted: Sequence[tuple[Term, float]], twins: Twins) -> tuple[list[Term], Twins]:
+        """Return chords of the twins that part from what was fitted, and the twins that are left.
+
+        Twins that part from the same cause and draw one curve are twins of one another from then on.
+        """
+        new: list[Term] = []
+        left = dict(twins)
+        for term, coefficient in fitted:
+            owner = term.candidate
+            own = self._as_large(term, coefficient) if left.get(owner) else None
+            gone: list[Term] = []
+            if own is None:
+                continue
+            for twin in left[owner]:
+                other = self._as_strong(twin, own)
+                if other is None or not self._differs(own, other):
+                    continue
+                left[owner] = tuple(each for each in left[owner] if each.place != twin.place)
+                like = next((each for each in gone if not self._differs(_sized(each), other)), None)
+                if like is None:
+                    gone.append(other)
+                    left[twin.place] = ()
+                else:
+                    way = Twin(twin.name, (1 if like.at > 0 else -1,), twin.place)
+                    left[like.candidate] = (*left[like.candidate], way)
+            new += gone
+        return new, left
+
+    def _as_large(self, term: Term, coefficient: float) -> Curve | None:
+        """Return the curve of a cause of one amplitude as it was fitted, SI; None where it has none."""
+        import numpy as np
+
+        if len(term.curves) != 1 or term.files != (-1,):
+            return None
+        size = min(max(coefficient, term.low[0]), term.high[0]) * term.per[0]
+        candidate = self.candidates[term.candidate]
+        if size and candidate.effect.place == "inputs" and has_chords(candidate):
+            made = chord(term.candidate, candidate, self.machine, self.scales, (size, term.shape))
+            return _sized(made[0]) if made else None
+        return {name: np.asarray(values) * size for name, values in term.curves[0].items()} if size else None
+
+    def _as_strong(self, twin: Twin, curve: Curve) -> Term | None:
+        """Return the chord of a twin that is as strong as a curve; None of one that does not bend, or cannot be so."""
+        candidate = self.candidates[twin.place]
+        if candidate.shapes or not has_chords(candidate):
+            return None
+        wanted = stacked(curve, self.scales)
+        low, high = si_bounds(candidate.amplitudes[0])
+        for term in variants_of(twin.place, candidate, self.machine, {}, self.scales):
+            slope = stacked(term.curves[0], self.scales)
+            size = float(slope @ wanted) / float(slope @ slope)
+            if size and low <= size <= high and term.low[0] <= size / term.per[0] <= term.high[0]:
+                return next(iter(chord(twin.place, candidate, self.machine, self.scales, (size, {}))), None)
+        return None
+
+    def _differs(self, curve: Curve, other: Term) -> bool:
+        """Whether the data could see what a term leaves of a curve, beside what the tolerances may be."""
+        gram = self._visible(curve, _sized(other))
+        return bool(gram[0, 0] - gram[0, 1] ** 2 / max(gram[1, 1], 1e-300) > VISIBLE)
+
+    def _visible(self, *curves: Curve) -> Matrix:
+        """Return the inner products of what is left of curves when the tolerated inputs have taken their part."""
+        import numpy as np
+
+        from truing.diagnosis.sight import visible
+
+        slopes = self.machine.slopes
+        gram = np.asarray(sum(gram_of(slopes[name]) / scale**2 for name, scale in self.scales.items()))
+        moves = directions_of(gram, len(self.machine.records) * len(self.scales))
+        inputs = np.concatenate([np.nan_to_num(slopes[name] @ moves) / scale for name, scale in self.scales.items()])
+        made = np.column_stack([inputs, *(stacked(curve, self.scales) for curve in curves)])
+        return visible(made.T @ made, moves.shape[1])
+
+
+def _sized(term: Term) -> Curve:
+    """Return the whole curve of a chord."""
+    import numpy as np
+
+    return {name: np.asarray(values) * term.at for name, values in term.curves[0].items()}
