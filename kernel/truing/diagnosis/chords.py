@@ -63,6 +63,11 @@ def has_chords(candidate: Candidate) -> bool:
     return len(candidate.amplitudes) == 1 and reading_of(candidate.effect) is None
 
 
+def may_bend(candidate: Candidate) -> bool:
+    """Whether a chord may differ from the slope: a term that is added to a result is in proportion to its size."""
+    return candidate.effect.place == "inputs" and has_chords(candidate)
+
+
 def chord(
     place: int,
     candidate: Candidate,
@@ -85,15 +90,11 @@ def bent_terms(
     machine: Machine,
     scales: Mapping[str, float],
 ) -> Iterator[Term]:
-    """Give the chords of terms at the coefficients they were fitted with, where these are no longer their slopes.
-
-    Only effects on inputs are asked: a term that is added to a result is in proportion to its size.
-    """
+    """Give the chords of terms at the coefficients they were fitted with, where these are no longer their slopes."""
     taken = list(known)
     for term, coefficient in fitted:
         candidate = candidates[term.candidate]
-        is_asked = candidate.effect.place == "inputs" and has_chords(candidate)
-        if len(term.curves) != 1 or term.files != (-1,) or not is_asked:
+        if len(term.curves) != 1 or term.files != (-1,) or not may_bend(candidate):
             continue
         size = min(max(coefficient, term.low[0]), term.high[0]) * term.per[0]
         if size == 0 or any(_is_near(other, term, size) for other in taken):

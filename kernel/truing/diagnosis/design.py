@@ -12,16 +12,15 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from truing.declare.fields import InputField
-from truing.diagnosis.candidates import Candidate, Term, new_curves
+from truing.diagnosis.candidates import new_curves
 from truing.diagnosis.contest import Contest, curve_space, names_of
 from truing.diagnosis.findings import in_unit
-from truing.diagnosis.grids import terms_of
-from truing.diagnosis.hypotheses import Hypothesis
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.noise import SETTINGS, whiten
 from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import Covariate, Records
 from truing.diagnosis.result import Amount, NextPoint
+from truing.diagnosis.rival_twins import TwinTerm, believed, is_physical, twins_of
 from truing.diagnosis.search import Solution
 from truing.measurements import RowsFile
 from truing.numbers import format_number
@@ -114,11 +113,6 @@ def next_points(full: Contest, winner: int, rivals: Sequence[int]) -> list[NextP
         least = min(duel.separation for duel in duels)
         found.append(NextPoint(_amounts(full, settings, place), weakest.names, why, least))
     return _with_count(found)
-
-
-def is_physical(hypothesis: Hypothesis) -> bool:
-    """Whether an explanation is made of causes and inputs alone, so that it says something at other settings."""
-    return hypothesis.kind in {"one", "two", "input"}
 
 
 def _is_part(full: Contest, believed: int, rival: int) -> bool:
@@ -265,35 +259,6 @@ def _duel(full: Contest, there: Machine, believed: int, rival: int) -> _Duel:
     )
 
 
-@dataclass(frozen=True)
-class TwinTerm:
-    """A cause that draws the curve of a named one on this data: its name, and one term in place of that piece."""
-
-    name: str
-    piece: int
-    candidate: Candidate
-    term: Term
-
-
-def twins_of(full: Contest, hypothesis: Hypothesis, coefficients: Sequence[float]) -> list[TwinTerm]:
-    """Return the causes that are the same curve as a piece of a hypothesis: other settings may tell them apart.
-
-    ``coefficients`` are those of its columns: what can only add is no twin of what takes away.
-    """
-    problem = full.problem
-    found: list[TwinTerm] = []
-    before = 0
-    for number, piece in enumerate(hypothesis.pieces if is_physical(hypothesis) else ()):
-        own = coefficients[before : before + len(piece.columns)]
-        before += len(piece.columns)
-        for name in problem.same_curve(piece.owner, own) if piece.kind == "term" else ():
-            for place, candidate in enumerate(problem.candidates):
-                if candidate.name == name:
-                    terms = terms_of(place, candidate, problem.machine, full.noise.scales)
-                    found += [TwinTerm(name, number, candidate, term) for term in terms[:1] if len(terms) == 1]
-    return found
-
-
 def _twin_duels(full: Contest, there: Machine, solution: Solution, twin: TwinTerm) -> list[_Duel]:
     """Set up a named cause against one of the same curve here; none where no setting within reach tells them apart."""
     import numpy as np
@@ -302,6 +267,7 @@ def _twin_duels(full: Contest, there: Machine, solution: Solution, twin: TwinTer
     before = sum(len(each.columns) for each in solution.hypothesis.pieces[: twin.piece])
     own = slice(before, before + len(piece.columns))
     curves = list(zip(twin.term.curves, new_curves(there, twin.candidate, twin.term), twin.term.per, strict=True))
+    expected = believed(full, there, piece, solution.coefficients[own])
     k = full.evidence.directions.shape[1]
     normal, cross, size = np.zeros((k + len(curves),) * 2), np.zeros(k + len(curves)), 0.0
     signal, rows = {}, {}
@@ -314,8 +280,7 @@ def _twin_duels(full: Contest, there: Machine, solution: Solution, twin: TwinTer
         normal, cross = normal + white[:, :-1].T @ white[:, :-1], cross + white[:, :-1].T @ white[:, -1]
         size += float(white[:, -1] @ white[:, -1])
         spread = channel.scale * np.sqrt(setting.variance_ratio)
-        believed = _columns_there(full, there, solution, channel.name)[:, own]
-        signal[channel.name] = believed @ solution.coefficients[own] / spread
+        signal[channel.name] = expected[channel.name] / spread
         u = there.slopes[channel.name] @ full.evidence.directions
         new = np.column_stack([curve[channel.name] * per for _, curve, per in curves])
         rows[channel.name] = np.concatenate([u, new], axis=1) / spread

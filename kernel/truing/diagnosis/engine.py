@@ -19,6 +19,7 @@ from truing.diagnosis.problem import Problem, problem_of
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Alternative, Amount, Calibrated, Curves, Diagnosis, Gain, Verdict
 from truing.diagnosis.search import NoiseModel, first_noise
+from truing.diagnosis.second_look import second_look
 from truing.diagnosis.unmeasured import with_results
 from truing.diagnosis.visibility import inseparable, smallest_visible
 from truing.errors import UsageError
@@ -55,6 +56,11 @@ def _diagnose(setup: Setup, records: Records, step: _Steps) -> Diagnosis:
     decision = decide(full, seed=setup.seed)
     step.done("significance")
     best, decision = _certain(full, decision)
+    again = second_look(full, decision.winner, best, ~records.held_out)
+    if again is not None:
+        full = without_needless_inputs(again)
+        decision = decide(full, seed=setup.seed)
+        best, decision = _certain(full, decision)
     step.done("fit")
     problem = full.problem
     answer = _answer(problem, full, decision, best, raw)

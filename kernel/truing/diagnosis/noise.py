@@ -140,10 +140,35 @@ def robust_sd(innovations: NDArray[np.float64]) -> float:
 def tails_of(innovations: NDArray[np.float64]) -> Tails:
     """Choose the degrees of freedom of Student's t that fit innovations best (profile over its scale)."""
     import numpy as np
+
+    scale = _scale(innovations)
+    best, chosen = -inf, inf
+    for freedom, total in _by_freedom(innovations).items():
+        if total > best + 1e-9:
+            best, chosen = total, freedom
+    limit = TAILS[chosen]
+    return Tails(chosen, limit, float(np.mean(np.abs(innovations / scale) > limit)))
+
+
+def likelihood_of(innovations: NDArray[np.float64]) -> float:
+    """Return the log-likelihood of innovations under the tails that fit them best."""
+    import numpy as np
+
+    return max(_by_freedom(innovations).values()) - len(innovations) * float(np.log(_scale(innovations)))
+
+
+def _scale(innovations: NDArray[np.float64]) -> float:
+    import numpy as np
+
+    return robust_sd(innovations) or float(np.std(innovations)) or 1.0
+
+
+def _by_freedom(innovations: NDArray[np.float64]) -> dict[float, float]:
+    """Return the largest log-likelihood of scaled innovations by degrees of freedom."""
+    import numpy as np
     from scipy.special import gammaln
 
-    scale = robust_sd(innovations) or float(np.std(innovations)) or 1.0
-    u = innovations / scale
+    u = innovations / _scale(innovations)
     factors = np.exp(np.linspace(-0.6, 0.6, 25))
     totals = np.zeros((len(TAILS), len(factors)))
     for begin in range(0, len(u), AT_ONCE):
@@ -155,13 +180,8 @@ def tails_of(innovations: NDArray[np.float64]) -> Tails:
                 norm = gammaln((freedom + 1) / 2) - gammaln(freedom / 2) - 0.5 * np.log(freedom * np.pi)
                 logs = norm - (freedom + 1) / 2 * np.log1p(z2 / freedom)
             totals[place] += logs.sum(axis=1)
-    best, chosen = -inf, inf
-    for freedom, sums in zip(TAILS, totals, strict=True):
-        total = float(np.max(sums - len(u) * np.log(factors)))
-        if total > best + 1e-9:
-            best, chosen = total, freedom
-    limit = TAILS[chosen]
-    return Tails(chosen, limit, float(np.mean(np.abs(u) > limit)))
+    largest = np.max(totals - len(u) * np.log(factors), axis=1)
+    return dict(zip(TAILS, largest.tolist(), strict=True))
 
 
 def clipped(innovations: NDArray[np.float64], tails: Tails) -> NDArray[np.float64]:

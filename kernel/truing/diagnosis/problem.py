@@ -301,6 +301,16 @@ def bent(problem: Problem, fitted: Sequence[tuple[Piece, float]]) -> Problem:
     return _with_terms(replace(problem, twins=twins), [*gone, *new])
 
 
+def at_shapes(problem: Problem, pieces: Sequence[Piece], shapes: Mapping[int, Mapping[str, float]]) -> Problem:
+    """Return the problem with further variants of pieces, at the shapes (SI) given by their place."""
+    new: list[Term] = []
+    for place, values in shapes.items():
+        piece = pieces[place]
+        shape = {**problem.terms[piece.place].shape, **values}
+        new += variants_of(piece.owner, problem.candidates[piece.owner], problem.machine, shape, problem.scales)
+    return _with_terms(problem, new)
+
+
 def _with_terms(problem: Problem, new: Sequence[Term]) -> Problem:
     made = _Columns(problem.columns)
     terms = [*problem.terms, *new]

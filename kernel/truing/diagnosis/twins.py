@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.candidates import Candidate, Curve, Term, si_bounds, stacked, variants_of
-from truing.diagnosis.chords import chord, has_chords
+from truing.diagnosis.chords import chord, has_chords, may_bend
 from truing.diagnosis.machine import Machine, directions_of, gram_of
 
 if TYPE_CHECKING:
@@ -54,12 +54,12 @@ class Parting:
         left = dict(twins)
         for term, coefficient in fitted:
             owner = term.candidate
-            own = self._as_large(term, coefficient) if left.get(owner) else None
+            own = self.as_large(term, coefficient) if left.get(owner) else None
             gone: list[Term] = []
             if own is None:
                 continue
             for twin in left[owner]:
-                other = self._as_strong(twin, own)
+                other = self.as_strong(twin.place, own)
                 if other is None or not self._differs(own, other):
                     continue
                 left[owner] = tuple(each for each in left[owner] if each.place != twin.place)
@@ -73,7 +73,7 @@ class Parting:
             new += gone
         return new, left
 
-    def _as_large(self, term: Term, coefficient: float) -> Curve | None:
+    def as_large(self, term: Term, coefficient: float) -> Curve | None:
         """Return the curve of a cause of one amplitude as it was fitted, SI; None where it has none."""
         import numpy as np
 
@@ -81,23 +81,23 @@ class Parting:
             return None
         size = min(max(coefficient, term.low[0]), term.high[0]) * term.per[0]
         candidate = self.candidates[term.candidate]
-        if size and candidate.effect.place == "inputs" and has_chords(candidate):
+        if size and may_bend(candidate):
             made = chord(term.candidate, candidate, self.machine, self.scales, (size, term.shape))
             return _sized(made[0]) if made else None
         return {name: np.asarray(values) * size for name, values in term.curves[0].items()} if size else None
 
-    def _as_strong(self, twin: Twin, curve: Curve) -> Term | None:
-        """Return the chord of a twin that is as strong as a curve; None of one that does not bend, or cannot be so."""
-        candidate = self.candidates[twin.place]
+    def as_strong(self, place: int, curve: Curve) -> Term | None:
+        """Return the chord of a cause that is as strong as a curve; None of one that does not bend, or cannot be so."""
+        candidate = self.candidates[place]
         if candidate.shapes or not has_chords(candidate):
             return None
         wanted = stacked(curve, self.scales)
         low, high = si_bounds(candidate.amplitudes[0])
-        for term in variants_of(twin.place, candidate, self.machine, {}, self.scales):
+        for term in variants_of(place, candidate, self.machine, {}, self.scales):
             slope = stacked(term.curves[0], self.scales)
             size = float(slope @ wanted) / float(slope @ slope)
             if size and low <= size <= high and term.low[0] <= size / term.per[0] <= term.high[0]:
-                return next(iter(chord(twin.place, candidate, self.machine, self.scales, (size, {}))), None)
+                return next(iter(chord(place, candidate, self.machine, self.scales, (size, {}))), None)
         return None
 
     def _differs(self, curve: Curve, other: Term) -> bool:

@@ -16,7 +16,7 @@ from truing.declare.goals import Maximise, Minimise, Require
 from truing.declare.specs import Axis
 from truing.diagnosis.candidates import si_bounds, stacked
 from truing.diagnosis.contest import Contest, names_of
-from truing.diagnosis.design import SEPARATED, TwinTerm, is_physical, twins_of
+from truing.diagnosis.design import SEPARATED
 from truing.diagnosis.findings import in_unit
 from truing.diagnosis.fit import Fit, fit
 from truing.diagnosis.machine import Machine, machine_of, predict
@@ -24,6 +24,7 @@ from truing.diagnosis.naming import causes_of, switched_on
 from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import NextPoint
+from truing.diagnosis.rival_twins import TwinTerm, is_physical, twins_of
 from truing.setup import SwitchedOn
 
 if TYPE_CHECKING:
