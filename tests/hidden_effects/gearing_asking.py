@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hidden_effects.gearing_cases import UNIT, Case
-from hidden_effects.gearing_machine import Array, Rows
+from hidden_effects.gearing_machine import Rows
+from hidden_effects.gearing_stage import Array
 
 if TYPE_CHECKING:
     from truing.diagnosis.result import Diagnosis

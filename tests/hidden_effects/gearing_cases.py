@@ -6,7 +6,8 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from hidden_effects.gearing_machine import Array, Hidden, Rows, Stage, shown
+from hidden_effects.gearing_machine import Hidden, Rows, shown
+from hidden_effects.gearing_stage import Array, Stage
 
 Kind: TypeAlias = Literal["gaussian", "heavy", "autocorrelated", "growing"]
 Design: TypeAlias = Literal["rig", "sweep", "one_way"]

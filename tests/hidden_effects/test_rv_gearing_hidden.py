@@ -27,7 +27,8 @@ from hidden_effects.gearing_cases import (
     measured,
     noise_of,
 )
-from hidden_effects.gearing_machine import Array, Rows, Stage, shown
+from hidden_effects.gearing_machine import Rows, shown
+from hidden_effects.gearing_stage import Array, Stage
 
 STRESS = (SUN_ROOT, CONTACT)
 

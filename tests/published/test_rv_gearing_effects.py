@@ -93,7 +93,7 @@ ORDERS = [  # effect, cosine, sine, turns per turn of the sun
 
 @pytest.mark.parametrize(("name", "cosine", "sine", "order"), ORDERS)
 def test_every_wave_has_its_order(name: str, cosine: str, sine: str, order: float) -> None:
-    off = {unknown.name: 0.0 for unknown in BY_NAME[name].unknowns}
+    off: dict[str, Any] = {unknown.name: 0.0 for unknown in BY_NAME[name].unknowns}
     for angle in (0.0, 0.7, 40.0, -3.3, 900.0):
         found = change(name, **(off | {cosine: 3 * UM, sine: -4 * UM}), input_angle=angle)
         expected = 5 * UM * cos(order * angle + np.arctan2(4, 3))
@@ -104,7 +104,7 @@ def test_another_drive_has_other_orders() -> None:
     """16/48 with 30 pins: ratio 91, planet 1/3 of the sun, 29 teeth of a disc."""
     settings = "sun_teeth=16;planet_teeth=48;pin_teeth=30"
     for name, order in (("sun_runout", 90 / 91), ("planet_runout", 30 / 91), ("output_eccentricity", 1 / 91)):
-        off = {unknown.name: 0.0 for unknown in BY_NAME[name].unknowns}
+        off: dict[str, Any] = {unknown.name: 0.0 for unknown in BY_NAME[name].unknowns}
         found = change(name, settings, **(off | {"sine": UM}), input_angle=2.0)
         assert found == pytest.approx(UM * sin(2 * order), abs=1e-15)
 
@@ -130,7 +130,7 @@ def test_a_shaft_winds_up_to_the_side_of_its_torque(torque: float) -> None:
 @pytest.mark.parametrize("torque", [-500.0, -20.0, 0.0, 20.0, 60.0, 500.0])
 def test_torque_takes_up_the_play(torque: float) -> None:
     settings = f"load_torque={torque} N*m"
-    values = {"play": 24 * UM, "torque_scale": 30.0}
+    values: dict[str, Any] = {"play": 24 * UM, "torque_scale": 30.0}
     assert change("lost_motion", settings, **values) == pytest.approx(12 * UM * tanh(torque / 30), rel=1e-9, abs=1e-18)
     assert change("lost_motion", settings, "backlash", **values) == pytest.approx(24 * UM, rel=1e-12)
 
@@ -138,7 +138,7 @@ def test_torque_takes_up_the_play(torque: float) -> None:
 @pytest.mark.parametrize(("torque", "side"), [(700.0, 1), (-700.0, -1)])
 def test_wear_goes_on_to_the_side_of_the_torque(torque: float, side: int) -> None:
     """Reference: 2 um per 1000 h are 3 um after 1500 h on each flank, and 6 um of backlash."""
-    values = {"rate": 2 * UM / (1000 * HOUR), "time": 1500 * HOUR}
+    values: dict[str, Any] = {"rate": 2 * UM / (1000 * HOUR), "time": 1500 * HOUR}
     assert change("wear_drift", f"load_torque={torque} N*m", **values) == pytest.approx(side * 3 * UM, rel=1e-12)
     assert change("wear_drift", f"load_torque={torque} N*m", "backlash", **values) == pytest.approx(6 * UM, rel=1e-12)
 
@@ -241,7 +241,7 @@ def test_misaligned_teeth_are_so_far_out_of_line(misalignment: float, per_load: 
 @pytest.mark.parametrize(("speed", "gain"), [(0.01, 1.0), (900.0, 1 / 0.16), (1800.0, 1 / sqrt(9 + 0.32**2))])
 def test_a_resonance_shakes_the_teeth(speed: float, gain: float) -> None:
     """Far below it by its strength, at it by that over twice the damping, at twice its speed hardly."""
-    values = {"strength": 0.05, "resonance_speed": 900 * RPM, "damping": 0.08}
+    values: dict[str, Any] = {"strength": 0.05, "resonance_speed": 900 * RPM, "damping": 0.08}
     settings = f"load_torque=700 N*m;input_speed={speed * 111 / 110} rpm"
     found = strength_of("structural_resonance", settings, **values).dynamics.dynamic_factor
     assert found - rv_gearing(stage_of(settings)).dynamics.dynamic_factor == pytest.approx(0.05 * gain, rel=1e-4)
