@@ -106,8 +106,10 @@ def _answered(place: str, number: int) -> tuple[Case, Answer]:
 
 def each(place: str) -> pytest.MarkDecorator:
     """One test per case; every case is asked once."""
-    cases = [pytest.param((place, number), id=wish.title) for number, wish in enumerate(PLACES[place])]
-    return pytest.mark.parametrize("asked", cases)
+    wishes = PLACES[place]
+    return pytest.mark.parametrize(
+        "asked", [(place, number) for number in range(len(wishes))], ids=[wish.title for wish in wishes]
+    )
 
 
 def causes_of(answer: Answer) -> list[str]:
