@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from math import inf
 
 from truing.diagnosis.candidates import (
     Candidate,
@@ -28,7 +29,13 @@ FAINT = 0.05
 """Root mean square, in units of the noise, that the slope of an effect must reach at its bound to be looked for."""
 STRAIGHT = 1e-4
 """Sine squared of the angle between chord and slope up to which both are one curve."""
-ALIKE = 0.15
+AROUND = (1.0, 2.0, 4.0, 0.5)
+"""Of the size that a fit has led to: one that bends is larger, or smaller, than its slope or another chord says."""
+SEEN = 1.0
+"""Squared, in units of the noise: what a chord leaves of another curve that is as large, from which both are kept."""
+REACH = 3.0
+"""A chord stands for sizes up to so many times its own: farther off the curve is another one."""
+ALIKE = 0.05
 """Chords of sizes that differ by a smaller share are one chord."""
 
 
@@ -68,17 +75,29 @@ def may_bend(candidate: Candidate) -> bool:
     return candidate.effect.place == "inputs" and has_chords(candidate)
 
 
+def one_side(candidate: Candidate, size: float) -> tuple[float, float]:
+    """Return the bounds of the one amplitude of a candidate on the side of zero that a size is on, SI."""
+    low, high = si_bounds(candidate.amplitudes[0])
+    return (max(low, 0.0), high) if size > 0 else (low, min(high, 0.0))
+
+
 def chord(
     place: int,
     candidate: Candidate,
     machine: Machine,
     scales: Mapping[str, float],
     point: tuple[float, Mapping[str, float]],
+    *,
+    reach: float = inf,
 ) -> list[Term]:
-    """Return the term of an amplitude (SI) and shapes: what the effect of that size does, per unit of its size."""
+    """Return the term of an amplitude (SI) and shapes: what the effect of that size does, per unit of its size.
+
+    It stands for amplitudes from that size over ``reach`` to ``reach`` times it.
+    """
     size, shape = point
-    low, high = si_bounds(candidate.amplitudes[0])
-    side = (max(low, 0.0), high) if size > 0 else (low, min(high, 0.0))
+    low, high = one_side(candidate, size)
+    near = sorted((size / reach, size * reach))
+    side = max(low, near[0]), min(high, near[1])
     column = TermColumn(chord_at(machine, candidate, size, shape), candidate.amplitudes[0].name, -1, *side)
     return [replace(term, at=size) for term in made_term(place, [column], shape, scales)]
 
@@ -90,19 +109,20 @@ def bent_terms(
     machine: Machine,
     scales: Mapping[str, float],
 ) -> Iterator[Term]:
-    """Give the chords of terms at the coefficients they were fitted with, where these are no longer their slopes."""
+    """Give the chords of terms about the sizes they were fitted with, where these are no longer their slopes."""
     taken = list(known)
     for term, coefficient in fitted:
         candidate = candidates[term.candidate]
         if len(term.curves) != 1 or term.files != (-1,) or not may_bend(candidate):
             continue
-        size = min(max(coefficient, term.low[0]), term.high[0]) * term.per[0]
-        if size == 0 or any(_is_near(other, term, size) for other in taken):
-            continue
-        for new in chord(term.candidate, candidate, machine, scales, (size, term.shape)):
-            taken.append(new)
-            if _is_bent(new, term, scales):
-                yield new
+        for share in AROUND if coefficient else ():
+            size = min(max(share * coefficient, term.low[0]), term.high[0]) * term.per[0]
+            if size == 0 or any(_is_near(other, term, size) for other in taken):
+                continue
+            for new in chord(term.candidate, candidate, machine, scales, (size, term.shape), reach=REACH):
+                taken.append(new)
+                if _is_bent(new, term, scales):
+                    yield new
 
 
 def _is_near(other: Term, term: Term, size: float) -> bool:
@@ -112,8 +132,12 @@ def _is_near(other: Term, term: Term, size: float) -> bool:
 
 
 def _is_bent(new: Term, term: Term, scales: Mapping[str, float]) -> bool:
+    """Whether a chord is another curve than a term: in its direction, or by more than the noise at its size."""
     import numpy as np
 
     a, b = stacked(new.curves[0], scales), stacked(term.curves[0], scales)
     sizes = float(a @ a) * float(b @ b)
-    return bool(np.isfinite(sizes)) and sizes > 0 and 1 - float(a @ b) ** 2 / sizes > STRAIGHT
+    if not np.isfinite(sizes) or sizes <= 0:
+        return False
+    apart = 1 - float(a @ b) ** 2 / sizes
+    return apart > STRAIGHT or apart * float(a @ a) * new.at**2 > SEEN

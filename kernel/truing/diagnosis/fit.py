@@ -8,6 +8,7 @@ from math import exp, log, sqrt
 from typing import TYPE_CHECKING, Any
 
 from truing.diagnosis.candidates import Term, si_bounds
+from truing.diagnosis.chords import one_side
 from truing.diagnosis.columns import MANY, in_blocks
 from truing.diagnosis.contest import Contest
 from truing.diagnosis.hypotheses import Hypothesis, Piece
@@ -158,6 +159,8 @@ def _parameters(contest: Contest, hypothesis: Hypothesis) -> list[Parameter]:
             if piece.kind == "term":
                 term = contest.problem.terms[piece.place]
                 name, file = term.unknowns[place_in], term.files[place_in]
+                if term.at:  # a chord stands for sizes near its own; the exact model is not bound to them
+                    low, high = (end / per for end in one_side(contest.problem.candidates[piece.owner], term.at))
             found.append(Parameter(place, name, column, per, low, high, file))
         if piece.kind == "term":
             found += _shapes(contest, place, piece)

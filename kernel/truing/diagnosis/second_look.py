@@ -1,21 +1,25 @@
-"""A second look at rows that were taken for outliers: do they fit the named cause, with other shapes?
+"""A second look before the verdict, with the exact model and the readings as they are.
 
-Clipping keeps what fits badly from pulling. Where a few rows alone tell a shape (the peak of a resonance), rows that
-fit the first guess badly are clipped, so that the guess stays. An exact fit to the readings as they are shows whether
-the noise is then smaller and more normal; if so the noise is learnt anew from it.
+The search is linear and robust. Where a few rows alone tell a shape (the peak of a resonance), rows that fit the first
+guess badly are clipped as outliers, so that the guess stays; and what chords leave of a cause that bends strongly looks
+like something unregistered. An exact fit shows whether the noise is then smaller and more normal; if so, the noise is
+learnt anew from it, and the contest is held once more.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
+from math import log
 from typing import TYPE_CHECKING
 
+from truing.diagnosis.chords import may_bend
 from truing.diagnosis.contest import Contest, contest
 from truing.diagnosis.fit import Fit, Fitter, fit, white_residual
 from truing.diagnosis.grids import is_smooth
-from truing.diagnosis.hypotheses import Hypothesis
+from truing.diagnosis.hypotheses import Hypothesis, Piece
 from truing.diagnosis.noise import likelihood_of
-from truing.diagnosis.problem import Problem, at_shapes
+from truing.diagnosis.problem import Problem, at_shapes, bent
 from truing.diagnosis.search import learned, residuals_of
 
 if TYPE_CHECKING:
@@ -23,51 +27,84 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MOST_ROWS = 20_000
+MOST_TRIED = 3
 BETTER = 4.0
-"""Log-likelihood by which the fit to the readings as they are must be better."""
+"""Log-likelihood, its parameters paid for, by which the exact fit must be better."""
 
 
 def second_look(full: Contest, place: int, best: Fit, rows: NDArray[np.bool_]) -> Contest | None:
-    """Return the contest with the noise learnt anew where rows were clipped that fit; None where none were."""
-    problem, hypothesis = full.problem, best.hypothesis
+    """Return the contest with the noise learnt anew from an exact fit that is better; None where there is none."""
+    if full.evidence.rows > MOST_ROWS:
+        return None
+    plain = replace(full, noise=replace(full.noise, residuals=residuals_of(full.problem.machine)))
+    tried = [(other, fit(plain, other)) for other in _worth_it(full, place)]
+    if not tried:
+        return None
+    better = max(tried, key=lambda each: _worth(plain, each[1]))
+    if _worth(plain, better[1]) < _worth(plain, best) + BETTER:
+        return None
+    return _held_again(plain, full, better, rows)
+
+
+def _worth_it(full: Contest, winner: int) -> Iterator[int]:
+    """Give the winner if rows were clipped that may tell its shape; the best causes that bend if it holds a shape."""
+    problem, found = full.problem, full.found
     is_clipped = any(tail.clipped > 0 for tail in full.noise.tails.values())
-    if not is_clipped or not _has_smooth_shapes(problem, hypothesis) or full.evidence.rows > MOST_ROWS:
-        return None
-    raw = residuals_of(problem.machine)
-    plain = replace(full, noise=replace(full.noise, residuals=raw))
-    again = fit(plain, place)
-    if _likelihood(plain, again) < _likelihood(plain, best) + BETTER:
-        return None
-    machine = problem.machine
-    fitted = tuple(
-        (again.predicted[channel.name] - machine.base[channel.name] - machine.shifts[channel.name])[channel.rows]
-        / channel.scale
-        for channel in full.evidence.channels
-    )
-    solution = replace(full.solution(place), fitted=fitted)
-    noise = learned(problem, full.evidence, solution, raw, full.noise)
-    return contest(at_shapes(problem, hypothesis.pieces, _shapes(again)), noise, rows, rounds=1)
+    if is_clipped and _owns(problem, found.hypotheses[winner], "shapes"):
+        yield winner
+    if found.hypotheses[winner].kind in {"shape", "mixed"}:
+        alone = [place for place in found.ranked() if found.hypotheses[place].kind == "one"]
+        bending = [place for place in alone if _owns(problem, found.hypotheses[place], "chords")]
+        yield from bending[:MOST_TRIED]
 
 
-def _has_smooth_shapes(problem: Problem, hypothesis: Hypothesis) -> bool:
+def _owns(problem: Problem, hypothesis: Hypothesis, what: str) -> bool:
     owners = [problem.candidates[piece.owner] for piece in hypothesis.pieces if piece.kind == "term"]
+    if what == "chords":
+        return any(may_bend(owner) for owner in owners)
     return any(is_smooth(shape) for owner in owners for shape in owner.shapes)
 
 
-def _likelihood(plain: Contest, found: Fit) -> float:
-    """Return the log-likelihood of the readings as they are at the parameters of a fit."""
+def _worth(plain: Contest, found: Fit) -> float:
+    """Return the log-likelihood of the readings as they are at the parameters of a fit, these paid for."""
     import numpy as np
 
     fitter = Fitter(plain, found.hypothesis)
     left = white_residual(plain, fitter, found.setting, found.values, found.directions)
     ends = np.cumsum([len(channel) for channel in plain.evidence.channels])[:-1]
-    return sum(likelihood_of(part) for part in np.split(left, ends))
+    price = 0.5 * found.hypothesis.size * log(plain.evidence.rows)
+    return sum(likelihood_of(part) for part in np.split(left, ends)) - price
+
+
+def _held_again(plain: Contest, full: Contest, better: tuple[int, Fit], rows: NDArray[np.bool_]) -> Contest:
+    """Hold the contest again with what an exact fit says of the noise, and with its sizes and shapes on the grid."""
+    place, found = better
+    problem, machine = full.problem, full.problem.machine
+    fitted = tuple(
+        (found.predicted[channel.name] - machine.base[channel.name] - machine.shifts[channel.name])[channel.rows]
+        / channel.scale
+        for channel in full.evidence.channels
+    )
+    solution = replace(full.solution(place), fitted=fitted)
+    noise = learned(problem, full.evidence, solution, plain.noise.residuals, full.noise)
+    problem = at_shapes(problem, found.hypothesis.pieces, _shapes(found))
+    return contest(bent(problem, _sizes(found)), noise, rows, rounds=1)
 
 
 def _shapes(found: Fit) -> dict[int, dict[str, float]]:
-    """Return the fitted shapes by the place of their piece."""
+    """Return the fitted shapes by the place of their piece, SI."""
     made: dict[int, dict[str, float]] = {}
     for number, item in enumerate(found.parameters):
         if item.is_shape:
             made.setdefault(item.piece, {})[item.name] = found.si_value(number)
     return made
+
+
+def _sizes(found: Fit) -> list[tuple[Piece, float]]:
+    """Return the pieces of one column with their coefficients."""
+    pieces = found.hypothesis.pieces
+    return [
+        (pieces[item.piece], float(value))
+        for item, value in zip(found.parameters, found.values, strict=True)
+        if not item.is_shape and len(pieces[item.piece].columns) == 1
+    ]

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.candidates import Candidate, Curve, Term, si_bounds, stacked, variants_of
-from truing.diagnosis.chords import chord, has_chords, may_bend
+from truing.diagnosis.chords import REACH, chord, has_chords, may_bend
 from truing.diagnosis.machine import Machine, directions_of, gram_of
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ class Parting:
             slope = stacked(term.curves[0], self.scales)
             size = float(slope @ wanted) / float(slope @ slope)
             if size and low <= size <= high and term.low[0] <= size / term.per[0] <= term.high[0]:
-                return next(iter(chord(place, candidate, self.machine, self.scales, (size, {}))), None)
+                return next(iter(chord(place, candidate, self.machine, self.scales, (size, {}), reach=REACH)), None)
         return None
 
     def _differs(self, curve: Curve, other: Term) -> bool:
