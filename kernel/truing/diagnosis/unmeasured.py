@@ -26,6 +26,7 @@ from truing.diagnosis.records import Records
 from truing.diagnosis.result import NextPoint
 from truing.diagnosis.rival_twins import TwinTerm, is_physical, twins_of
 from truing.setup import SwitchedOn
+from truing.units.names import PURE
 
 if TYPE_CHECKING:
     import numpy as np
@@ -123,8 +124,8 @@ def with_results(full: Contest, best: Fit, rivals: Sequence[int], points: Sequen
 def result_to_measure(machine: Machine, explanations: Sequence[Explanation]) -> NextPoint | None:
     """Return the result that separates most explanations from the first one, None where none separates any two.
 
-    Of several the one comes first that a goal of the model names, then the one that separates most pairs, then the one
-    in which the hardest pair is clearest.
+    A result with a unit or a goal comes before a pure number, for which there is no gauge; then the one that parts most
+    explanations from the first, the one that a goal names, the one that separates most pairs, the clearest.
     """
     start = machine.start
     names = [] if machine.records.rows.series or len(explanations) < 2 else _unmeasured(machine)
@@ -142,9 +143,16 @@ def result_to_measure(machine: Machine, explanations: Sequence[Explanation]) -> 
         if gaps:
             faintest = min(gaps, key=lambda gap: gap.clearness)
             parted = sum(explanations[0].name in gap.names for gap in gaps)
-            rank = (parted, name in _goals(start.model), len(gaps), float(f"{faintest.clearness:.2g}"), -place)
-            best = max(best, (*rank, faintest), key=lambda item: item[:5] if item else ())
-    return _point(start, best[5]) if best else None
+            is_goal = name in _goals(start.model)
+            clearness = float(f"{faintest.clearness:.2g}")
+            rank = (is_goal or _has_unit(start.model, name), parted, is_goal, len(gaps), clearness, -place)
+            best = max(best, (*rank, faintest), key=lambda item: item[:6] if item else ())
+    return _point(start, best[6]) if best else None
+
+
+def _has_unit(model: Any, name: str) -> bool:
+    """Whether a result is more than a pure number: there is no gauge for a factor."""
+    return model.own_result_fields[name].unit not in PURE
 
 
 def _unmeasured(machine: Machine) -> list[str]:
