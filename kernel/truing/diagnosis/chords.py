@@ -33,6 +33,8 @@ AROUND = (1.0, 2.0, 4.0, 0.5)
 """Of the size that a fit has led to: one that bends is larger, or smaller, than its slope or another chord says."""
 SEEN = 1.0
 """Squared, in units of the noise: what a chord leaves of another curve that is as large, from which both are kept."""
+HALVINGS = 10
+"""How often the bound of an effect is halved for the smallest size at which it is tried by chords."""
 REACH = 3.0
 """A chord stands for sizes up to so many times its own: farther off the curve is another one."""
 ALIKE = 0.05
@@ -62,6 +64,17 @@ def late_terms(place: int, candidate: Candidate, machine: Machine, scales: Mappi
             if not term:
                 break
             found += term
+    return found
+
+
+def far_terms(place: int, candidate: Candidate, machine: Machine, scales: Mapping[str, float]) -> list[Term]:
+    """Return chords of an effect on inputs that may bend, at sizes from its bounds down, each half of the last."""
+    if not may_bend(candidate) or candidate.shapes or stands_still(candidate, machine):
+        return []
+    found: list[Term] = []
+    for bound in si_bounds(candidate.amplitudes[0]):
+        for halving in range(HALVINGS) if bound else ():
+            found += chord(place, candidate, machine, scales, (bound / 2**halving, {}), reach=REACH)
     return found
 
 

@@ -8,7 +8,7 @@ from functools import cached_property
 from math import inf
 
 from truing.diagnosis.candidates import Candidate, Term, candidates_of, variants_of
-from truing.diagnosis.chords import are_faint, bent_terms, late_terms
+from truing.diagnosis.chords import are_faint, bent_terms, far_terms, late_terms
 from truing.diagnosis.columns import Column, Design, Values, acting
 from truing.diagnosis.grids import terms_of
 from truing.diagnosis.hypotheses import Piece, unbounded
@@ -309,6 +309,21 @@ def at_shapes(problem: Problem, pieces: Sequence[Piece], shapes: Mapping[int, Ma
         shape = {**problem.terms[piece.place].shape, **values}
         new += variants_of(piece.owner, problem.candidates[piece.owner], problem.machine, shape, problem.scales)
     return _with_terms(problem, new)
+
+
+def with_chords(problem: Problem) -> Problem:
+    """Return the problem with chords of every cause that may bend, from the smallest sizes to its bounds."""
+    new: list[Term] = []
+    for place, candidate in enumerate(problem.candidates):
+        new += far_terms(place, candidate, problem.machine, problem.scales)
+    return _with_terms(problem, new)
+
+
+def of_their_own(problem: Problem, pieces: Sequence[Piece]) -> Problem:
+    """Return the problem with the causes of some pieces as twins of no other: their curves have parted."""
+    owners = {piece.owner for piece in pieces if piece.kind == "term"}
+    left = {place: tuple(twin for twin in twins if twin.place not in owners) for place, twins in problem.twins.items()}
+    return replace(problem, twins={**dict.fromkeys(owners, ()), **left})
 
 
 def _with_terms(problem: Problem, new: Sequence[Term]) -> Problem:

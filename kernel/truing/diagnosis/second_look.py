@@ -19,8 +19,8 @@ from truing.diagnosis.fit import Fit, Fitter, fit, white_residual
 from truing.diagnosis.grids import is_smooth
 from truing.diagnosis.hypotheses import Hypothesis, Piece
 from truing.diagnosis.noise import likelihood_of
-from truing.diagnosis.problem import Problem, at_shapes, bent
-from truing.diagnosis.search import learned, residuals_of
+from truing.diagnosis.problem import Problem, at_shapes, bent, of_their_own, with_chords
+from truing.diagnosis.search import NoiseModel, learned, residuals_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -37,25 +37,26 @@ def second_look(full: Contest, place: int, best: Fit, rows: NDArray[np.bool_]) -
     if full.evidence.rows > MOST_ROWS:
         return None
     plain = replace(full, noise=replace(full.noise, residuals=residuals_of(full.problem.machine)))
-    tried = [(other, fit(plain, other)) for other in _worth_it(full, place)]
+    tried = [(each, other, fit(each, other)) for each, other in _worth_it(full, plain, place, rows)]
     if not tried:
         return None
-    better = max(tried, key=lambda each: _worth(plain, each[1]))
-    if _worth(plain, better[1]) < _worth(plain, best) + BETTER:
+    better = max(tried, key=lambda each: _worth(each[0], each[2]))
+    if _worth(better[0], better[2]) < _worth(plain, best) + BETTER:
         return None
-    return _held_again(plain, full, better, rows)
+    return _held_again(better, full.noise, rows)
 
 
-def _worth_it(full: Contest, winner: int) -> Iterator[int]:
+def _worth_it(full: Contest, plain: Contest, winner: int, rows: NDArray[np.bool_]) -> Iterator[tuple[Contest, int]]:
     """Give the winner if rows were clipped that may tell its shape; the best causes that bend if it holds a shape."""
-    problem, found = full.problem, full.found
+    chosen = full.found.hypotheses[winner]
     is_clipped = any(tail.clipped > 0 for tail in full.noise.tails.values())
-    if is_clipped and _owns(problem, found.hypotheses[winner], "shapes"):
-        yield winner
-    if found.hypotheses[winner].kind in {"shape", "mixed"}:
-        alone = [place for place in found.ranked() if found.hypotheses[place].kind == "one"]
-        bending = [place for place in alone if _owns(problem, found.hypotheses[place], "chords")]
-        yield from bending[:MOST_TRIED]
+    if is_clipped and _owns(full.problem, chosen, "shapes"):
+        yield plain, winner
+    if chosen.kind in {"shape", "mixed"}:
+        wider = contest(with_chords(full.problem), plain.noise, rows, rounds=1, settings=full.settings)
+        ranked = [place for place in wider.found.ranked() if wider.found.hypotheses[place].kind == "one"]
+        bending = [place for place in ranked if _owns(wider.problem, wider.found.hypotheses[place], "chords")]
+        yield from ((wider, place) for place in bending[:MOST_TRIED])
 
 
 def _owns(problem: Problem, hypothesis: Hypothesis, what: str) -> bool:
@@ -76,19 +77,19 @@ def _worth(plain: Contest, found: Fit) -> float:
     return sum(likelihood_of(part) for part in np.split(left, ends)) - price
 
 
-def _held_again(plain: Contest, full: Contest, better: tuple[int, Fit], rows: NDArray[np.bool_]) -> Contest:
+def _held_again(better: tuple[Contest, int, Fit], before: NoiseModel, rows: NDArray[np.bool_]) -> Contest:
     """Hold the contest again with what an exact fit says of the noise, and with its sizes and shapes on the grid."""
-    place, found = better
-    problem, machine = full.problem, full.problem.machine
+    plain, place, found = better
+    machine, evidence = plain.problem.machine, plain.evidence
     fitted = tuple(
         (found.predicted[channel.name] - machine.base[channel.name] - machine.shifts[channel.name])[channel.rows]
         / channel.scale
-        for channel in full.evidence.channels
+        for channel in evidence.channels
     )
-    solution = replace(full.solution(place), fitted=fitted)
-    noise = learned(problem, full.evidence, solution, plain.noise.residuals, full.noise)
-    problem = at_shapes(problem, found.hypothesis.pieces, _shapes(found))
-    return contest(bent(problem, _sizes(found)), noise, rows, rounds=1)
+    solution = replace(plain.solution(place), fitted=fitted)
+    noise = learned(plain.problem, evidence, solution, plain.noise.residuals, before)
+    problem = at_shapes(plain.problem, found.hypothesis.pieces, _shapes(found))
+    return contest(bent(of_their_own(problem, found.hypothesis.pieces), _sizes(found)), noise, rows, rounds=1)
 
 
 def _shapes(found: Fit) -> dict[int, dict[str, float]]:
