@@ -40,6 +40,15 @@ def hearing_interrupts(command: list[str]) -> list[str]:
     return [sys.executable, "-c", hear, *command]
 
 
+def wait_until_begun(process: subprocess.Popen[str]) -> None:
+    """Wait until the command itself has taken the place of what makes it hear; a busy machine takes its time."""
+    told = Path(f"/proc/{process.pid}/cmdline")
+    for _ in range(600):
+        if not told.exists() or b"-m\0truing" in told.read_bytes().split(b"execv", 1)[0]:
+            return
+        time.sleep(0.05)
+
+
 def interrupted(folder: Path, *more: str, after: float) -> tuple[subprocess.CompletedProcess[str], list[int]]:
     """Start a run that would take hours, interrupt it as a terminal does, and return its end and its children."""
     (folder / "press.toml").write_text(INPUTS)
@@ -53,6 +62,7 @@ def interrupted(folder: Path, *more: str, after: float) -> tuple[subprocess.Comp
         start_new_session=True,
     )
     try:
+        wait_until_begun(process)
         time.sleep(after)
         assert process.poll() is None, process.communicate()
         children = children_of(process.pid) if Path("/proc/self/task").exists() else []
