@@ -1,99 +1,16 @@
-"""A reducer's record as files, and what Truing says to it. Everything that calls the diagnosis stands here."""
+"""A reducer's record as files, and what Truing says to it."""
 
-from __future__ import annotations
-
-import json
-from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
-
+from hidden_effects.plugin_asking import Answer, Rig
 from hidden_effects.rv_cases import UNIT, Case
-from hidden_effects.rv_machine import Array, Rows
 
-if TYPE_CHECKING:
-    from truing.diagnosis.result import Diagnosis
-    from truing.kernel import Offer
-    from truing.setup import Setup
-
-INPUTS = 'plugin = "rv_wear"\n'
 WRITTEN = {
     "time": "h", "working_time": "h", "output_torque": "N*m", "output_speed": "r/min", "housing_temperature": "degC",
     "disc_temperature": "degC", "oil_temperature": "degC", "output_angle": "deg", "measuring_torque": "N*m",
     "direction": "1",
 }  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Answer:
-    """What was said to a case: the document, what the extended model predicts for rows held out, and the time taken."""
-
-    document: dict[str, Any]
-    predicted: dict[str, Array]
-    seconds: float
-
-
-def table(rows: Rows, readings: Mapping[str, Array]) -> str:
-    """The rows as CSV with units in the header, every digit kept."""
-    columns = {f"{name} [{unit}]": getattr(rows, name) for name, unit in WRITTEN.items()}
-    columns |= {f"{name} [{UNIT[name]}]": values for name, values in readings.items()}
-    lines = [",".join(columns)]
-    lines += [",".join(repr(float(cell)) for cell in row) for row in zip(*columns.values(), strict=True)]
-    return "\n".join(lines) + "\n"
-
-
-@cache
-def rv_offer() -> Offer:
-    """The reducer as installed."""
-    from truing.kernel import Kernel
-
-    return Kernel.installed().offer("rv_wear")
+REDUCER = Rig(plugin="rv_wear", inputs='plugin = "rv_wear"\n', written=WRITTEN, measured=UNIT)
 
 
 def diagnosed(case: Case) -> Answer:
     """Ask for a diagnosis of the record and predict the rows that were held out."""
-    from time import perf_counter
-
-    from truing.diagnosis.engine import diagnose
-    from truing.diagnosis.reading import read_records
-    from truing.inputs_file import read_setup
-    from truing.runs.diagnosis_document import diagnosis_document
-
-    offer = rv_offer()
-    with TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "inputs.toml").write_text(INPUTS, encoding="utf-8")
-        (folder / "measured.csv").write_text(table(case.rows, case.readings), encoding="utf-8")
-        (folder / "held_out.csv").write_text(table(case.held, case.held_readings), encoding="utf-8")
-        setup = read_setup(folder / "inputs.toml", offer)
-        start = perf_counter()
-        diagnosis = diagnose(setup, read_records([folder / "measured.csv"], offer, setup))
-        seconds = perf_counter() - start
-        document = json.loads(json.dumps(diagnosis_document(diagnosis)))
-        return Answer(document, _predicted(case, diagnosis, setup, folder / "held_out.csv"), seconds)
-
-
-def _predicted(case: Case, diagnosis: Diagnosis, setup: Setup, file: Path) -> dict[str, Array]:
-    """Predict the rows held out, in the units of the file; the clock counts from the first row of the record."""
-    from dataclasses import replace
-
-    from truing.diagnosis.reading import read_records
-    from truing.gauge import one_machine, read_by_gauge
-    from truing.units import from_si
-
-    calibrated = {item.name: item.value for item in diagnosis.calibrated}
-    machine = diagnosis.extended or replace(setup, calibrated={**setup.calibrated, **calibrated})
-    records = read_records([file], rv_offer(), setup)
-    shown = read_by_gauge(one_machine(machine), records.rows, case.wish.results).results
-    known: dict[str, Any] = {name: one.values for name, one in records.covariates.items()}
-    found = {}
-    for result in case.wish.results:
-        values = shown[result]
-        for term in diagnosis.remainder.terms.get(result, ()) if diagnosis.remainder else ():
-            values = values + term.coefficient * np.asarray(eval(term.expression, {"np": np}, known))
-        found[result] = np.asarray(from_si(values, UNIT[result]))
-    return found
+    return REDUCER.diagnosed(case)

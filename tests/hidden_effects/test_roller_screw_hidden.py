@@ -10,7 +10,7 @@ from math import acos, cos, radians, tan
 import numpy as np
 import pytest
 
-from hidden_effects.rv_asking import Answer
+from hidden_effects.plugin_asking import Answer
 from hidden_effects.screw_asking import diagnosed
 from hidden_effects.screw_cases import (
     AXIAL,

@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from hidden_effects.gearing_asking import Answer, diagnosed
+from hidden_effects.gearing_asking import diagnosed
 from hidden_effects.gearing_cases import (
     CONTACT,
     ERROR,
@@ -29,6 +29,7 @@ from hidden_effects.gearing_cases import (
 )
 from hidden_effects.gearing_machine import Rows, shown
 from hidden_effects.gearing_stage import Array, Stage
+from hidden_effects.plugin_asking import Answer
 
 STRESS = (SUN_ROOT, CONTACT)
 

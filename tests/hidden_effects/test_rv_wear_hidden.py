@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hidden_effects.rv_asking import Answer, diagnosed
+from hidden_effects.plugin_asking import Answer
+from hidden_effects.rv_asking import diagnosed
 from hidden_effects.rv_cases import BACKLASH, WEAR, Case, Wish, make_case, measured
 from hidden_effects.rv_machine import RATED, ROUGHNESS, Array, Rows, Wearing, shown, wear_after
 

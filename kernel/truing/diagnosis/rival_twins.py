@@ -54,8 +54,11 @@ def twins_of(full: Contest, hypothesis: Hypothesis, coefficients: Sequence[float
                 if candidate.name == name:
                     curve = parting.as_large(problem.terms[piece.place], own[0])
                     strong = None if curve is None else parting.as_strong(place, curve)
-                    every = terms_of(place, candidate, problem.machine, full.noise.scales)
-                    terms = every if strong is None else [strong]
+                    terms = (
+                        [strong]
+                        if strong is not None
+                        else terms_of(place, candidate, problem.machine, full.noise.scales)
+                    )
                     found += [TwinTerm(name, number, candidate, term) for term in terms[:1] if len(terms) == 1]
     return found
 

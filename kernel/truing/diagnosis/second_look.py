@@ -38,12 +38,10 @@ def second_look(full: Contest, place: int, best: Fit, rows: NDArray[np.bool_]) -
         return None
     plain = replace(full, noise=replace(full.noise, residuals=residuals_of(full.problem.machine)))
     tried = [(each, other, fit(each, other)) for each, other in _worth_it(full, plain, place, rows)]
-    if not tried:
+    worth = [_worth(each, found) for each, _, found in tried]
+    if not tried or max(worth) < _worth(plain, best) + BETTER:
         return None
-    better = max(tried, key=lambda each: _worth(each[0], each[2]))
-    if _worth(better[0], better[2]) < _worth(plain, best) + BETTER:
-        return None
-    return _held_again(better, full.noise, rows)
+    return _held_again(tried[worth.index(max(worth))], full.noise, rows)
 
 
 def _worth_it(full: Contest, plain: Contest, winner: int, rows: NDArray[np.bool_]) -> Iterator[tuple[Contest, int]]:
