@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from truing.studies.sensitivity import Sensitivities, Sensitivity
     from truing.studies.surrogate import Emulated, Surrogate
     from truing.studies.sweep import Sweep, Swept
+    from truing.units import quantity
 
 _HOMES = {
     "truing.declare.batch": ("column", "either", "feasible"),
@@ -45,11 +46,12 @@ _HOMES = {
     "truing.studies.sensitivity": ("Sensitivities", "Sensitivity"),
     "truing.studies.surrogate": ("Emulated", "Surrogate"),
     "truing.studies.sweep": ("Sweep", "Swept"),
+    "truing.units": ("quantity",),
 }  # fmt: skip
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [  # noqa: RUF022  # in the order of a plugin's story
-    "inputs", "results", "given", "found", "axis", "rows", "part", "loaded", "Float",
+    "inputs", "results", "given", "found", "axis", "rows", "part", "loaded", "quantity", "Float",
     "feasible", "either", "column",
     "Tolerance", "Effect", "Unknown", "Condition", "ErrorSource",
     "normal", "plus_minus", "uniform", "lognormal", "grade", "zone", "drawn", "by_choice", "off",

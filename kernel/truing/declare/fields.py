@@ -33,14 +33,16 @@ def given(
     at_most: float | None = None,
     whole: bool = False,
     along: str = "",
+    stated_with: str = "",
 ) -> Any:
     """Declare an input with its default and unit; ``None`` makes it optional (NaN inside).
 
     Bounds are in ``unit``. ``whole`` asks for whole numbers. ``along`` names the axis of an input that is a series.
+    ``stated_with`` names the input that tells what this one means: a file that states one must state the other too.
     """
     spec = Given(
         default=default, unit=unit, symbol=symbol, note=note, source=source, above=above, below=below,
-        at_least=at_least, at_most=at_most, whole=whole, along=along,
+        at_least=at_least, at_most=at_most, whole=whole, along=along, stated_with=stated_with,
     )  # fmt: skip
     return field(default_factory=spec.initial, metadata={KEY: spec})
 
@@ -78,9 +80,13 @@ def found(
     return field(metadata={KEY: spec})
 
 
-def axis(unit: str, *, symbol: str = "", note: str = "") -> Any:
-    """Declare the axis that other results run along, shape (k,)."""
-    return field(metadata={KEY: Axis(unit=unit, symbol=symbol, note=note)})
+def axis(unit: str, *, symbol: str = "", note: str = "", follows: str = "") -> Any:
+    """Declare the axis that other results run along, shape (k,).
+
+    ``follows`` names the input series that the axis repeats: measured rows then put their places into that series, and
+    a whole record is one calculation just there, with nothing read between points.
+    """
+    return field(metadata={KEY: Axis(unit=unit, symbol=symbol, note=note, follows=follows)})
 
 
 def rows(note: str = "", *, unit: str = "") -> Any:

@@ -35,6 +35,7 @@ class Given:
     at_most: float | None = None
     whole: bool = False
     along: str = ""
+    stated_with: str = ""
 
     def initial(self) -> Any:
         """Return the default as the function sees it: SI, NaN where nothing is given."""
@@ -71,12 +72,13 @@ class Found:
 
 @dataclass(frozen=True, kw_only=True)
 class Axis:
-    """A result that other results run along: shape (k,)."""
+    """A result that other results run along: shape (k,); ``follows`` names the input series that it repeats."""
 
     unit: str
     symbol: str = ""
     note: str = ""
     is_table: bool = False
+    follows: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

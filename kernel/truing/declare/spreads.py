@@ -6,8 +6,9 @@ A band of six standard deviations and a half-band of three are the 3-sigma rule 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, Protocol, overload
 
 from truing.declare.goals import Price, PriceByChoice
@@ -217,31 +218,42 @@ class ByChoice:
 
 
 def settled(spread: Spread, value_of: Callable[[str], Any]) -> Spread:
-    """Return a spread itself, or of one that follows a choice the branch that is chosen."""
+    """Return a spread itself; of one that follows a choice the branch that is chosen; a function with its inputs."""
     while isinstance(spread, ByChoice):
         spread = spread.chosen(str(value_of(spread.chooser)))
-    return spread
+    return spread.bound(value_of) if isinstance(spread, Drawn) else spread
 
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """Inputs that scatter together: ``function(rng, rows)`` returns their deviations from nominal by name."""
+    """Inputs that scatter together: ``function(rng, rows)`` returns their deviations from nominal by name.
 
-    function: Callable[[Any, int], Mapping[str, Any]]
+    ``of`` names inputs that the function is given as keywords. One that returns nothing does not scatter.
+    """
+
+    function: Callable[..., Mapping[str, Any]]
+    of: tuple[str, ...] = ()
 
     @property
     def text(self) -> str:
         """The spread as the sheet names it."""
-        return f"drawn by {self.function.__name__}"
+        function = self.function.func if isinstance(self.function, partial) else self.function
+        return f"drawn by {getattr(function, '__name__', 'a function')}"
 
-    def resolve(self, target: Target) -> Distribution:
+    def bound(self, value_of: Callable[[str], Any]) -> Drawn:
+        """Return the same draw with its inputs taken from ``value_of``."""
+        return Drawn(partial(self.function, **{name: value_of(name) for name in self.of})) if self.of else self
+
+    def resolve(self, target: Target) -> Distribution | None:
         """Return a normal stand-in with the standard deviation of fixed draws, and their mean where it is not chance.
 
-        A mean within four standard errors of the nominal is the nominal.
+        A mean within four standard errors of the nominal is the nominal. None where nothing scatters.
         """
         import numpy as np
 
-        drawn = self.function(np.random.default_rng(0), FIXED_DRAWS)
+        drawn = self.bound(target.value_of).function(np.random.default_rng(0), FIXED_DRAWS)
+        if not drawn:
+            return None
         if target.name not in drawn:
             raise DeclarationError(f"{self.function.__name__} draws {', '.join(drawn)}, but not '{target.name}'")
         deviations = np.asarray(drawn[target.name], dtype=float)
@@ -305,9 +317,13 @@ def by_choice(chooser: str, /, **branches: Any) -> ByChoice | PriceByChoice:
     return PriceByChoice(chooser, branches) if all(priced) else ByChoice(chooser, branches)
 
 
-def drawn(function: Callable[[Any, int], Mapping[str, Any]]) -> Drawn:
-    """Scatter together: ``function(rng, rows)`` returns deviations in SI, shape (rows,), by input name."""
-    return Drawn(function)
+def drawn(function: Callable[..., Mapping[str, Any]], *, of: Sequence[str] = ()) -> Drawn:
+    """Scatter together: ``function(rng, rows)`` returns deviations in SI, shape (rows,), by input name.
+
+    It is given the inputs named in ``of`` as keywords, such as a measured record that knows its own uncertainty, and
+    returns an empty mapping where nothing scatters.
+    """
+    return Drawn(function, tuple(of))
 
 
 def difference(text: str, unit: str) -> float:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Quantity", "check_unit", "demand_dimension", "difference_unit", "from_si", "human_dimension", "pint_quantity",
-    "read_quantity", "registry", "same_dimension", "split_quantity", "to_si", "unit_factor", "unit_latex", "unit_text",
+    "quantity", "read_quantity", "registry", "same_dimension", "split_quantity", "to_si", "unit_factor", "unit_latex", "unit_text",
 ]  # fmt: skip
 
 _DIMENSIONS = {
@@ -213,6 +213,14 @@ def _superscript(exponent: Fraction) -> str:
 def _decimal(exponent: Fraction) -> str:
     short = f"{float(exponent):.6g}"
     return short if Fraction(short) == exponent else f"({exponent})"
+
+
+def quantity(text: str, unit: str) -> float:
+    """Read a quantity as an inputs file does, for readers of data files: ``quantity("0.4 um", "m")`` is 4e-7.
+
+    Raises TruingError with one sentence where the text is no quantity of that dimension.
+    """
+    return read_quantity(text, unit)
 
 
 def _example(value: float, unit: str) -> str:

@@ -1,0 +1,68 @@
+"""Both flanks as one rough surface against a smooth one: dimension and roughness, from surfaces or as stated."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harmonic_fractal.flank import Flank
+from harmonic_fractal.power_law import constant, converted, structure_function
+from harmonic_fractal.quantities import Drive
+from truing import Float
+
+POINTS = 16  # lags, evenly in their logarithm, over which the sum of two power laws is fitted by one
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rough:
+    """A rough surface: dimension of the surface D, roughness G in m in the areal convention."""
+
+    dimension: Float
+    roughness: Float
+
+
+def flanks_of(drive: Drive) -> tuple[Rough, Rough | None]:
+    """Return both flanks, each from its surface where that is accepted, else as stated; None where one is smooth."""
+    first = _measured(drive.surface) or _stated(drive, drive.fractal_dimension, drive.fractal_roughness)
+    second = _measured(drive.mating_surface)
+    if second is None and not (np.isnan(drive.mating_dimension).any() or np.isnan(drive.mating_roughness).any()):
+        second = _stated(drive, drive.mating_dimension, drive.mating_roughness)
+    return first, second
+
+
+def interface_of(drive: Drive) -> Rough:
+    """Return one rough surface for both: independent flanks add their structure functions.
+
+    Two flanks are fitted by one power law over the range from ``sampling`` to ``longest_lag``; with equal dimensions
+    that is exact. The deviations of both inputs are added at the end.
+    """
+    first, second = flanks_of(drive)
+    both = first if second is None else _sum(first, second, drive)
+    return Rough(
+        dimension=both.dimension + drive.dimension_deviation,
+        roughness=both.roughness * np.exp(drive.roughness_deviation),
+    )
+
+
+def _measured(flank: Flank | None) -> Rough | None:
+    found = None if flank is None else flank.used
+    return None if found is None else Rough(dimension=found.dimension + 1.0, roughness=found.roughness)
+
+
+def _stated(drive: Drive, dimension: Float, roughness: Float) -> Rough:
+    areal = converted(roughness, dimension - 1.0, drive.density, source=drive.convention, target="areal")
+    return Rough(dimension=dimension, roughness=areal)
+
+
+def _sum(first: Rough, second: Rough, drive: Drive) -> Rough:
+    share = np.linspace(0.0, 1.0, POINTS)
+    low, high = np.log(np.asarray(drive.sampling)[..., None]), np.log(np.asarray(drive.longest_lag)[..., None])
+    lags = np.exp(low + (high - low) * share)
+    heights = sum(structure_function(lags, np.asarray(one.dimension)[..., None] - 1.0,
+                                     np.asarray(one.roughness)[..., None]) for one in (first, second))  # fmt: skip
+    x, y = np.log(lags), np.log(heights)
+    centred = x - x.mean(axis=-1, keepdims=True)
+    slope = (centred * y).sum(axis=-1) / np.square(centred).sum(axis=-1)
+    dimension = 2.0 - slope / 2.0
+    intercept = y.mean(axis=-1) - slope * x.mean(axis=-1)
+    logarithm = (intercept - np.log(constant(dimension, drive.density, "areal"))) / (2.0 * (dimension - 1.0))
+    return Rough(dimension=dimension + 1.0, roughness=np.exp(logarithm))

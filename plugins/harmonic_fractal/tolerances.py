@@ -1,0 +1,5 @@
+"""What scatters."""
+
+from truing import Tolerance
+
+TOLERANCES: list[Tolerance] = []
