@@ -14,7 +14,8 @@ def spectral_constant(dimension: Float) -> Float:
     """Return Lambda of a profile dimension D_s (1 to 2), finite there: pi/2 at 1.5."""
     exponent = 4.0 - 2.0 * np.asarray(dimension)
     # Gamma(1 - a) cos(pi a/2)/a by the reflection formula: pi / (2 sin(pi a/2) Gamma(1 + a)), without 0 times infinity
-    return np.pi / (2.0 * np.sin(np.pi * exponent / 2.0) * gamma(1.0 + exponent))
+    value: Float = np.pi / (2.0 * np.sin(np.pi * exponent / 2.0) * gamma(1.0 + exponent))
+    return value
 
 
 def constant(dimension: Float, density: Float, convention: Convention) -> Float:
@@ -25,7 +26,8 @@ def constant(dimension: Float, density: Float, convention: Convention) -> Float:
         return one_direction / np.log(density)
     if convention == "one_direction":
         return one_direction
-    return one_direction * gamma((1.0 + exponent) / 2.0) / (np.sqrt(np.pi) * gamma(1.0 + exponent / 2.0))
+    mean_of_directions: Float = gamma((1.0 + exponent) / 2.0) / (np.sqrt(np.pi) * gamma(1.0 + exponent / 2.0))
+    return one_direction * mean_of_directions
 
 
 def converted(roughness: Float, dimension: Float, density: Float, *, source: Convention, target: Convention) -> Float:

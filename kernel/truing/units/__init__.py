@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Quantity", "check_unit", "demand_dimension", "difference_unit", "from_si", "human_dimension", "pint_quantity",
-    "quantity", "read_quantity", "registry", "same_dimension", "split_quantity", "to_si", "unit_factor", "unit_latex", "unit_text",
+    "quantity", "read_quantity", "registry", "same_dimension", "split_quantity", "to_si", "unit_factor", "unit_latex",
+    "unit_text",
 ]  # fmt: skip
 
 _DIMENSIONS = {
