@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from truing.declare.fields import Axis
 from truing.errors import UsageError
 from truing.evaluate import Rows, effect_column, evaluate_rows
 from truing.setup import Setup
@@ -53,16 +54,31 @@ def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None
     """Evaluate every row: its columns replace inputs and conditions, readings act; one value (n,) per result, SI.
 
     A result along an axis is read at the row's place on it (linear between points, NaN beyond its ends); without such a
-    column it is left out. Where inputs run along an axis, the rows of one run are one record and one evaluation; else
-    all rows are. Only ``wanted`` results are returned (all by default). Conditions that no effect needs are not looked
-    at. ``machine`` is taken as it is: see ``one_machine``.
+    column it is left out. An axis that follows an input series is calculated just at the places of the rows. Where
+    inputs run along an axis, the rows of one run are one record and one evaluation; else all rows are. Only ``wanted``
+    results are returned (all by default). Conditions that no effect needs are not looked at. ``machine`` is taken as it
+    is: see ``one_machine``.
     """
     seen = {need.name for item in machine.effects for need in item.effect.needs}
     seen |= {effect_column(item.effect.name, one.name) for item in machine.effects for one in item.effect.unknowns}
     fields = machine.model.input_fields
     columns = {name: values for name, values in rows.columns.items() if name in fields or name in seen}
     names = [name for name in _readable(machine, rows) if wanted is None or name in wanted]
+    machine = _at_places(machine, rows)
     return (_by_records if rows.series else _row_by_row)(machine, rows, columns, names)
+
+
+def _at_places(machine: Setup, rows: RowsFile) -> Setup:
+    """Put the places of the rows into the input series that an axis follows, unless a column holds that series."""
+    import numpy as np
+
+    changes: dict[str, Any] = {}
+    for name, item in machine.model.own_result_fields.items():
+        series = item.spec.follows if isinstance(item.spec, Axis) else ""
+        if series and series not in rows.series and name in rows.axes:
+            places = np.unique(rows.axes[name][np.isfinite(rows.axes[name])])
+            changes |= {series: places} if len(places) else {}
+    return machine.changed(changes) if changes else machine
 
 
 def without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int, str]:
@@ -166,17 +182,25 @@ def _placed(name: str, found: Rows, machine: Setup, rows: RowsFile, places: Sequ
         return values
     wanted = rows.axes[along][list(places)]
     shape = (len(wanted), values.shape[1])
-    curves = zip(wanted, np.broadcast_to(found.results[along], shape), np.broadcast_to(values, shape), strict=True)
-    return np.array([_read_at(place, axis, curve) for place, axis, curve in curves])
+    return _read_at(wanted, np.broadcast_to(found.results[along], shape), np.broadcast_to(values, shape))
 
 
-def _read_at(place: float, axis: NDArray[np.float64], curve: NDArray[np.float64]) -> float:
-    """Read a curve at one place of its axis; the ends may be missed by rounding."""
+def _read_at(
+    places: NDArray[np.float64], axes: NDArray[np.float64], curves: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Read each curve (n, k) at one place (n,) of its axis (n, k); the ends may be missed by rounding."""
     import numpy as np
 
-    order = np.argsort(axis)
-    low, high = axis[order[0]], axis[order[-1]]
-    rounding = 1e-9 * max(abs(low), abs(high))
-    if not low - rounding <= place <= high + rounding:
-        return float("nan")
-    return float(np.interp(place, axis[order], curve[order]))
+    order = np.argsort(axes, axis=1, kind="stable")
+    axes, curves = np.take_along_axis(axes, order, axis=1), np.take_along_axis(curves, order, axis=1)
+    low, high = axes[:, 0], axes[:, -1]
+    rounding = 1e-9 * np.maximum(np.abs(low), np.abs(high))
+    is_on = (low - rounding <= places) & (places <= high + rounding)  # false for NaN
+    places = np.clip(np.where(is_on, places, low), low, high)
+    after = np.clip(np.sum(axes < places[:, None], axis=1), min(1, axes.shape[1] - 1), axes.shape[1] - 1)
+    rows, before = np.arange(len(places)), np.maximum(after - 1, 0)
+    span = axes[rows, after] - axes[rows, before]
+    share = np.where(span > 0, (places - axes[rows, before]) / np.where(span > 0, span, 1.0), 1.0)
+    read = curves[rows, before] * (1.0 - share) + curves[rows, after] * share
+    exact = np.where(share >= 1.0, curves[rows, after], np.where(share <= 0.0, curves[rows, before], read))
+    return np.where(is_on, exact, np.nan)

@@ -6,7 +6,8 @@ import json
 import math
 import os
 import sys
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from truing.calculation import Calculation, calculate
-from truing.errors import OutputError, UnknownPluginError
+from truing.errors import OutputError, PluginError, UnknownPluginError
 from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Kernel, Offer
 from truing.runs import folder as run_folder
@@ -102,6 +103,43 @@ def test_equal_runs_are_equal_files(tmp_path: Path, calculation: Calculation, of
 def test_packed_arrays_do_not_know_the_time() -> None:
     arrays = {"b": np.arange(3), "a": np.ones((2, 2))}
     assert npz_bytes(arrays) == npz_bytes(dict(reversed(arrays.items())))
+
+
+@dataclass(frozen=True)
+class Left:
+    """An outcome that leaves files."""
+
+    files: Mapping[str, Any]
+
+    def as_json(self) -> Mapping[str, Any]:
+        return {}
+
+
+def test_a_study_leaves_files_beside_the_sheet(tmp_path: Path, calculation: Calculation, offer: Offer) -> None:
+    left = replace(calculation, outcomes={"made": Left({"flank.csv": "1,2\n", "map.bin": b"\x00"})})
+    write(tmp_path / "one", left, offer)
+    assert (tmp_path / "one" / "flank.csv").read_text() == "1,2\n"
+    assert (tmp_path / "one" / "map.bin").read_bytes() == b"\x00"
+
+
+@pytest.mark.parametrize(
+    ("files", "sentence"),
+    [
+        ({"../flank.csv": ""}, "plain file name"),
+        ({"": ""}, "plain file name"),
+        ({"flank.": ""}, "plain file name"),
+        ({"RESULTS.json": ""}, "has already"),
+        ({"sheet.pdf": ""}, "has already"),
+        ({"a.csv": "", "A.csv": ""}, "has already"),
+        ({"flank.csv": 1.0}, "text or bytes"),
+    ],
+)
+def test_a_file_that_cannot_be_left_is_the_fault_of_the_study(
+    tmp_path: Path, calculation: Calculation, offer: Offer, files: Mapping[str, Any], sentence: str
+) -> None:
+    with pytest.raises(PluginError, match=f"study 'made' .*{sentence}"):
+        write(tmp_path / "one", replace(calculation, outcomes={"made": Left(files)}), offer)
+    assert leftovers(tmp_path) == []
 
 
 def test_results_hold_no_token_that_is_no_json(calculation: Calculation, offer: Offer) -> None:

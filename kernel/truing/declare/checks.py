@@ -13,7 +13,7 @@ from truing.declare.goals import Maximise, Minimise, PriceByChoice, Require, Var
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Condition, Effect, Tolerance
 from truing.declare.specs import Axis, Found
-from truing.declare.spreads import Band, ByChoice, Grade, Spread
+from truing.declare.spreads import Band, ByChoice, Drawn, Grade, Spread
 from truing.errors import DeclarationError
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ def check_model(model: Model[Any, Any]) -> None:
     faults = [
         *_of_names(model),
         *_of_axes(model),
+        *_of_companions(model),
         *_of_errors(model),
         *_of_objectives(model),
         *_of_sheet(model),
@@ -69,6 +70,20 @@ def _of_axes(model: Model[Any, Any]) -> Iterator[str]:
         along = item.spec.along
         if along and along not in axes:
             yield f"the input '{name}' runs along '{along}', which is no axis.{near_miss(along, axes)}"
+    series = [name for name, item in model.input_fields.items() if item.kind == "series"]
+    for name, result in fields.items():
+        followed = result.spec.follows if isinstance(result.spec, Axis) else ""
+        if followed and followed not in series:
+            yield f"the axis '{name}' follows '{followed}', which is no input series.{near_miss(followed, series)}"
+
+
+def _of_companions(model: Model[Any, Any]) -> Iterator[str]:
+    """Say which inputs are to be stated with one that does not exist."""
+    for name, item in model.input_fields.items():
+        other = getattr(item.spec, "stated_with", "")
+        if other and (other == name or other not in model.input_fields):
+            meant = near_miss(other, model.input_fields)
+            yield f"the input '{name}' is stated with '{other}', which is no other input.{meant}"
 
 
 def _of_errors(model: Model[Any, Any]) -> Iterator[str]:
@@ -154,9 +169,17 @@ def _of_spread(spread: Spread, model: Model[Any, Any]) -> Iterator[str]:
         yield from _of_choices(spread.chooser, spread.spreads, "spread", model)
         for inner in spread.spreads.values():
             yield from _of_spread(inner, model)
+    for name in _read_by(spread):
+        if name not in model.input_fields:
+            yield f"names '{name}', which is no input.{near_miss(name, model.input_fields)}"
+
+
+def _read_by(spread: Spread) -> tuple[str, ...]:
+    """Return the inputs that a spread asks for beside its own."""
+    if isinstance(spread, Drawn):
+        return spread.of
     name = spread.size if isinstance(spread, Grade) else spread.at_radius if isinstance(spread, Band) else ""
-    if name and name not in model.input_fields:
-        yield f"names '{name}', which is no input.{near_miss(name, model.input_fields)}"
+    return (name,) if name else ()
 
 
 def _names_in(formula: str) -> frozenset[str] | str:

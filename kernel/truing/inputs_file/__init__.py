@@ -76,6 +76,7 @@ def _setup(document: Document, offer: Offer, folder: Path) -> Setup:
         *part_faults(offer.model, reading.stated),
         *_of_plugin(offer, reading),
         *assemble.take_old_names(offer, reading),
+        *assemble.unexplained(offer.model, document),
     ]
     studies = assemble.studies_of(offer.model, reading.values, late)
     faults += [*each(late, document), *assemble.spread_faults(offer.model, document, reading.values)]

@@ -47,6 +47,18 @@ def take_old_names(offer: Offer, reading: Reading) -> Iterator[tuple[tuple[str, 
         reading.values["warnings", old] = f"'{old}' is now called '{new}'; the old name goes with {until}"
 
 
+def unexplained(model: Model[Any, Any], document: Document) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Say which inputs are stated without the one that tells what they mean."""
+    section = document.data.get("inputs")
+    stated = section if isinstance(section, dict) else {}
+    for name, item in model.input_fields.items():
+        other = getattr(item.spec, "stated_with", "")
+        if name in stated and other and other not in stated:
+            choices = model.input_fields[other].choices
+            meant = f" ({', '.join(choices)})" if choices else ""
+            yield ("inputs", name), f"{name} means nothing without {other}; state {other}{meant} beside it"
+
+
 def _next_major(plugin: str, version: str) -> str:
     major = version.split(".")[0]
     return f"{plugin} {int(major) + 1}.0" if major.isdigit() else f"the next major release of {plugin}"

@@ -17,6 +17,7 @@ from truing.errors import OutputError, UnknownPluginError
 from truing.measurements.writing import umask
 from truing.runs.documents import SCHEMA, large_arrays, results_document
 from truing.runs.inputs_written import complete_inputs
+from truing.runs.study_files import study_files
 
 if TYPE_CHECKING:
     from truing.calculation import Calculation
@@ -52,8 +53,9 @@ def write_run(
     """Write a run folder and return results.json as data.
 
     ``sheets`` holds files by name ("sheet.html", "sheet.md", "sheet.pdf"), ``run_info`` what run.json says of this one
-    run (date, duration, machine, workers), ``arrays`` further arrays for arrays.npz. A folder that is there already is
-    replaced whole if it is a run of ours. Raises OutputError where it is not, or where nothing can be written.
+    run (date, duration, machine, workers), ``arrays`` further arrays for arrays.npz. Files of studies stand beside
+    them. A folder that is there already is replaced whole if it is a run of ours. Raises OutputError where it is not,
+    or where nothing can be written.
     """
     document = results_document(calculation, provenance, cases=cases)
     versions = {"truing": provenance.kernel, "python": provenance.python, **provenance.packages}
@@ -68,7 +70,7 @@ def write_run(
     large = {**large_arrays(calculation), **(arrays or {})}
     if large:
         files["arrays.npz"] = npz_bytes(large)
-    write_folder(folder, files)
+    write_folder(folder, {**files, **study_files(calculation.outcomes, files)})
     return document
 
 

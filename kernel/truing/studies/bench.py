@@ -84,7 +84,10 @@ class Bench:
 
 
 class Outcome(Protocol):
-    """What a study found; the sheet and results.json ask it for their part."""
+    """What a study found; the sheet and results.json ask it for their part.
+
+    One that has ``files``, a mapping from file names to text or bytes, leaves these in the run folder.
+    """
 
     def as_json(self) -> Mapping[str, Any]:
         """Return what results.json holds under ``studies.NAME``: plain numbers, texts, lists; no NaN."""
