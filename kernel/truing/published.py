@@ -52,8 +52,15 @@ def compare_published(
     """Compare the printed numbers of a model with its own, starting from its defaults.
 
     ``known`` is a calculation that was made already; it serves for the settings that it has, and for those that ask
-    for a part of its studies.
+    for a part of its studies. A model is compared once in a process: nothing that a user states changes the rows.
     """
+    rows: list[ComparedRow] | None = offer.model.known.get("published")
+    if rows is None:
+        rows = offer.model.known["published"] = _compared(offer, progress, known)
+    return rows
+
+
+def _compared(offer: Offer, progress: Progress, known: Calculation | None) -> list[ComparedRow]:
     from truing.calculation import calculate
     from truing.inputs_file import setup_from_settings
 

@@ -107,6 +107,11 @@ class Model(Generic[I, R]):
         check_model(self)
 
     @cached_property
+    def known(self) -> dict[str, Any]:
+        """What was calculated of this model alone, by the name of who asked: it holds as long as the model lives."""
+        return {}
+
+    @cached_property
     def input_type(self) -> type[I]:
         """The dataclass of inputs."""
         return self._annotated()[0]
