@@ -1,0 +1,57 @@
+"""What makes the drive softer or stiffer than its flanks: springs in series, pairs, film, smoothing, heat."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from harmonic_fractal.conditions import TEMPERATURE
+from harmonic_fractal.effects_of_friction import RATED_SPEED
+from harmonic_fractal.quantities import Drive
+from truing import Float
+
+FILM_EXPONENT = 0.67  # of viscosity times speed in the thickness of the film
+FILM_THINNING = 0.035  # 1/K, of the viscosity
+LEAST_FILM = 0.1  # over that at 1000 rpm and 20 degC: the roughness holds the flanks as far apart
+
+
+def series_compliance(drive: Drive, *, compliance: Float) -> Drive:
+    """Cup, wave generator, its bearing and the rig twist in proportion to the torque, beside the mesh."""
+    return replace(drive, drive_compliance=drive.drive_compliance + compliance)
+
+
+def engaged_pairs(drive: Drive, *, gain: Float, torque_scale: Float) -> Drive:
+    """The flexspline gives way until more pairs touch: the share ``gain`` more of them at a large torque."""
+    more = -gain * np.expm1(-np.abs(drive.torque) / torque_scale)
+    return replace(drive, engaged_factor=drive.engaged_factor * (1.0 + more))
+
+
+def oil_film(drive: Drive, *, stiffness: Float, speed: Float, temperature: Float) -> Drive:
+    """The oil between the flanks carries beside their asperities, the stiffer the thinner it is; at rest it is gone.
+
+    ``stiffness`` is that of a film which fills the flank of a pair at 1000 rpm and 20 degC: modulus of compression
+    times flank over thickness. The thickness follows (viscosity speed)^0.67 and is never less than a tenth of that
+    one, where the roughness holds it open; its hardly felt fall with the load (power -0.07) is left out.
+    """
+    turns = np.abs(speed) / RATED_SPEED
+    thickness = (np.exp(-FILM_THINNING * (temperature - TEMPERATURE.zero)) * turns) ** FILM_EXPONENT
+    film = np.where(turns > 0.0, stiffness / np.maximum(thickness, LEAST_FILM), 0.0)
+    return replace(drive, film_stiffness=drive.film_stiffness + film)
+
+
+def asperity_smoothing(drive: Drive, *, dimension: Float, roughness: Float, cycle_scale: Float, cycles: Float) -> Drive:
+    """The finest asperities go first: the dimension rises and G falls, until the flanks have run in.
+
+    ``roughness`` is by how much ln G falls.
+    """
+    run_in = -np.expm1(-cycles / cycle_scale)
+    return replace(
+        drive,
+        dimension_deviation=drive.dimension_deviation + dimension * run_in,
+        roughness_deviation=drive.roughness_deviation - roughness * run_in,
+    )
+
+
+def modulus_temperature(drive: Drive, *, softening: Float, temperature: Float) -> Drive:
+    """Warm steel is softer, by the share ``softening`` per kelvin: flanks, teeth and all that twists."""
+    left = 1.0 - softening * (temperature - TEMPERATURE.zero)
+    return replace(drive, modulus_factor=drive.modulus_factor * left)
