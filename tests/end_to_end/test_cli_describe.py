@@ -13,7 +13,8 @@ from jsonschema import Draft202012Validator
 from shared import Calc
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
-INSTALLED = ["press_linkage", "roller_screw_shift", "rv_gearing", "rv_wear"]
+INSTALLED = ["harmonic_fractal", "press_linkage", "roller_screw_shift", "rv_gearing", "rv_wear"]
+MODELS = ["harmonic_fractal", "harmonic_fractal.made_flank", *INSTALLED[1:]]
 
 
 def test_plugins(calc: Calc) -> None:
@@ -21,16 +22,16 @@ def test_plugins(calc: Calc) -> None:
     assert (answer.code, answer.err) == (0, "")
     head, *rows = answer.out.rstrip("\n").split("\n")
     assert head.split() == ["model", "version", "from", "title"]
-    assert [row.split()[:3] for row in rows] == [[name, version("truing"), "truing"] for name in INSTALLED]
+    assert [row.split()[:3] for row in rows] == [[name, version("truing"), "truing"] for name in MODELS]
     assert calc("plugins", "--names").out == "".join(f"{name}\n" for name in INSTALLED)
 
 
 def test_plugins_as_json(calc: Calc) -> None:
     found = json.loads(calc("plugins", "--json").out)
     assert found["broken"] == []
-    assert [model["name"] for model in found["models"]] == INSTALLED
+    assert [model["name"] for model in found["models"]] == MODELS
     for model in found["models"]:
-        assert model["plugin"] == model["name"]
+        assert model["plugin"] == model["name"].partition(".")[0]
         assert model["distribution"] == "truing"
         assert Path(model["file"]).is_file()
 

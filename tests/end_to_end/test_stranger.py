@@ -56,7 +56,7 @@ def test_plugins_as_json(stranger: Callable[..., Answer]) -> None:
 
 def test_names_load_nothing(stranger: Callable[..., Answer]) -> None:
     answer = stranger("plugins", "--names")
-    ours = ["press_linkage", "roller_screw_shift", "rv_gearing", "rv_wear"]
+    ours = ["harmonic_fractal", "press_linkage", "roller_screw_shift", "rv_gearing", "rv_wear"]
     assert answer.out.split() == ["broken_guest", *ours, "screw_joint"]
     assert answer.err == ""
 
