@@ -37,6 +37,18 @@ def converted(roughness: Float, dimension: Float, density: Float, *, source: Con
     return changed
 
 
+def roughness_of(intercept: Float, dimension: Float, density: Float = 1.5, convention: Convention = "areal") -> Float:
+    """Return G, m, of a straight line through ln S (m^2) over ln lag (m): its value at a lag of 1 m, and D_s.
+
+    NaN where D_s is not within 1 and 2: a power law of another exponent has no G.
+    """
+    inside = (np.asarray(dimension) > 1.0) & (np.asarray(dimension) < 2.0)
+    safe = np.where(inside, dimension, 1.5)
+    logarithm = (intercept - np.log(constant(safe, density, convention))) / (2.0 * (safe - 1.0))
+    roughness: Float = np.where(inside, np.exp(logarithm), np.nan)[()]
+    return roughness
+
+
 def structure_function(lag: Float, dimension: Float, roughness: Float) -> Float:
     """Return S, m^2, at a lag in m, of a profile dimension and G in the areal convention."""
     exponent = 4.0 - 2.0 * np.asarray(dimension)

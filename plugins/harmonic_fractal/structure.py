@@ -1,0 +1,104 @@
+"""The structure function of many parallel lines: mean square of the height difference of two points a lag apart."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Steps = NDArray[np.int64]
+CACHED = 32768  # points of a block of lines; its differences stay in the cache of the processor
+
+
+@dataclass(frozen=True, eq=False)
+class StructureFunction:
+    """S of every line: lags (k,) in m, sums of squared differences (lines, k) in m^2, and numbers of pairs (lines, k).
+
+    Lines, or blocks of them, are put together by adding their sums and their pairs, not by averaging their S: so a
+    line with holes weighs as much as it was measured.
+    """
+
+    lags: Array
+    sums: Array
+    counts: Array
+
+    @property
+    def pooled(self) -> Array:
+        """S (k,) of all lines together, m^2; NaN where no pair was measured."""
+        return mean_squares(self.sums.sum(axis=0), self.counts.sum(axis=0))
+
+    @property
+    def pairs(self) -> Array:
+        """Numbers of pairs (k,) of all lines together."""
+        counted: Array = self.counts.sum(axis=0)
+        return counted
+
+    def at(self, chosen: NDArray[np.bool_]) -> "StructureFunction":
+        """Return the same for a choice (k,) of its lags."""
+        return StructureFunction(self.lags[chosen], self.sums[:, chosen], self.counts[:, chosen])
+
+
+def structure_function_of(heights: Array, spacing: float, steps: Steps) -> StructureFunction:
+    """Return the structure function of lines (lines, points), m, at whole multiples ``steps`` (k,) of the spacing."""
+    sums, counts = structure_sums(heights, steps)
+    return StructureFunction(np.multiply(steps, spacing, dtype=float), sums, counts)
+
+
+def structure_sums(heights: Array, steps: Steps) -> tuple[Array, Array]:
+    """Return the sums of squared height differences (lines, k), m^2, and how many pairs of points each is of.
+
+    ``heights`` (lines, points) in m, NaN where not measured: a pair counts where both of its points were measured.
+    ``steps`` (k,) are lags in points, 1 to points - 1. The lines pass in blocks that fit the cache, so that a map of
+    any size needs no more memory than itself; of each block all pairs of one lag are taken at once.
+    """
+    lines, points = heights.shape
+    sums, counts = np.empty((lines, steps.size)), np.empty((lines, steps.size))
+    rows = max(1, CACHED // points)
+    for first in range(0, lines, rows):
+        part = slice(first, first + rows)
+        sums[part], counts[part] = _of_block(np.ascontiguousarray(heights[part], dtype=float), steps)
+    return sums, counts
+
+
+def segment_sums(heights: Array, steps: Steps, segments: int) -> tuple[Array, Array]:
+    """Return the same for every segment of every line (lines * segments, k), segments of a line side by side.
+
+    The pairs of a line are shared out by where they begin, so the segments add up to the line. For a few lines only:
+    it is what a surface of a few lines, or of one, can be resampled by.
+    """
+    known = np.isfinite(heights)
+    filled, weight = np.where(known, heights, 0.0), known.astype(float)
+    sums, counts = (np.empty((steps.size, heights.shape[0] * segments)) for _ in range(2))
+    for row, step in enumerate(steps):
+        starts = np.linspace(0, heights.shape[1] - step, segments, endpoint=False).astype(int)
+        both = weight[:, step:] * weight[:, :-step]
+        squares = np.square(filled[:, step:] - filled[:, :-step]) * both
+        sums[row] = np.add.reduceat(squares, starts, axis=1).ravel()
+        counts[row] = np.add.reduceat(both, starts, axis=1).ravel()
+    return sums.T, counts.T
+
+
+def mean_squares(sums: Array, counts: Array) -> Array:
+    """Return sums over counts, NaN where nothing was counted."""
+    quotient: Array = np.divide(sums, counts, out=np.full(np.shape(sums), np.nan), where=counts > 0)
+    return quotient
+
+
+def _of_block(heights: Array, steps: Steps) -> tuple[Array, Array]:
+    known = np.isfinite(heights)
+    lines, points = heights.shape
+    if known.all():
+        sums = np.stack([_squares(heights[:, step:] - heights[:, :-step]) for step in steps], axis=1)
+        return sums, np.broadcast_to((points - steps).astype(float), (lines, steps.size))
+    filled, weight = np.where(known, heights, 0.0), known.astype(float)
+    sums, counts = np.empty((lines, steps.size)), np.empty((lines, steps.size))
+    for column, step in enumerate(steps):
+        both = weight[:, step:] * weight[:, :-step]
+        counts[:, column] = both.sum(axis=1)
+        sums[:, column] = _squares((filled[:, step:] - filled[:, :-step]) * both)
+    return sums, counts
+
+
+def _squares(differences: Array) -> Array:
+    squares: Array = np.einsum("ij,ij->i", differences, differences)
+    return squares
