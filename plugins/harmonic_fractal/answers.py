@@ -1,6 +1,14 @@
-"""What the calculation answers: interface, one pair of teeth, mesh and torsion."""
+"""What the calculation answers: interface, one pair of teeth, its clearance, the mesh, and the drive around it."""
 
 from truing import Float, axis, found, results
+
+HERTZ = "equation 8 of the patent; Hertz"
+PATENT_6 = "equation 6 of the patent, lost there; Jiang, Zheng and Zhu 2010"
+PATENT_7 = "equation 7 of the patent, with a radius in place of its area"
+CONTACTS = "Yan and Komvopoulos 1998"
+NUMBERS = "Wang and Komvopoulos 1994"
+CATALOGUE = "catalogues of the maker, by size and ratio"
+SHARES = "load shares by the square of the cosine along two opposite arcs"
 
 
 @results
@@ -8,10 +16,166 @@ class Stiffness:
     """Of the rough interface, of one pair of teeth, of the mesh and of the drive."""
 
     lag: Float = axis("um", symbol="xi", note="lag of the structure function", follows="lags")
-    structure_function: Float = found("um^2", symbol="S", note="mean square of the difference of height over a lag, of "
-                                      "both flanks together", along="lag", method="power law")  # fmt: skip
-    dimension: Float = found("", symbol="D", note="fractal dimension of both flanks together", method="see text")
-    roughness: Float = found("m", symbol="G", note="fractal roughness of both, areal convention", method="see text")
-    stiffness: Float = found("N/m", symbol="K", note="normal stiffness of one pair", method="see text")
-    mesh_stiffness: Float = found("N*m/rad", symbol="K_mesh", note="of all engaged pairs", method="see text")
-    torsion: Float = found("urad", symbol="theta", note="from the reference torque on", method="see text")
+    structure_function: Float = found(
+        "um^2", symbol="S", note="mean square of the difference of height over a lag, of both flanks together",
+        along="lag", method="power law of D and G, areal convention",
+    )  # fmt: skip
+    # The interface
+    surface_accepted: Float = found(
+        "", symbol="I_a", note="1, or 0 where a measured flank has no self-affine range and the stated D and G stand "
+        "for it", method="local slopes of the structure function", digits=1,
+    )  # fmt: skip
+    spacing: Float = found("um", symbol="dx_s", note="sampling interval behind D and G",
+                           method="of the flank that was measured, else as stated")  # fmt: skip
+    dimension: Float = found("", symbol="D", note="fractal dimension of both flanks together",
+                             method="sum of both structure functions, fitted by one power law")  # fmt: skip
+    profile_dimension: Float = found("", symbol="D_s", note="of its profiles", formula="dimension - 1",
+                                     source="equation 5 of the patent")  # fmt: skip
+    roughness: Float = found("m", symbol="G", note="fractal roughness of both, areal convention",
+                             method="as the dimension")  # fmt: skip
+    # One pair of teeth
+    equivalent_modulus: Float = found(
+        "GPa", symbol="E", note="equivalent modulus of both bodies", source=HERTZ,
+        formula="modulus_factor / ((1 - poisson_ratio_flexspline**2) / youngs_modulus_flexspline"
+        " + (1 - poisson_ratio_circular**2) / youngs_modulus_circular)",
+    )  # fmt: skip
+    critical_pressure: Float = found(
+        "GPa", symbol="p_c", note="elastic load over area at which a contact turns elastic",
+        method="by critical_rule: the hardness, or at first yield (0.454 + 0.41 nu_2)/3 of it",
+    )  # fmt: skip
+    domain_factor: Float = found(
+        "", symbol="psi", note="widens the distribution of areas", source=NUMBERS,
+        formula="(domain_factor**((2 - profile_dimension) / 2) - (1 + domain_factor**(-profile_dimension / 2))"
+        "**(-(2 - profile_dimension) / profile_dimension)) * profile_dimension / (2 - profile_dimension) == 1",
+    )  # fmt: skip
+    critical_area: Float = found(
+        "um^2", symbol="a_c", note="truncated area of a contact; smaller ones are plastic", source=CONTACTS,
+        formula="roughness**2 * (2**(11 - 2 * dimension) / (9 * pi**(4 - dimension)) * log(density)"
+        " * (equivalent_modulus / critical_pressure)**2)**(1 / (dimension - 2))",
+    )  # fmt: skip
+    resolved_share: Float = found(
+        "", symbol="q_r", note="radius of the critical area over the sampling interval; below 0.3 the power law is "
+        "used far below what was measured", formula="sqrt(critical_area / pi) / spacing",
+    )  # fmt: skip
+    plastic_limit: Float = found(
+        "N", symbol="F_c", note="load of a pair up to which all its contacts are plastic and it has no stiffness",
+        formula="(dimension - 1) / (3 - dimension) * domain_factor**((3 - dimension) / 2) * hardness * critical_area",
+    )  # fmt: skip
+    largest_area: Float = found(
+        "um^2", symbol="a_L", note="truncated area of the largest contact", source=CONTACTS,
+        formula="pair_load == cases(plastic_limit * (largest_area / critical_area)**((dimension - 1) / 2)"
+        " * (1 + (3 - dimension) * critical_pressure / hardness"
+        " * ((largest_area / critical_area)**((5 - 2 * dimension) / 2) - 1) / (5 - 2 * dimension)),"
+        " largest_area > critical_area, plastic_limit * largest_area / critical_area)",
+    )  # fmt: skip
+    plastic_share: Float = found(
+        "%", symbol="q_p", note="share of the load on plastic contacts; at 100 % the pair has no stiffness",
+        formula="cases(plastic_limit / pair_load * (largest_area / critical_area)**((dimension - 1) / 2),"
+        " largest_area > critical_area, 1)",
+    )  # fmt: skip
+    contact_area: Float = found(
+        "um^2", symbol="A_t", note="truncated area of all contacts",
+        formula="(dimension - 1) / (3 - dimension) * domain_factor**((3 - dimension) / 2) * largest_area",
+    )  # fmt: skip
+    real_area: Float = found(
+        "um^2", symbol="A_r", note="real area: all of the plastic contacts, half of the truncated elastic ones",
+        formula="contact_area * (1 + min(critical_area / largest_area, 1)**((3 - dimension) / 2)) / 2",
+    )  # fmt: skip
+    flank_share: Float = found("%", symbol="q_A", note="real area over the area of the flank",
+                               formula="real_area / (face_width * flank_height)")  # fmt: skip
+    tip_factor: Float = found("", symbol="f_t", note="on the stiffness, of the radius of a tip",
+                              method="by tip_rule: 1, or 2/3 (4 - D)/(3 - D) if that follows the area")  # fmt: skip
+    stiffness: Float = found(
+        "N/m", symbol="K", note="normal stiffness of one pair of rough flanks", source=PATENT_6,
+        formula="tip_factor * equivalent_modulus * sqrt(2 / pi) * (dimension - 1) / (dimension - 2)"
+        " * domain_factor**((3 - dimension) / 2) * largest_area**((dimension - 1) / 2)"
+        " * max(critical_area**((2 - dimension) / 2) - largest_area**((2 - dimension) / 2), 0)",
+    )  # fmt: skip
+    load_exponent: Float = found(
+        "", symbol="m", note="d ln K/d ln F at this load; 0 where there is no stiffness",
+        formula="cases(((dimension - 1) / 2 + (dimension - 2) / 2"
+        " / ((largest_area / critical_area)**((dimension - 2) / 2) - 1))"
+        " / ((dimension - 1) / 2 + (3 - dimension) / 2 * critical_pressure / hardness"
+        " * (largest_area / critical_area)**((5 - 2 * dimension) / 2)"
+        " / (1 + (3 - dimension) * critical_pressure / hardness"
+        " * ((largest_area / critical_area)**((5 - 2 * dimension) / 2) - 1) / (5 - 2 * dimension))),"
+        " largest_area > critical_area, 0)",
+    )  # fmt: skip
+    # Its clearance
+    largest_radius: Float = found("um", symbol="r_L", note="radius of the largest contact",
+                                  formula="sqrt(largest_area / pi)")  # fmt: skip
+    clearance_radius: Float = found("um", symbol="r'", note="the radius in equation 7", method="by clearance_rule: "
+                                    "that of the largest contact, or half the patch")  # fmt: skip
+    clearance_multiple: Float = found("", symbol="n_b", note="amplitudes that count", digits=2,
+                                      method="by clearance_rule: 1, or 2 for the whole interference")  # fmt: skip
+    clearance: Float = found(
+        "nm", symbol="b", note="as printed; it grows with the load", source=PATENT_7,
+        formula="clearance_multiple * roughness**(dimension - 2) * sqrt(log(density))"
+        " * (2 * clearance_radius)**(3 - dimension)",
+    )  # fmt: skip
+    rough_height: Float = found("um", symbol="S_1", note="height of the flank, lowest to highest point",
+                                method="as stated, else measured, else of its fractal patch")  # fmt: skip
+    mating_rough_height: Float = found("um", symbol="S_2", note="of the mating flank; 0 if it is smooth",
+                                       method="as stated, else measured, else of its fractal patch")  # fmt: skip
+    open_clearance: Float = found("nm", symbol="b_0", note="between the mean planes at the reference load",
+                                  formula="(rough_height + mating_rough_height) / 2")  # fmt: skip
+    reference_load: Float = found(
+        "N", symbol="F_0", note="load of the pair that carries most at the reference torque; clearance and torsion "
+        "count from it", formula="reference_torque * largest_share / effective_radius",
+    )  # fmt: skip
+    approach: Float = found("nm", symbol="u", note="by which the pair closes from the reference load to its load; 0 "
+                            "below", method="integral of dF/K by Gauss and Legendre")  # fmt: skip
+    closing_clearance: Float = found("nm", symbol="b_c", note="what is left of the clearance under the load",
+                                     formula="max(open_clearance - approach, 0)")  # fmt: skip
+    free_play: Float = found("arcmin", symbol="theta_j", note="that clearance at both flanks, at the output",
+                             formula="2 * closing_clearance / effective_radius")  # fmt: skip
+    # The mesh
+    effective_radius: Float = found("mm", symbol="r_n", note="lever of the normal force about the axis",
+                                    formula="pitch_radius * cos(pressure_angle)")  # fmt: skip
+    largest_share: Float = found("%", symbol="w_1", note="of the pair that carries most", method=SHARES)
+    largest_pair_force: Float = found("N", symbol="F_1", note="normal load of that pair",
+                                      formula="abs(torque) * largest_share / effective_radius")  # fmt: skip
+    plastic_torque: Float = found("mN*m", symbol="T_c", note="torque up to which all contacts of all pairs are plastic",
+                                  formula="plastic_limit * effective_radius / largest_share")  # fmt: skip
+    line_stiffness: Float = found("N/m", symbol="k_H", note="of the flanks as cylinders; counts with line_contact",
+                                  source="Yang and Sun 1985",
+                                  formula="pi * equivalent_modulus * face_width / 2")  # fmt: skip
+    normal_stiffness: Float = found("N/m", symbol="K_n", note="of all engaged pairs along their normals", method=SHARES)
+    mesh_stiffness: Float = found("N*m/rad", symbol="K_mesh", note="of all engaged pairs about the axis",
+                                  formula="normal_stiffness * effective_radius**2")  # fmt: skip
+    mesh_torsion: Float = found("urad", symbol="theta_m", note="of the mesh, from the reference torque on",
+                                method="integral of dT/K_mesh by Gauss and Legendre")  # fmt: skip
+    # The drive
+    shear_modulus: Float = found(
+        "GPa", symbol="G_c", note="of the cup",
+        formula="modulus_factor * youngs_modulus_flexspline / (2 * (1 + poisson_ratio_flexspline))",
+    )  # fmt: skip
+    cup_moment: Float = found("mm^4", symbol="J_c", note="polar moment of area of the thin wall of the cup",
+                              formula="2 * pi * cup_radius**3 * cup_wall")  # fmt: skip
+    cup_stiffness: Float = found(
+        "N*m/rad", symbol="K_cup", note="of the cup in torsion; 0: it is taken as rigid",
+        formula="cases(shear_modulus * cup_moment / cup_length, cup_length > 0, 0)",
+    )  # fmt: skip
+    series_compliance: Float = found(
+        "urad/(N*m)", symbol="c_d", note="of all that is in series with the mesh",
+        formula="drive_compliance / modulus_factor + cup_length / (shear_modulus * cup_moment)",
+    )  # fmt: skip
+    torsional_stiffness: Float = found(
+        "N*m/rad", symbol="K_theta", note="of the mesh in series with the drive, at the torque",
+        formula="normal_stiffness * effective_radius**2"
+        " / (1 + series_compliance * normal_stiffness * effective_radius**2)",
+    )  # fmt: skip
+    torsion: Float = found(
+        "urad", symbol="theta", note="of the drive, from the reference torque on; 0 below",
+        formula="mesh_torsion + sign(torque) * series_compliance * max(abs(torque) - reference_torque, 0)",
+    )  # fmt: skip
+    rough_torsion: Float = found("urad", symbol="theta_r", note="of the rough contacts alone, all else rigid",
+                                 method="as that of the mesh")  # fmt: skip
+    catalogue_torsion: Float = found("urad", symbol="theta_cat", note="of a drive of this size and ratio",
+                                     method="three straight pieces", source=CATALOGUE)  # fmt: skip
+    catalogue_stiffness: Float = found("N*m/rad", symbol="K_cat", note="of such a drive at the torque",
+                                       method="the piece in which the torque lies", source=CATALOGUE)  # fmt: skip
+    rough_share: Float = found(
+        "%", symbol="q_theta", note="of the catalogue's torsion that the rough contacts explain",
+        formula="cases(rough_torsion / catalogue_torsion, abs(torque) > 0, 0)",
+    )  # fmt: skip

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from harmonic_fractal.estimate import Estimate
 from harmonic_fractal.flank import Flank
 from harmonic_fractal.power_law import constant, converted, structure_function
 from harmonic_fractal.quantities import Drive
@@ -32,8 +33,8 @@ def flanks_of(drive: Drive) -> tuple[Rough, Rough | None]:
 def interface_of(drive: Drive) -> Rough:
     """Return one rough surface for both: independent flanks add their structure functions.
 
-    Two flanks are fitted by one power law over the range from ``sampling`` to ``longest_lag``; with equal dimensions
-    that is exact. The deviations of both inputs are added at the end.
+    Two flanks are fitted by one power law over the range that both share (``range_of``); with equal dimensions that is
+    exact. The deviations of both inputs are added at the end.
     """
     first, second = flanks_of(drive)
     both = first if second is None else _sum(first, second, drive)
@@ -41,6 +42,31 @@ def interface_of(drive: Drive) -> Rough:
         dimension=both.dimension + drive.dimension_deviation,
         roughness=both.roughness * np.exp(drive.roughness_deviation),
     )
+
+
+def is_accepted(drive: Drive) -> float:
+    """Return 1, or 0 where a measured flank has no self-affine range."""
+    measured = (flank for flank in (drive.surface, drive.mating_surface) if flank is not None)
+    return float(all(flank.used is not None for flank in measured))
+
+
+def spacing_of(drive: Drive) -> Float:
+    """Return the sampling interval behind D and G, m: the coarser one of what was measured, else as stated."""
+    spacings = [item.spacing for item in _used(drive)]
+    return max(spacings) if spacings else drive.sampling
+
+
+def range_of(drive: Drive) -> tuple[Float, Float]:
+    """Return the lags between which two flanks are added, m: those that both estimates share, else as stated."""
+    ranges = [item.range for item in _used(drive) if np.isfinite(item.range).all()]
+    if not ranges:
+        return drive.sampling, drive.longest_lag
+    return max(low for low, _ in ranges), min(high for _, high in ranges)
+
+
+def _used(drive: Drive) -> list[Estimate]:
+    flanks = (drive.surface, drive.mating_surface)
+    return [flank.used for flank in flanks if flank is not None and flank.used is not None]
 
 
 def _measured(flank: Flank | None) -> Rough | None:
@@ -55,7 +81,7 @@ def _stated(drive: Drive, dimension: Float, roughness: Float) -> Rough:
 
 def _sum(first: Rough, second: Rough, drive: Drive) -> Rough:
     share = np.linspace(0.0, 1.0, POINTS)
-    low, high = np.log(np.asarray(drive.sampling)[..., None]), np.log(np.asarray(drive.longest_lag)[..., None])
+    low, high = (np.log(np.asarray(end)[..., None]) for end in range_of(drive))
     lags = np.exp(low + (high - low) * share)
     heights = sum(structure_function(lags, np.asarray(one.dimension)[..., None] - 1.0,
                                      np.asarray(one.roughness)[..., None]) for one in (first, second))  # fmt: skip

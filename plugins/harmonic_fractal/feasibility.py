@@ -1,0 +1,75 @@
+"""What must hold before roughness, pairs and drive can be calculated: the sentence names the inputs and what to do."""
+
+import numpy as np
+
+from harmonic_fractal.catalogue import Polyline, polyline_of, ratio_of
+from harmonic_fractal.contact import Contact, Pressed
+from harmonic_fractal.interface import Rough, range_of
+from harmonic_fractal.mesh import Mesh
+from harmonic_fractal.micro import LEAST_DIMENSION, MOST_DIMENSION
+from harmonic_fractal.quantities import Drive
+from truing import Float, feasible
+
+
+def require_surface(drive: Drive, rough: Rough) -> None:
+    """Refuse what is no rough surface; NaN is none."""
+    shortest, longest = range_of(drive)
+    feasible(
+        longest > shortest,
+        "longest_lag must be greater than sampling: two flanks are added over the lags between them",
+    )
+    feasible(
+        np.asarray(rough.dimension) >= LEAST_DIMENSION,
+        f"the fractal dimension of both flanks together is below {LEAST_DIMENSION}, where the critical area, a power "
+        "of 2/(D - 2), loses all meaning: enlarge fractal_dimension, or look at dimension_deviation",
+    )
+    feasible(
+        np.asarray(rough.dimension) <= MOST_DIMENSION,
+        f"the fractal dimension of both flanks together is above {MOST_DIMENSION}, where the contact area, a multiple "
+        "of 1/(3 - D), loses all meaning: reduce fractal_dimension, or look at dimension_deviation",
+    )
+    feasible(
+        np.isfinite(rough.roughness) & (np.asarray(rough.roughness) > 0.0),
+        "the fractal roughness of both flanks together must be positive and finite: state fractal_roughness, and "
+        "mating_roughness with mating_dimension",
+    )
+
+
+def require_contact(drive: Drive, contact: Contact, mesh: Mesh) -> None:
+    """Refuse a mesh without stiffness where the torsion begins, and more pairs than there are teeth."""
+    feasible(
+        drive.engaged_pairs * np.asarray(drive.engaged_factor) <= drive.flexspline_teeth,
+        "more pairs are engaged than the flexspline has teeth: reduce engaged_pairs or engaged_factor, or enlarge "
+        "flexspline_teeth",
+    )
+    feasible(
+        np.isfinite(contact.critical_area) & (np.asarray(contact.critical_area) > 0.0),
+        "the critical area is not a number that can be calculated with: look at fractal_roughness, hardness and the "
+        "moduli",
+    )
+    feasible(
+        np.asarray(mesh.plastic_torque) < drive.reference_torque,
+        "at reference_torque all contacts are plastic, so that the torsion counted from there would be infinite: "
+        "raise reference_torque above the torque at which the first contact turns elastic, or reduce fractal_roughness",
+    )
+
+
+def require_flank(drive: Drive, one: Pressed, largest: Pressed) -> None:
+    """Refuse contacts larger than the flank: of the pair that is looked at, and of the one that carries most."""
+    flank: Float = drive.face_width * drive.flank_height
+    for pair, load in ((one, "pair_load"), (largest, "torque")):
+        feasible(
+            np.asarray(pair.real_area) <= flank,
+            f"the contact area exceeds the flank: reduce {load}, or enlarge face_width, flank_height or hardness",
+        )
+
+
+def require_catalogue(drive: Drive) -> Polyline:
+    """Return what the catalogue prints for this drive; refuse a size and ratio that it does not print."""
+    printed = polyline_of(drive.catalogue_size, ratio_of(drive))
+    feasible(
+        printed is not None,
+        f"the catalogues print no size {drive.catalogue_size} with a ratio below 40: choose catalogue_size 32 or "
+        "smaller, or flexspline_teeth of 80 or more",
+    )
+    return printed or Polyline(np.nan, np.nan, (np.nan, np.nan, np.nan))

@@ -1,0 +1,137 @@
+"""The contacts of a rough surface in reduced variables: all is a function of u = ln(a_L/a_c), of D, and of p_c/H.
+
+a_L is the largest truncated area, a_c the critical one: smaller contacts are plastic, larger ones elastic. u < 0: all
+contacts are plastic. Loads are in parts of that at u = 0, where the first contact turns elastic.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from truing import Float
+
+LEAST_DIMENSION, MOST_DIMENSION = 2.05, 2.95  # exponents 2/(D-2) and 1/(3-D) run away beyond
+STEPS = 12  # of Halley's iteration at most; three or four do
+FINE = 1e-13
+
+
+@dataclass(frozen=True)
+class Law:
+    """Which law the contacts follow: dimension D of the surface, and the critical pressure in parts of the hardness.
+
+    Both are numbers or arrays that meet the loads asked for.
+    """
+
+    dimension: Float
+    pressure_ratio: Float
+
+    @cached_property
+    def bend(self) -> Float:
+        """(5 - 2 D)/2, and never 0: the exponent by which the elastic load grows beside the plastic one."""
+        exponent = 2.5 - np.asarray(self.dimension, dtype=float)
+        return np.where(np.abs(exponent) < 1e-300, 1e-300, exponent)
+
+    @cached_property
+    def growth(self) -> Float:
+        """(D - 1)/2, the exponent of the number of contacts."""
+        return 0.5 * (np.asarray(self.dimension) - 1.0)
+
+    @cached_property
+    def elastic(self) -> Float:
+        """(3 - D)/2 p_c/H, by which the elastic load begins."""
+        return 0.5 * (3.0 - np.asarray(self.dimension)) * self.pressure_ratio
+
+    @cached_property
+    def decay(self) -> Float:
+        """(D - 2)/2, the exponent of stiffness that is lost to plastic contacts."""
+        return 0.5 * (np.asarray(self.dimension) - 2.0)
+
+    def on_axis(self, axes: int = 1) -> "Law":
+        """Return the law with so many axes behind, one value of it for each row."""
+        last = (..., *(np.newaxis,) * axes)
+        return Law(np.asarray(self.dimension)[last], np.asarray(self.pressure_ratio)[last])
+
+
+def domain_factor(dimension: Float) -> Float:
+    """Return psi of the area distribution of contacts for a surface of dimension D, 2 < D < 3.
+
+    It falls from ((1 + sqrt 5)/2)^2 at 2 to e - 1 at 3. Source: Wang and Komvopoulos 1994, equation solved by Newton.
+    """
+    profile = np.asarray(dimension, dtype=float) - 1.0
+    rest = 2.0 - profile
+    logarithm = np.log(2.618 - 1.235 * (profile - 1.0) + 0.335 * (profile - 1.0) ** 2)
+    for _ in range(6):
+        inverse = np.exp(-0.5 * profile * logarithm)
+        grown, held = np.expm1(0.5 * rest * logarithm), np.expm1(-rest / profile * np.log1p(inverse))
+        off = (grown - held) * profile - rest
+        slope = 0.5 * rest * (profile * (grown + 1.0) - (held + 1.0) * profile * inverse / (1.0 + inverse))
+        logarithm = logarithm - off / slope
+    factor: Float = np.exp(logarithm)
+    return factor
+
+
+def load_logarithm(size: Float, law: Law) -> Float:
+    """Return ln(F/F_c) at u."""
+    above = np.maximum(size, 0.0)
+    grown = np.log1p(law.elastic * np.expm1(law.bend * above) / law.bend)
+    value: Float = np.where(np.asarray(size) > 0.0, law.growth * above + grown, size)
+    return value
+
+
+def load_slope(size: Float, law: Law) -> Float:
+    """Return d ln F/d u."""
+    above = np.maximum(size, 0.0)
+    grown = np.expm1(law.bend * above)
+    elastic = law.growth + law.elastic * (grown + 1.0) / (1.0 + law.elastic * grown / law.bend)
+    value: Float = np.where(np.asarray(size) > 0.0, elastic, 1.0)
+    return value
+
+
+def size_of(load: Float, law: Law) -> Float:
+    """Return u at ln(F/F_c); to about 1e-13.
+
+    The logarithm of the load is a convex or a concave curve over u and rises everywhere, so the iteration, which is
+    Newton's with the curvature known, closes in from one side.
+    """
+    wanted = np.asarray(load, dtype=float)
+    sought = np.maximum(wanted, 0.0)
+    size = sought / (law.growth + law.elastic / (1.0 + 0.25 * law.elastic * sought))
+    for _ in range(STEPS):
+        grown = np.expm1(law.bend * size)
+        part = law.elastic / law.bend * grown
+        added = law.elastic * (grown + 1.0) / (1.0 + part)
+        slope = law.growth + added
+        step = (law.growth * size + np.log1p(part) - sought) / slope
+        step = step / (1.0 - 0.5 * step * added * (law.bend - added) / slope)
+        size = np.maximum(size - step, 0.0)
+        if not (np.abs(step) > FINE * (1.0 + size)).any():
+            break
+    value: Float = np.where(wanted > 0.0, size, wanted)
+    return value
+
+
+def stiffness_share(size: Float, law: Law) -> Float:
+    """Return K/K_s at u, with K_s the stiffness that the contacts of a_L = a_c would have; 0 where all are plastic."""
+    above = np.maximum(size, 0.0)
+    share: Float = -np.exp(law.growth * above) * np.expm1(-law.decay * above)
+    return share
+
+
+def load_exponent(size: Float, law: Law) -> Float:
+    """Return m = d ln K/d ln F at u; 0 where all contacts are plastic and there is no stiffness."""
+    above = np.where(np.asarray(size) > 0.0, size, 1.0)
+    stiffness = law.growth + law.decay / np.expm1(law.decay * above)
+    value: Float = np.where(np.asarray(size) > 0.0, stiffness / load_slope(above, law), 0.0)
+    return value
+
+
+def area_shares(size: Float, law: Law) -> tuple[Float, NDArray[np.float64]]:
+    """Return a_L/a_c, and the real area in parts of the truncated one.
+
+    A plastic contact touches with its truncated area, an elastic one with half of it.
+    """
+    above = np.maximum(size, 0.0)
+    real = 0.5 * (1.0 + np.exp(-0.5 * (3.0 - np.asarray(law.dimension)) * above))
+    return np.exp(size), real
