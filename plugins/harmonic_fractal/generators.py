@@ -62,7 +62,7 @@ def weierstrass_profile(waves: Waves, places: Array, lines: int, rng: np.random.
 def profile_sum(waves: Waves, lags: Array) -> Array:
     """Return S (k,), m^2, of :func:`weierstrass_profile` at these lags: exact for any band, mean over the phases."""
     turns = 2.0 * np.pi * waves.frequencies
-    return np.asarray(waves.amplitudes**2 @ (1.0 - np.cos(np.outer(turns, lags))), dtype=np.float64)
+    return _mean_squares(waves.amplitudes, turns, lags)
 
 
 def weierstrass_surface(waves: Waves, x: Array, y: Array, rng: np.random.Generator) -> Array:
@@ -85,7 +85,12 @@ def surface_sum(waves: Waves, lags: Array, angle: float = 0.0) -> Array:
     """Return S (k,), m^2, of :func:`weierstrass_surface` along a trace at an angle to x, rad; mean over the phases."""
     amplitudes, along_x, along_y = _plane_waves(waves)
     turns = along_x * np.cos(angle) + along_y * np.sin(angle)
-    return np.asarray(amplitudes**2 @ (1.0 - np.cos(np.outer(turns, lags))), dtype=np.float64)
+    return _mean_squares(amplitudes, turns, lags)
+
+
+def _mean_squares(amplitudes: Array, turns: Array, lags: Array) -> Array:
+    """Return the sum of A^2 (1 - cos(k lag)) over the waves; written by the sine, so that long waves lose no digits."""
+    return np.asarray(2.0 * amplitudes**2 @ np.sin(np.outer(0.5 * turns, lags)) ** 2, dtype=np.float64)
 
 
 def _plane_waves(waves: Waves) -> tuple[Array, Array, Array]:

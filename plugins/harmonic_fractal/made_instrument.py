@@ -32,13 +32,15 @@ class Instrument:
         return int(np.ceil(REACH * DEVIATION * self.cutoff / spacing))
 
 
-def as_measured(heights: Array, spacing: float, instrument: Instrument, rng: np.random.Generator) -> Array:
+def as_measured(
+    heights: Array, spacing: float, instrument: Instrument, rng: np.random.Generator, *, across: bool = True
+) -> Array:
     """Return heights (rows, points), m, as the instrument gives them, NaN in its holes.
 
-    The filter takes ``instrument.margin(spacing)`` points away on each side; lines that are alone in their row are
-    filtered along the row only. Order: filter, noise, steps, spikes, holes.
+    The filter takes ``instrument.margin(spacing)`` points away on each side; without ``across`` it acts along the rows
+    only, and takes nothing away across them. Order: filter, noise, steps, spikes, holes.
     """
-    seen = _filtered(heights, spacing, instrument)
+    seen = _filtered(heights, spacing, instrument, across=across)
     seen = seen + instrument.noise * rng.standard_normal(seen.shape)
     if instrument.step > 0.0:
         seen = np.round(seen / instrument.step) * instrument.step
@@ -50,14 +52,14 @@ def as_measured(heights: Array, spacing: float, instrument: Instrument, rng: np.
     return np.asarray(flat.reshape(seen.shape), dtype=np.float64)
 
 
-def _filtered(heights: Array, spacing: float, instrument: Instrument) -> Array:
-    """Weigh with a Gaussian along both axes, or along the rows of a single line, and cut the margin off."""
+def _filtered(heights: Array, spacing: float, instrument: Instrument, *, across: bool) -> Array:
+    """Weigh with a Gaussian along the rows, and across them where asked, and cut the margin off."""
     from scipy.ndimage import gaussian_filter
 
     margin = instrument.margin(spacing)
     if not margin:
         return heights.copy()
     deviation = DEVIATION * instrument.cutoff / spacing
-    if heights.shape[0] == 1:
-        return np.asarray(gaussian_filter(heights, (0.0, deviation), truncate=REACH)[:, margin:-margin])
-    return np.asarray(gaussian_filter(heights, deviation, truncate=REACH)[margin:-margin, margin:-margin])
+    seen = gaussian_filter(heights, (deviation if across else 0.0, deviation), truncate=REACH)
+    rows = slice(margin, -margin) if across else slice(None)
+    return np.asarray(seen[rows, margin:-margin], dtype=np.float64)
