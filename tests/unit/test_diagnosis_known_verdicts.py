@@ -154,6 +154,18 @@ def assert_same(one: Diagnosis, other: Diagnosis) -> None:
     assert_allclose([gain.p_value for gain in other.gain], [gain.p_value for gain in one.gain])
 
 
+@pytest.mark.parametrize(("slope", "wear"), [(0.2, 0.3), (0.5, 0.1)])
+def test_of_two_causes_the_larger_comes_first_with_its_share(tmp_path: Path, slope: float, wear: float) -> None:
+    bench = wide(150, seed=15)
+    growth, worn = slope * (bench.temperature - 20), wear * bench.time * np.sign(bench.load)
+    whole = growth + worn
+    error = whole + np.random.default_rng(15).normal(0, 1, len(bench))
+    found = PROPER.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
+    true = sorted((float(part @ whole / (whole @ whole)) for part in (growth, worn)), reverse=True)
+    assert [cause.share for cause in found.causes] == pytest.approx(true, abs=0.04)
+    assert ("thermal_growth" in name_sets(found)[0]) == (float(growth @ growth) > float(worn @ worn))
+
+
 SCALED = {"load": ("N", 1e3), "travel": ("m", 1e-3), "rotation": ("rad", np.pi / 180), "time": ("s", 3600.0)}
 
 

@@ -20,6 +20,7 @@ from truing.diagnosis.records import Records
 from truing.diagnosis.result import Alternative, Amount, Calibrated, Curves, Diagnosis, Gain, Verdict
 from truing.diagnosis.search import NoiseModel, first_noise
 from truing.diagnosis.second_look import second_look
+from truing.diagnosis.shares import by_share
 from truing.diagnosis.unmeasured import with_results
 from truing.diagnosis.visibility import inseparable, smallest_visible
 from truing.errors import UsageError
@@ -105,7 +106,7 @@ def _check_options(setup: Setup) -> None:
 def _answer(problem: Problem, full: Contest, decision: Decision, best: Fit, raw: NoiseModel) -> Diagnosis:
     machine, records, setting = problem.machine, problem.machine.records, best.setting
     units = units_of(full)
-    causes = causes_of(full, best)
+    causes = by_share(full, best, causes_of(full, best))
     remainder = remainder_of(full, best, decision, units)
     rivals = alternatives(full, decision.winner)
     judged = nested(full, decision.winner, decision.thresholds, raw)

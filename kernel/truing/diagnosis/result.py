@@ -85,12 +85,14 @@ class Cause:
     """A named cause: an effect, or "input:NAME" for an input that lies outside its band.
 
     ``covariance`` (SI) follows the order of ``unknowns``. ``same_as`` are effects that are the same curve on this data.
+    ``share`` is that of all named causes together which is this one's.
     """
 
     effect: str
     unknowns: tuple[FittedUnknown, ...]
     covariance: tuple[tuple[float, ...], ...] = ()
     same_as: tuple[str, ...] = ()
+    share: float = 1.0
 
 
 @dataclass(frozen=True)

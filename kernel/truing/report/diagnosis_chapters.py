@@ -114,7 +114,7 @@ def _labelled(outliers: Sequence[tuple[str, int]]) -> Iterator[tuple[str, int]]:
 def _cause(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
     yield Words(" ".join(_significance(diagnosis)))
     if diagnosis.causes:
-        yield _table("Named", ("Cause", "What it is", "The same curve on this data"), list(_named(diagnosis)))
+        yield _named_table(diagnosis)
     if diagnosis.alternatives:
         named = " + ".join(spoken(cause.effect) for cause in diagnosis.causes) or "the explanation given"
         names = listed([named, *(explanation(item) for item in diagnosis.alternatives)])
@@ -129,6 +129,18 @@ def _cause(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
     if diagnosis.inseparable:
         yield _table("What this experiment can hardly tell apart", ("Because of its design",),
                      [(prose(sentence).rstrip("."),) for sentence in diagnosis.inseparable])  # fmt: skip
+
+
+def _named_table(diagnosis: Diagnosis) -> TableView:
+    heads, rows = ("Cause", "What it is", "The same curve on this data"), list(_named(diagnosis))
+    if len(rows) < 2:
+        return _table("Named", heads, rows)
+    shares = [percent(cause.share) for cause in diagnosis.causes]
+    note = (
+        "Share: of what all named causes add to the model, over all rows; one that works against the rest is below 0."
+    )
+    with_shares = [(*row, share) for row, share in zip(rows, shares, strict=True)]
+    return _table("Named", (*heads, "Share"), with_shares, (3,), note)
 
 
 def _significance(diagnosis: Diagnosis) -> Iterator[str]:

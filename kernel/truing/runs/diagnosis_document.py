@@ -136,6 +136,7 @@ def _cause(cause: Cause, labels: Mapping[str, str]) -> dict[str, Any]:
         "effect": cause.effect,
         "unknowns": {unknown.name: _unknown(unknown, labels) for unknown in cause.unknowns},
         "same_as": list(cause.same_as),
+        "share": clean(cause.share),
     }
 
 
