@@ -6,7 +6,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-Direction = Literal["x", "y"]
+Direction = Literal["x", "y", "both"]
+EQUAL = 0.01  # relative difference up to which two spacings are the same
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +35,30 @@ class Surface:
         """Whether there is one line only."""
         return bool(self.heights.shape[0] == 1)
 
+    @property
+    def is_square(self) -> bool:
+        """Whether the points are as far apart along y as along x, so that lines of both directions can be pooled."""
+        return not self.is_profile and abs(self.spacing_x / self.spacing_y - 1.0) <= EQUAL
+
     def lines(self, direction: Direction) -> Lines:
-        """Return the lines along x, or along y."""
+        """Return the lines along x, along y, or both one after the other (the shorter ones filled up with NaN)."""
         if direction == "x":
             return Lines(self.heights, self.spacing_x)
-        return Lines(self.heights.T, self.spacing_y)
+        if direction == "y":
+            return Lines(self.heights.T, self.spacing_y)
+        return pooled(self.lines("x"), self.lines("y"))
+
+
+def pooled(first: Lines, second: Lines) -> Lines:
+    """Put the lines of two directions into one set; their spacings must agree within 1 %."""
+    if not abs(first.spacing / second.spacing - 1.0) <= EQUAL:
+        raise ValueError(
+            f"lines {first.spacing * 1e6:.6g} um and {second.spacing * 1e6:.6g} um apart from point to point "
+            "cannot be pooled; use one direction"
+        )
+    points = max(first.heights.shape[1], second.heights.shape[1])
+    filled = [
+        np.pad(lines.heights, ((0, 0), (0, points - lines.heights.shape[1])), constant_values=np.nan)
+        for lines in (first, second)
+    ]
+    return Lines(np.concatenate(filled), first.spacing)
