@@ -4,7 +4,7 @@ import numpy as np
 
 from harmonic_fractal.catalogue import Polyline, polyline_of, ratio_of
 from harmonic_fractal.contact import Contact, Pressed
-from harmonic_fractal.interface import Rough, range_of
+from harmonic_fractal.interface import Rough, flanks_of, is_half_stated, range_of
 from harmonic_fractal.mesh import Mesh
 from harmonic_fractal.micro import LEAST_DIMENSION, MOST_DIMENSION
 from harmonic_fractal.quantities import Drive
@@ -13,11 +13,17 @@ from truing import Float, feasible
 
 def require_surface(drive: Drive, rough: Rough) -> None:
     """Refuse what is no rough surface; NaN is none."""
-    shortest, longest = range_of(drive)
     feasible(
-        longest > shortest,
-        "longest_lag must be greater than sampling: two flanks are added over the lags between them",
+        np.logical_not(is_half_stated(drive)),
+        "the mating flank is half stated: state mating_dimension and mating_roughness, or neither if it is smooth",
     )
+    if flanks_of(drive)[1] is not None:
+        shortest, longest = range_of(drive)
+        feasible(
+            longest > shortest,
+            "two flanks are added over the lags that both have, and these have none: enlarge longest_lag beyond "
+            "sampling, or measure both flanks alike",
+        )
     feasible(
         np.asarray(rough.dimension) >= LEAST_DIMENSION,
         f"the fractal dimension of both flanks together is below {LEAST_DIMENSION}, where the critical area, a power "

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from harmonic_fractal.estimate import Estimate
 from harmonic_fractal.flank import Flank
@@ -25,9 +26,15 @@ def flanks_of(drive: Drive) -> tuple[Rough, Rough | None]:
     """Return both flanks, each from its surface where that is accepted, else as stated; None where one is smooth."""
     first = _measured(drive.surface) or _stated(drive, drive.fractal_dimension, drive.fractal_roughness)
     second = _measured(drive.mating_surface)
-    if second is None and not (np.isnan(drive.mating_dimension).any() or np.isnan(drive.mating_roughness).any()):
+    if second is None and not (np.isnan(drive.mating_dimension).all() or np.isnan(drive.mating_roughness).all()):
         second = _stated(drive, drive.mating_dimension, drive.mating_roughness)
     return first, second
+
+
+def is_half_stated(drive: Drive) -> "bool | NDArray[np.bool_]":
+    """Return where one of dimension and roughness of the mating flank is stated without the other."""
+    unknown = drive.mating_surface is None or drive.mating_surface.used is None
+    return unknown & (np.isnan(drive.mating_dimension) != np.isnan(drive.mating_roughness))
 
 
 def interface_of(drive: Drive) -> Rough:
@@ -37,7 +44,7 @@ def interface_of(drive: Drive) -> Rough:
     exact. The deviations of both inputs are added at the end.
     """
     first, second = flanks_of(drive)
-    both = first if second is None else _sum(first, second, drive)
+    both = first if second is None else _sum_or_first(first, second, drive)
     return Rough(
         dimension=both.dimension + drive.dimension_deviation,
         roughness=both.roughness * np.exp(drive.roughness_deviation),
@@ -77,6 +84,15 @@ def _measured(flank: Flank | None) -> Rough | None:
 def _stated(drive: Drive, dimension: Float, roughness: Float) -> Rough:
     areal = converted(roughness, dimension - 1.0, drive.density, source=drive.convention, target="areal")
     return Rough(dimension=dimension, roughness=areal)
+
+
+def _sum_or_first(first: Rough, second: Rough, drive: Drive) -> Rough:
+    """Return the sum of both, and in rows where the second one is smooth the first."""
+    both, smooth = _sum(first, second, drive), np.isnan(second.dimension)
+    return Rough(
+        dimension=np.where(smooth, first.dimension, both.dimension),
+        roughness=np.where(smooth, first.roughness, both.roughness),
+    )
 
 
 def _sum(first: Rough, second: Rough, drive: Drive) -> Rough:
