@@ -158,11 +158,10 @@ def assert_same(one: Diagnosis, other: Diagnosis) -> None:
 def test_of_two_causes_the_larger_comes_first_with_its_share(tmp_path: Path, slope: float, wear: float) -> None:
     bench = wide(150, seed=15)
     growth, worn = slope * (bench.temperature - 20), wear * bench.time * np.sign(bench.load)
-    whole = growth + worn
-    error = whole + np.random.default_rng(15).normal(0, 1, len(bench))
+    error = growth + worn + np.random.default_rng(15).normal(0, 1, len(bench))
     found = PROPER.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
-    true = sorted((float(part @ whole / (whole @ whole)) for part in (growth, worn)), reverse=True)
-    assert [cause.share for cause in found.causes] == pytest.approx(true, abs=0.04)
+    squares = np.sort([growth @ growth, worn @ worn])[::-1]
+    assert [cause.share for cause in found.causes] == pytest.approx(squares / squares.sum(), abs=0.04)
     assert ("thermal_growth" in name_sets(found)[0]) == (float(growth @ growth) > float(worn @ worn))
 
 

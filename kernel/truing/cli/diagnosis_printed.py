@@ -106,6 +106,9 @@ def _noise(item: Wrong) -> str:
 
 def _cause(diagnosis: Diagnosis) -> Iterator[str]:
     yield _named(diagnosis)
+    if len(diagnosis.causes) > 1:
+        shares = [f"{spoken(cause.effect)} {percent(cause.share)}" for cause in diagnosis.causes]
+        yield f"shares of the correction: {', '.join(shares)}"
     for cause in diagnosis.causes:
         if cause.same_as:
             yield f"the same curve on this data: {listed([spoken(name) for name in cause.same_as])}"

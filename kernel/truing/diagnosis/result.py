@@ -85,7 +85,7 @@ class Cause:
     """A named cause: an effect, or "input:NAME" for an input that lies outside its band.
 
     ``covariance`` (SI) follows the order of ``unknowns``. ``same_as`` are effects that are the same curve on this data.
-    ``share`` is that of all named causes together which is this one's.
+    ``share`` is that of its mean square in the sum of those of all named causes.
     """
 
     effect: str

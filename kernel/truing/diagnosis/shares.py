@@ -18,20 +18,16 @@ def by_share(full: Contest, best: Fit, causes: tuple[Cause, ...]) -> tuple[Cause
     """Return the causes with their shares, the largest first.
 
     What a cause adds is the extended model less the same without it, at every row, in units of the noise. Its share is
-    the part of the sum of all that lies along this sum, so shares add up to 1; one that works against the others is
-    below 0.
+    that of its mean square in the sum of the mean squares of all.
     """
     import numpy as np
 
     if len(causes) < 2:
         return causes
-    parts = np.array([_part(full, best, cause) for cause in causes])
-    whole = parts.sum(axis=0)
-    size = float(whole @ whole)
-    if not size > 0:
+    squares = [float(np.sum(np.square(_part(full, best, cause)))) for cause in causes]
+    if not sum(squares) > 0:
         return causes
-    shares = parts @ whole / size
-    weighed = [replace(cause, share=float(share)) for cause, share in zip(causes, shares, strict=True)]
+    weighed = [replace(cause, share=size / sum(squares)) for cause, size in zip(causes, squares, strict=True)]
     return tuple(sorted(weighed, key=lambda cause: -cause.share))
 
 

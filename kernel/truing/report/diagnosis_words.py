@@ -137,10 +137,9 @@ def fitted_text(unknown: FittedUnknown, *, with_name: bool = True) -> str:
 
 
 def cause_text(cause: Cause) -> str:
-    """Say a cause with its size, and beside others with its share."""
+    """Say a cause with its size."""
     sizes = "; ".join(fitted_text(unknown) for unknown in cause.unknowns)
-    named = f"{spoken(cause.effect)}, {sizes}" if sizes else spoken(cause.effect)
-    return named if cause.share == 1.0 else f"{named}; {percent(cause.share)} of what all causes add"
+    return f"{spoken(cause.effect)}, {sizes}" if sizes else spoken(cause.effect)
 
 
 def verdict_word(diagnosis: Diagnosis) -> str:
