@@ -11,7 +11,7 @@ from harmonic_fractal.surface_points import Column, columns_of, grid, profile
 from harmonic_fractal.surface_text import TextTable, decoded, is_text, length, metres_per_unit, read_table
 
 NAN = float("nan")
-TEXT = {".txt", ".csv", ".tsv", ".dat", ".asc", ".xyz", ".hfm", ".prn", ""}
+FORMATS_IN_TEXT = {".sdf"}  # those of the library that may be written in letters and digits
 ASK_UNIT = (
     'the unit of the heights is not stated: write height_unit = "um", or the length of one count where the file counts '
     'in steps or radians, as in height_unit = "2.918e-8 m"'
@@ -48,7 +48,7 @@ def read_surface(path: Path, layout: Layout) -> Reading:
     content = path.read_bytes()
     if not content.strip():
         raise ValueError("the file is empty")
-    if not is_text(content) or path.suffix.lower() not in TEXT:
+    if not is_text(content) or path.suffix.lower() in FORMATS_IN_TEXT:
         return _checked(_from_format(path, layout))
     table = read_table(decoded(content), skip_lines=layout.skip_lines)
     columns = columns_of(table, layout.columns)

@@ -63,6 +63,8 @@ def read_table(text: str, *, skip_lines: int = 0) -> TextTable:
     header = (*every[:start], *(line for line in every[start:] if line.lstrip().startswith("#")))
     separator = separator_of(rows[0][1])
     values, lines = _values(rows, separator)
+    if values.shape[1] == 1:
+        _demand_no_gap(every, rows)
     return TextTable(
         values=values, lines=lines, header=tuple(line.strip() for line in header if line.strip()),
         stated=_stated(header), separator=separator,
@@ -109,9 +111,16 @@ def metres_per_unit(text: object, name: str = "height_unit") -> float:
     return value
 
 
+def _demand_no_gap(every: list[str], rows: list[tuple[int, str]]) -> None:
+    """Refuse an empty line between single numbers: it may stand for a hole, and all behind it would move."""
+    empty = next((i for i in range(rows[0][0], rows[-1][0]) if not every[i - 1].strip()), None)
+    if empty is not None:
+        raise ValueError(f"line {empty} is empty; write nan where a height is missing, or take the line out")
+
+
 def _counts(line: str) -> bool:
-    stripped = line.strip(" \r\f\x1a")
-    return bool(stripped.strip()) and not stripped.startswith("#")
+    stripped = line.strip(" \r\f\x1a")  # a line of tabs alone is a row of holes
+    return bool(stripped) and not stripped.lstrip().startswith("#")
 
 
 def _is_data(line: str) -> bool:
@@ -146,9 +155,10 @@ def _values(rows: list[tuple[int, str]], separator: str | None) -> tuple[NDArray
                 "(skip_lines passes over a header of numbers)"
             )
         try:
-            numbers.extend(map(float, cells))
+            found = [float(cell or "nan") for cell in cells]
         except ValueError:
-            numbers.extend(_number(cell, number) for cell in cells)
+            found = [_number(cell, number) for cell in cells]
+        numbers.extend(found)
     values = np.frombuffer(numbers, dtype=np.float64).reshape(len(rows), width)
     lines = np.array([number for number, _ in rows], dtype=np.int64)
     if np.isinf(values).any():
