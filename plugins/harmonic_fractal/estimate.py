@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from harmonic_fractal.fitting import PowerLaw, noise_fit, straight_fit
 from harmonic_fractal.lags import SHARE, Steps, fit_steps, local_steps, stated_steps
-from harmonic_fractal.power_law import roughness_of
-from harmonic_fractal.resampling import block_weights
+from harmonic_fractal.power_law import log_roughness_of
+from harmonic_fractal.resampling import block_weights, units_of
 from harmonic_fractal.structure import (
     StructureFunction,
     mean_squares,
@@ -31,7 +31,8 @@ class Estimation:
 
     ``lags`` replaces the even choice of ``count`` lags from ``shortest_lag`` (else one point) to ``longest_lag`` (else
     a tenth of a line). ``fit`` over the self-affine range within these limits, or over all of them whatever their
-    local slopes. ``block`` neighbouring lines are resampled together; ``seed`` makes that repeatable.
+    local slopes. ``resamples`` bootstrap samples are drawn with ``seed``, of blocks of ``block`` neighbouring lines or,
+    if that is 0, of what the lines need.
     """
 
     method: Literal["pooled", "per_line"] = "pooled"
@@ -42,7 +43,7 @@ class Estimation:
     lags: tuple[float, ...] = ()
     fit: Literal["self_affine", "all"] = "self_affine"
     resamples: int = 400
-    block: int = 10
+    block: int = 0
     seed: int = 1
 
 
@@ -118,13 +119,13 @@ def estimate_of(lines: Lines, direction: Direction, settings: Estimation, *, den
         local_lags=local.lags,
         local_dimensions=local.dimensions,
         dimension=found.dimension,
-        roughness=float(np.exp(found.logarithm)),
+        roughness=_exponential(found.logarithm),
         r_squared=found.r_squared,
         line_scatter=found.scatter,
         noise=found.noise,
         range=NONE if reason else local.range,
         reason=reason,
-        resampled=np.empty((0, 2)) if reason else _resampled(curve, settings),
+        resampled=np.empty((0, 2)) if reason else _resampled(lines, curve, found, settings),
         spacing=lines.spacing,
         all_lags=np.concatenate([coarse.lags, curve.lags])[whole],
         all_values=np.concatenate([coarse.pooled, curve.pooled])[whole],
@@ -202,7 +203,7 @@ def _law(lags: Array, values: Array, settings: Estimation) -> PowerLaw:
 def _pairs(law: PowerLaw) -> Array:
     """Return D_s and ln G (..., 2), NaN where there is no G."""
     dimension = 2.0 - law.slope / 2.0
-    return np.stack([dimension, np.log(roughness_of(law.intercept, dimension))], axis=-1)
+    return np.stack([dimension, log_roughness_of(law.intercept, dimension)], axis=-1)
 
 
 def _fit(curve: StructureFunction, settings: Estimation) -> _Fit:
@@ -210,31 +211,49 @@ def _fit(curve: StructureFunction, settings: Estimation) -> _Fit:
         return _Fit(dimension=np.nan, logarithm=np.nan, r_squared=np.nan, scatter=np.nan, noise=np.nan)
     law = _law(curve.lags, curve.pooled, settings)
     singles = _single_lines(curve, settings)
-    pair = _pairs(law)
-    if settings.method == "per_line":
-        pair = singles.mean(axis=0) if singles.size else np.full(2, np.nan)
+    pair = np.nanmean(singles, axis=0) if settings.method == "per_line" else _pairs(law)
+    slopes = singles[np.isfinite(singles[:, 0]), 0]
     return _Fit(
         dimension=float(pair[0]),
         logarithm=float(pair[1]),
         r_squared=float(law.r_squared),
-        scatter=float(singles[:, 0].std(ddof=1)) if len(singles) > 1 else float("nan"),
+        scatter=float(slopes.std(ddof=1)) if len(slopes) > 1 else float("nan"),
         noise=float(law.noise),
     )
 
 
+def _exponential(logarithm: float) -> float:
+    """Return G, NaN where it is beyond all numbers: a slope near 2 of a surface that is refused."""
+    return float(np.exp(logarithm)) if abs(logarithm) < 700.0 else float("nan")
+
+
 def _single_lines(curve: StructureFunction, settings: Estimation) -> Array:
+    """Return D_s and ln G (lines, 2) of every line, NaN for one that lacks a lag or whose slope has no G."""
     values = mean_squares(curve.sums, curve.counts)
+    pairs = np.full((len(values), 2), np.nan)
     whole = (values > 0).all(axis=1)
-    pairs = _pairs(_law(curve.lags, values[whole], settings))
-    kept: Array = pairs[np.isfinite(pairs).all(axis=1)]
-    return kept
+    pairs[whole] = _pairs(_law(curve.lags, values[whole], settings))
+    pairs[~np.isfinite(pairs).all(axis=1)] = np.nan
+    return pairs
 
 
-def _resampled(curve: StructureFunction, settings: Estimation) -> Array:
+def _means_of_lines(curve: StructureFunction, weights: Array, settings: Estimation) -> Array:
+    pairs = _single_lines(curve, settings)
+    known = np.isfinite(pairs[:, 0])
+    return mean_squares(weights[:, known] @ pairs[known], weights[:, known].sum(axis=1, keepdims=True) * np.ones(2))
+
+
+def _resampled(lines: Lines, curve: StructureFunction, found: _Fit, settings: Estimation) -> Array:
+    """Return D of the surface and ln G (B, 2) of samples of blocks of lines, or of pieces of them."""
     if settings.resamples < 1:
         return np.empty((0, 2))
-    weights = block_weights(len(curve.sums), settings.block, settings.resamples, settings.seed)
-    values = mean_squares(weights @ curve.sums, weights @ curve.counts)
-    pairs = _pairs(_law(curve.lags, values, settings)) + np.array([1.0, 0.0])
-    kept: Array = pairs[np.isfinite(pairs).all(axis=1)]
+    steps = np.rint(curve.lags / lines.spacing).astype(np.int64)
+    units, block = units_of(lines.heights, curve, steps, settings.block)
+    weights = block_weights(len(units.sums), block, settings.resamples, settings.seed)
+    if settings.method == "per_line" and units is curve:
+        pairs = _means_of_lines(curve, weights, settings)
+    else:
+        pairs = _pairs(_law(curve.lags, mean_squares(weights @ units.sums, weights @ units.counts), settings))
+        pairs += np.array([found.dimension, found.logarithm]) - _pairs(_law(curve.lags, curve.pooled, settings))
+    kept: Array = pairs[np.isfinite(pairs).all(axis=1)] + np.array([1.0, 0.0])
     return kept

@@ -60,22 +60,27 @@ def structure_sums(heights: Array, steps: Steps) -> tuple[Array, Array]:
     return sums, counts
 
 
-def segment_sums(heights: Array, steps: Steps, segments: int) -> tuple[Array, Array]:
-    """Return the same for every segment of every line (lines * segments, k), segments of a line side by side.
+def piece_sums(heights: Array, steps: Steps, pieces: int) -> tuple[Array, Array]:
+    """Return the same of pieces (pieces, k) along the lines, what lies at the same place of all lines together.
 
-    The pairs of a line are shared out by where they begin, so the segments add up to the line. For a few lines only:
-    it is what a surface of a few lines, or of one, can be resampled by.
+    A pair belongs to the piece in which it begins, so the pieces add up to the whole. There are as many pieces as are
+    asked for, or as pairs of the longest lag begin on a line.
     """
-    known = np.isfinite(heights)
-    filled, weight = np.where(known, heights, 0.0), known.astype(float)
-    sums, counts = (np.empty((steps.size, heights.shape[0] * segments)) for _ in range(2))
-    for row, step in enumerate(steps):
-        starts = np.linspace(0, heights.shape[1] - step, segments, endpoint=False).astype(int)
-        both = weight[:, step:] * weight[:, :-step]
-        squares = np.square(filled[:, step:] - filled[:, :-step]) * both
-        sums[row] = np.add.reduceat(squares, starts, axis=1).ravel()
-        counts[row] = np.add.reduceat(both, starts, axis=1).ravel()
-    return sums.T, counts.T
+    points = heights.shape[1]
+    pieces = min(pieces, points - int(steps.max()))
+    sums, counts = np.zeros((pieces, steps.size)), np.zeros((pieces, steps.size))
+    rows = max(1, CACHED // points)
+    for first in range(0, heights.shape[0], rows):
+        block = np.ascontiguousarray(heights[first : first + rows], dtype=float)
+        known = np.isfinite(block)
+        filled, weight = np.where(known, block, 0.0), known.astype(float)
+        for column, step in enumerate(steps):
+            starts = np.linspace(0, points - step, pieces, endpoint=False).astype(int)
+            both = weight[:, step:] * weight[:, :-step]
+            squares = np.square(filled[:, step:] - filled[:, :-step]) * both
+            sums[:, column] += np.add.reduceat(squares.sum(axis=0), starts)
+            counts[:, column] += np.add.reduceat(both.sum(axis=0), starts)
+    return sums, counts
 
 
 def mean_squares(sums: Array, counts: Array) -> Array:
