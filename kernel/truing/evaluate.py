@@ -180,7 +180,7 @@ def _sorted_columns(setup: Setup, columns: Mapping[str, Any], rows: int) -> tupl
 def _uniform_parts(
     setup: Setup, fixed: Mapping[str, Any], arrays: Mapping[str, Any], rows: int
 ) -> Iterator[tuple[NDArray[np.intp], dict[str, Any]]]:
-    """Split a batch so that everything but Float inputs has one value; tables are made row by row."""
+    """Split a batch so that everything but Float inputs has one value; tables are made row by row, equal rows once."""
     import numpy as np
 
     per_row = {name: _each(values, setup.model.input_fields[name].kind) for name, values in fixed.items()}
@@ -190,7 +190,8 @@ def _uniform_parts(
     common = {name: values for name, values in fixed.items() if per_row[name] is None}
     differing = {name: values for name, values in per_row.items() if values is not None}
     alone = any(isinstance(item.spec, Axis) and item.spec.is_table for item in setup.model.own_result_fields.values())
-    groups = [np.array([row]) for row in range(rows)] if alone else _groups(differing, rows)
+    vary = differing or any(isinstance(values, np.ndarray) for values in arrays.values())
+    groups = [np.array([row]) for row in range(rows)] if alone and vary else _groups(differing, rows)
     for index in groups:
         part = {name: _taken(values, index, rows, alone=alone) for name, values in arrays.items()}
         yield index, {**common, **part, **{name: values[index[0]] for name, values in differing.items()}}

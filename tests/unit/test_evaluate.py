@@ -278,6 +278,16 @@ def test_tables_are_made_row_by_row() -> None:
     assert batch.reasons == {1: "nothing to group"}
 
 
+def test_a_table_of_rows_that_are_alike_is_made_once() -> None:
+    CALLS.clear()
+    setup = default_setup(Model(name="pile", title="", function=grouped))
+    for columns in ({}, {"size": 2.0}):
+        batch = evaluate_rows(setup, columns, 3)
+        np.testing.assert_array_equal(batch.results["content"], [[2.0, 2.0]] * 3)
+    assert CALLS == [0, 0]
+    assert evaluate_rows(setup, {"size": 0.0}, 2).reasons == {0: "nothing to group", 1: "nothing to group"}
+
+
 # Effects
 
 

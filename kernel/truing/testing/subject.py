@@ -38,7 +38,8 @@ class Subject:
     def offer(self) -> Offer:
         """The model as the command line would offer it."""
         name = self.model.name
-        return Offer(name, self.model, self.origin or Origin(name, "", "", "", f"entry:{name}"))
+        origin = self.origin or Origin(name, "", "", "", f"entry:{name}")
+        return Offer(name if origin.name == name else f"{origin.name}.{name}", self.model, origin)
 
     @cached_property
     def setup(self) -> Setup:
