@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 @hookimpl
 def truing_models() -> "list[Model[Any, Any]]":
     """Offer two calculations: harmonic_fractal, and harmonic_fractal.made_flank for surfaces of known truth."""
+    from harmonic_fractal.made_model import MADE_FLANK
     from harmonic_fractal.model import HARMONIC_FRACTAL
 
-    return [HARMONIC_FRACTAL]
+    return [HARMONIC_FRACTAL, MADE_FLANK]

@@ -1,0 +1,215 @@
+"""A flank is made, looked at, and its dimension and roughness are found again."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from harmonic_fractal.cleaning import without_line
+from harmonic_fractal.estimate import Estimate, Estimation, estimate_of
+from harmonic_fractal.generators import (
+    Waves,
+    brownian_profiles,
+    profile_sum,
+    surface_sum,
+    weierstrass_profile,
+    weierstrass_surface,
+)
+from harmonic_fractal.generators_brownian import brownian_surface
+from harmonic_fractal.made_answers import MadeFlank
+from harmonic_fractal.made_instrument import Instrument, as_measured
+from harmonic_fractal.made_quantities import Made
+from harmonic_fractal.power_law import Convention, converted, structure_function
+from harmonic_fractal.structure import structure_sums
+from harmonic_fractal.surface import Direction, Lines, Surface
+from truing import feasible
+
+Array = NDArray[np.float64]
+LARGEST = 4_000_000  # points of a patch
+MOST_WAVES = 50_000
+ROWS = 20  # lags of the table
+
+
+def made_flank(made: Made) -> MadeFlank:
+    """Make one flank and find its truth again; numbers only, SI: the kernel calls it once per row of a batch."""
+    truth = truth_of(made)
+    if not _possible(made, truth):
+        return _nothing()
+    surface = surface_of(made)
+    level = without_plane(surface.heights)
+    lags, values = structure_of(surface)
+    found = estimate_along(made, surface, "x")
+    feasible(
+        1.0 < found.dimension < 2.0 and 0.0 < found.roughness < np.inf,
+        "the estimator finds no slope between 0 and 2 along this flank: less noise, or another shortest_lag",
+    )
+    return MadeFlank(
+        profile_dimension=truth.dimension,
+        areal_roughness=truth.areal,
+        points=float(surface.heights.shape[1]),
+        lines=float(surface.heights.shape[0]),
+        longest=1.0 / truth.lowest,
+        shortest=1.0 / truth.highest,
+        rms_height=float(np.sqrt(np.nanmean(level**2))),
+        height=float(np.nanmax(level) - np.nanmin(level)),
+        lag=lags,
+        structure_function=values,
+        exact=exact_structure_function(made, lags),
+        power_law=np.asarray(structure_function(lags, truth.dimension, truth.areal)),
+        fitted_dimension=found.dimension + 1.0,
+        fitted_roughness=found.roughness,
+        dimension_error=found.dimension - truth.dimension,
+        roughness_error=float(np.log10(found.roughness / truth.areal)),
+        accepted=float(found.is_accepted),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Truth:
+    """What the flank is made of: dimension of its profiles, G in the areal convention, m, and band, 1/m."""
+
+    dimension: float
+    areal: float
+    lowest: float
+    highest: float
+    shape: tuple[int, int]
+
+
+def truth_of(made: Made) -> Truth:
+    """Return the truth of a flank; ``shape`` is (lines, points)."""
+    dimension, spacing = float(made.fractal_dimension) - 1.0, float(made.spacing)
+    areal = converted(made.fractal_roughness, dimension, made.density, source=made.convention, target="areal")
+    points, lines = (int(np.floor(float(side) / spacing + 1e-6)) + 1 for side in (made.length, made.width))
+    longest, shortest = float(made.longest_wave), float(made.shortest_wave)
+    side = max(float(made.length), float(made.width))
+    return Truth(
+        dimension=dimension,
+        areal=float(areal),
+        lowest=1.0 / (100.0 * side if np.isnan(longest) else longest),
+        highest=1.0 / (spacing / 50.0 if np.isnan(shortest) else shortest),
+        shape=(lines, points),
+    )
+
+
+def is_patch(made: Made, truth: Truth) -> bool:
+    """Whether neighbouring lines know of one another."""
+    return truth.shape[0] > 1 and made.kind != "profile"
+
+
+def _possible(made: Made, truth: Truth) -> bool:
+    """State what must hold, and say whether all of it does."""
+    lines, points = truth.shape
+    count = np.log(truth.highest / truth.lowest) / np.log(float(made.density)) * made.directions
+    margin = 2 * instrument_of(made).margin(float(made.spacing))
+    demands = (
+        (2.05 <= truth.dimension + 1.0 <= 2.95, "a fractal dimension below 2.05 or above 2.95: exponents diverge"),
+        (points >= 64, "a line has fewer than 64 points: make length larger or spacing smaller"),
+        (
+            (points + margin) * (lines + margin * is_patch(made, truth)) <= LARGEST,
+            f"the flank has more than {LARGEST} points: make it smaller or spacing larger",
+        ),
+        (truth.highest > truth.lowest, "the shortest wave is not shorter than the longest one"),
+        (count <= MOST_WAVES, f"the flank has more than {MOST_WAVES} waves: fewer directions or a larger density"),
+    )
+    for holds, sentence in demands:
+        feasible(holds, sentence)
+    return all(holds for holds, _ in demands)
+
+
+def instrument_of(made: Made) -> Instrument:
+    """Return the instrument that looks at the flank."""
+    return Instrument(
+        cutoff=float(made.filter_cutoff),
+        noise=float(made.noise),
+        step=float(made.height_step),
+        spikes=float(made.spikes),
+        spike_height=float(made.spike_height),
+        holes=float(made.holes),
+    )
+
+
+def waves_of(made: Made) -> Waves:
+    """Return the waves of the flank, with G in the convention of its own form."""
+    truth = truth_of(made)
+    form: Convention = "profile" if made.kind == "profile" else "one_direction" if made.directions == 1 else "areal"
+    roughness = converted(truth.areal, truth.dimension, made.density, source="areal", target=form)
+    return Waves(
+        dimension=truth.dimension,
+        roughness=float(roughness),
+        lowest=truth.lowest,
+        highest=truth.highest,
+        density=float(made.density),
+        directions=made.directions,
+    )
+
+
+def surface_of(made: Made) -> Surface:
+    """Return the flank as the instrument shows it: everything random comes from its seed."""
+    truth, instrument, spacing = truth_of(made), instrument_of(made), float(made.spacing)
+    of_flank, of_instrument = np.random.default_rng(made.seed).spawn(2)
+    made_heights = _heights(made, instrument.margin(spacing), of_flank)
+    heights = as_measured(made_heights, spacing, instrument, of_instrument, across=is_patch(made, truth))
+    across = spacing if truth.shape[0] > 1 else float("nan")
+    return Surface(heights=heights, spacing_x=spacing, spacing_y=across, name=f"made flank, seed {made.seed}")
+
+
+def _heights(made: Made, margin: int, rng: np.random.Generator) -> Array:
+    """Make the flank with a margin for the filter on each side; across its lines only where these are neighbours."""
+    truth, spacing = truth_of(made), float(made.spacing)
+    lines, points = truth.shape
+    beside = margin if is_patch(made, truth) else 0
+    lines, points = lines + 2 * beside, points + 2 * margin
+    if made.kind == "brownian":
+        step = float(np.asarray(structure_function(spacing, truth.dimension, truth.areal)))
+        make = brownian_surface if lines > 1 else brownian_profiles
+        return make(truth.dimension, step, (lines, points), rng)
+    x = spacing * (np.arange(points) - margin)
+    if made.kind == "profile":
+        return weierstrass_profile(waves_of(made), x, lines, rng)
+    return weierstrass_surface(waves_of(made), x, spacing * (np.arange(lines) - beside), rng)
+
+
+def exact_structure_function(made: Made, lags: Array) -> Array:
+    """Return S (k,), m^2, along the lines of all flanks of this truth, before the instrument."""
+    truth = truth_of(made)
+    if made.kind == "brownian":
+        return np.asarray(structure_function(lags, truth.dimension, truth.areal))
+    return (profile_sum if made.kind == "profile" else surface_sum)(waves_of(made), lags)
+
+
+def structure_of(surface: Surface) -> tuple[Array, Array]:
+    """Return lags (k,), m, evenly in their logarithm up to half a line, and S (k,) of all lines together, m^2."""
+    points = surface.heights.shape[1]
+    steps = np.unique(np.round(np.geomspace(1.0, points // 2, ROWS)).astype(int))
+    sums, counts = structure_sums(surface.heights, steps)
+    return steps * surface.spacing_x, np.asarray(sums.sum(axis=0) / counts.sum(axis=0))
+
+
+def estimate_along(made: Made, surface: Surface, direction: Direction) -> Estimate:
+    """Find dimension and roughness again, each line without its own straight line.
+
+    Lines nearer to one another than the longest lag, a tenth of a line, are resampled together: they are alike.
+    """
+    lines = surface.lines(direction)
+    level = Lines(without_line(lines.heights), lines.spacing)
+    alike = 1 if made.kind == "profile" else max(1, lines.heights.shape[1] // 10)
+    settings = Estimation(noise_aware=made.noise_aware, shortest_lag=float(made.shortest_lag), block=alike)
+    return estimate_of(level, direction, settings)
+
+
+def without_plane(heights: Array) -> Array:
+    """Return heights less their mean plane, or less their mean line where there is one line only."""
+    rows, points = heights.shape
+    y, x = np.mgrid[0:rows, 0:points]
+    known = np.isfinite(heights)
+    columns = [np.ones(heights.shape), x - 0.5 * (points - 1), *([y - 0.5 * (rows - 1)] if rows > 1 else [])]
+    design = np.stack([column[known] for column in columns], axis=1)
+    slopes = np.linalg.solve(design.T @ design, design.T @ heights[known])
+    return np.asarray(heights - sum(slope * column for slope, column in zip(slopes, columns, strict=True)))
+
+
+def _nothing() -> MadeFlank:
+    """Return a flank that cannot be."""
+    names = MadeFlank.__dataclass_fields__
+    along = {"lag", "structure_function", "exact", "power_law"}
+    return MadeFlank(**{name: np.full(1, np.nan) if name in along else float("nan") for name in names})
