@@ -43,12 +43,16 @@ def interface_of(drive: Drive) -> Rough:
     Two flanks are fitted by one power law over the range that both share (``range_of``); with equal dimensions that is
     exact. The deviations of both inputs are added at the end.
     """
-    first, second = flanks_of(drive)
-    both = first if second is None else _sum_or_first(first, second, drive)
+    both = together(*flanks_of(drive), drive)
     return Rough(
         dimension=both.dimension + drive.dimension_deviation,
         roughness=both.roughness * np.exp(drive.roughness_deviation),
     )
+
+
+def together(first: Rough, second: Rough | None, drive: Drive) -> Rough:
+    """Return one rough surface for both flanks, without any deviation; the second one may be smooth."""
+    return first if second is None else _sum_or_first(first, second, drive)
 
 
 def is_accepted(drive: Drive) -> float:

@@ -109,6 +109,11 @@ class Drive:
         0.0, "urad/(N*m)", symbol="c_s", note="compliance in series with the mesh: cup, wave generator, bearing, rig",
         at_least=0, at_most=1e6,
     )  # fmt: skip
+    # What is asked
+    required_stiffness: Float = given(0.0, "N/m", symbol="K_req", note="of the pair; 0: nothing is asked", at_least=0,
+                                      at_most=1e15)  # fmt: skip
+    required_reliability: Float = given(0.95, "", symbol="R_req", note="share of drives that are to reach it", above=0,
+                                        below=1)  # fmt: skip
     # Neutral inputs: errors and effects reach the calculation through them
     dimension_deviation: Float = given(0.0, "", symbol="Delta D", at_least=-1, at_most=1,
                                        note=f"of the dimension of both flanks together, {NEUTRAL}")  # fmt: skip
