@@ -10,6 +10,7 @@ from harmonic_fractal.fitting import PowerLaw, noise_fit, straight_fit
 from harmonic_fractal.lags import SHARE, Steps, fit_steps, local_steps, stated_steps
 from harmonic_fractal.power_law import log_roughness_of
 from harmonic_fractal.resampling import block_weights, units_of
+from harmonic_fractal.roughness_length import roughness_length_of
 from harmonic_fractal.structure import (
     StructureFunction,
     mean_squares,
@@ -57,6 +58,7 @@ class Estimate:
     ``reason`` says why and the fit is for comparison only. ``resampled`` (B, 2) holds D of the surface and ln G of
     bootstrap samples of blocks of lines, as pairs because their errors go together. ``all_lags`` and ``all_values``
     are the whole structure function, those between which the local slopes are taken included.
+    ``window_dimension`` is the profile dimension by the roughness-length method, for comparison.
     """
 
     direction: Direction
@@ -75,6 +77,7 @@ class Estimate:
     spacing: float
     all_lags: Array = field(default_factory=lambda: np.empty(0))
     all_values: Array = field(default_factory=lambda: np.empty(0))
+    window_dimension: float = float("nan")
 
     @property
     def is_accepted(self) -> bool:
@@ -105,7 +108,7 @@ def estimate_of(lines: Lines, direction: Direction, settings: Estimation, *, den
     """Read D and G from parallel lines of one direction, each with its own straight line removed."""
     points = lines.heights.shape[1]
     every = _steps(points, lines.spacing, settings)
-    coarse = _measured(lines, local_steps(points))
+    coarse = _measured(lines, local_steps(points, _shortest(settings) / lines.spacing))
     local = _local(coarse, _noise(lines, every, settings), settings)
     steps = every if local.reason or settings.fit == "all" else _within(points, lines.spacing, local.range, settings)
     curve = _measured(lines, steps)
@@ -129,7 +132,13 @@ def estimate_of(lines: Lines, direction: Direction, settings: Estimation, *, den
         spacing=lines.spacing,
         all_lags=np.concatenate([coarse.lags, curve.lags])[whole],
         all_values=np.concatenate([coarse.pooled, curve.pooled])[whole],
+        window_dimension=roughness_length_of(lines.heights, lines.spacing).dimension,
     )
+
+
+def _shortest(settings: Estimation) -> float:
+    """Return the shortest lag that may be looked at, m, NaN where the data decide."""
+    return min(settings.lags, default=settings.shortest_lag)
 
 
 def _steps(points: int, spacing: float, settings: Estimation) -> Steps:
@@ -142,11 +151,12 @@ def _steps(points: int, spacing: float, settings: Estimation) -> Steps:
 def _within(points: int, spacing: float, found: tuple[float, float], settings: Estimation) -> Steps:
     """Return the lags, in points, of the fit over a self-affine range.
 
-    From its shortest lag to a tenth of a line, or as far as it takes to make a decade; not beyond the range.
+    From its shortest lag to a tenth of a line, or as far as it takes to make a decade; not beyond the range. Noise is
+    told from the surface by the shortest lags: where it is fitted, they belong to the fit.
     """
     low, high = found
-    if settings.noise_aware and not settings.shortest_lag > 0:
-        low = spacing
+    if settings.noise_aware:
+        low = spacing if np.isnan(_shortest(settings)) else _shortest(settings)
     last = min(max(SHARE * points * spacing, DECADE * low), high)
     if settings.lags:
         kept = [lag for lag in settings.lags if low * (1 - SLACK) <= lag <= high * (1 + SLACK)]
@@ -175,8 +185,7 @@ def _local(curve: StructureFunction, noise: float, settings: Estimation) -> _Loc
     if lags.size < 2:
         return _Local(lags=np.empty(0), dimensions=np.empty(0), range=NONE, reason=no_range(lags, np.empty(0)))
     middles, dimensions = local_dimensions(lags, values)
-    outside = (lags[:-1] < settings.shortest_lag * (1 - SLACK)) | (lags[1:] > settings.longest_lag * (1 + SLACK))
-    found = self_affine_range(lags, np.where(outside, np.nan, dimensions))
+    found = self_affine_range(lags, np.where(lags[:-1] >= settings.longest_lag, np.nan, dimensions))
     reason = no_range(lags, dimensions) if np.isnan(found[0]) else ""
     return _Local(lags=middles, dimensions=dimensions, range=found, reason=reason)
 

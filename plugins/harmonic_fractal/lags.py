@@ -17,9 +17,8 @@ def fit_steps(points: int, shortest: float, longest: float, count: int) -> Steps
 
     ``shortest`` and ``longest`` in points; NaN for one point and for a tenth of a line.
     """
-    first = 1 if np.isnan(shortest) else max(1, int(np.ceil(shortest * (1 - SLACK))))
     last = int(SHARE * points * (1 + SLACK)) if np.isnan(longest) else int(longest * (1 + SLACK))
-    return _even(first, min(last, points - 1), count)
+    return _even(_first(shortest), min(last, points - 1), count)
 
 
 def stated_steps(points: int, lags: Sequence[float]) -> Steps:
@@ -28,9 +27,13 @@ def stated_steps(points: int, lags: Sequence[float]) -> Steps:
     return whole[(whole >= 1) & (whole < points)]
 
 
-def local_steps(points: int) -> Steps:
-    """Return the lags, from one point to a quarter of a line, between which the local slopes are taken."""
-    return _even(1, LOCAL_SHARE * points, LOCAL_COUNT)
+def local_steps(points: int, shortest: float) -> Steps:
+    """Return the lags between which local slopes are taken: from the shortest (NaN: a point) to a quarter of a line."""
+    return _even(_first(shortest), LOCAL_SHARE * points, LOCAL_COUNT)
+
+
+def _first(shortest: float) -> int:
+    return 1 if np.isnan(shortest) else max(1, int(np.ceil(shortest * (1 - SLACK))))
 
 
 def _even(first: float, last: float, count: int) -> Steps:

@@ -15,8 +15,8 @@ Where the band is wide the sum over n is an integral over d ln(f)/ln(gamma), and
 
     Lambda(D_s) = Gamma(2 D_s-3) sin[(2 D_s-3) pi/2] / (4-2 D_s)
 
-Many papers print C without (2 pi)^(4-2 D_s): that belongs to a sum in radians per metre, not to the one above. G from it
-is too large by (2 pi)^((2-D_s)/(D_s-1)): 6.3 times at D_s = 1.5, 15.7 times at 1.4.
+Many papers print C without (2 pi)^(4-2 D_s): that belongs to a sum in radians per metre, not to the one above. G from
+it is too large by (2 pi)^((2-D_s)/(D_s-1)): 6.3 times at D_s = 1.5, 15.7 times at 1.4.
 
 **Surface** (Yan and Komvopoulos 1998). Its plane waves carry the factor (ln(gamma)/M)^(1/2) in M directions, so that
 ln(gamma) cancels and G does not depend on gamma. A trace at the angle beta to a wave sees it lengthened by
@@ -52,7 +52,7 @@ def constant(dimension: Float, density: Float, convention: Convention) -> Float:
     """Return C of S = C G^(2(D_s-1)) lag^(4-2 D_s), a pure number, of this convention of G.
 
     ``dimension`` is D_s of the profile, 1 to 2; ``density`` is gamma, which only the convention "profile" contains.
-    ``areal`` is a surface of waves in many directions, any trace; ``one_direction`` one of parallel waves, trace across.
+    ``areal``: a surface of waves in many directions, any trace; ``one_direction``: parallel waves, trace across them.
     """
     exponent = 4.0 - 2.0 * np.asarray(dimension)
     one_direction: Float = (2.0 * np.pi) ** exponent * spectral_constant(dimension)
