@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import ast
 import difflib
+import io
 import os
 import re
 import shlex
@@ -25,6 +26,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -66,6 +68,7 @@ class Desk:
     folder: Path
     site: Path
     faults: list[str] = field(default_factory=list)
+    as_processes: bool = False
 
     def run(self, words: str) -> tuple[str, int]:
         """Run one command as the reader would; return what a terminal shows, and the exit code."""
@@ -73,12 +76,28 @@ class Desk:
         if parts[0] == "cd":
             self.folder = (self.folder / parts[1]).resolve()
             return "", 0
+        if parts[0] == "calc" and not self.as_processes and not self.site.exists() and not OF_ITS_OWN & set(parts):
+            return self._here(parts[1:])
         ended = subprocess.run(
             self._spelled_out(parts), cwd=self.folder, env=self._environment(), stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, text=True, encoding="utf-8", timeout=300, check=False,
         )  # fmt: skip
         said = ended.stdout.replace("\\", "/") if os.name == "nt" else ended.stdout  # the pages show paths with /
         return "" if parts[0] == "pip" and ended.returncode == 0 else said, ended.returncode
+
+    def _here(self, words: list[str]) -> tuple[str, int]:
+        """Run ``calc`` in this process, and forget the reader's files afterwards: the next command reads them anew."""
+        from truing.cli import main
+
+        said, before = io.StringIO(), list(sys.path)
+        with chdir(self.folder), redirect_stdout(said), redirect_stderr(said), _terminal():
+            code = main(words)
+        sys.path[:] = before
+        home = str(self.folder.resolve())
+        for name, module in list(sys.modules.items()):
+            if str(getattr(module, "__file__", None) or "").startswith(home):
+                del sys.modules[name]
+        return said.getvalue(), code
 
     def _spelled_out(self, parts: list[str]) -> list[str]:
         """Use this Python for ``calc``, ``python`` and ``pip``; what is installed goes to a folder of its own."""
@@ -93,13 +112,36 @@ class Desk:
         raise AssertionError(f"the pages run calc, python, pip install and cd; not {parts[0]}")
 
     def _environment(self) -> dict[str, str]:
-        own = {"PYTHONUNBUFFERED": "1", "PYTHONIOENCODING": "utf-8", "PYTHONPATH": str(self.site), "COLUMNS": "80"}
+        own = {"PYTHONUNBUFFERED": "1", "PYTHONIOENCODING": "utf-8", "PYTHONPATH": str(self.site)}
         kept = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "COV"))}
-        return {**kept, **own, "TERM": "dumb", "NO_COLOR": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+        return {**kept, **own, **TERMINAL, "PYTHONDONTWRITEBYTECODE": "1"}
 
 
-def desk_in(folder: Path) -> Desk:
-    """Prepare an empty folder with the examples that the manual ships."""
+TERMINAL = {"COLUMNS": "80", "TERM": "dumb", "NO_COLOR": "1"}
+OF_ITS_OWN = {"--workers", "--cluster", "--pdf"}
+"""Options of commands that start processes themselves: these are typed as a reader types them."""
+
+
+@contextmanager
+def _terminal() -> Iterator[None]:
+    """Let this process have the terminal that the pages show."""
+    before = {name: os.environ.get(name) for name in TERMINAL}
+    os.environ.update(TERMINAL)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def desk_in(folder: Path, *, as_processes: bool = False) -> Desk:
+    """Prepare an empty folder with the examples that the manual ships.
+
+    Commands are run in this process where they may be, or each as a process of its own.
+    """
     work = folder / "work"
     work.mkdir(parents=True)
     for example in EXAMPLES.iterdir():
@@ -107,7 +149,7 @@ def desk_in(folder: Path) -> Desk:
             shutil.copytree(example, work / example.name, ignore=shutil.ignore_patterns("__pycache__", "runs"))
         else:
             shutil.copy(example, work / example.name)
-    return Desk(work, folder / "site")
+    return Desk(work, folder / "site", as_processes=as_processes)
 
 
 def blocks(page: Path) -> Iterator[Block]:
