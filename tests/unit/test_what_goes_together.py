@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 import pytest
 
-from truing import Float, Model, Tolerance, axis, column, drawn, found, given, inputs, results
+from truing import Float, Model, Tolerance, axis, column, drawn, found, given, inputs, loaded, results
 from truing.errors import DeclarationError, InputError
 from truing.gauge import one_machine, read_by_gauge
 from truing.inputs_file import setup_from_text
@@ -17,6 +17,11 @@ from truing.kernel import Offer, Origin
 from truing.measurements import read_rows
 from truing.setup import Setup
 from truing.studies.scatter import scatter_of
+
+
+def weight_in(path: Path) -> float:
+    """A file that holds one number."""
+    return float(path.read_text())
 
 
 @inputs
@@ -28,6 +33,7 @@ class Beam:
     slack: Float = given(0.0, "N", symbol="s")
     places: Float = given((0.0, 1.0, 2.0), "m", along="place")
     weighed: str = given("well", note="how the load was weighed")
+    record: float | None = loaded(weight_in, default=None, note="of the balance")
 
 
 @results
@@ -138,6 +144,21 @@ def test_a_draw_sees_the_inputs_it_asks_for() -> None:
     assert np.std(drawn_) == pytest.approx(0.5, rel=0.05)
     changed = replace(badly, inputs=replace(badly.inputs, weighed="well"))
     assert scatter_of(changed).causes == ()
+
+
+def by_record(rng: Any, count: int, *, record: float | None) -> dict[str, Any]:
+    """A balance that wrote down how much it scatters."""
+    return {} if record is None else {"slack": rng.normal(0.0, record, count)}
+
+
+def test_a_draw_sees_a_file_and_that_there_is_none(tmp_path: Path) -> None:
+    (tmp_path / "balance.txt").write_text("0.25")
+    errors = [Tolerance("balance", drawn(by_record, of=["record"]), on=["slack"])]
+    offer = Offer("beam", Model(name="beam", title="Beam", function=beam, errors=errors), OFFER.origin)
+    assert setup_from_text("", offer, file="beam.toml", folder=tmp_path).distributions() == {}
+    text = '[inputs]\nrecord = { file = "balance.txt" }\n'
+    with_file = setup_from_text(text, offer, file="beam.toml", folder=tmp_path)
+    assert with_file.distributions()["balance"]["slack"].sd == pytest.approx(0.25, rel=0.02)
 
 
 def test_a_draw_asks_for_inputs_that_exist() -> None:

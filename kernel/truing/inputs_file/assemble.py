@@ -23,11 +23,13 @@ Values = Mapping[tuple[str, ...], Any]
 
 
 def nominals_of(model: Model[Any, Any], values: Values) -> dict[str, Any]:
-    """Return every input and condition in SI: as stated, else as declared; files that are missing are left out."""
+    """Return every input and condition in SI: as stated, else as declared; files without a default are left out."""
     found: dict[str, Any] = {name: condition.zero for name, condition in model.conditions.items()}
     for name, item in model.input_fields.items():
         if hasattr(item.spec, "initial"):
             found[name] = item.spec.initial()
+        elif getattr(item.spec, "default", dataclasses.MISSING) is not dataclasses.MISSING:
+            found[name] = item.spec.default
     for (section, name, *_), value in ((path, value) for path, value in values.items() if len(path) == 2):
         if section in {"inputs", "conditions"}:
             found[name] = value
