@@ -4,6 +4,7 @@ From torque 0 it would be infinite: below a small load all contacts are plastic,
 just above it rises in proportion to what is beyond, so that the integral of 1/K grows without end, as a logarithm.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,8 @@ from truing import Float
 
 NODES = 8  # of Gauss and Legendre on each panel
 WIDEST = 1.5  # panel, in the variable of integration
-KINKS = 24  # places at which a panel ends because there a pair turns elastic; of more pairs each matters less
+KINKS = 128  # places at which a panel ends because there a pair turns elastic; of more pairs each matters less
+ROWS = 4096  # cut into panels at a time
 
 
 @dataclass(frozen=True)
@@ -26,25 +28,31 @@ class Panels:
     start: NDArray[np.float64]
     width: NDArray[np.float64]
 
+    def in_pieces(self, count: int) -> "Iterator[Panels]":
+        """Yield so many at a time."""
+        for start in range(0, len(self.row), count):
+            some = slice(start, start + count)
+            yield Panels(self.row[some], self.start[some], self.width[some])
+
 
 def mesh_torsion(torque: Float, reference: Float, mesh: Mesh) -> tuple[Float, Float]:
     """Return the torsion of the mesh from the reference to the size of the torque, rad, and that of its roughness.
 
     Both are 0 below the reference, and infinite where all contacts are plastic at the reference. The second one leaves
-    out films and springs. Accuracy: about 1e-9 of the value.
+    out films and springs. Accuracy: 1e-9 of the value; with more than 250 pairs and a reference near the plastic limit
+    1e-7.
     """
     given = np.broadcast_arrays(torque_logarithm(torque, mesh), torque_logarithm(reference, mesh), mesh.factor)
     last, first, factor = (np.atleast_1d(item) for item in given)
     rows = len(last)
-    panels = _panels(first, last, mesh, rows)
     moment = np.broadcast_to(mesh.plastic_torque / np.square(mesh.radius), (rows,)) / factor
     whole, rough = np.zeros(rows), np.zeros(rows)
-    step = max(CHUNK // (NODES * len(mesh.arcs.shares)), 1)
-    for start in range(0, len(panels.row), step):
-        index = slice(start, start + step)
-        piece = Panels(panels.row[index], panels.start[index], panels.width[index])
-        for total, part in zip((whole, rough), _integrals(piece, mesh, rows), strict=True):
-            total += np.bincount(piece.row, weights=part, minlength=rows)
+    active = np.flatnonzero((last > first) & (first > 0.0))  # NaN is not
+    for begin in range(0, len(active), ROWS):
+        index = active[begin : begin + ROWS]
+        for piece in _panels(index, first, last, mesh).in_pieces(CHUNK // (NODES * len(mesh.arcs.shares)) + 1):
+            for total, part in zip((whole, rough), _integrals(piece, mesh, rows), strict=True):
+                np.add.at(total, piece.row, part)
     endless = (first <= 0.0) & (last > first)
     both = (np.where(endless, np.inf, total * moment) for total in (whole, rough))
     all_of_it, of_roughness = (value if np.ndim(given[0]) else value[0] for value in both)
@@ -56,21 +64,20 @@ def _way(size: Float, decay: Float) -> Float:
     return np.log(np.expm1(decay * size))
 
 
-def _panels(first: NDArray[np.float64], last: NDArray[np.float64], mesh: Mesh, rows: int) -> Panels:
-    """Cut the way of every row where a pair turns elastic, and further until no piece is too wide."""
-    active = np.flatnonzero((last > first) & (first > 0.0))  # NaN is not
-    law = mesh.pair.of_rows(active, rows, 1).law
-    low, high = first[active, np.newaxis], last[active, np.newaxis]
+def _panels(index: NDArray[np.intp], first: NDArray[np.float64], last: NDArray[np.float64], mesh: Mesh) -> Panels:
+    """Cut the way of these rows where a pair turns elastic, and further until no piece is too wide."""
+    law = mesh.pair.of_rows(index, len(first), 1).law
+    low, high = first[index, np.newaxis], last[index, np.newaxis]
     kinks = -mesh.arcs.offsets[1:]
     kinks = kinks[np.unique(np.linspace(0, len(kinks) - 1, KINKS).astype(int))] if len(kinks) > KINKS else kinks
     marks = np.concatenate([low, np.clip(kinks, low, high), high], axis=1)
-    ends = _way(micro.size_of(marks, law), law.decay)
-    widths = np.diff(ends, axis=1)
+    ends = np.asarray(_way(micro.size_of(marks, law), law.decay))
+    widths = np.nan_to_num(np.diff(ends, axis=1))  # rows that are refused have none
     counts = np.ceil(widths / WIDEST).astype(int).ravel()
     width = np.repeat(widths.ravel() / np.maximum(counts, 1), counts)
     behind = np.arange(len(width)) - np.repeat(np.cumsum(counts) - counts, counts)
     start = np.repeat(ends[:, :-1].ravel(), counts) + behind * width
-    row = np.repeat(np.repeat(active, widths.shape[1]), counts)
+    row = np.repeat(np.repeat(index, widths.shape[1]), counts)
     return Panels(row, start, width)
 
 

@@ -1,0 +1,226 @@
+"""Contact of one rough pair: closed forms beside quadrature, laws of scale, limits, and the clearance."""
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from harmonic_by_quadrature import RoughPair
+from scipy.integrate import quad
+
+from harmonic_fractal import clearance, micro
+from harmonic_fractal.contact import Contact, contact_of, pressed
+from harmonic_fractal.interface import Rough, interface_of
+from harmonic_fractal.model import HARMONIC_FRACTAL
+from harmonic_fractal.quantities import Drive
+
+SURFACES = [(2.1, 1e-22), (2.3, 1e-11), (2.4, 1e-11), (2.5 - 1e-7, 1e-9), (2.5, 1e-9), (2.5 + 1e-7, 1e-9),
+            (2.6, 1e-9), (2.9, 1e-9)]  # fmt: skip
+LOADS = np.geomspace(1e-8, 1e3, 34)
+
+
+def drive_of(**changed: Any) -> Drive:
+    """A drive with the defaults but for these inputs, SI."""
+    made: Drive = replace(HARMONIC_FRACTAL.inputs(), **changed)
+    return made
+
+
+def contact(dimension: float = 2.4, roughness: float = 1e-11, **changed: Any) -> Contact:
+    """The contact of a surface on steel."""
+    drive = drive_of(fractal_dimension=dimension, fractal_roughness=roughness, **changed)
+    return contact_of(drive, interface_of(drive))
+
+
+# Domain factor
+
+
+@pytest.mark.parametrize(
+    ("dimension", "limit"), [(2.0 + 1e-9, ((1 + np.sqrt(5)) / 2) ** 2), (3.0 - 1e-9, np.e - 1)], ids=["2", "3"]
+)
+def test_domain_factor_has_its_limits(dimension: float, limit: float) -> None:
+    assert micro.domain_factor(dimension) == pytest.approx(limit, rel=1e-8)
+
+
+def test_domain_factor_solves_its_equation() -> None:
+    dimension = np.linspace(2.01, 2.99, 99)
+    expected = [RoughPair(value, 1e-11).domain_factor for value in dimension]
+    np.testing.assert_allclose(micro.domain_factor(dimension), expected, rtol=1e-12)
+
+
+# Closed forms beside quadrature over single contacts
+
+
+@pytest.mark.parametrize("rule", ["hardness", "yield_onset"])
+@pytest.mark.parametrize(("dimension", "roughness"), SURFACES)
+def test_load_stiffness_and_areas_are_the_integrals_over_all_contacts(
+    dimension: float, roughness: float, rule: str
+) -> None:
+    ours = contact(dimension, roughness, critical_rule=rule)
+    pressure = 3e9 if rule == "hardness" else 3e9 * (0.454 + 0.41 * 0.3) / 3
+    pair = RoughPair(dimension, roughness, pressure=pressure)
+    assert ours.critical_area == pytest.approx(pair.critical_area, rel=1e-9)
+    for load in (1e-3, 25.0, 400.0):
+        found = pressed(load, ours)
+        assert pair.load(float(found.largest_area)) == pytest.approx(load, rel=1e-6)
+        assert found.stiffness == pytest.approx(pair.stiffness(float(found.largest_area)), rel=1e-6)
+        truncated, real = pair.areas(float(found.largest_area))
+        assert found.contact_area == pytest.approx(truncated, rel=1e-6)
+        assert found.real_area == pytest.approx(real, rel=1e-6)
+
+
+@pytest.mark.parametrize(("dimension", "roughness"), SURFACES)
+def test_a_tip_radius_that_follows_the_area_makes_the_pair_stiffer(dimension: float, roughness: float) -> None:
+    found = pressed(400.0, contact(dimension, roughness, tip_rule="scaled"))
+    expected = RoughPair(dimension, roughness).stiffness(float(found.largest_area), following=True)
+    assert found.stiffness == pytest.approx(expected, rel=1e-6)
+
+
+def test_the_closed_form_is_smooth_across_two_and_a_half() -> None:
+    dimension = 2.5 + np.array([-1e-7, -1e-9, 0.0, 1e-9, 1e-7])
+    found = pressed(25.0, contact(dimension, 1e-9))  # type: ignore[arg-type]
+    slope = 13.24  # d ln K/d D there
+    expected = np.log(found.stiffness[2]) + slope * (dimension - 2.5)  # type: ignore[index]
+    np.testing.assert_allclose(np.log(found.stiffness), expected, atol=1e-9)
+
+
+# Load and largest area
+
+
+@pytest.mark.parametrize(("dimension", "roughness"), SURFACES)
+def test_from_load_to_largest_area_and_back(dimension: float, roughness: float) -> None:
+    ours = contact(dimension, roughness)
+    size = micro.size_of(np.log(LOADS / ours.plastic_limit), ours.law)
+    back = np.exp(micro.load_logarithm(size, ours.law)) * ours.plastic_limit
+    np.testing.assert_allclose(back, LOADS, rtol=1e-12)
+
+
+@pytest.mark.parametrize("beyond", [1e-12, 1e-9, 1e-6, 1e-3])
+def test_just_above_the_plastic_limit_the_stiffness_rises_in_proportion(beyond: float) -> None:
+    law = micro.Law(2.4, 1.0)
+    size = micro.size_of(np.log1p(beyond), law)
+    slope = micro.load_slope(1e-300, law)
+    assert size == pytest.approx(beyond / slope, rel=max(2 * beyond, 1e-11))
+    assert micro.stiffness_share(size, law) == pytest.approx(0.2 * size, rel=max(2 * beyond, 1e-11))
+
+
+def test_below_the_plastic_limit_there_is_no_stiffness_and_no_crash() -> None:
+    ours = contact()
+    found = pressed(ours.plastic_limit * np.array([1e-20, 0.5, 1.0]), ours)
+    assert (found.stiffness == 0.0).all()
+    assert (found.load_exponent == 0.0).all()
+    np.testing.assert_allclose(found.contact_area, ours.plastic_limit * np.array([1e-20, 0.5, 1.0]) / 3e9, rtol=1e-12)
+    np.testing.assert_allclose(found.real_area, found.contact_area, rtol=1e-12)
+
+
+# Laws of scale and sense
+
+
+def test_moduli_hardness_and_load_scale_together() -> None:
+    steel = HARMONIC_FRACTAL.inputs().flexspline
+    stiffer = replace(steel, youngs_modulus=3.0 * steel.youngs_modulus)
+    once, thrice = pressed(25.0, contact()), pressed(
+        75.0, contact(flexspline=stiffer, circular=stiffer, hardness=9e9)
+    )  # fmt: skip
+    assert thrice.largest_area == pytest.approx(once.largest_area, rel=1e-12)
+    assert thrice.stiffness == pytest.approx(3.0 * once.stiffness, rel=1e-12)
+
+
+@pytest.mark.parametrize(("dimension", "roughness"), SURFACES)
+def test_more_load_is_stiffer_and_more_roughness_softer(dimension: float, roughness: float) -> None:
+    over_load = pressed(LOADS, contact(dimension, roughness)).stiffness
+    assert (np.diff(over_load) >= 0.0).all()
+    assert over_load[-1] > 0.0  # type: ignore[index]
+    rougher = [pressed(1e3, contact(dimension, roughness * factor)).stiffness for factor in (0.1, 1.0, 10.0)]
+    assert all(after < before for before, after in pairwise(rougher))
+
+
+@pytest.mark.parametrize(("dimension", "roughness"), SURFACES)
+def test_load_exponent_is_the_slope_of_the_stiffness(dimension: float, roughness: float) -> None:
+    ours, step = contact(dimension, roughness), 1e-5
+    low, here, high = (pressed(25.0 * np.exp(way), ours) for way in (-step, 0.0, step))
+    slope = np.log(high.stiffness / low.stiffness) / (2.0 * step)
+    assert here.load_exponent == pytest.approx(slope, rel=1e-7)
+
+
+@pytest.mark.parametrize("dimension", [2.2, 2.3, 2.4])
+def test_load_exponent_far_above_the_critical_area(dimension: float) -> None:
+    law = micro.Law(dimension, 1.0)
+    assert micro.load_exponent(200.0, law) == pytest.approx((dimension - 1) / (4 - dimension), abs=1e-6)
+    assert micro.load_exponent(200.0, micro.Law(5.0 - dimension, 1.0)) == pytest.approx(1.0, abs=1e-6)
+
+
+# Clearance
+
+
+@pytest.mark.parametrize(("dimension", "roughness"), SURFACES)
+def test_the_clearance_twice_is_the_interference_of_the_largest_contact(dimension: float, roughness: float) -> None:
+    ours = contact(dimension, roughness)
+    largest = float(pressed(25.0, ours).largest_area)
+    once = clearance.amplitude(np.sqrt(largest / np.pi), ours, 1.5)
+    assert 2.0 * once == pytest.approx(RoughPair(dimension, roughness).interference(largest), rel=1e-12)
+
+
+def test_three_readings_of_the_clearance() -> None:
+    ours = {}
+    for rule in ("amplitude", "interference", "patch"):
+        drive = drive_of(clearance_rule=rule)
+        radius, multiple = clearance.read_radius(drive, 1e-4)
+        ours[rule] = multiple * clearance.amplitude(radius, contact(), 1.5)
+    assert ours["interference"] == pytest.approx(2.0 * ours["amplitude"], rel=1e-12)
+    # the wave as long as the patch: G^(D-2) sqrt(ln 1.5) L^(3-D)
+    assert ours["patch"] == pytest.approx(1e-11**0.4 * np.sqrt(np.log(1.5)) * 2e-4**0.6, rel=1e-12)
+
+
+@pytest.mark.parametrize(("dimension", "roughness", "first"), [
+    (2.1, 1e-22, 1e-3), (2.3, 1e-11, 4e-3), (2.4, 1e-11, 1e-3), (2.4, 1e-11, 1.4e-5), (2.5, 1e-9, 1.0),
+    (2.6, 1e-9, 1e-3), (2.9, 1e-9, 1e-2),
+])  # fmt: skip
+def test_the_approach_is_the_integral_of_the_compliance(dimension: float, roughness: float, first: float) -> None:
+    ours = contact(dimension, roughness)
+    assert first > ours.plastic_limit
+    expected = quad(
+        lambda x: np.exp(x) / pressed(np.exp(x), ours).stiffness, np.log(first), np.log(25.0),
+        points=[np.log(first * (1.0 + 10.0**-k)) for k in range(1, 4)], limit=500, epsabs=0.0, epsrel=1e-11,
+    )[0]  # fmt: skip
+    assert clearance.approach(25.0, first, ours) == pytest.approx(expected, rel=1e-8)
+
+
+def test_the_approach_from_the_plastic_limit_has_no_end() -> None:
+    """Near F_c the stiffness rises in proportion, so each step towards it adds as much as the last one."""
+    ours = contact()
+    added = [clearance.approach(25.0, ours.plastic_limit * (1.0 + 10.0**-k), ours) for k in (4, 5, 6, 7)]
+    steps = np.diff(added)
+    np.testing.assert_allclose(steps, steps[0], rtol=1e-3)
+    assert steps[0] > 1e-9
+    assert clearance.approach(25.0, ours.plastic_limit, ours) == np.inf
+    assert clearance.approach(1e-3, 2e-3, ours) == 0.0
+
+
+def test_height_of_a_patch_from_its_waves() -> None:
+    """The rms is that of the sum of all waves; the height is that of patches summed with random phases."""
+    rng, ratio, length = np.random.default_rng(11), 1.5, 2e-4
+    order, ridges = np.arange(14), 20
+    for dimension in (2.3, 2.5, 2.7):
+        rough = Rough(dimension=dimension, roughness=1e-11)
+        size = length * (1e-11 / length) ** (dimension - 2.0) * np.sqrt(np.log(ratio) / ridges)
+        sizes = np.repeat(size * ratio ** ((dimension - 3.0) * order), ridges)
+        rms = np.sqrt(0.5 * np.sum(sizes**2))
+        assert clearance.patch_rms(rough, length, ratio) == pytest.approx(rms, rel=0.02)
+        number = 2.0 * np.pi * np.repeat(ratio**order, ridges) / length
+        angle = np.tile(np.pi * np.arange(ridges) / ridges, len(order))
+        along = np.exp(1j * np.outer(np.linspace(0.0, length, 201), number * np.cos(angle)))
+        across = np.exp(1j * np.outer(number * np.sin(angle), np.linspace(0.0, length / 2.0, 101)))
+        heights = []
+        for _ in range(12):
+            phases = np.exp(2j * np.pi * rng.random(len(sizes)))
+            heights.append(np.ptp(((along * (sizes * phases)) @ across).real))
+        assert clearance.patch_height(rough, length, ratio) == pytest.approx(np.mean(heights), rel=0.12)
+
+
+def test_heights_are_stated_else_of_the_patch_else_none() -> None:
+    first, second = clearance.heights(drive_of(peak_height=2e-6))
+    assert (first, second) == (2e-6, 0.0)
+    first, second = clearance.heights(drive_of(mating_dimension=2.4, mating_roughness=1e-11))
+    assert first == pytest.approx(second, rel=1e-12)
+    assert first == pytest.approx(clearance.patch_height(Rough(dimension=2.4, roughness=1e-11), 2e-4, 1.5), rel=1e-12)

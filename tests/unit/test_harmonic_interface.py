@@ -1,0 +1,106 @@
+"""Two rough flanks as one, and what must hold before a drive is calculated."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from harmonic_fractal.calculation import harmonic_fractal
+from harmonic_fractal.interface import interface_of
+from harmonic_fractal.model import HARMONIC_FRACTAL
+from harmonic_fractal.power_law import structure_function
+from harmonic_fractal.quantities import Drive
+from truing.errors import InfeasibleError
+from truing.evaluate import evaluate_rows
+from truing.setup import default_setup
+
+LAGS = np.geomspace(0.4e-6, 20e-6, 16)
+
+
+def drive_of(**changed: Any) -> Drive:
+    """A drive with the defaults but for these inputs, SI."""
+    made: Drive = replace(HARMONIC_FRACTAL.inputs(), **changed)
+    return made
+
+
+@pytest.mark.parametrize("dimension", [2.2, 2.4, 2.5, 2.8])
+def test_flanks_of_one_dimension_add_powers_of_their_roughness(dimension: float) -> None:
+    both = interface_of(drive_of(fractal_dimension=dimension, fractal_roughness=1e-11, mating_dimension=dimension,
+                                 mating_roughness=3e-10))  # fmt: skip
+    power = 2.0 * (dimension - 2.0)
+    assert both.dimension == pytest.approx(dimension, rel=1e-12)
+    assert both.roughness**power == pytest.approx(1e-11**power + 3e-10**power, rel=1e-10)
+
+
+def test_unlike_flanks_are_one_power_law_near_their_sum() -> None:
+    both = interface_of(drive_of(fractal_dimension=2.3, fractal_roughness=1e-11, mating_dimension=2.5,
+                                 mating_roughness=1e-9))  # fmt: skip
+    one, other = structure_function(LAGS, 1.3, 1e-11), structure_function(LAGS, 1.5, 1e-9)
+    expected = np.polyfit(np.log(LAGS), np.log(np.asarray(one) + other), 1)
+    assert both.dimension == pytest.approx(3.0 - expected[0] / 2.0, rel=1e-9)
+    fitted = structure_function(LAGS, both.dimension - 1.0, both.roughness)
+    np.testing.assert_allclose(np.log(fitted), np.polyval(expected, np.log(LAGS)), atol=1e-9)
+
+
+def test_a_smooth_mate_changes_nothing_and_deviations_come_last() -> None:
+    alone = interface_of(drive_of(dimension_deviation=0.03, roughness_deviation=-0.7))
+    assert alone.dimension == pytest.approx(2.43, rel=1e-12)
+    assert alone.roughness == pytest.approx(1e-11 * np.exp(-0.7), rel=1e-12)
+    rows = interface_of(drive_of(mating_dimension=np.array([np.nan, 2.4]), mating_roughness=np.array([np.nan, 1e-11])))
+    np.testing.assert_allclose(rows.roughness, 1e-11 * np.array([1.0, 2.0 ** (1 / 0.8)]), rtol=1e-10)
+
+
+@pytest.mark.parametrize("convention", ["one_direction", "profile"])
+def test_the_convention_is_that_of_the_stated_roughness(convention: str) -> None:
+    """Isotropic ridges, D_s = 1.5: of one direction 2/pi of the squares are left; the profile divides by ln 1.5."""
+    found = interface_of(drive_of(fractal_dimension=2.5, fractal_roughness=1e-9, convention=convention))
+    factor = {"one_direction": np.pi / 2.0, "profile": np.pi / 2.0 / np.log(1.5)}[convention]
+    assert found.roughness == pytest.approx(1e-9 * factor, rel=1e-10)
+
+
+# What must hold
+
+REFUSED: list[tuple[dict[str, Any], str]] = [
+    ({"fractal_dimension": 2.04}, "below 2.05"),
+    ({"dimension_deviation": -0.36}, "below 2.05"),
+    ({"fractal_dimension": 2.96}, "above 2.95"),
+    ({"dimension_deviation": 0.56}, "above 2.95"),
+    ({"mating_dimension": 2.4}, "half stated"),
+    ({"mating_roughness": 1e-11}, "half stated"),
+    ({"mating_dimension": 2.4, "mating_roughness": 1e-11, "longest_lag": 0.4e-6}, "enlarge longest_lag"),
+    ({"fractal_dimension": 2.3}, "raise reference_torque"),
+    ({"reference_torque": 1e-6}, "raise reference_torque"),
+    ({"engaged_factor": 3.4}, "more pairs are engaged"),
+    ({"engaged_pairs": 201}, "more pairs are engaged"),
+    ({"pair_load": 1e4}, "reduce pair_load"),
+    ({"torque": -1e4}, "reduce torque"),
+    ({"catalogue_size": "40", "flexspline_teeth": 60}, "no size 40 with a ratio below 40"),
+]
+
+
+@pytest.mark.parametrize(("changed", "sentence"), REFUSED, ids=[f"{index}" for index in range(len(REFUSED))])
+def test_what_cannot_be_is_refused_by_name(changed: dict[str, Any], sentence: str) -> None:
+    with np.errstate(all="ignore"), pytest.raises(InfeasibleError, match=sentence):
+        harmonic_fractal(drive_of(**changed))
+
+
+def test_a_smooth_mate_needs_no_range_of_lags() -> None:
+    assert np.isfinite(harmonic_fractal(drive_of(longest_lag=0.4e-6)).stiffness)
+
+
+def test_in_a_batch_the_other_rows_go_on() -> None:
+    dimension = np.array([2.4, 2.03, 2.97, 2.3, 2.45, 1.99, 3.02])
+    rows = evaluate_rows(default_setup(HARMONIC_FRACTAL), {"fractal_dimension": dimension}, len(dimension))
+    np.testing.assert_array_equal(rows.failed, [False, True, True, True, False, True, True])
+    assert np.isfinite(rows.results["torsion"][[0, 4]]).all()
+    assert "below 2.05" in rows.reasons[1]
+    assert "above 2.95" in rows.reasons[2]
+    assert "reference_torque" in rows.reasons[3]
+
+
+def test_an_all_plastic_pair_is_told_not_refused() -> None:
+    found = harmonic_fractal(drive_of(pair_load=1e-5, torque=5e-6))
+    assert (found.stiffness, found.mesh_stiffness, found.torsion, found.load_exponent) == (0.0, 0.0, 0.0, 0.0)
+    assert found.plastic_share == 1.0
+    assert harmonic_fractal(drive_of()).plastic_share < 0.1
