@@ -69,7 +69,7 @@ MESH: list[Effect[Drive, Stiffness]] = [
         "engaged_pairs",
         on_inputs=engaged_pairs,
         unknowns=[
-            Unknown("gain", 0, 5, "", note="of pairs at a large torque, over those stated; 1.7 from 15 to 40 %"),
+            Unknown("gain", 0, 2, "", note="of pairs at a large torque, over those stated; 1.7 from 15 to 40 %"),
             Unknown("torque_scale", 1, 200, "N*m", note="torque after which 63 % of them have come to bear"),
         ],
         looks_like="the mesh stiffens with the torque more than its flanks do, most where its teeth bend",
@@ -94,7 +94,7 @@ MESH: list[Effect[Drive, Stiffness]] = [
         on_inputs=asperity_smoothing,
         needs=[CYCLES],
         unknowns=[
-            Unknown("dimension", 0, 0.3, "", note="by which D rises; 0.02 to 0.1"),
+            Unknown("dimension", 0, 0.2, "", note="by which D rises; 0.02 to 0.1"),
             Unknown("roughness", 0, 5, "", note="by which ln G falls; 0.7 to 2.3"),
             Unknown("cycle_scale", 1e3, 1e7, "", note="cycles after which 63 % is done"),
         ],
@@ -155,7 +155,7 @@ FRICTION: list[Effect[Drive, Stiffness]] = [
         "hysteresis",
         on_results=hysteresis,
         needs=[DIRECTION, REVERSAL_TORQUE, PEAK_TORQUE],
-        unknowns=[Unknown("loop", -2000, 2000, "urad", note="whole width; 290 to 870 (1 to 3 arcmin)"), FRICTION_SCALE],
+        unknowns=[Unknown("loop", 0, 2000, "urad", note="whole width; 290 to 870 (1 to 3 arcmin)"), FRICTION_SCALE],
         looks_like="the torsion is smaller on the way up than on the way down at the same torque, and turns round "
         "within a short way of it",
         why="teeth, bearing and cup rub before they slip",
@@ -167,7 +167,7 @@ FRICTION: list[Effect[Drive, Stiffness]] = [
         needs=[SPEED, TEMPERATURE, DIRECTION, REVERSAL_TORQUE, PEAK_TORQUE],
         acts_at_reference=True,
         unknowns=[
-            Unknown("loop", -2000, 2000, "urad", note="whole width at 1000 rpm and 20 degC, beside that at rest"),
+            Unknown("loop", 0, 2000, "urad", note="whole width at 1000 rpm and 20 degC, beside that at rest"),
             FRICTION_SCALE,
             Unknown("thinning", 0.01, 0.08, "1/K", note="of the lubricant's viscosity; 0.02 to 0.05"),
         ],

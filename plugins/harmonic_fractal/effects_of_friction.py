@@ -42,9 +42,8 @@ def hysteresis(
 ) -> Stiffness:
     """Dry friction holds the angle back by half of the loop: behind a torque that grows, and before one that falls.
 
-    So the loop takes up energy. It is negative where the torque is read behind the friction, at the side that is held.
-    Range: every turn but that of the first load follows a branch on which the friction has slipped through, so several
-    ``torque_scale`` long. Of the direction only the sign counts.
+    So the loop takes up energy, and is never negative. Range: every turn but that of the first load follows a branch on
+    which the friction has slipped through, so several ``torque_scale`` long. Of the direction only the sign counts.
     """
     share = loop_share(drive.torque, reversal_torque, peak_torque, torque_scale)
     return turned(results, -0.5 * loop * np.sign(direction) * share)
