@@ -14,9 +14,10 @@ from harmonic_fractal.surface import Surface
 Array = NDArray[np.float64]
 Form = Literal["none", "plane", "second_order"]
 WINDOW = 11  # points of the spike filter
+FEWEST = 6  # measured points of a window that can tell: as many as at the end of a line
 LIMIT = 4.0  # robust standard deviations from the median of the window
 ROBUST = 1.482602218505602  # standard deviation of a normal spread over its median absolute deviation
-AT_ONCE = 1 << 18  # points whose windows are sorted together
+AT_ONCE = 1 << 17  # points whose windows are sorted together
 
 
 def cut(surface: Surface, size: tuple[float, ...], corner: tuple[float, ...] | None = None) -> Surface:
@@ -88,7 +89,7 @@ def spikes_of(heights: Array, step: float = 0.0) -> NDArray[np.bool_]:
 
     A spike is further from the median of its 11 neighbours (itself among them, fewer at the ends) than 4 robust
     standard deviations, 1.4826 times their median absolute deviation, and than 4 steps of the instrument's numbers. The
-    median takes measured points only.
+    median takes measured points only, and fewer than 6 of them judge nothing.
 
     Source: Hampel, Journal of the American Statistical Association 69 (1974), p. 383.
     """
@@ -105,8 +106,9 @@ def _spikes(heights: Array, step: float) -> NDArray[np.bool_]:
     windows = np.lib.stride_tricks.sliding_window_view(padded, WINDOW, axis=1)
     middle = _median(windows)
     deviation = _median(np.abs(windows - middle[..., None]))
+    enough = np.isfinite(windows).sum(axis=-1) >= FEWEST
     with np.errstate(invalid="ignore"):
-        return np.asarray(np.abs(heights - middle) > LIMIT * np.maximum(ROBUST * deviation, step))
+        return np.asarray(enough & (np.abs(heights - middle) > LIMIT * np.maximum(ROBUST * deviation, step)))
 
 
 def _median(windows: Array) -> Array:

@@ -68,6 +68,10 @@ class Flank:
         self.raw.heights.setflags(write=False)
         self.surface.heights.setflags(write=False)
 
+    def __setstate__(self, state: dict[str, object]) -> None:
+        self.__dict__.update(state)
+        self.__post_init__()  # arrays come out of another process writeable
+
     @property
     def used(self) -> Estimate | None:
         """The estimate whose D and G are used, or None."""

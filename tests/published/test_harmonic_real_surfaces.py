@@ -1,9 +1,10 @@
 """Four public measurements: heights, structure function and verdict, against an independent evaluation of them.
 
-The figures were computed by another program, in double precision, by this recipe: second-order form removed, each line
-of a patch less its own straight line, up to 16 whole lags from ``points`` spacings to a tenth of a line, pooled over all
-lines, straight-line fit of the logarithms; nothing else is taken out. So spikes are kept here and the fit runs over all
-lags. The scatter of single lines of the interferogram is left out: that program took every eighth or tenth line.
+The figures were computed by another program, in double precision, by this recipe: second-order form removed, each
+line of a patch less its own straight line, up to 16 whole lags from ``points`` spacings to a tenth of a line, pooled
+over all lines, straight-line fit of the logarithms; nothing else is taken out. So spikes are kept here and the fit
+runs over all lags. The scatter of single lines of the interferogram is left out: its figures, 0.080 and 0.066, are
+those of every eighth line along x and of every tenth along y.
 """
 
 from functools import cache
