@@ -63,15 +63,20 @@ class Stiffness:
     )  # fmt: skip
     largest_area: Float = found(
         "um^2", symbol="a_L", note="truncated area of the largest contact", source=CONTACTS,
-        formula="pair_load == cases(plastic_limit * (largest_area / critical_area)**((dimension - 1) / 2)"
-        " * (1 + (3 - dimension) * critical_pressure / hardness"
-        " * ((largest_area / critical_area)**((5 - 2 * dimension) / 2) - 1) / (5 - 2 * dimension)),"
-        " largest_area > critical_area, plastic_limit * largest_area / critical_area)",
+        formula="pair_load == cases(plastic_limit * area_ratio**((dimension - 1) / 2)"
+        " * (1 + (3 - dimension) * critical_pressure / hardness * elastic_sum), area_ratio > 1,"
+        " plastic_limit * area_ratio)",
+    )  # fmt: skip
+    area_ratio: Float = found("", symbol="x", note="largest over critical area; up to 1 all contacts are plastic",
+                              formula="largest_area / critical_area")  # fmt: skip
+    elastic_sum: Float = found(
+        "", symbol="s_e", note="what the elastic contacts add to the load; 0 without any",
+        formula="cases((max(area_ratio, 1)**((5 - 2 * dimension) / 2) - 1) / (5 - 2 * dimension),"
+        " abs(dimension - 2.5) > 1e-6, log(max(area_ratio, 1)) / 2)",
     )  # fmt: skip
     plastic_share: Float = found(
         "%", symbol="q_p", note="share of the load on plastic contacts; at 100 % the pair has no stiffness",
-        formula="cases(plastic_limit / pair_load * (largest_area / critical_area)**((dimension - 1) / 2),"
-        " largest_area > critical_area, 1)",
+        formula="cases(plastic_limit / pair_load * area_ratio**((dimension - 1) / 2), area_ratio > 1, 1)",
     )  # fmt: skip
     contact_area: Float = found(
         "um^2", symbol="A_t", note="truncated area of all contacts",
@@ -79,7 +84,7 @@ class Stiffness:
     )  # fmt: skip
     real_area: Float = found(
         "um^2", symbol="A_r", note="real area: all of the plastic contacts, half of the truncated elastic ones",
-        formula="contact_area * (1 + min(critical_area / largest_area, 1)**((3 - dimension) / 2)) / 2",
+        formula="contact_area * (1 + max(area_ratio, 1)**((dimension - 3) / 2)) / 2",
     )  # fmt: skip
     flank_share: Float = found("%", symbol="q_A", note="real area over the area of the flank",
                                formula="real_area / (face_width * flank_height)")  # fmt: skip
@@ -93,13 +98,9 @@ class Stiffness:
     )  # fmt: skip
     load_exponent: Float = found(
         "", symbol="m", note="d ln K/d ln F at this load; 0 where there is no stiffness",
-        formula="cases(((dimension - 1) / 2 + (dimension - 2) / 2"
-        " / ((largest_area / critical_area)**((dimension - 2) / 2) - 1))"
-        " / ((dimension - 1) / 2 + (3 - dimension) / 2 * critical_pressure / hardness"
-        " * (largest_area / critical_area)**((5 - 2 * dimension) / 2)"
-        " / (1 + (3 - dimension) * critical_pressure / hardness"
-        " * ((largest_area / critical_area)**((5 - 2 * dimension) / 2) - 1) / (5 - 2 * dimension))),"
-        " largest_area > critical_area, 0)",
+        formula="cases((dimension - 1 + (dimension - 2) / (area_ratio**((dimension - 2) / 2) - 1))"
+        " / (dimension - 1 + (3 - dimension) * critical_pressure * area_ratio**((5 - 2 * dimension) / 2)"
+        " / (hardness + (3 - dimension) * critical_pressure * elastic_sum)), area_ratio > 1, 0)",
     )  # fmt: skip
     # Its clearance
     largest_radius: Float = found("um", symbol="r_L", note="radius of the largest contact",

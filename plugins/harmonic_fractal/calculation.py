@@ -11,6 +11,7 @@ from harmonic_fractal.contact import Contact, Pressed, contact_of, critical_pres
 from harmonic_fractal.feasibility import require_catalogue, require_contact, require_flank, require_surface
 from harmonic_fractal.interface import Rough, interface_of, is_accepted, spacing_of
 from harmonic_fractal.mesh import Mesh, line_stiffness, load_of_largest, mesh_of, normal_stiffness
+from harmonic_fractal.micro import elastic_sum
 from harmonic_fractal.power_law import structure_function
 from harmonic_fractal.quantities import Drive
 from harmonic_fractal.torsion import mesh_torsion
@@ -84,6 +85,8 @@ def _pair(drive: Drive, contact: Contact, pair: Pressed) -> dict[str, Any]:
     plastic = np.exp(contact.law.growth * pair.size) * contact.plastic_limit / drive.pair_load
     return {
         "largest_area": pair.largest_area,
+        "area_ratio": np.exp(pair.size),
+        "elastic_sum": elastic_sum(pair.size, contact.law),
         "plastic_share": np.where(pair.size > 0.0, plastic, 1.0),
         "contact_area": pair.contact_area,
         "real_area": pair.real_area,

@@ -72,6 +72,12 @@ def domain_factor(dimension: Float) -> Float:
     return factor
 
 
+def elastic_sum(size: Float, law: Law) -> Float:
+    """Return (x^((5-2D)/2) - 1)/(5 - 2D) at x = a_L/a_c, (ln x)/2 at D = 2.5; 0 where all contacts are plastic."""
+    value: Float = 0.5 * np.expm1(law.bend * np.maximum(size, 0.0)) / law.bend
+    return value
+
+
 def load_logarithm(size: Float, law: Law) -> Float:
     """Return ln(F/F_c) at u."""
     above = np.maximum(size, 0.0)
