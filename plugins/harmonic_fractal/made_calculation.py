@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from harmonic_fractal.cleaning import without_line
+from harmonic_fractal.cleaning import without_form, without_line
 from harmonic_fractal.estimate import Estimate, Estimation, estimate_of
 from harmonic_fractal.generators import (
     Waves,
@@ -36,9 +36,9 @@ def made_flank(made: Made) -> MadeFlank:
     if not _possible(made, truth):
         return _nothing()
     surface = surface_of(made)
-    level = without_plane(surface.heights)
+    level = without_form(surface.heights, "plane")
     lags, values = structure_of(surface)
-    found = estimate_along(made, surface, "x")
+    found = estimate_along(made, surface, "x", resamples=0)
     feasible(
         1.0 < found.dimension < 2.0 and 0.0 < found.roughness < np.inf,
         "the estimator finds no slope between 0 and 2 along this flank: less noise, or another shortest_lag",
@@ -107,6 +107,10 @@ def _possible(made: Made, truth: Truth) -> bool:
         (
             (points + margin) * (lines + margin * is_patch(made, truth)) <= LARGEST,
             f"the flank has more than {LARGEST} points: make it smaller or spacing larger",
+        ),
+        (
+            not float(made.shortest_lag) > 0.05 * points * float(made.spacing),
+            "shortest_lag is more than a twentieth of a line, and the longest lag of the fit is a tenth",
         ),
         (truth.highest > truth.lowest, "the shortest wave is not shorter than the longest one"),
         (count <= MOST_WAVES, f"the flank has more than {MOST_WAVES} waves: fewer directions or a larger density"),
@@ -185,7 +189,7 @@ def structure_of(surface: Surface) -> tuple[Array, Array]:
     return steps * surface.spacing_x, np.asarray(sums.sum(axis=0) / counts.sum(axis=0))
 
 
-def estimate_along(made: Made, surface: Surface, direction: Direction) -> Estimate:
+def estimate_along(made: Made, surface: Surface, direction: Direction, resamples: int = 400) -> Estimate:
     """Find dimension and roughness again, each line without its own straight line.
 
     Lines nearer to one another than the longest lag, a tenth of a line, are resampled together: they are alike.
@@ -193,19 +197,10 @@ def estimate_along(made: Made, surface: Surface, direction: Direction) -> Estima
     lines = surface.lines(direction)
     level = Lines(without_line(lines.heights), lines.spacing)
     alike = 1 if made.kind == "profile" else max(1, lines.heights.shape[1] // 10)
-    settings = Estimation(noise_aware=made.noise_aware, shortest_lag=float(made.shortest_lag), block=alike)
+    settings = Estimation(
+        noise_aware=made.noise_aware, shortest_lag=float(made.shortest_lag), block=alike, resamples=resamples
+    )
     return estimate_of(level, direction, settings)
-
-
-def without_plane(heights: Array) -> Array:
-    """Return heights less their mean plane, or less their mean line where there is one line only."""
-    rows, points = heights.shape
-    y, x = np.mgrid[0:rows, 0:points]
-    known = np.isfinite(heights)
-    columns = [np.ones(heights.shape), x - 0.5 * (points - 1), *([y - 0.5 * (rows - 1)] if rows > 1 else [])]
-    design = np.stack([column[known] for column in columns], axis=1)
-    slopes = np.linalg.solve(design.T @ design, design.T @ heights[known])
-    return np.asarray(heights - sum(slope * column for slope, column in zip(slopes, columns, strict=True)))
 
 
 def _nothing() -> MadeFlank:

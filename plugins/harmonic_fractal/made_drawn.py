@@ -4,8 +4,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from harmonic_fractal.cleaning import without_form
 from harmonic_fractal.estimate import Estimate
-from harmonic_fractal.made_calculation import Truth, exact_structure_function, without_plane
+from harmonic_fractal.generators import Array
+from harmonic_fractal.made_calculation import Truth, exact_structure_function
 from harmonic_fractal.made_quantities import Made
 from harmonic_fractal.power_law import structure_function
 from harmonic_fractal.surface import Surface
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
 
     from harmonic_fractal.made_answers import MadeFlank
 
+Curve = tuple[Array, Array]
 BLUE, ORANGE, GREEN, INK, GREY, PALE = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c", "#e8eff5"
 WIDTH = 6.4
 MICRO, NANO = 1e6, 1e9
@@ -31,10 +34,11 @@ def map_figure(surface: Surface) -> "Figure":
     height = float(np.clip(0.8 * WIDTH * extent[3] / extent[1], 1.2, 7.0))
     figure = Figure(figsize=(WIDTH, height + 0.6), layout="constrained")
     panel = figure.subplots()
-    level = NANO * without_plane(surface.heights)
+    level = NANO * without_form(surface.heights, "plane")
     low, high = np.nanpercentile(level, (0.1, 99.9))
     colours = colormaps["viridis"].with_extremes(bad=ORANGE)
-    image = panel.imshow(level, origin="lower", extent=extent, cmap=colours, vmin=low, vmax=high, rasterized=True)
+    image = panel.imshow(level, origin="lower", extent=extent, cmap=colours, vmin=low, vmax=high,
+                         interpolation="nearest")  # fmt: skip
     panel.set_xlabel("x, along the lines, µm")
     panel.set_ylabel("y, µm")
     figure.colorbar(image, ax=panel, label="height, nm", shrink=0.9, extend="both")
@@ -47,7 +51,7 @@ def lines_figure(surface: Surface) -> "Figure":
 
     rows, points = surface.heights.shape
     chosen = np.unique(np.linspace(0, rows - 1, min(rows, SHOWN)).round().astype(int))
-    level = NANO * without_plane(surface.heights)[chosen]
+    level = NANO * without_form(surface.heights, "plane")[chosen]
     gap = 1.2 * float(np.nanmax(np.nanmax(level, axis=1) - np.nanmin(level, axis=1))) or 1.0
     figure = Figure(figsize=(WIDTH, 1.2 + 0.6 * len(chosen)), layout="constrained")
     panel = figure.subplots()
@@ -63,35 +67,56 @@ def lines_figure(surface: Surface) -> "Figure":
 
 
 def structure_figure(made: Made, truth: Truth, answer: "MadeFlank", found: Estimate) -> "Figure":
-    """S of this flank beside the exact one and what was fitted; below, the dimension by local slopes."""
+    """S of this flank beside the exact one and what was fitted; the same over the power law; local slopes."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(WIDTH, 6.0), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-    lags = np.geomspace(answer.lag[0], answer.lag[-1], 200)
-    law = np.asarray(structure_function(lags, truth.dimension, truth.areal))
+    figure = Figure(figsize=(WIDTH, 7.6), layout="constrained")
+    upper, middle, lower = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
+    lags = np.geomspace(answer.lag[0], answer.lag[-1], 400)
     exact = exact_structure_function(made, lags)
-    upper.loglog(MICRO * lags, NANO**2 * law, color=GREY, linestyle="--", linewidth=1.0, label="power law")
-    upper.loglog(MICRO * lags, NANO**2 * exact, color=INK, linewidth=1.0, label="exact, of all such flanks")
-    upper.loglog(MICRO * answer.lag, NANO**2 * answer.structure_function, "o", color=BLUE, markersize=4,
-                 markerfacecolor="none", label="this flank as measured")  # fmt: skip
-    upper.loglog(MICRO * found.lags, NANO**2 * found.values, ".", color=ORANGE, markersize=5,
-                 label="lines levelled, as fitted")  # fmt: skip
-    fitted = np.asarray(structure_function(found.lags, found.dimension, found.roughness))
-    upper.loglog(MICRO * found.lags, NANO**2 * fitted, color=ORANGE, label="straight line fitted")
+    for panel, over in ((upper, None), (middle, truth)):
+        _curves(panel, over, (answer.lag, answer.structure_function), (lags, exact), found)
+    upper.set_yscale("log")
     _quiet(upper, "", "S, nm²")
     upper.legend(loc="lower right")
-    slopes = np.diff(np.log(exact)) / np.diff(np.log(lags))
-    lower.semilogx(MICRO * np.sqrt(lags[1:] * lags[:-1]), 2.0 - slopes / 2.0, color=INK, linewidth=1.0, label="exact")
-    lower.semilogx(MICRO * found.local_lags, found.local_dimensions, "o-", color=ORANGE, markersize=4, linewidth=0.8,
-                   label="this flank, lines levelled")  # fmt: skip
-    lower.axhline(truth.dimension, color=GREY, linestyle="--", linewidth=1.0)
-    if found.is_accepted:
-        lower.axvspan(MICRO * found.range[0], MICRO * found.range[1], color=PALE, zorder=0, label="self-affine range")
-    lower.set_ylim(0.95, 2.05)
-    _quiet(lower, "lag, µm", "local dimension of profiles")
-    lower.legend(loc="upper left")
+    low, high = middle.get_ylim()
+    middle.set_ylim(max(low, 0.0), min(high, 3.0))
+    _quiet(middle, "", "S over power law")
+    _local_slopes(lower, truth, (lags, exact), found)
     return figure
+
+
+def _curves(panel: Any, over: Truth | None, own: Curve, exact: Curve, found: Estimate) -> None:
+    """Draw every S: itself in nm^2, or over the power law of the truth."""
+
+    def shown(lags: Array, values: Array) -> Array:
+        return NANO**2 * values if over is None else values / structure_function(lags, over.dimension, over.areal)
+
+    law = np.asarray(structure_function(found.lags, found.dimension, found.roughness))
+    panel.semilogx(MICRO * exact[0], shown(*exact), color=INK, linewidth=1.0, label="exact, of all such flanks")
+    panel.semilogx(MICRO * own[0], shown(*own), "o", color=BLUE, markersize=4, markerfacecolor="none",
+                   label="this flank as measured")  # fmt: skip
+    panel.semilogx(MICRO * found.lags, shown(found.lags, found.values), ".", color=ORANGE, markersize=5,
+                   label="lines levelled, as fitted")  # fmt: skip
+    panel.semilogx(MICRO * found.lags, shown(found.lags, law), color=ORANGE, linewidth=1.0, label="power law fitted")
+    if over is not None:
+        panel.axhline(1.0, color=GREY, linestyle="--", linewidth=1.0)
+
+
+def _local_slopes(panel: Any, truth: Truth, exact: Curve, found: Estimate) -> None:
+    """Draw the dimension between neighbouring lags, of the levelled lines and of the exact S."""
+    edges = np.linspace(np.log(exact[0][0]), np.log(exact[0][-1]), 11)
+    slopes = np.diff(np.interp(edges, np.log(exact[0]), np.log(exact[1]))) / np.diff(edges)
+    middles = MICRO * np.exp(0.5 * (edges[1:] + edges[:-1]))
+    panel.semilogx(middles, 2.0 - slopes / 2.0, color=INK, linewidth=1.0, label="exact")
+    panel.semilogx(MICRO * found.local_lags, found.local_dimensions, "o-", color=ORANGE, markersize=4, linewidth=0.8,
+                   label="this flank, lines levelled")  # fmt: skip
+    panel.axhline(truth.dimension, color=GREY, linestyle="--", linewidth=1.0)
+    if found.is_accepted:
+        panel.axvspan(MICRO * found.range[0], MICRO * found.range[1], color=PALE, zorder=0, label="self-affine range")
+    panel.set_ylim(0.95, 2.05)
+    _quiet(panel, "lag, µm", "local dimension of profiles")
+    panel.legend(loc="upper left")
 
 
 def _quiet(panel: Any, x_label: str, y_label: str) -> None:

@@ -40,17 +40,18 @@ class FlankFile:
             f"made flank, {made.kind}, seed {made.seed}: fractal dimension of the surface "
             f"{made.fractal_dimension:.10g}, fractal roughness {truth.areal:.10g} m in the areal convention"
         )
-        return Written(surface, self.file, flank_text(surface, words, self.height_unit))
+        text = flank_text(surface, words, self.height_unit, cutoff=float(made.filter_cutoff))
+        return Written(surface, self.file, text)
 
 
-def flank_text(surface: Surface, words: str, height_unit: str = "um") -> str:
-    """Return a surface as text: what it is, spacings and unit behind #, then its heights, one line a row.
+def flank_text(surface: Surface, words: str, height_unit: str = "um", *, cutoff: float = 0.0) -> str:
+    """Return a surface as text: what it is, spacings, lateral filter and unit behind #, then its heights, a line a row.
 
     Numbers come back exactly; a point that was not measured is nan.
     """
-    lengths = {"spacing_x": surface.spacing_x, "spacing_y": surface.spacing_y}
+    lengths = {"spacing_x": surface.spacing_x, "spacing_y": surface.spacing_y, "filter_width": cutoff}
     head = [f"# {words}"]
-    head += [f"# {name} = {_exact(length, 1e6)} um" for name, length in lengths.items() if np.isfinite(length)]
+    head += [f"# {name} = {_exact(length, 1e6)} um" for name, length in lengths.items() if length > 0.0]
     head.append(f"# height_unit = {height_unit}")
     rows = (surface.heights * SCALES[height_unit]).tolist()
     return "\n".join([*head, *(",".join(repr(each) for each in row) for row in rows)]) + "\n"
@@ -84,11 +85,13 @@ class Written:
     def blocks(self) -> "Sequence[Block]":
         """Say what the file holds and how it is read."""
         lines, points = self.surface.heights.shape
+        counted = "one line" if lines == 1 else f"{lines} lines"
         return [
             Words(
-                f"The run folder holds {self.file}: {lines} lines of {points} points, with spacing and unit in its "
-                "head. An inputs file of harmonic_fractal reads it, from its own folder on, by "
-                f'surface = {{ file = "{self.file}" }}.'
+                f"The run folder holds {self.file}: {counted} of {points} points, with spacing and unit in its "
+                "head. An inputs file of harmonic_fractal in that folder reads it by "
+                f'surface = {{ file = "{self.file}", form = "none" }}: a made flank has no form to be taken away, and '
+                "taking one raises the dimension that is found."
             )
         ]
 

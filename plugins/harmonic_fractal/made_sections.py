@@ -19,9 +19,10 @@ if TYPE_CHECKING:
     Run = Record[Made, MadeFlank]
 
 FOUND_AGAIN = (
-    "The estimator sees the flank as it would see a measured one: each line without its own straight line, lags from "
-    "the spacing to a tenth of a line, one straight line through ln S over ln lag. What it misses of the truth here it "
-    "misses on a measured flank too: levelling raises the dimension, noise raises it, a lateral filter lowers it."
+    "The estimator sees the flank as it would see a measured one: each line without its own straight line, and one "
+    "power law through S from the spacing to a tenth of a line, as far as the local slopes agree. What it misses of "
+    "the truth here it misses on a measured flank too: levelling and noise raise the dimension, a lateral filter lowers "
+    "it."
 )
 TRUTH = {
     "areal": "A sum of plane waves in many directions, each with a random phase. Their amplitudes are fixed, so flanks "
@@ -54,8 +55,8 @@ def structure(record: "Run") -> "Sequence[Block]":
     made, surface = record.inputs, surface_of(record.inputs)
     found = estimate_along(made, surface, "x")
     caption = (
-        "Above: at long lags one flank strays from the mean of all, and levelled lines fall below it. Below: the "
-        "dimension between neighbouring lags; dashed: the true one."
+        "Middle: the same S over the power law of the truth. At long lags one flank strays from the mean of all, and "
+        "levelled lines fall below it. Below: the dimension between neighbouring lags; dashed: the true one."
     )
     draw = partial(made_drawn.structure_figure, made, truth_of(made), record.results, found)
     return [Drawing("Structure function and local slopes", draw, caption)]
@@ -74,8 +75,8 @@ def found_again(record: "Run") -> "Sequence[Block]":
         ("", "D", "half width", "G", "half width", "R²", "self-affine range", "verdict"),
         [("truth", true.dimension + 1.0, None, true.areal, None, None, "", ""), *rows],
         ("", "", "", "m", "decades", "", "µm", ""),
-        note="Half width: of the 95 % interval by resampling lines, those nearer than the longest lag together. What "
-        "all lines of one patch share it cannot see: another seed strays by about one and a half of it.",
+        note="Half width: of the 95 % interval by resampling lines, neighbours together. It cannot see what all lines of "
+        "one flank share, nor what levelling adds: flanks of other seeds stray by up to twice as much.",
     )
     return [Words(FOUND_AGAIN), table, *([Words(_refused(along), "finding")] if along.reason else [])]
 
