@@ -92,9 +92,8 @@ class Stiffness:
                               method="by tip_rule: 1, or 2/3 (4 - D)/(3 - D) if that follows the area")  # fmt: skip
     stiffness: Float = found(
         "N/m", symbol="K", note="normal stiffness of one pair of rough flanks", source=PATENT_6,
-        formula="tip_factor * equivalent_modulus * sqrt(2 / pi) * (dimension - 1) / (dimension - 2)"
-        " * domain_factor**((3 - dimension) / 2) * largest_area**((dimension - 1) / 2)"
-        " * max(critical_area**((2 - dimension) / 2) - largest_area**((2 - dimension) / 2), 0)",
+        formula="tip_factor * equivalent_modulus * sqrt(2 * critical_area / pi) * (dimension - 1) / (dimension - 2)"
+        " * domain_factor**((3 - dimension) / 2) * max(area_ratio**((dimension - 1) / 2) - sqrt(area_ratio), 0)",
     )  # fmt: skip
     load_exponent: Float = found(
         "", symbol="m", note="d ln K/d ln F at this load; 0 where there is no stiffness",
