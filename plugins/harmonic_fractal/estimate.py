@@ -104,7 +104,7 @@ class _Fit:
     noise: float
 
 
-def estimate_of(lines: Lines, direction: Direction, settings: Estimation, *, density: float = 1.5) -> Estimate:
+def estimate_of(lines: Lines, direction: Direction, settings: Estimation) -> Estimate:
     """Read D and G from parallel lines of one direction, each with its own straight line removed."""
     points = lines.heights.shape[1]
     every = _steps(points, lines.spacing, settings)
