@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 FOUND_AGAIN = (
     "The estimator sees the flank as it would see a measured one: each line without its own straight line, and one "
     "power law through S from the spacing to a tenth of a line, as far as the local slopes agree. What it misses of "
-    "the truth here it misses on a measured flank too: levelling and noise raise the dimension, a lateral filter lowers "
-    "it."
+    "the truth here it misses on a measured flank too: levelling and noise raise the dimension, a lateral filter "
+    "lowers it."
 )
 TRUTH = {
     "areal": "A sum of plane waves in many directions, each with a random phase. Their amplitudes are fixed, so flanks "
@@ -75,8 +75,8 @@ def found_again(record: "Run") -> "Sequence[Block]":
         ("", "D", "half width", "G", "half width", "R²", "self-affine range", "verdict"),
         [("truth", true.dimension + 1.0, None, true.areal, None, None, "", ""), *rows],
         ("", "", "", "m", "decades", "", "µm", ""),
-        note="Half width: of the 95 % interval by resampling lines, neighbours together. It cannot see what all lines of "
-        "one flank share, nor what levelling adds: flanks of other seeds stray by up to twice as much.",
+        note="Half width: of the 95 % interval by resampling lines, neighbours together. It cannot see what all lines "
+        "of one flank share, nor what levelling adds: flanks of other seeds stray by up to twice as much.",
     )
     return [Words(FOUND_AGAIN), table, *([Words(_refused(along), "finding")] if along.reason else [])]
 
