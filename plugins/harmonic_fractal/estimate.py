@@ -186,7 +186,10 @@ def _local(curve: StructureFunction, noise: float, settings: Estimation) -> _Loc
         return _Local(lags=np.empty(0), dimensions=np.empty(0), range=NONE, reason=no_range(lags, np.empty(0)))
     middles, dimensions = local_dimensions(lags, values)
     found = self_affine_range(lags, np.where(lags[:-1] >= settings.longest_lag, np.nan, dimensions))
-    reason = no_range(lags, dimensions) if np.isnan(found[0]) else ""
+    longest = lags[-1] if np.isnan(settings.longest_lag) else min(lags[-1], settings.longest_lag)
+    reason = "" if np.isfinite(found[0]) else no_range(lags, dimensions)
+    if longest < DECADE * lags[0] * (1 - SLACK):
+        reason = f"no self-affine range: the lags that may be used, {span_of(lags[0], longest)}, are less than a decade"
     return _Local(lags=middles, dimensions=dimensions, range=found, reason=reason)
 
 
@@ -199,7 +202,7 @@ def _refusal(points: int, local: _Local, lags: Array, found: _Fit) -> str:
     if lags.size < FEWEST_LAGS:
         return f"no self-affine range: the fit has {lags.size} lags, fewer than {FEWEST_LAGS}"
     if lags[-1] < DECADE * lags[0] * (1 - SLACK):
-        return f"no self-affine range: the lags of the fit, {span_of(lags)}, are less than a decade"
+        return f"no self-affine range: the lags of the fit, {span_of(lags[0], lags[-1])}, are less than a decade"
     if not 1.0 < found.dimension < 2.0:
         return f"no self-affine range: the slope of the fit is {4 - 2 * found.dimension:.2f}, not within 0 and 2"
     return ""

@@ -91,12 +91,13 @@ def mean_squares(sums: Array, counts: Array) -> Array:
 
 def _of_block(heights: Array, steps: Steps) -> tuple[Array, Array]:
     known = np.isfinite(heights)
-    lines, points = heights.shape
+    shape = (len(heights), steps.size)
+    sums, counts = np.empty(shape), np.broadcast_to((heights.shape[1] - steps).astype(float), shape).copy()
     if known.all():
-        sums = np.stack([_squares(heights[:, step:] - heights[:, :-step]) for step in steps], axis=1)
-        return sums, np.broadcast_to((points - steps).astype(float), (lines, steps.size))
+        for column, step in enumerate(steps):
+            sums[:, column] = _squares(heights[:, step:] - heights[:, :-step])
+        return sums, counts
     filled, weight = np.where(known, heights, 0.0), known.astype(float)
-    sums, counts = np.empty((lines, steps.size)), np.empty((lines, steps.size))
     for column, step in enumerate(steps):
         both = weight[:, step:] * weight[:, :-step]
         counts[:, column] = both.sum(axis=1)

@@ -56,10 +56,10 @@ def no_range(lags: Array, dimensions: Array) -> str:
     return (
         f"no self-affine range: over no decade of lags does the local dimension of the profile vary by less than "
         f"{SPAN:g} and stay within {LOWEST:g} to {HIGHEST:g}; it runs from {low:.2f} to {high:.2f} over lags of "
-        f"{span_of(lags)}"
+        f"{span_of(lags[0], lags[-1])}"
     )
 
 
-def span_of(lags: Array) -> str:
+def span_of(shortest: float, longest: float) -> str:
     """Say from where to where lags, m, run."""
-    return f"{lags.min() * 1e6:.3g} um to {lags.max() * 1e6:.3g} um"
+    return f"{shortest * 1e6:.3g} um to {longest * 1e6:.3g} um"
