@@ -1,13 +1,15 @@
 """From rough flanks to the stiffness of one pair, of the mesh and of the drive."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from harmonic_fractal import clearance as gap
 from harmonic_fractal.answers import Stiffness
+from harmonic_fractal.blunt import kept_share
 from harmonic_fractal.contact import Contact, Pressed, contact_of, critical_pressure, pressed
+from harmonic_fractal.engagement import pairs_factor, torsion_saved
 from harmonic_fractal.feasibility import require_catalogue, require_contact, require_flank, require_surface
 from harmonic_fractal.interface import Rough, interface_of, is_accepted, spacing_of
 from harmonic_fractal.mesh import Mesh, line_stiffness, load_of_largest, mesh_of, normal_stiffness
@@ -32,20 +34,19 @@ def harmonic_fractal(drive: Drive) -> Stiffness:
     rough = interface_of(drive)
     require_surface(drive, rough)
     contact = contact_of(drive, rough)
-    mesh = mesh_of(drive, contact)
+    alone = mesh_of(drive, contact)
+    mesh = replace(alone, factor=pairs_factor(drive, drive.torque))
     require_contact(drive, contact, mesh)
     pair = pressed(drive.pair_load, contact)
     require_flank(drive, pair, pressed(load_of_largest(drive.torque, mesh), contact))
     return Stiffness(
         lag=drive.lags,
-        structure_function=structure_function(
-            np.asarray(drive.lags), column(rough.dimension) - 1.0, column(rough.roughness)
-        ),
+        structure_function=_seen(drive, rough),
         **_interface(drive, rough),
         **_contact(drive, contact),
         **_pair(drive, contact, pair),
         **_clearance(drive, contact, mesh, pair),
-        **_mesh(drive, contact, mesh),
+        **_mesh(drive, contact, alone, mesh),
     )
 
 
@@ -55,6 +56,15 @@ def around_of(drive: Drive) -> Around:
     moment = 2.0 * np.pi * drive.cup_radius**3 * drive.cup_wall
     compliance = drive.drive_compliance / drive.modulus_factor + drive.cup_length / (shear * moment)
     return Around(shear, moment, compliance)
+
+
+def _seen(drive: Drive, rough: Rough) -> Float:
+    """Return the structure function over the lags, as an instrument that averages over a spot sees it."""
+    lags, dimension = np.asarray(drive.lags), column(rough.dimension) - 1.0
+    seen = structure_function(lags, dimension, column(rough.roughness))
+    return (
+        seen * kept_share(lags, column(drive.spot_width), 4.0 - 2.0 * dimension) if np.any(drive.spot_width) else seen
+    )
 
 
 def _interface(drive: Drive, rough: Rough) -> dict[str, Any]:
@@ -119,10 +129,14 @@ def _clearance(drive: Drive, contact: Contact, mesh: Mesh, pair: Pressed) -> dic
     }
 
 
-def _mesh(drive: Drive, contact: Contact, mesh: Mesh) -> dict[str, Any]:
-    """Return mesh and drive by the names of their results; torsions have the sense of the torque."""
+def _mesh(drive: Drive, contact: Contact, alone: Mesh, mesh: Mesh) -> dict[str, Any]:
+    """Return mesh and drive by the names of their results; torsions have the sense of the torque.
+
+    ``alone`` has its pairs at no torque, ``mesh`` those at the torque.
+    """
     around, printed, sense = around_of(drive), require_catalogue(drive), np.sign(drive.torque)
-    whole, rough = (sense * size for size in mesh_torsion(drive.torque, drive.reference_torque, mesh))
+    twisted, saved = mesh_torsion(drive.torque, drive.reference_torque, alone), torsion_saved(drive, alone)
+    whole, rough = (sense * (size - less) for size, less in zip(twisted, saved, strict=True))
     normal = normal_stiffness(drive.torque, mesh)
     stiffness, in_catalogue = normal * mesh.radius**2, printed.torsion(drive.torque)
     beyond = np.maximum(np.abs(drive.torque) - drive.reference_torque, 0.0)

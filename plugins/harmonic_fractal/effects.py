@@ -226,6 +226,16 @@ FRICTION: list[Effect[Drive, Stiffness]] = [
 ]
 SURFACE: list[Effect[Drive, Stiffness]] = [
     Effect(
+        "lateral_filter",
+        on_inputs=lateral_filter,
+        unknowns=[
+            Unknown("width", 0, 20, "um", note="standard deviation of its weight; 0.187 of the cutoff of ISO 16610-21"),
+        ],
+        looks_like="the structure function is too low, by a share at lags below a few widths and by one amount above",
+        why="a stylus, a spot of light or a filter averages over the finest roughness",
+        source="Gaussian weight on a power law; ISO 16610-21",
+    ),
+    Effect(
         "waviness",
         on_results=waviness,
         unknowns=[
@@ -258,16 +268,6 @@ READING: list[Effect[Drive, Stiffness]] = [
         looks_like="the structure function is too high by one amount at any lag, which is an offset",
         why="every height has the noise of its instrument",
         source="structure function of white noise: twice its variance",
-    ),
-    Effect(
-        "lateral_filter",
-        on_reading=lateral_filter,
-        unknowns=[
-            Unknown("width", 0, 20, "um", note="standard deviation of its weight; 0.187 of the cutoff of ISO 16610-21"),
-        ],
-        looks_like="the structure function is too low, by a share at lags below a few widths and by one amount above",
-        why="a stylus, a spot of light or a filter averages over the finest roughness",
-        source="Gaussian weight on a power law; ISO 16610-21",
     ),
 ]
 EFFECTS: list[Effect[Drive, Stiffness]] = [*MESH, *MOTION, *FRICTION, *SURFACE, *READING]

@@ -20,9 +20,15 @@ def series_compliance(drive: Drive, *, compliance: Float) -> Drive:
 
 
 def engaged_pairs(drive: Drive, *, gain: Float, torque_scale: Float) -> Drive:
-    """The flexspline gives way until more pairs touch: the share ``gain`` more of them at a large torque."""
-    more = -gain * np.expm1(-np.abs(drive.torque) / torque_scale)
-    return replace(drive, engaged_factor=drive.engaged_factor * (1.0 + more))
+    """The flexspline gives way until more pairs touch: the share ``gain`` more of them at a large torque.
+
+    The torsion is added up with the pairs that there are on the way. Beside a gain that is stated, both are one gain
+    of their sum, under their mean torque.
+    """
+    both = drive.engaged_gain + gain
+    share = np.where(both > 0.0, gain / np.where(both > 0.0, both, 1.0), 0.0)
+    scale = drive.engaged_torque + share * (torque_scale - drive.engaged_torque)
+    return replace(drive, engaged_gain=both, engaged_torque=scale)
 
 
 def oil_film(drive: Drive, *, stiffness: Float, speed: Float, temperature: Float) -> Drive:

@@ -123,5 +123,12 @@ class Drive:
                                   above=0, at_most=10)  # fmt: skip
     engaged_factor: Float = given(1.0, "", symbol="f_N", note=f"engaged pairs over those stated, {NEUTRAL}", above=0,
                                   at_most=100)  # fmt: skip
+    engaged_gain: Float = given(0.0, "", symbol="g_N", note="pairs that come to bear under a large torque, over those "
+                                f"without it, {NEUTRAL}", at_least=0, at_most=100)  # fmt: skip
+    engaged_torque: Float = given(20.0, "N*m", symbol="T_N", note=f"torque under which 63 % of them have, {NEUTRAL}",
+                                  above=0, at_most=1e6)  # fmt: skip
     film_stiffness: Float = given(0.0, "N/m", symbol="k_oil", note="of an oil film that would fill the whole flank, "
                                   "beside the contacts of a pair", at_least=0)  # fmt: skip
+    spot_width: Float = given(0.0, "um", symbol="w_s", note="standard deviation of the weight by which an instrument "
+                              f"averages along a line, for the structure function alone, {NEUTRAL}", at_least=0,
+                              at_most=1000)  # fmt: skip
