@@ -1,19 +1,22 @@
 """A study of our own: the made flank as a data file, which a run of harmonic_fractal reads like a measured one."""
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from harmonic_fractal.made_calculation import surface_of, truth_of
+from harmonic_fractal.made_calculation import surface_of
 from harmonic_fractal.made_quantities import Made
+from harmonic_fractal.made_truth import truth_of
 from harmonic_fractal.surface import Surface
 from truing import Bench, TruingError, Words
 
 if TYPE_CHECKING:
     from truing import Block, Check
 
+PLAIN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,95}\.csv", re.ASCII)
 SCALES = {"m": 1.0, "mm": 1e3, "um": 1e6, "nm": 1e9}
 
 
@@ -28,9 +31,12 @@ class FlankFile:
 
     def __post_init__(self) -> None:
         if self.height_unit not in SCALES:
-            raise TruingError(f"study '{self.name}': height_unit = '{self.height_unit}', but it is m, mm, um or nm")
-        if not self.file.endswith(".csv"):
-            raise TruingError(f"study '{self.name}': file = '{self.file}', but a file of heights ends in .csv")
+            raise TruingError(f"height_unit = '{self.height_unit}', but it is m, mm, um or nm")
+        if not PLAIN.fullmatch(self.file):
+            raise TruingError(
+                f"file = '{self.file}', but it is a plain name that ends in .csv, of letters, digits, _, - and ., at "
+                "most 100 of them; it stands in the run folder"
+            )
 
     def run(self, bench: Bench) -> "Written":
         """Make the flank once more, as the effects that are on leave its inputs, and write it down."""

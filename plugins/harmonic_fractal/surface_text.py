@@ -60,6 +60,7 @@ def read_table(text: str, *, skip_lines: int = 0) -> TextTable:
     if start is None:
         raise ValueError("no line of the file holds numbers")
     rows = [(number, line) for number, line in enumerate(every[start:], start=start + 1) if _counts(line)]
+    _demand_header(every[skip_lines:start], skip_lines, rows[0][1])
     header = (*every[:start], *(line for line in every[start:] if line.lstrip().startswith("#")))
     separator = separator_of(rows[0][1])
     values, lines = _values(rows, separator)
@@ -69,6 +70,20 @@ def read_table(text: str, *, skip_lines: int = 0) -> TextTable:
         values=values, lines=lines, header=tuple(line.strip() for line in header if line.strip()),
         stated=_stated(header), separator=separator,
     )  # fmt: skip
+
+
+def _demand_header(lines: list[str], skipped: int, first: str) -> None:
+    """Refuse a line above the numbers that is a row of them but for a broken cell, so that it is not passed over."""
+    separator = separator_of(first)
+    width = len(first.split(separator))
+    for number, line in enumerate(lines, start=skipped + 1):
+        cells = [cell.strip() for cell in line.split(separator)] if _counts(line) else []
+        wrong = [cell for cell in cells if not _is_number(cell, separator) and not HOLES.fullmatch(cell)]
+        if len(cells) == width and wrong and 2 * len(wrong) < width:
+            raise ValueError(
+                f"line {number}: {wrong[0][:40]!r} is no number; holes are empty, nan or ***, and "
+                f"skip_lines = {number} passes over a header"
+            )
 
 
 def separator_of(line: str) -> str | None:
