@@ -1,14 +1,68 @@
 """The calculation as truing knows it: function, error sources, goals, studies and sheet."""
 
+from pathlib import Path
+
 from harmonic_fractal.calculation import harmonic_fractal
 from harmonic_fractal.effects import EFFECTS
+from harmonic_fractal.findings import FINDINGS
+from harmonic_fractal.published import PUBLISHED
+from harmonic_fractal.sections import SECTIONS
+from harmonic_fractal.slopes import SOURCES, slopes
 from harmonic_fractal.tolerances import TOLERANCES
-from truing import Model
+from harmonic_fractal.uncertainty import Uncertainty
+from harmonic_fractal.validity import Validity
+from truing import Maximise, Model, Optimise, Reliability, Require, Sensitivity, Sweep, Vary
+
+LITERATURE = [
+    "The patent: modelling method for the single-tooth contact stiffness and mesh clearance of a harmonic gear "
+    "(一种谐波齿轮单齿接触刚度和啮合间隙建模方法), China, published 2022.",
+    "Majumdar, A., Tien, C. L., Fractal characterization and simulation of rough surfaces, Wear 136 (1990), p. 313: "
+    "Weierstrass-Mandelbrot profiles and their structure function.",
+    "Yan, W., Komvopoulos, K., Contact analysis of elastic-plastic fractal surfaces, Journal of Applied Physics 84 "
+    "(1998), p. 3617: areal surfaces, interference, critical area.",
+    "Wang, S., Komvopoulos, K., A fractal theory of the interfacial temperature distribution in the slow sliding "
+    "regime, Journal of Tribology 116 (1994), pp. 812 and 824: number and areas of contacts.",
+    "Jiang, S., Zheng, Y., Zhu, H., A contact stiffness model of machined plane joint based on fractal theory, Journal "
+    "of Tribology 132 (2010), 011401.",
+    "Chang, W. R., Etsion, I., Bogy, D. B., An elastic-plastic model for the contact of rough surfaces, Journal of "
+    "Tribology 109 (1987), p. 257: first yield.",
+    "Morag, Y., Etsion, I., Resolving the contradiction of asperities plastic to elastic mode transition in current "
+    "contact models of fractal rough surfaces, Wear 262 (2007), p. 624.",
+    "Persson, B. N. J., Relation between interfacial separation and load: a general theory of contact mechanics, "
+    "Physical Review Letters 99 (2007), 125502.",
+    "Malinverno, A., A simple method to estimate the fractal dimension of a self-affine series, Geophysical Research "
+    "Letters 17 (1990), p. 1953: the roughness-length method.",
+    "Yang, D. C. H., Sun, Z. S., A rotary model for spur gear dynamics, Journal of Mechanisms, Transmissions and "
+    "Automation in Design 107 (1985), p. 529: line contact.",
+    "Harmonic Drive LLC, Cup Type Component Sets and Housed Units, CSF and CSG series; Harmonic Drive AG, CHA "
+    "actuators, manual 1018854: torsional stiffness.",
+]
 
 HARMONIC_FRACTAL = Model(
     name="harmonic_fractal",
     title="Harmonic drive: contact stiffness and clearance of rough flanks",
     function=harmonic_fractal,
     errors=[*TOLERANCES, *EFFECTS],
+    objectives=[
+        Require("surface_accepted", at_least="1"),
+        Require("stiffness", at_least="required_stiffness", reliability="required_reliability"),
+        Vary("fractal_dimension", "2.2", "2.7"),
+        Vary("fractal_roughness", "1e-12 m", "1e-10 m"),
+        Maximise("stiffness"),
+        Maximise("rough_height"),
+    ],
+    studies=[
+        Validity(),
+        Sensitivity(of=("stiffness", "torsion"), at_inputs=SOURCES, gives=slopes),
+        Uncertainty(),
+        Reliability(draws=20_000),
+        Sweep(over="torque", at="0..50 N*m", points=51),
+        Optimise(population=60, generations=60, draws=512, verify=20_000),
+    ],
+    sheet=SECTIONS,
+    published=PUBLISHED,
+    findings=FINDINGS,
+    cites=LITERATURE,
+    example=Path(__file__).with_name("example.toml"),
     summary="How stiff are the rough flanks of a pair of teeth, and how much of the drive's torsion is theirs?",
 )
