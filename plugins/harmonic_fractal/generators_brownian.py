@@ -17,10 +17,9 @@ def brownian_surface(dimension: float, step: float, shape: tuple[int, int], rng:
     rows, points = shape
     exponent = 4.0 - 2.0 * dimension
     unit = float(np.hypot(rows, points))  # the law holds up to this distance, in spacings
-    reach = 1.0 if exponent <= 1.5 else 2.0
-    side = _even_length(2.0 * reach * unit)
+    side = field_side(dimension, shape)
     away = np.minimum(np.arange(side), side - np.arange(side)) / unit
-    covariance, slope = _covariance(np.hypot(away[:, None], away[None, :]), exponent, reach)
+    covariance, slope = _covariance(np.hypot(away[:, None], away[None, :]), exponent, _reach(dimension))
     spectrum = np.maximum(np.fft.rfft2(covariance).real, 0.0)
     field = np.fft.irfft2(np.sqrt(spectrum) * np.fft.rfft2(rng.standard_normal((side, side))), s=(side, side))
     heights = field[:rows, :points] - field[0, 0]
@@ -39,7 +38,14 @@ def _covariance(distance: Array, exponent: float, reach: float) -> tuple[Array, 
     return np.where(distance <= 1.0, inside, outside), slope
 
 
-def _even_length(least: float) -> int:
+def field_side(dimension: float, shape: tuple[int, int]) -> int:
+    """Return the side, in points, of the square field from which a patch of this shape is cut."""
     from scipy.fft import next_fast_len
 
+    least = 2.0 * _reach(dimension) * float(np.hypot(*shape))
     return 2 * int(next_fast_len(int(np.ceil(least / 2.0)) + 1, real=True))
+
+
+def _reach(dimension: float) -> float:
+    """Return where the covariance of the field ends, in units; smooth surfaces need it to end later."""
+    return 1.0 if dimension >= 1.25 else 2.0

@@ -19,9 +19,10 @@ class MadeFlank:
                           method="spacings that fit into the length, and one more")  # fmt: skip
     lines: Float = found("", symbol="N_y", note="lines", digits=9,
                          method="spacings that fit into the width, and one more")  # fmt: skip
-    longest: Float = found("mm", symbol="lambda_1", note="longest wave; of Brownian motion there is none, and this is "
-                           "what waves would have", method="stated, or by rule")  # fmt: skip
-    shortest: Float = found("um", symbol="lambda_n", note="shortest wave, likewise", method="stated, or by rule")
+    longest: Float = found("mm", symbol="lambda_1", note="longest wave of the sum; Brownian motion has longer ones",
+                           method="stated, or by rule")  # fmt: skip
+    shortest: Float = found("um", symbol="lambda_n", note="shortest wave of the sum; Brownian motion has shorter ones",
+                            method="stated, or by rule")  # fmt: skip
     rms_height: Float = found("nm", symbol="S_q", note=f"root mean square height {PLANE}", method="of the points")
     height: Float = found("nm", symbol="S_z", note=f"from the lowest to the highest point {PLANE}",
                           method="of the points")  # fmt: skip

@@ -1,14 +1,11 @@
 """A flank is made, looked at, and its dimension and roughness are found again."""
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
 from harmonic_fractal.cleaning import without_form, without_line
 from harmonic_fractal.estimate import Estimate, Estimation, estimate_of
 from harmonic_fractal.generators import (
-    Waves,
+    Array,
     brownian_profiles,
     profile_sum,
     surface_sum,
@@ -17,23 +14,21 @@ from harmonic_fractal.generators import (
 )
 from harmonic_fractal.generators_brownian import brownian_surface
 from harmonic_fractal.made_answers import MadeFlank
-from harmonic_fractal.made_instrument import Instrument, as_measured
+from harmonic_fractal.made_instrument import as_measured
 from harmonic_fractal.made_quantities import Made
-from harmonic_fractal.power_law import Convention, converted, structure_function
+from harmonic_fractal.made_truth import instrument_of, is_patch, is_possible, truth_of, waves_of
+from harmonic_fractal.power_law import structure_function
 from harmonic_fractal.structure import structure_sums
 from harmonic_fractal.surface import Direction, Lines, Surface
 from truing import feasible
 
-Array = NDArray[np.float64]
-LARGEST = 4_000_000  # points of a patch
-MOST_WAVES = 50_000
 ROWS = 20  # lags of the table
 
 
 def made_flank(made: Made) -> MadeFlank:
     """Make one flank and find its truth again; numbers only, SI: the kernel calls it once per row of a batch."""
     truth = truth_of(made)
-    if not _possible(made, truth):
+    if not is_possible(made, truth):
         return _nothing()
     surface = surface_of(made)
     level = without_form(surface.heights, "plane")
@@ -61,89 +56,6 @@ def made_flank(made: Made) -> MadeFlank:
         dimension_error=found.dimension - truth.dimension,
         roughness_error=float(np.log10(found.roughness / truth.areal)),
         accepted=float(found.is_accepted),
-    )
-
-
-@dataclass(frozen=True, kw_only=True)
-class Truth:
-    """What the flank is made of: dimension of its profiles, G in the areal convention, m, and band, 1/m."""
-
-    dimension: float
-    areal: float
-    lowest: float
-    highest: float
-    shape: tuple[int, int]
-
-
-def truth_of(made: Made) -> Truth:
-    """Return the truth of a flank; ``shape`` is (lines, points)."""
-    dimension, spacing = float(made.fractal_dimension) - 1.0, float(made.spacing)
-    areal = converted(made.fractal_roughness, dimension, made.density, source=made.convention, target="areal")
-    points, lines = (int(np.floor(float(side) / spacing + 1e-6)) + 1 for side in (made.length, made.width))
-    longest, shortest = float(made.longest_wave), float(made.shortest_wave)
-    side = max(float(made.length), float(made.width))
-    return Truth(
-        dimension=dimension,
-        areal=float(areal),
-        lowest=1.0 / (100.0 * side if np.isnan(longest) else longest),
-        highest=1.0 / (spacing / 50.0 if np.isnan(shortest) else shortest),
-        shape=(lines, points),
-    )
-
-
-def is_patch(made: Made, truth: Truth) -> bool:
-    """Whether neighbouring lines know of one another."""
-    return truth.shape[0] > 1 and made.kind != "profile"
-
-
-def _possible(made: Made, truth: Truth) -> bool:
-    """State what must hold, and say whether all of it does."""
-    lines, points = truth.shape
-    count = np.log(truth.highest / truth.lowest) / np.log(float(made.density)) * made.directions
-    margin = 2 * instrument_of(made).margin(float(made.spacing))
-    demands = (
-        (2.05 <= truth.dimension + 1.0 <= 2.95, "a fractal dimension below 2.05 or above 2.95: exponents diverge"),
-        (points >= 64, "a line has fewer than 64 points: make length larger or spacing smaller"),
-        (
-            (points + margin) * (lines + margin * is_patch(made, truth)) <= LARGEST,
-            f"the flank has more than {LARGEST} points: make it smaller or spacing larger",
-        ),
-        (
-            not float(made.shortest_lag) > 0.05 * points * float(made.spacing),
-            "shortest_lag is more than a twentieth of a line, and the longest lag of the fit is a tenth",
-        ),
-        (truth.highest > truth.lowest, "the shortest wave is not shorter than the longest one"),
-        (count <= MOST_WAVES, f"the flank has more than {MOST_WAVES} waves: fewer directions or a larger density"),
-    )
-    for holds, sentence in demands:
-        feasible(holds, sentence)
-    return all(holds for holds, _ in demands)
-
-
-def instrument_of(made: Made) -> Instrument:
-    """Return the instrument that looks at the flank."""
-    return Instrument(
-        cutoff=float(made.filter_cutoff),
-        noise=float(made.noise),
-        step=float(made.height_step),
-        spikes=float(made.spikes),
-        spike_height=float(made.spike_height),
-        holes=float(made.holes),
-    )
-
-
-def waves_of(made: Made) -> Waves:
-    """Return the waves of the flank, with G in the convention of its own form."""
-    truth = truth_of(made)
-    form: Convention = "profile" if made.kind == "profile" else "one_direction" if made.directions == 1 else "areal"
-    roughness = converted(truth.areal, truth.dimension, made.density, source="areal", target=form)
-    return Waves(
-        dimension=truth.dimension,
-        roughness=float(roughness),
-        lowest=truth.lowest,
-        highest=truth.highest,
-        density=float(made.density),
-        directions=made.directions,
     )
 
 

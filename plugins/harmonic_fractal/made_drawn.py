@@ -7,8 +7,9 @@ import numpy as np
 from harmonic_fractal.cleaning import without_form
 from harmonic_fractal.estimate import Estimate
 from harmonic_fractal.generators import Array
-from harmonic_fractal.made_calculation import Truth, exact_structure_function
+from harmonic_fractal.made_calculation import exact_structure_function
 from harmonic_fractal.made_quantities import Made
+from harmonic_fractal.made_truth import Truth
 from harmonic_fractal.power_law import structure_function
 from harmonic_fractal.surface import Surface
 

@@ -9,8 +9,9 @@ import numpy as np
 from harmonic_fractal import made_drawn
 from harmonic_fractal.estimate import Estimate
 from harmonic_fractal.made_answers import MadeFlank
-from harmonic_fractal.made_calculation import estimate_along, is_patch, surface_of, truth_of
+from harmonic_fractal.made_calculation import estimate_along, surface_of
 from harmonic_fractal.made_quantities import Made
+from harmonic_fractal.made_truth import is_patch, truth_of
 from truing import Drawing, Section, Table, Words
 
 if TYPE_CHECKING:

@@ -11,11 +11,12 @@ from matplotlib.figure import Figure
 
 from harmonic_fractal.flank import read_flank
 from harmonic_fractal.generators import Array
-from harmonic_fractal.made_calculation import made_flank, surface_of, truth_of, waves_of
+from harmonic_fractal.made_calculation import made_flank, surface_of
 from harmonic_fractal.made_file import FlankFile, flank_text
 from harmonic_fractal.made_model import MADE_FLANK
 from harmonic_fractal.made_quantities import Made
 from harmonic_fractal.made_sections import SECTIONS
+from harmonic_fractal.made_truth import truth_of, waves_of
 from shared import Calc
 from truing import Drawing, Record, Table, TruingError, Words
 from truing.errors import InfeasibleError
@@ -119,7 +120,8 @@ def test_heights_are_told_without_the_mean_plane() -> None:
         ({"length": "20 um"}, "fewer than 64 points"),
         ({"length": "90 mm", "width": "90 mm"}, "more than 4000000 points"),
         ({"longest_wave": "1 um", "shortest_wave": "2 um"}, "shortest wave is not shorter"),
-        ({"density": 1.0001}, "more than 50000 waves"),
+        ({"density": 1.001}, "waves of the flank do not fit into memory"),
+        ({"kind": "brownian", "fractal_dimension": 2.2, "length": "1 mm"}, "field of the Brownian patch"),
         ({"fractal_dimension": 2.02}, "exponents diverge"),
         ({"shortest_lag": "4 um"}, "a twentieth of a line"),
     ],
