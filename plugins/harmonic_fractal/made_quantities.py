@@ -35,8 +35,8 @@ class Made:
                          at_least=0, at_most=1e5)  # fmt: skip
     spacing: Float = given(0.4, "um", symbol="dx", note="of the points, both ways", above=0, at_most=1000)
     # The waves
-    directions: int = given(40, symbol="M", note="directions of the ridges of an areal surface; with 1 they all run "
-                            "across the lines", at_least=1, at_most=1000)  # fmt: skip
+    directions: int = given(40, symbol="M", note="directions of the ridges of an areal surface, over half a turn; "
+                            "with 1 they all run across the lines", at_least=1, at_most=1000)  # fmt: skip
     longest_wave: Float = given(None, "mm", symbol="lambda_max", note="not given: 100 times the longer side of the "
                                 "patch", source=RULE, above=0)  # fmt: skip
     shortest_wave: Float = given(None, "um", symbol="lambda_min", note="not given: a fiftieth of the spacing",

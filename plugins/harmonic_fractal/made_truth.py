@@ -9,7 +9,7 @@ from harmonic_fractal.generators import Waves
 from harmonic_fractal.generators_brownian import field_side
 from harmonic_fractal.made_instrument import Instrument
 from harmonic_fractal.made_quantities import Made
-from harmonic_fractal.power_law import Convention, converted
+from harmonic_fractal.power_law import converted
 from truing import feasible
 
 LARGEST = 4_000_000  # points of a flank
@@ -62,10 +62,16 @@ def instrument_of(made: Made) -> Instrument:
 
 
 def waves_of(made: Made) -> Waves:
-    """Return the waves of the flank, with G in the convention of its own form."""
+    """Return the waves, with G of their own form: S along the lines is that of the truth, for any number of directions."""
     truth = truth_of(made)
-    form: Convention = "profile" if made.kind == "profile" else "one_direction" if made.directions == 1 else "areal"
-    roughness = converted(truth.areal, truth.dimension, made.density, source="areal", target=form)
+    if made.kind == "profile":
+        roughness = converted(truth.areal, truth.dimension, made.density, source="areal", target="profile")
+    else:
+        exponent = 4.0 - 2.0 * truth.dimension
+        single = converted(truth.areal, truth.dimension, made.density, source="areal", target="one_direction")
+        angles = np.pi * np.arange(1, made.directions + 1) / made.directions
+        share = np.mean(np.abs(np.cos(angles)) ** exponent)  # of S across one ridge, along the lines
+        roughness = single / share ** (1.0 / (2.0 - exponent))
     return Waves(
         dimension=truth.dimension,
         roughness=float(roughness),
