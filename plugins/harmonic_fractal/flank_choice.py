@@ -34,9 +34,9 @@ def choice_of(surface: Surface, settings: Estimation, options: Options) -> Choic
         return _asked((estimate_of(surface.lines("x"), "x", settings),), "x")
     lines: dict[Direction, Lines] = {"x": _level(surface.lines("x")), "y": _level(surface.lines("y"))}
     alone = tuple(estimate_of(each, axis, settings) for axis, each in lines.items())
-    if options.direction == "both":
-        return _asked((*alone, _together(lines, settings)), "both")
     said = _anisotropy(alone)
+    if options.direction == "both":
+        return replace(_asked((*alone, _together(lines, settings)), "both"), warnings=said)
     if options.direction != "auto":
         return replace(_asked(alone, options.direction), warnings=said)
     if not said and surface.is_square and all(estimate.is_accepted for estimate in alone):
@@ -81,5 +81,5 @@ def _anisotropy(alone: tuple[Estimate, ...]) -> tuple[str, ...]:
         return ()
     return (
         f"the flank is anisotropic: the dimension of its profiles is {x.dimension:.3f} along x and {y.dimension:.3f} "
-        "along y; one direction alone is used, the contact model knows no lay",
+        "along y; the contact model knows no lay and takes it as alike in all directions",
     )

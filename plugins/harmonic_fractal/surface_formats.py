@@ -13,6 +13,7 @@ from harmonic_fractal.surface import EQUAL
 from harmonic_fractal.surface_text import metres_per_unit
 
 NAN = float("nan")
+GUESSING = {"asc", "xyz"}  # the library's readers of text, which take numbers from any file of letters
 NEEDS = (
     "this is no text, and profilometer formats are read by SurfaceTopography, which is not installed: "
     "pip install 'truing[surfaces]', or export the heights as text, which needs nothing more"
@@ -27,11 +28,11 @@ def read_format(
     What the file states of itself counts; ``spacing`` and ``height_unit`` fill in where it is silent, and are refused
     where they say something else. The first channel of heights is read. Raises ValueError with one sentence.
     """
-    topography = _topography(path)
+    topography, is_sized = _topography(path)
     heights = np.atleast_2d(np.asarray(np.ma.filled(topography.heights().T, np.nan), dtype=np.float64))
     metres = _unit(topography, height_unit)
-    lateral = metres_per_unit(topography.unit, "the unit of the file") if topography.unit else NAN
-    sizes = [*topography.physical_sizes, NAN][:2] if topography.physical_sizes else [NAN, NAN]
+    lateral = metres_per_unit(topography.unit, "the unit of the file") if topography.unit and is_sized else NAN
+    sizes = [*topography.physical_sizes, NAN][:2]
     points = [*topography.nb_grid_pts, 1][:2]
     own = [size / number * lateral for size, number in zip(sizes, points, strict=True)]
     dx, dy = (_spacing(axis, mine, stated) for axis, mine, stated in zip("xy", own, spacing, strict=True))
@@ -42,20 +43,27 @@ def read_format(
     return heights * metres, (dx, dy), _filter(topography)
 
 
-def _topography(path: Path) -> Any:
+def _topography(path: Path) -> tuple[Any, bool]:
+    """Return the surface as the library reads it, and whether the file states its size."""
     try:
         from SurfaceTopography import open_topography
     except ImportError:
         raise ValueError(NEEDS) from None
     try:
         reader = open_topography(str(path))
-        topography = reader.topography()
+        if reader.format() in GUESSING:
+            raise ValueError("it is none of its formats")
+        channel = reader.default_channel
+        if not channel.is_height_channel:
+            raise ValueError("its first channel holds no heights")
+        is_sized = bool(channel.physical_sizes) and None not in channel.physical_sizes
+        topography = reader.topography() if is_sized else reader.topography(physical_sizes=channel.nb_grid_pts)
     except Exception as error:  # whatever the library says of a file it cannot read
         words = str(error).split("\n")[0][:200] or type(error).__name__
         raise ValueError(f"SurfaceTopography cannot read this file: {words}") from error
     if not getattr(topography, "is_uniform", False):
         raise ValueError("the spacing of the points is unequal; resample to equal spacing")
-    return topography
+    return topography, is_sized
 
 
 def _unit(topography: Any, stated: str) -> float:

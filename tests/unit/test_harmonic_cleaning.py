@@ -286,7 +286,10 @@ def test_pooled_lines_that_are_refused_leave_the_direction_of_sliding(
     monkeypatch.setattr(flank_choice, "estimate_of", lambda lines, direction, settings: said[direction])
     assert read_flank(write(tmp_path, rough()), sliding="y").chosen == "y"
     asked = read_flank(write(tmp_path, rough()), direction="both")
-    assert (asked.chosen, asked.reason) == (None, "no range")
+    assert (asked.chosen, asked.reason, asked.warnings) == (None, "no range", ())
+    said["x"] = settled("x", 1.3)
+    for direction in ("x", "y", "both"):
+        assert "anisotropic" in " ".join(read_flank(write(tmp_path, rough()), direction=direction).warnings)
 
 
 def test_a_flank_travels_between_processes_and_cannot_be_changed(tmp_path: Path) -> None:

@@ -338,6 +338,56 @@ def test_what_contradicts_a_profilometer_file_is_refused(layout: Layout, words: 
     assert words in str(error.value)
 
 
+STANDARD = """aISO-1.0
+ManufacID   = maker
+CreateDate  = 010120201200
+ModDate     = 010120201200
+NumPoints   = 4
+NumProfiles = 3
+Xscale      = 1e-6
+Yscale      = 2e-6
+Zscale      = 1e-9
+Zresolution = -1
+Compression = 0
+DataType    = 7
+CheckType   = 0
+*
+0 1 2 3
+4 5 BAD 7
+8 9 10 11
+*
+"""
+
+
+def test_standard_text_of_surfaces_is_in_metres(tmp_path: Path) -> None:
+    """ISO 25178-71: all scales are in m; x runs along a row."""
+    pytest.importorskip("SurfaceTopography")
+    file = tmp_path / "flank.sdf"
+    file.write_text(STANDARD, encoding="ascii")
+    found = read_surface(file, Layout()).surface
+    expected = np.arange(12.0).reshape(3, 4)
+    expected[1, 2] = np.nan
+    np.testing.assert_allclose(found.heights * 1e9, expected, atol=1e-12)
+    assert (found.spacing_x, found.spacing_y) == pytest.approx((1e-6, 2e-6))
+    file.write_text(STANDARD.replace("aISO", "aBCR"), encoding="ascii")
+    with pytest.raises(ValueError, match="none of its formats"):
+        read_surface(file, Layout())
+
+
+def test_a_format_without_lengths_needs_them_stated(tmp_path: Path) -> None:
+    pytest.importorskip("SurfaceTopography")
+    np.save(tmp_path / "flank.npy", HEIGHTS.T)  # the library puts x first
+    for layout, words in (
+        (Layout(), "height_unit"), (Layout(height_unit="um"), "spacing of its points"),
+        (Layout(height_unit="um", spacing_x=1e-6), "spacing of its rows"),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=words):
+            read_surface(tmp_path / "flank.npy", layout)
+    found = read_surface(tmp_path / "flank.npy", Layout(height_unit="um", spacing_x=1e-6, spacing_y=2e-6)).surface
+    assert found.heights == pytest.approx(HEIGHTS * 1e-6)
+    assert (found.spacing_x, found.spacing_y) == (1e-6, 2e-6)
+
+
 def test_a_file_that_nobody_can_read(tmp_path: Path) -> None:
     pytest.importorskip("SurfaceTopography")
     assert "SurfaceTopography cannot read this file" in refused(tmp_path, bytes(range(256)) * 20)
