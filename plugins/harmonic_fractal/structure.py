@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Steps = NDArray[np.int64]
-CACHED = 32768  # points of a block of lines; its differences stay in the cache of the processor
+CACHED = 65536  # points of a block of lines; its differences stay in the cache of the processor
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +60,30 @@ def structure_sums(heights: Array, steps: Steps) -> tuple[Array, Array]:
     return sums, counts
 
 
+def _of_block(heights: Array, steps: Steps) -> tuple[Array, Array]:
+    """Return the sums of a block of lines, which are taken as one: what crosses from line to line is cut off.
+
+    A hole is a height of 0 whose two differences are set to 0. That costs as much as there are holes, while a mask
+    would cost as much as there are points.
+    """
+    lines, points = heights.shape
+    known = np.isfinite(heights)
+    one_line, weights = np.where(known, heights, 0.0).ravel(), known.astype(np.float32)  # exact up to 2^24 points
+    longest = int(steps.max(initial=0))
+    room = np.zeros(longest + one_line.size)  # so that a hole at the very beginning has a place for both differences
+    holes = longest + np.flatnonzero(~known)
+    differences = room[longest:].reshape(lines, points)
+    sums, counts = np.empty((lines, steps.size)), np.empty((lines, steps.size))
+    for column, step in enumerate(steps.tolist()):
+        np.subtract(one_line[step:], one_line[:-step], out=room[longest : room.size - step])
+        room[holes] = 0.0
+        room[holes - step] = 0.0
+        inside = differences[:, : points - step]
+        sums[:, column] = np.einsum("ij,ij->i", inside, inside)
+        counts[:, column] = np.einsum("ij,ij->i", weights[:, step:], weights[:, :-step])
+    return sums, counts
+
+
 def piece_sums(heights: Array, steps: Steps, pieces: int) -> tuple[Array, Array]:
     """Return the same of pieces (pieces, k) along the lines, what lies at the same place of all lines together.
 
@@ -87,24 +111,3 @@ def mean_squares(sums: Array, counts: Array) -> Array:
     """Return sums over counts, NaN where nothing was counted."""
     quotient: Array = np.divide(sums, counts, out=np.full(np.shape(sums), np.nan), where=counts > 0)
     return quotient
-
-
-def _of_block(heights: Array, steps: Steps) -> tuple[Array, Array]:
-    known = np.isfinite(heights)
-    shape = (len(heights), steps.size)
-    sums, counts = np.empty(shape), np.broadcast_to((heights.shape[1] - steps).astype(float), shape).copy()
-    if known.all():
-        for column, step in enumerate(steps):
-            sums[:, column] = _squares(heights[:, step:] - heights[:, :-step])
-        return sums, counts
-    filled, weight = np.where(known, heights, 0.0), known.astype(float)
-    for column, step in enumerate(steps):
-        both = weight[:, step:] * weight[:, :-step]
-        counts[:, column] = both.sum(axis=1)
-        sums[:, column] = _squares((filled[:, step:] - filled[:, :-step]) * both)
-    return sums, counts
-
-
-def _squares(differences: Array) -> Array:
-    squares: Array = np.einsum("ij,ij->i", differences, differences)
-    return squares
