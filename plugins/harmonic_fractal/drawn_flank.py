@@ -90,7 +90,7 @@ def structure_figure(flank: "Flank") -> "Figure":
     used = flank.used
     if used is not None and np.isfinite(used.range).all():
         for panel in (upper, lower):
-            panel.axvspan(MICRO * used.range[0], MICRO * used.range[1], color=PALE, zorder=0,
+            panel.axvspan(MICRO * used.range[0], MICRO * used.range[1], facecolor=PALE, edgecolor=GREY, zorder=0,
                           label="self-affine range used" if panel is upper else "")  # fmt: skip
         lower.axhline(used.dimension, color=INK, linewidth=1.0, label=f"used, $D_s$ = {used.dimension:.3f}")
     for limit in (LOWEST, HIGHEST):
@@ -100,9 +100,9 @@ def structure_figure(flank: "Flank") -> "Figure":
     lower.set_ylim(min(0.95, float(shown.min(initial=1.0)) - 0.05), max(2.05, float(shown.max(initial=2.0)) + 0.05))
     quiet(upper, "", "structure function S, nm²")
     quiet(lower, "lag ξ, µm", "local $D_s$ of profiles")
-    upper.legend(loc="best", fontsize=7.5)
+    upper.legend(loc="best", fontsize=7.5, frameon=True, framealpha=0.9)
     if used is not None:
-        lower.legend(loc="best", fontsize=7.5)
+        lower.legend(loc="best", fontsize=7.5, frameon=True, framealpha=0.9)
     return figure
 
 
@@ -118,5 +118,6 @@ def _curve(panel: Any, found: "Estimate", *, is_used: bool) -> None:
         return
     law = structure_function(found.lags, found.dimension, found.roughness) + 2.0 * found.noise**2
     style = "-" if is_used else "--"
-    words = "its fit" if is_used else "its fit, not used" if found.is_accepted else "its fit, for comparison only"
+    state = "" if is_used else ", not used" if found.is_accepted else ", for comparison only"
+    words = f"fit {words}{state}"
     panel.loglog(MICRO * found.lags, NANO**2 * law, style, color=colour, linewidth=1.4, label=words)

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 ALONG = {"x": "along x", "y": "along y", "both": "x and y together"}
 COMPARISON = (
-    "The fit below stands for comparison only. A straight line through ln S over ln lag always finds some D and G, and "
-    "its R² says nothing about whether the surface is self-affine."
+    "Its fit stands below for comparison only: a straight line through ln S over ln lag always finds some D and G, and "
+    "its R² does not tell whether the surface is self-affine."
 )
 
 
@@ -25,8 +25,8 @@ def verdict(flank: "Flank", body: str, instead: str) -> "Iterator[Block]":
     name = flank.surface.name
     if flank.used is None:
         yield Words(
-            f"REFUSED: the flank of the {body}, {name}, has no self-affine range that D and G could stand for. Reason: "
-            f"{flank.reason}. {COMPARISON} The contact below is NOT that of this surface: {instead}.",
+            f"REFUSED: the flank of the {body}, {name}, has no D and G. The contact below is NOT that of this surface: "
+            f"{instead}. Reason: {flank.reason}. {COMPARISON}",
             "warning",
         )
     else:

@@ -43,8 +43,8 @@ FINDINGS = [
         text="For waves of f cycles per metre the constant of the structure function holds (2π)^(4 − 2 D_s). Where it "
         "is left out, as in many papers, G comes out too large by (2π)^((2 − D_s)/(D_s − 1)): 15.7 at D_s = 1.4, 6.3 "
         "at 1.5, 3.4 at 1.6, 1560 at 1.2. At 1.4 the stiffness of a pair is then 0.13 of what it should be. That "
-        "constant belongs to waves counted in radians per metre. The patent's own equations 3 and 4 are lost with their "
-        "constant.",
+        "constant belongs to waves counted in radians per metre. The patent's own equations 3 and 4 are "
+        "lost with their constant.",
     ),
     Finding(
         title="There are two G, and they differ by factors",

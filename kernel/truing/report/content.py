@@ -59,7 +59,9 @@ def input_rows(setup: Setup) -> Iterator[InputRow]:
 def input_value(setup: Setup, item: InputField, value: Any) -> Value:
     """Write one input: a number in its printed unit, a choice, a switch, a file."""
     if item.kind == "file":
-        return Value(PurePath(setup.tables[item.name]["file"]).name if item.name in setup.tables else "default")
+        if item.name in setup.tables:
+            return Value(PurePath(setup.tables[item.name]["file"]).name)
+        return Value(NOT_GIVEN if value is None else "default")
     if isinstance(value, bool):
         return Value("yes" if value else "no")
     if isinstance(value, str) or (isinstance(item.spec, Given) and item.spec.unit is None):
