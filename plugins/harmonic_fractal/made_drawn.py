@@ -79,7 +79,7 @@ def structure_figure(made: Made, truth: Truth, answer: "MadeFlank", found: Estim
         _curves(panel, over, (answer.lag, answer.structure_function), (lags, exact), found)
     upper.set_yscale("log")
     _quiet(upper, "", "S, nm²")
-    upper.legend(loc="lower right")
+    upper.legend(loc="best")
     low, high = middle.get_ylim()
     middle.set_ylim(max(low, 0.0), min(high, 3.0))
     _quiet(middle, "", "S over power law")
@@ -117,7 +117,7 @@ def _local_slopes(panel: Any, truth: Truth, exact: Curve, found: Estimate) -> No
         panel.axvspan(MICRO * found.range[0], MICRO * found.range[1], color=PALE, zorder=0, label="self-affine range")
     panel.set_ylim(0.95, 2.05)
     _quiet(panel, "lag, µm", "local dimension of profiles")
-    panel.legend(loc="upper left")
+    panel.legend(loc="best")
 
 
 def _quiet(panel: Any, x_label: str, y_label: str) -> None:

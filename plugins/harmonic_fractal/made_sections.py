@@ -1,17 +1,20 @@
 """The sheet of a made flank."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from harmonic_fractal import made_drawn
+from harmonic_fractal.cleaning import quantisation, spikes_of
 from harmonic_fractal.estimate import Estimate
 from harmonic_fractal.made_answers import MadeFlank
 from harmonic_fractal.made_calculation import estimate_along, surface_of
 from harmonic_fractal.made_quantities import Made
 from harmonic_fractal.made_truth import is_patch, truth_of
+from harmonic_fractal.surface import Surface
 from truing import Drawing, Section, Table, Words
 
 if TYPE_CHECKING:
@@ -68,6 +71,8 @@ def found_again(record: "Run") -> "Sequence[Block]":
     made, surface, true = record.inputs, surface_of(record.inputs), truth_of(record.inputs)
     along = estimate_along(made, surface, "x")
     found = [("along the lines, x", along)]
+    if made.spikes > 0.0:
+        found.append(("the same, spikes taken out", estimate_along(made, _cleaned(surface), "x")))
     if is_patch(made, true) and made.directions > 1:
         found.append(("across the lines, y", estimate_along(made, surface, "y")))
     rows = [_row(name, each) for name, each in found]
@@ -80,6 +85,12 @@ def found_again(record: "Run") -> "Sequence[Block]":
         "of one flank share, nor what levelling adds: flanks of other seeds stray by up to twice as much.",
     )
     return [Words(FOUND_AGAIN), table, *([Words(_refused(along), "finding")] if along.reason else [])]
+
+
+def _cleaned(surface: Surface) -> Surface:
+    """Take out spikes as it is done with a measured flank."""
+    spikes = spikes_of(surface.heights, quantisation(surface.heights))
+    return replace(surface, heights=np.where(spikes, np.nan, surface.heights))
 
 
 def _row(name: str, found: Estimate) -> tuple[str | float | None, ...]:

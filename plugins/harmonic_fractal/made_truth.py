@@ -62,7 +62,7 @@ def instrument_of(made: Made) -> Instrument:
 
 
 def waves_of(made: Made) -> Waves:
-    """Return the waves, with G of their own form: S along the lines is that of the truth, for any number of directions."""
+    """Return the waves, with G of their own form: S along the lines is that of the truth however many directions."""
     truth = truth_of(made)
     if made.kind == "profile":
         roughness = converted(truth.areal, truth.dimension, made.density, source="areal", target="profile")
