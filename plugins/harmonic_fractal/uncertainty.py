@@ -161,7 +161,7 @@ class Propagated:
             ),
             Drawing(
                 "Pairs of D and ln G", partial(pairs_figure, self.pairs),
-                "Each point is one set of resampled lines. Along the cloud stiffness hardly changes.",
+                "Each point is one set of resampled lines: where D is found larger, so is G.",
             ),
         ]  # fmt: skip
 
@@ -174,8 +174,9 @@ class Propagated:
         return (
             f"{len(self.pairs)} pairs of D and ln G from resampled blocks of lines: standard deviations {sd[0]:.2g} "
             f"and {sd[1]:.2g}, correlation {self.correlation:.4f}".replace("-", "−")
-            + f". Their errors go together, and the {first.replace('_', ' ')} is sure to {100 * found.relative_sd:.2g} "
-            f"%; two independent error bars would claim {100 * found.independent_sd:.2g} %, {ratio:.2g} times as much."
+            + f". Their errors go together: the {first.replace('_', ' ')} has a standard deviation of "
+            f"{100 * found.relative_sd:.2g} %. Two independent error bars would claim {100 * found.independent_sd:.2g} "
+            f"%, {ratio:.2g} times as much."
         )
 
     def checks(self) -> "Sequence[Check]":
