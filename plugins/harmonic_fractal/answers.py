@@ -122,7 +122,7 @@ class Stiffness:
                                   formula="(rough_height + mating_rough_height) / 2")  # fmt: skip
     reference_load: Float = found(
         "N", symbol="F_0", note="load of the pair that carries most at the reference torque; clearance and torsion "
-        "count from it", formula="reference_torque * largest_share / effective_radius",
+        "count from it", method=SHARES,
     )  # fmt: skip
     approach: Float = found("nm", symbol="u", note="way by which the pair closes from the reference load to its own; "
                             "0 below", method="integral of dF/K by Gauss and Legendre")  # fmt: skip
@@ -133,11 +133,15 @@ class Stiffness:
     # The mesh
     effective_radius: Float = found("mm", symbol="r_n", note="lever of the normal force about the axis",
                                     formula="pitch_radius * cos(pressure_angle)")  # fmt: skip
+    pairs_factor: Float = found(
+        "", symbol="n_T", note="engaged pairs at the torque over those stated",
+        formula="engaged_factor * (1 + engaged_gain * (1 - exp(-abs(torque) / engaged_torque)))",
+    )  # fmt: skip
     largest_share: Float = found("%", symbol="w_1", note="share of the pair that carries most", method=SHARES)
     largest_pair_force: Float = found("N", symbol="F_1", note="normal load of that pair",
                                       formula="abs(torque) * largest_share / effective_radius")  # fmt: skip
     plastic_torque: Float = found("mN*m", symbol="T_c", note="torque up to which all contacts of all pairs are plastic",
-                                  formula="plastic_limit * effective_radius / largest_share")  # fmt: skip
+                                  method="where the pair that carries most reaches F_c")  # fmt: skip
     line_stiffness: Float = found("N/m", symbol="k_H", note="of flanks as cylinders, where line_contact counts",
                                   source="Yang and Sun 1985",
                                   formula="pi * equivalent_modulus * face_width / 2")  # fmt: skip

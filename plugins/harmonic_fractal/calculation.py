@@ -1,6 +1,6 @@
 """From rough flanks to the stiffness of one pair, of the mesh and of the drive."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,7 +9,6 @@ from harmonic_fractal import clearance as gap
 from harmonic_fractal.answers import Stiffness
 from harmonic_fractal.blunt import kept_share
 from harmonic_fractal.contact import Contact, Pressed, contact_of, critical_pressure, pressed
-from harmonic_fractal.engagement import pairs_factor, torsion_saved
 from harmonic_fractal.feasibility import require_catalogue, require_contact, require_flank, require_surface
 from harmonic_fractal.interface import Rough, interface_of, is_accepted, spacing_of
 from harmonic_fractal.mesh import Mesh, line_stiffness, load_of_largest, mesh_of, normal_stiffness
@@ -34,8 +33,7 @@ def harmonic_fractal(drive: Drive) -> Stiffness:
     rough = interface_of(drive)
     require_surface(drive, rough)
     contact = contact_of(drive, rough)
-    alone = mesh_of(drive, contact)
-    mesh = replace(alone, factor=pairs_factor(drive, drive.torque))
+    mesh = mesh_of(drive, contact)
     require_contact(drive, contact, mesh)
     pair = pressed(drive.pair_load, contact)
     require_flank(drive, pair, pressed(load_of_largest(drive.torque, mesh), contact))
@@ -46,7 +44,7 @@ def harmonic_fractal(drive: Drive) -> Stiffness:
         **_contact(drive, contact),
         **_pair(drive, contact, pair),
         **_clearance(drive, contact, mesh, pair),
-        **_mesh(drive, contact, alone, mesh),
+        **_mesh(drive, contact, mesh),
     )
 
 
@@ -129,20 +127,18 @@ def _clearance(drive: Drive, contact: Contact, mesh: Mesh, pair: Pressed) -> dic
     }
 
 
-def _mesh(drive: Drive, contact: Contact, alone: Mesh, mesh: Mesh) -> dict[str, Any]:
-    """Return mesh and drive by the names of their results; torsions have the sense of the torque.
-
-    ``alone`` has its pairs at no torque, ``mesh`` those at the torque.
-    """
+def _mesh(drive: Drive, contact: Contact, mesh: Mesh) -> dict[str, Any]:
+    """Return mesh and drive by the names of their results; torsions have the sense of the torque."""
     around, printed, sense = around_of(drive), require_catalogue(drive), np.sign(drive.torque)
-    twisted, saved = mesh_torsion(drive.torque, drive.reference_torque, alone), torsion_saved(drive, alone)
-    whole, rough = (sense * (size - less) for size, less in zip(twisted, saved, strict=True))
+    whole, rough = (sense * size for size in mesh_torsion(drive.torque, drive.reference_torque, mesh))
+    more = mesh.engagement.factor(drive.torque)
     normal = normal_stiffness(drive.torque, mesh)
     stiffness, in_catalogue = normal * mesh.radius**2, printed.torsion(drive.torque)
     beyond = np.maximum(np.abs(drive.torque) - drive.reference_torque, 0.0)
     return {
         "effective_radius": mesh.radius,
-        "largest_share": mesh.arcs.shares[0] / mesh.factor,
+        "pairs_factor": more,
+        "largest_share": mesh.arcs.shares[0] / more,
         "largest_pair_force": load_of_largest(drive.torque, mesh),
         "plastic_torque": mesh.plastic_torque,
         "line_stiffness": line_stiffness(drive, contact),

@@ -44,9 +44,9 @@ def require_surface(drive: Drive, rough: Rough) -> None:
 def require_contact(drive: Drive, contact: Contact, mesh: Mesh) -> None:
     """Refuse a mesh without stiffness where the torsion begins, and more pairs than there are teeth."""
     feasible(
-        drive.engaged_pairs * np.asarray(drive.engaged_factor) <= drive.flexspline_teeth,
-        "more pairs are engaged than the flexspline has teeth: reduce engaged_pairs or engaged_factor, or enlarge "
-        "flexspline_teeth",
+        drive.engaged_pairs * np.asarray(mesh.engagement.factor(drive.torque)) <= drive.flexspline_teeth,
+        "more pairs are engaged than the flexspline has teeth: reduce engaged_pairs, engaged_factor or engaged_gain, "
+        "or enlarge flexspline_teeth",
     )
     feasible(
         np.isfinite(contact.critical_area) & (np.asarray(contact.critical_area) > 0.0),

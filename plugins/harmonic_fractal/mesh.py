@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from harmonic_fractal import micro
 from harmonic_fractal.contact import Contact
+from harmonic_fractal.engagement import Engagement, engagement_of
 from harmonic_fractal.quantities import Drive
 from truing import Float
 
@@ -86,18 +87,23 @@ class Pair:
 
 @dataclass(frozen=True, kw_only=True)
 class Mesh:
-    """All engaged pairs: each of them, their places, the lever of their forces in m, and how many times as many."""
+    """All engaged pairs: each of them, their places, how many come to bear, and the lever of their forces, m."""
 
     pair: Pair
     arcs: Arcs
+    engagement: Engagement
     radius: Float
-    factor: Float
     plastic_limit: Float
+
+    @property
+    def plastic_share(self) -> Float:
+        """The torque at which the first contact would turn elastic if there were just the pairs stated, N m."""
+        return self.plastic_limit * self.radius / self.arcs.shares[0]
 
     @property
     def plastic_torque(self) -> Float:
         """The torque at which the first contact turns elastic, that of the pair that carries most, N m."""
-        return self.plastic_limit * self.radius * self.factor / self.arcs.shares[0]
+        return self.engagement.torque_of(self.plastic_share)
 
 
 def effective_radius(drive: Drive) -> Float:
@@ -106,10 +112,10 @@ def effective_radius(drive: Drive) -> Float:
 
 
 def mesh_of(drive: Drive, contact: Contact) -> Mesh:
-    """Return the mesh of a drive; with ``engaged_factor`` times as many pairs each carries less."""
+    """Return the mesh of a drive; with more pairs each carries less."""
     return Mesh(
-        pair=pair_of(drive, contact), arcs=arcs_of(drive.engaged_pairs), radius=effective_radius(drive),
-        factor=drive.engaged_factor, plastic_limit=contact.plastic_limit,
+        pair=pair_of(drive, contact), arcs=arcs_of(drive.engaged_pairs), engagement=engagement_of(drive),
+        radius=effective_radius(drive), plastic_limit=contact.plastic_limit,
     )  # fmt: skip
 
 
@@ -134,17 +140,17 @@ def pair_of(drive: Drive, contact: Contact) -> Pair:
 
 def load_of_largest(torque: Float, mesh: Mesh) -> Float:
     """Return the normal load of the pair that carries most, N."""
-    return np.abs(torque) * mesh.arcs.shares[0] / (mesh.radius * mesh.factor)
+    return np.abs(torque) * mesh.arcs.shares[0] / (mesh.radius * mesh.engagement.factor(torque))
 
 
 def torque_logarithm(torque: Float, mesh: Mesh) -> Float:
-    """Return ln of a torque over that at which the first contact turns elastic; for 0 a number far below 0."""
-    return np.log(np.maximum(np.abs(torque), 1e-300) / mesh.plastic_torque)
+    """Return ln(F/F_c) of the pair that carries most at a torque; for none a number far below 0."""
+    return np.log(np.maximum(np.abs(torque), 1e-300) / (mesh.engagement.factor(torque) * mesh.plastic_share))
 
 
 def normal_stiffness(torque: Float, mesh: Mesh) -> Float:
     """Return the stiffness of all engaged pairs along their normals, N/m; 0 where every contact is plastic."""
-    given, factor = np.broadcast_arrays(torque_logarithm(torque, mesh), mesh.factor)
+    given, factor = np.broadcast_arrays(torque_logarithm(torque, mesh), mesh.engagement.factor(torque))
     first, factor = np.atleast_1d(given), np.atleast_1d(factor)
     rows, found = len(first), np.empty(len(first))
     step = max(CHUNK // len(mesh.arcs.shares), 1)

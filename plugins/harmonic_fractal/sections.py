@@ -45,7 +45,7 @@ SECTIONS = [
     ),
     Section(
         "Mesh",
-        "effective_radius", "largest_share", "largest_pair_force", "plastic_torque", "line_stiffness",
+        "effective_radius", "pairs_factor", "largest_share", "largest_pair_force", "plastic_torque", "line_stiffness",
         "normal_stiffness", "mesh_stiffness", "mesh_torsion",
         text="Engaged pairs stand in two opposite arcs and share the torque; their stiffnesses add up. Bending of the "
         "teeth is in series with each contact where tooth_stiffness is stated.",

@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harmonic_fractal import micro
-from harmonic_fractal.mesh import CHUNK, Mesh, Pair, torque_logarithm
+from harmonic_fractal.mesh import CHUNK, Mesh, Pair
 from truing import Float
 
 NODES = 8  # of Gauss and Legendre on each panel
-WIDEST = 1.5  # panel, in the variable of integration
+WIDEST = 1.0  # panel, in the variable of integration
+TURN = 0.3  # 1/u where that variable turns from ln u to u
 KINKS = 128  # places at which a panel ends because there a pair turns elastic; of more pairs each matters less
 ROWS = 4096  # cut into panels at a time
 
@@ -42,36 +43,38 @@ def mesh_torsion(torque: Float, reference: Float, mesh: Mesh) -> tuple[Float, Fl
     out films and springs. Accuracy: 1e-9 of the value; with more than 250 pairs and a reference near the plastic limit
     1e-7.
     """
-    given = np.broadcast_arrays(torque_logarithm(torque, mesh), torque_logarithm(reference, mesh), mesh.factor)
-    last, first, factor = (np.atleast_1d(item) for item in given)
+    begin, lever = mesh.plastic_torque, np.square(mesh.radius)
+    given = np.broadcast_arrays(np.log(np.maximum(np.abs(torque), 1e-300) / begin), np.log(reference / begin), lever)
+    last, first, lever = (np.atleast_1d(item) for item in given)
     rows = len(last)
-    moment = np.broadcast_to(mesh.plastic_torque / np.square(mesh.radius), (rows,)) / factor
     whole, rough = np.zeros(rows), np.zeros(rows)
     active = np.flatnonzero((last > first) & (first > 0.0))  # NaN is not
-    for begin in range(0, len(active), ROWS):
-        index = active[begin : begin + ROWS]
+    for start in range(0, len(active), ROWS):
+        index = active[start : start + ROWS]
         for piece in _panels(index, first, last, mesh).in_pieces(CHUNK // (NODES * len(mesh.arcs.shares)) + 1):
             for total, part in zip((whole, rough), _integrals(piece, mesh, rows), strict=True):
                 np.add.at(total, piece.row, part)
     endless = (first <= 0.0) & (last > first)
-    both = (np.where(endless, np.inf, total * moment) for total in (whole, rough))
+    both = (np.where(endless, np.inf, total / lever) for total in (whole, rough))
     all_of_it, of_roughness = (value if np.ndim(given[0]) else value[0] for value in both)
     return all_of_it, of_roughness
 
 
-def _way(size: Float, decay: Float) -> Float:
+def _way(size: Float) -> Float:
     """Return the variable of integration at u: like ln u where u is small, in proportion to u where it is large."""
-    return np.log(np.expm1(decay * size))
+    return np.log(np.expm1(TURN * size))
 
 
 def _panels(index: NDArray[np.intp], first: NDArray[np.float64], last: NDArray[np.float64], mesh: Mesh) -> Panels:
     """Cut the way of these rows where a pair turns elastic, and further until no piece is too wide."""
     law = mesh.pair.of_rows(index, len(first), 1).law
     low, high = first[index, np.newaxis], last[index, np.newaxis]
-    kinks = -mesh.arcs.offsets[1:]
-    kinks = kinks[np.unique(np.linspace(0, len(kinks) - 1, KINKS).astype(int))] if len(kinks) > KINKS else kinks
+    offsets = mesh.arcs.offsets
+    some = np.unique(np.linspace(0, len(offsets) - 1, min(KINKS, len(offsets))).astype(int))
+    ends = _onsets(index, offsets[some], mesh, len(first))
+    kinks = np.log(ends[:, 1:] / ends[:, :1])
     marks = np.concatenate([low, np.clip(kinks, low, high), high], axis=1)
-    ends = np.asarray(_way(micro.size_of(marks, law), law.decay))
+    ends = np.asarray(_way(micro.size_of(marks, law)))
     widths = np.nan_to_num(np.diff(ends, axis=1))  # rows that are refused have none
     counts = np.ceil(widths / WIDEST).astype(int).ravel()
     width = np.repeat(widths.ravel() / np.maximum(counts, 1), counts)
@@ -81,16 +84,27 @@ def _panels(index: NDArray[np.intp], first: NDArray[np.float64], last: NDArray[n
     return Panels(row, start, width)
 
 
+def _onsets(index: NDArray[np.intp], offsets: NDArray[np.float64], mesh: Mesh, rows: int) -> NDArray[np.float64]:
+    """Return the torques at which pairs with these shares turn elastic, (rows asked for, shares)."""
+    share = np.broadcast_to(np.asarray(mesh.plastic_share, dtype=float), (rows,))[index, np.newaxis]
+    return np.asarray(mesh.engagement.of_rows(index, rows, 1).torque_of(share * np.exp(-offsets)))
+
+
 def _integrals(panels: Panels, mesh: Mesh, rows: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Integrate torque over stiffness on every panel: of the whole mesh, and of its roughness alone."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     pair = mesh.pair.of_rows(panels.row, rows, 2)
     grown = np.exp(panels.start[:, np.newaxis] + panels.width[:, np.newaxis] * 0.5 * (nodes + 1.0))[..., np.newaxis]
-    size = np.log1p(grown) / pair.law.decay
-    torque = micro.load_logarithm(size, pair.law)
-    step = np.exp(torque) * micro.load_slope(size, pair.law) * grown / ((1.0 + grown) * pair.law.decay)
-    others = micro.size_of(torque + mesh.arcs.offsets[1:], pair.law)
-    whole, rough = _sums(np.concatenate([size, others], axis=-1), pair, mesh)
+    size = np.log1p(grown) / TURN
+    begin, share = (
+        np.broadcast_to(np.asarray(value, dtype=float), (rows,))[panels.row][:, np.newaxis, np.newaxis]
+        for value in (mesh.plastic_torque, mesh.plastic_share)
+    )
+    torque = begin * np.exp(micro.load_logarithm(size, pair.law))
+    factor = mesh.engagement.of_rows(panels.row, rows, 2).factor(torque)
+    step = torque / factor * micro.load_slope(size, pair.law) * grown / ((1.0 + grown) * TURN)
+    loads = np.log(torque / (factor * share)) + mesh.arcs.offsets
+    whole, rough = _sums(micro.size_of(loads, pair.law), pair, mesh)
     shares = 0.5 * panels.width[:, np.newaxis] * weights * step[..., 0]
     return (shares / whole).sum(axis=1), (shares / rough).sum(axis=1)
 

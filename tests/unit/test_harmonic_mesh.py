@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from harmonic_fractal.contact import contact_of, pressed
+from harmonic_fractal.engagement import engagement_of
 from harmonic_fractal.interface import interface_of
 from harmonic_fractal.mesh import Mesh, arcs_of, load_of_largest, mesh_of, normal_stiffness
 from harmonic_fractal.model import HARMONIC_FRACTAL
@@ -87,6 +88,21 @@ def test_twice_the_pairs_is_nearly_a_factor_of_two() -> None:
     """The places of 120 pairs lie between those of 60: the sum over an arc hardly knows it."""
     twice = normal_stiffness(25.0, mesh(drive_of(engaged_pairs=120)))
     assert normal_stiffness(25.0, mesh(drive_of(engaged_factor=2.0))) == pytest.approx(twice, rel=2e-3)
+
+
+def test_pairs_come_to_bear_under_torque() -> None:
+    """63 % of the gain at its torque, all of it far beyond; in each sense."""
+    more = engagement_of(drive_of(engaged_factor=0.8, engaged_gain=1.5, engaged_torque=10.0))
+    assert more.factor(0.0) == 0.8
+    assert more.factor(-10.0) == pytest.approx(0.8 * (1.0 + 1.5 * (1.0 - np.exp(-1.0))), rel=1e-14)
+    assert more.factor(1e4) == pytest.approx(0.8 * 2.5, rel=1e-14)
+
+
+@pytest.mark.parametrize("gain", [0.0, 0.3, 5.0, 100.0])
+def test_from_the_share_of_the_pairs_back_to_the_torque(gain: float) -> None:
+    more = engagement_of(drive_of(engaged_factor=0.8, engaged_gain=gain, engaged_torque=10.0))
+    torque = np.geomspace(1e-7, 1e4, 200)
+    np.testing.assert_allclose(more.torque_of(torque / more.factor(torque)), torque, rtol=1e-12)
 
 
 def test_no_torque_no_stiffness_but_that_of_a_film() -> None:

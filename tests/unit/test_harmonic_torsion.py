@@ -15,7 +15,8 @@ from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.quantities import Drive
 from harmonic_fractal.torsion import mesh_torsion
 
-# inputs and torque: all pairs elastic from the start, some of them not, nearly none of them; springs; a film
+# inputs and torque: all pairs elastic from the start, some of them not, nearly none of them; springs; a film; pairs
+# that come to bear on the way
 CASES: list[tuple[dict[str, Any], float]] = [
     ({}, 25.0),
     ({"engaged_pairs": 1}, 25.0),
@@ -29,6 +30,9 @@ CASES: list[tuple[dict[str, Any], float]] = [
     ({"tooth_stiffness": 2e7}, 25.0),
     ({"tooth_stiffness": 1e9, "line_contact": True, "film_stiffness": 1e8, "engaged_pairs": 7,
       "reference_torque": 2e-6}, 25.0),
+    ({"engaged_gain": 2.0, "engaged_torque": 1.0}, 25.0),
+    ({"engaged_gain": 0.7, "engaged_torque": 20.0, "tooth_stiffness": 2e7}, 100.0),
+    ({"engaged_gain": 2.0, "engaged_torque": 0.05, "fractal_dimension": 2.3, "reference_torque": 3e-3}, 25.0),
     ({"engaged_pairs": 201, "engaged_factor": 0.9, "flexspline_teeth": 400, "reference_torque": 2e-4}, 25.0),
 ]  # fmt: skip
 
@@ -72,7 +76,7 @@ def test_finer_panels_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     made = [(drive_of(**changed), torque) for changed, torque in CASES]
     once = all_cases()
     monkeypatch.setattr(torsion_module, "NODES", 20)
-    monkeypatch.setattr(torsion_module, "WIDEST", 0.4)
+    monkeypatch.setattr(torsion_module, "WIDEST", 0.3)
     monkeypatch.setattr(torsion_module, "KINKS", 1000)
     np.testing.assert_allclose(once, all_cases(), rtol=1e-9)
 
