@@ -13,6 +13,7 @@ from harmonic_fractal.generators import (
     weierstrass_surface,
 )
 from harmonic_fractal.generators_brownian import brownian_surface
+from harmonic_fractal.levelling import levelled_structure
 from harmonic_fractal.made_answers import MadeFlank
 from harmonic_fractal.made_instrument import as_measured
 from harmonic_fractal.made_quantities import Made
@@ -91,6 +92,13 @@ def exact_structure_function(made: Made, lags: Array) -> Array:
     if made.kind == "brownian":
         return np.asarray(structure_function(lags, truth.dimension, truth.areal))
     return (profile_sum if made.kind == "profile" else surface_sum)(waves_of(made), lags)
+
+
+def levelled_structure_function(made: Made, lags: Array) -> Array:
+    """Return S (k,), m^2, to be expected at whole spacings of lines that have lost their own straight line."""
+    points, spacing = truth_of(made).shape[1], float(made.spacing)
+    every = np.concatenate([[0.0], exact_structure_function(made, spacing * np.arange(1, points))])
+    return levelled_structure(every)[np.round(lags / spacing).astype(int)]
 
 
 def structure_of(surface: Surface) -> tuple[Array, Array]:

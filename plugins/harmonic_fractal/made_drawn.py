@@ -7,7 +7,7 @@ import numpy as np
 from harmonic_fractal.cleaning import without_form
 from harmonic_fractal.estimate import Estimate
 from harmonic_fractal.generators import Array
-from harmonic_fractal.made_calculation import exact_structure_function
+from harmonic_fractal.made_calculation import exact_structure_function, levelled_structure_function
 from harmonic_fractal.made_quantities import Made
 from harmonic_fractal.made_truth import Truth
 from harmonic_fractal.power_law import structure_function
@@ -75,8 +75,10 @@ def structure_figure(made: Made, truth: Truth, answer: "MadeFlank", found: Estim
     upper, middle, lower = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
     lags = np.geomspace(answer.lag[0], answer.lag[-1], 400)
     exact = exact_structure_function(made, lags)
+    levelled = levelled_structure_function(made, answer.lag)
+    curves = ((answer.lag, answer.structure_function), (lags, exact), (answer.lag, levelled))
     for panel, over in ((upper, None), (middle, truth)):
-        _curves(panel, over, (answer.lag, answer.structure_function), (lags, exact), found)
+        _curves(panel, over, curves, found)
     upper.set_yscale("log")
     _quiet(upper, "", "S, nm²")
     upper.legend(loc="best")
@@ -87,18 +89,20 @@ def structure_figure(made: Made, truth: Truth, answer: "MadeFlank", found: Estim
     return figure
 
 
-def _curves(panel: Any, over: Truth | None, own: Curve, exact: Curve, found: Estimate) -> None:
-    """Draw every S: itself in nm^2, or over the power law of the truth."""
+def _curves(panel: Any, over: Truth | None, curves: tuple[Curve, Curve, Curve], found: Estimate) -> None:
+    """Draw S of this flank, the exact one and that of levelled lines: in nm^2, or over the power law of the truth."""
+    own, exact, levelled = curves
 
     def shown(lags: Array, values: Array) -> Array:
         return NANO**2 * values if over is None else values / structure_function(lags, over.dimension, over.areal)
 
     law = np.asarray(structure_function(found.lags, found.dimension, found.roughness))
     panel.semilogx(MICRO * exact[0], shown(*exact), color=INK, linewidth=1.0, label="exact, of all such flanks")
+    panel.semilogx(MICRO * levelled[0], shown(*levelled), color=INK, linestyle=":", label="the same, lines levelled")
     panel.semilogx(MICRO * own[0], shown(*own), "o", color=BLUE, markersize=4, markerfacecolor="none",
                    label="this flank as measured")  # fmt: skip
     panel.semilogx(MICRO * found.lags, shown(found.lags, found.values), ".", color=ORANGE, markersize=5,
-                   label="lines levelled, as fitted")  # fmt: skip
+                   label="its lines levelled, as fitted")  # fmt: skip
     panel.semilogx(MICRO * found.lags, shown(found.lags, law), color=ORANGE, linewidth=1.0, label="power law fitted")
     if over is not None:
         panel.axhline(1.0, color=GREY, linestyle="--", linewidth=1.0)

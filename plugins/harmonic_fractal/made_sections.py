@@ -10,10 +10,12 @@ import numpy as np
 from harmonic_fractal import made_drawn
 from harmonic_fractal.cleaning import quantisation, spikes_of
 from harmonic_fractal.estimate import Estimate
+from harmonic_fractal.fitting import straight_fit
 from harmonic_fractal.made_answers import MadeFlank
-from harmonic_fractal.made_calculation import estimate_along, surface_of
+from harmonic_fractal.made_calculation import estimate_along, levelled_structure_function, surface_of
 from harmonic_fractal.made_quantities import Made
 from harmonic_fractal.made_truth import is_patch, truth_of
+from harmonic_fractal.power_law import log_roughness_of
 from harmonic_fractal.surface import Surface
 from truing import Drawing, Section, Table, Words
 
@@ -60,7 +62,8 @@ def structure(record: "Run") -> "Sequence[Block]":
     found = estimate_along(made, surface, "x")
     caption = (
         "Middle: the same S over the power law of the truth. At long lags one flank strays from the mean of all, and "
-        "levelled lines fall below it. Below: the dimension between neighbouring lags; dashed: the true one."
+        "levelled lines fall below it as the dotted line says. Below: the dimension between neighbouring lags; dashed: "
+        "the true one."
     )
     draw = partial(made_drawn.structure_figure, made, truth_of(made), record.results, found)
     return [Drawing("Structure function and local slopes", draw, caption)]
@@ -79,12 +82,20 @@ def found_again(record: "Run") -> "Sequence[Block]":
     table = Table(
         "Truth and what was found",
         ("", "D", "half width", "G", "half width", "R²", "self-affine range", "verdict"),
-        [("truth", true.dimension + 1.0, None, true.areal, None, None, "", ""), *rows],
+        [("truth", true.dimension + 1.0, None, true.areal, None, None, "", ""), _expected(made, along), *rows],
         ("", "", "", "m", "decades", "", "µm", ""),
         note="Half width: of the 95 % interval by resampling lines, neighbours together. It cannot see what all lines "
-        "of one flank share, nor what levelling adds: flanks of other seeds stray by up to twice as much.",
+        "of one flank share: flanks of other seeds stray by up to twice as much about what levelling lets expect.",
     )
     return [Words(FOUND_AGAIN), table, *([Words(_refused(along), "finding")] if along.reason else [])]
+
+
+def _expected(made: Made, found: Estimate) -> tuple[str | float | None, ...]:
+    """What levelling alone makes of the truth, over the lags of the fit."""
+    law = straight_fit(found.lags, levelled_structure_function(made, found.lags))
+    dimension = 2.0 - float(law.slope) / 2.0
+    roughness = float(np.exp(log_roughness_of(law.intercept, dimension)))
+    return ("expected along levelled lines", dimension + 1.0, None, roughness, None, float(law.r_squared), "", "")
 
 
 def _cleaned(surface: Surface) -> Surface:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import gamma
 
+from harmonic_fractal.cleaning import without_line
 from harmonic_fractal.estimate import Estimation, estimate_of
 from harmonic_fractal.generators import (
     Array,
@@ -15,6 +16,7 @@ from harmonic_fractal.generators import (
     weierstrass_surface,
 )
 from harmonic_fractal.generators_brownian import brownian_surface
+from harmonic_fractal.levelling import levelled_structure
 from harmonic_fractal.made_instrument import Instrument, as_measured
 from harmonic_fractal.power_law import structure_function
 from harmonic_fractal.surface import Lines
@@ -159,6 +161,30 @@ def test_brownian_patches_have_their_law_in_every_direction(dimension: float) ->
     exact = np.array([step * np.hypot(one[0] - two[0], one[1] - two[1]) ** exponent for one, two in pairs])
     deviation = ((differences**2).mean(axis=0) - exact) / (exact * np.sqrt(2.0 / count))
     assert np.abs(deviation).max() < 3.0
+
+
+@pytest.mark.parametrize("dimension", [1.2, 1.5, 1.8])
+def test_levelled_lines_have_the_structure_function_of_their_covariance(dimension: float) -> None:
+    """P C P of the covariance of Brownian motion, with P what is left beside a straight line, entry by entry."""
+    places = np.arange(90.0)
+    covariance = brownian_covariance(dimension, 1.0, *np.meshgrid(places, places))
+    base, _ = np.linalg.qr(np.stack([np.ones(90), places], axis=1))
+    left = np.eye(90) - base @ base.T
+    levelled = left @ covariance @ left
+    spread = levelled.diagonal()
+    exact = [np.mean(spread[k:] + spread[: 90 - k] - 2.0 * levelled.diagonal(k)) for k in range(90)]
+    every = places ** (4.0 - 2.0 * dimension)
+    np.testing.assert_allclose(levelled_structure(every), exact, rtol=0.0, atol=1e-11 * every[-1])
+
+
+def test_levelled_waves_have_the_structure_function_that_is_expected() -> None:
+    made, steps = waves(1.4), np.array([1, 5, 20, 50, 150])
+    lines = without_line(weierstrass_profile(made, SPACING * np.arange(501), 400, np.random.default_rng(6)))
+    every = profile_sum(made, SPACING * np.arange(501))
+    for step, expected in zip(steps, levelled_structure(every)[steps], strict=True):
+        each = squares(lines, step)
+        assert abs(each.mean() - expected) < 3.0 * each.std(ddof=1) / 20.0
+    assert levelled_structure(every)[50] < 0.9 * every[50]
 
 
 def test_the_lateral_filter_halves_its_wave_and_spares_long_ones() -> None:
