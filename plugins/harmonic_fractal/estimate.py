@@ -23,6 +23,9 @@ Array = NDArray[np.float64]
 FEWEST_POINTS = 64  # of a line
 FEWEST_LAGS = 8
 FEWEST_PAIRS = 100
+MUCH_NOISE = 0.3  # share of noise in S at the shortest lag from which a plain fit is doubtful
+MATTERS = 0.1  # difference in D_s
+NOISY = 0.1  # share of noise in S at the shortest lag from which a fit with noise needs the lags that tell it
 SLACK = 1e-9
 
 
@@ -31,7 +34,7 @@ class Estimation:
     """How D and G are read from a structure function; lags in m, NaN where the data decide.
 
     ``lags`` replaces the even choice of ``count`` lags from ``shortest_lag`` (else one point) to ``longest_lag`` (else
-    a tenth of a line). ``fit`` over the self-affine range within these limits, or over all of them whatever their
+    a tenth of a line). The ``fit`` is over the part of them that is self-affine, or over all of them whatever their
     local slopes. ``resamples`` bootstrap samples are drawn with ``seed``, of blocks of ``block`` neighbouring lines or,
     if that is 0, of what the lines need.
     """
@@ -58,7 +61,9 @@ class Estimate:
     ``reason`` says why and the fit is for comparison only. ``resampled`` (B, 2) holds D of the surface and ln G of
     bootstrap samples of blocks of lines, as pairs because their errors go together. ``all_lags`` and ``all_values``
     are the whole structure function, those between which the local slopes are taken included.
-    ``window_dimension`` is the profile dimension by the roughness-length method, for comparison.
+    For comparison: ``window_dimension`` is the profile dimension by the roughness-length method; ``noise_dimension``
+    that of a fit with noise at the same lags, and ``noise_share`` what this fit takes for noise of S at the shortest
+    of them, 0 to 1: where that is much, D and G of the plain fit are partly those of the instrument.
     """
 
     direction: Direction
@@ -78,11 +83,25 @@ class Estimate:
     all_lags: Array = field(default_factory=lambda: np.empty(0))
     all_values: Array = field(default_factory=lambda: np.empty(0))
     window_dimension: float = float("nan")
+    noise_dimension: float = float("nan")
+    noise_share: float = float("nan")
 
     @property
     def is_accepted(self) -> bool:
         """Whether there is a self-affine range, so that D and G mean something."""
         return not self.reason
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences for the sheet: an accepted fit that leaves noise aside where there seems to be much."""
+        is_plain = self.is_accepted and self.noise == 0.0
+        if not (is_plain and self.noise_share > MUCH_NOISE and self.dimension - self.noise_dimension > MATTERS):
+            return ()
+        return (
+            f"{self.noise_share:.0%} of the structure function at the shortest lag may be noise of the instrument: "
+            f"with noise_aware = true the dimension of the profiles is {self.noise_dimension:.3f}, not "
+            f"{self.dimension:.3f}",
+        )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -105,15 +124,29 @@ class _Fit:
 
 
 def estimate_of(lines: Lines, direction: Direction, settings: Estimation) -> Estimate:
-    """Read D and G from parallel lines of one direction, each with its own straight line removed."""
+    """Read D and G from parallel lines of one direction, each with its own straight line removed.
+
+    The lines of NaN-marked heights (lines, points) in m need not be independent. Local slopes from the shortest lag to
+    a quarter of a line decide whether there is a self-affine range: a decade over which the local dimension varies by
+    less than 0.2 within 1.05 and 1.95. The fit goes over that range, to a tenth of a line or as far as a decade needs.
+    With ``noise_aware`` the local slopes are those of S less the noise of a fit over all lags, and where noise is a
+    tenth of S or more at the shortest lag, the fit begins there, since short lags tell noise from roughness.
+    Never raises: a surface that has no range, or too few points or lags, has a reason, and its fit is over all lags.
+
+    On fractional Brownian lines of 500 points, D_s 1.5: one line, error 0.05 of D_s and a factor of 2 in G; a hundred
+    lines, 0.005 and 7 %; a straight line removed from each raises D_s by 0.01, and by 0.03 where it is 1.3.
+    """
     points = lines.heights.shape[1]
     every = _steps(points, lines.spacing, settings)
     coarse = _measured(lines, local_steps(points, _shortest(settings) / lines.spacing))
-    local = _local(coarse, _noise(lines, every, settings), settings)
-    steps = every if local.reason or settings.fit == "all" else _within(points, lines.spacing, local.range, settings)
+    noise = _noise(lines, every, settings)
+    local = _local(coarse, noise, settings)
+    is_whole = local.reason or settings.fit == "all"
+    steps = every if is_whole else _within(points, lines.spacing, _reach(coarse, noise, local), settings)
     curve = _measured(lines, steps)
     found = _fit(curve, settings)
     reason = _refusal(points, local, curve.lags, found)
+    noise_dimension, noise_share = _with_noise(curve)
     whole = np.unique(np.concatenate([coarse.lags, curve.lags]), return_index=True)[1]
     return Estimate(
         direction=direction,
@@ -133,6 +166,8 @@ def estimate_of(lines: Lines, direction: Direction, settings: Estimation) -> Est
         all_lags=np.concatenate([coarse.lags, curve.lags])[whole],
         all_values=np.concatenate([coarse.pooled, curve.pooled])[whole],
         window_dimension=roughness_length_of(lines.heights, lines.spacing).dimension,
+        noise_dimension=noise_dimension,
+        noise_share=noise_share,
     )
 
 
@@ -148,15 +183,18 @@ def _steps(points: int, spacing: float, settings: Estimation) -> Steps:
     return fit_steps(points, settings.shortest_lag / spacing, settings.longest_lag / spacing, settings.count)
 
 
+def _reach(curve: StructureFunction, noise: float, local: _Local) -> tuple[float, float]:
+    """Return from where to where the fit goes, m: the self-affine range, and the shortest lags if they tell noise."""
+    is_noisy = 2.0 * noise**2 > NOISY * curve.pooled[0]
+    return float(curve.lags[0]) if is_noisy else local.range[0], local.range[1]
+
+
 def _within(points: int, spacing: float, found: tuple[float, float], settings: Estimation) -> Steps:
     """Return the lags, in points, of the fit over a self-affine range.
 
-    From its shortest lag to a tenth of a line, or as far as it takes to make a decade; not beyond the range. Noise is
-    told from the surface by the shortest lags: where it is fitted, they belong to the fit.
+    From its shortest lag to a tenth of a line, or as far as it takes to make a decade; not beyond the range.
     """
     low, high = found
-    if settings.noise_aware:
-        low = spacing if np.isnan(_shortest(settings)) else _shortest(settings)
     last = min(max(SHARE * points * spacing, DECADE * low), high)
     if settings.lags:
         kept = [lag for lag in settings.lags if low * (1 - SLACK) <= lag <= high * (1 + SLACK)]
@@ -237,6 +275,16 @@ def _fit(curve: StructureFunction, settings: Estimation) -> _Fit:
 def _exponential(logarithm: float) -> float:
     """Return G, NaN where it is beyond all numbers: a slope near 2 of a surface that is refused."""
     return float(np.exp(logarithm)) if abs(logarithm) < 700.0 else float("nan")
+
+
+def _with_noise(curve: StructureFunction) -> tuple[float, float]:
+    """Return the profile dimension of a fit with noise, and the share of noise in S at the shortest lag."""
+    if curve.lags.size < FEWEST_LAGS:
+        return float("nan"), float("nan")
+    law = noise_fit(curve.lags, curve.pooled)
+    power = float(np.exp(law.intercept) * curve.lags[0] ** law.slope)
+    noise = 2.0 * float(law.noise) ** 2
+    return 2.0 - float(law.slope) / 2.0, noise / (noise + power)
 
 
 def _single_lines(curve: StructureFunction, settings: Estimation) -> Array:

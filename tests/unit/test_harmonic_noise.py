@@ -103,3 +103,42 @@ def test_white_noise_alone_is_refused_by_the_fit_with_noise_too() -> None:
     """Nothing is left when the noise is taken off."""
     heights = 1e-8 * np.random.default_rng(4).standard_normal((100, 500))
     assert not estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=0, noise_aware=True)).is_accepted
+
+
+def test_the_share_of_noise_stands_beside_a_fit_without_it() -> None:
+    """Noise of a third of S at one spacing: 2 sigma^2 = S/2 makes the share 1/3; no noise, no share."""
+    rng = np.random.default_rng(4)
+    clean = brownian_profiles(1.4, 1e-16, (200, 1000), rng)
+    noisy = clean + 0.5e-8 * rng.standard_normal(clean.shape)
+    for heights, share in ((clean, 0.0), (noisy, 1.0 / 3.0)):
+        found = estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=0, fit="all"))
+        assert found.noise_share == pytest.approx(share, abs=0.05)
+        assert found.noise_dimension == pytest.approx(1.4, abs=0.03)
+
+
+def test_smooth_short_lags_are_no_noise() -> None:
+    """A filtered surface without noise: the fit with noise leaves its smooth lags out as the plain fit does."""
+    rng = np.random.default_rng(5)
+    kernel = np.array([0.25, 0.5, 0.25])
+    lines = brownian_profiles(1.5, 1e-16, (100, 1502), rng)
+    heights = np.stack([np.convolve(line, kernel, mode="valid") for line in lines])
+    plain, aware = (
+        estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=0, noise_aware=aware)) for aware in (False, True)
+    )
+    assert aware.lags[0] == plain.lags[0] > 0.4e-6
+    assert aware.dimension == pytest.approx(plain.dimension, abs=0.01)
+
+
+def test_a_plain_fit_of_a_noisy_surface_warns() -> None:
+    """With both dimensions; a fit with noise, and a surface without, have nothing to say."""
+    rng = np.random.default_rng(4)
+    clean = brownian_profiles(1.5, 1e-16, (100, 1000), rng)
+    noisy = clean + 1e-8 * rng.standard_normal(clean.shape)
+    plain, aware, quiet = (
+        estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=0, noise_aware=aware))
+        for heights, aware in ((noisy, False), (noisy, True), (clean, False))
+    )
+    assert plain.is_accepted
+    assert len(plain.warnings) == 1
+    assert f"is {plain.noise_dimension:.3f}, not {plain.dimension:.3f}" in plain.warnings[0]
+    assert aware.warnings == quiet.warnings == ()
