@@ -24,7 +24,7 @@ FEWEST_POINTS = 64  # of a line
 FEWEST_LAGS = 8
 FEWEST_PAIRS = 100
 MUCH_NOISE = 0.3  # share of noise in S at the shortest lag from which a plain fit is doubtful
-MATTERS = 0.1  # difference in D_s
+MATTERS = 0.05  # difference in D_s
 NOISY = 0.1  # share of noise in S at the shortest lag from which a fit with noise needs the lags that tell it
 SLACK = 1e-9
 
