@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 
 from harmonic_fractal.calculation import harmonic_fractal
-from harmonic_fractal.interface import interface_of
+from harmonic_fractal.estimate import Estimate
+from harmonic_fractal.flank import Flank
+from harmonic_fractal.interface import interface_of, range_of, spacing_of
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.power_law import structure_function
 from harmonic_fractal.quantities import Drive
+from harmonic_fractal.surface import Surface
 from truing.errors import InfeasibleError
 from truing.evaluate import evaluate_rows
 from truing.setup import default_setup
@@ -59,6 +62,54 @@ def test_the_convention_is_that_of_the_stated_roughness(convention: str) -> None
     assert found.roughness == pytest.approx(1e-9 * factor, rel=1e-10)
 
 
+# Measured flanks
+
+
+def measured(dimension: float, roughness: float, ends: tuple[float, float], spacing: float) -> Flank:
+    """A flank of 2 by 2 points, 1 um high, that was found to have this profile dimension and roughness."""
+    surface = Surface(np.array([[0.0, 1e-6], [0.0, 0.5e-6]]), spacing, spacing, "made by hand")
+    nothing = np.empty(0)
+    estimate = Estimate(
+        direction="x", lags=nothing, values=nothing, local_lags=nothing, local_dimensions=nothing, dimension=dimension,
+        roughness=roughness, r_squared=1.0, line_scatter=0.0, noise=0.0, range=ends, reason="",
+        resampled=np.empty((0, 2)), spacing=spacing,
+    )  # fmt: skip
+    return Flank(raw=surface, surface=surface, estimates=(estimate,), chosen="x", reason="", warnings=())
+
+
+def test_a_measured_flank_replaces_what_is_stated() -> None:
+    drive = drive_of(surface=measured(1.5, 1e-9, (1e-6, 12e-6), 0.7e-6))
+    both = interface_of(drive)
+    assert (both.dimension, both.roughness) == (2.5, 1e-9)
+    found = harmonic_fractal(replace(drive, reference_torque=0.1))
+    assert found.spacing == 0.7e-6
+    assert found.rough_height == 1e-6
+    assert found.surface_accepted == 1.0
+    assert found.resolved_share == pytest.approx(np.sqrt(5.43e-13 / np.pi) / 0.7e-6, rel=1e-3)
+
+
+def test_a_refused_flank_leaves_what_is_stated_and_says_so() -> None:
+    refused = replace(measured(1.5, 1e-9, (1e-6, 12e-6), 0.7e-6), chosen=None, reason="no self-affine range")
+    found = harmonic_fractal(drive_of(surface=refused))
+    assert (found.dimension, found.roughness) == (2.4, 1e-11)
+    assert (found.surface_accepted, found.rough_height) == (0.0, 1e-6)
+    assert found.spacing == pytest.approx(0.4e-6, rel=1e-14)
+
+
+def test_two_measured_flanks_are_added_over_the_range_that_both_have() -> None:
+    drive = drive_of(surface=measured(1.3, 1e-11, (1e-6, 12e-6), 0.7e-6),
+                     mating_surface=measured(1.5, 1e-9, (2e-6, 30e-6), 0.5e-6))  # fmt: skip
+    assert range_of(drive) == (2e-6, 12e-6)
+    assert spacing_of(drive) == 0.7e-6
+    lags = np.geomspace(2e-6, 12e-6, 16)
+    heights = np.asarray(structure_function(lags, 1.3, 1e-11)) + structure_function(lags, 1.5, 1e-9)
+    slope = np.polyfit(np.log(lags), np.log(heights), 1)[0]
+    assert interface_of(drive).dimension == pytest.approx(3.0 - slope / 2.0, rel=1e-9)
+    apart = replace(drive, mating_surface=measured(1.5, 1e-9, (20e-6, 30e-6), 0.5e-6))
+    with np.errstate(all="ignore"), pytest.raises(InfeasibleError, match="measure both flanks alike"):
+        harmonic_fractal(apart)
+
+
 # What must hold
 
 REFUSED: list[tuple[dict[str, Any], str]] = [
@@ -73,6 +124,7 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"reference_torque": 1e-6}, "raise reference_torque"),
     ({"engaged_factor": 3.4}, "more pairs are engaged"),
     ({"engaged_pairs": 201}, "more pairs are engaged"),
+    ({"engaged_gain": 5.0}, "more pairs are engaged"),
     ({"pair_load": 1e4}, "reduce pair_load"),
     ({"torque": -1e4}, "reduce torque"),
     ({"catalogue_size": "40", "flexspline_teeth": 60}, "no size 40 with a ratio below 40"),
