@@ -99,8 +99,8 @@ class Estimate:
             return ()
         return (
             f"{self.noise_share:.0%} of the structure function at the shortest lag may be noise of the instrument: "
-            f"with noise_aware = true the dimension of the profiles is {self.noise_dimension:.3f}, not "
-            f"{self.dimension:.3f}",
+            f"a fit with noise (noise_aware = true) at the same lags has the profile dimension "
+            f"{self.noise_dimension:.3f}, not {self.dimension:.3f}",
         )
 
 

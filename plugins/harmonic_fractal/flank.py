@@ -119,9 +119,10 @@ def read_flank(  # the signature is the list of options of the inputs file
     clean = prepared(reading.surface, options)
     options, filtered = _filtered(options, reading)
     choice = choice_of(clean.surface, options.estimation, options)
+    noise = next((found.warnings for found in choice.estimates if found.direction == choice.chosen), ())
     return Flank(
         raw=reading.surface, surface=clean.surface, estimates=choice.estimates, chosen=choice.chosen,
-        reason=choice.reason, warnings=(*reading.remarks, *filtered, *clean.warnings, *choice.warnings),
+        reason=choice.reason, warnings=(*reading.remarks, *filtered, *clean.warnings, *choice.warnings, *noise),
         missing=clean.missing, spiked=clean.spiked, sq_raw=clean.sq_raw, sq_plane=clean.sq_plane,
         sq_second_order=clean.sq_second_order,
     )  # fmt: skip

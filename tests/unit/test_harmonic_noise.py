@@ -140,5 +140,5 @@ def test_a_plain_fit_of_a_noisy_surface_warns() -> None:
     )
     assert plain.is_accepted
     assert len(plain.warnings) == 1
-    assert f"is {plain.noise_dimension:.3f}, not {plain.dimension:.3f}" in plain.warnings[0]
+    assert f"dimension {plain.noise_dimension:.3f}, not {plain.dimension:.3f}" in plain.warnings[0]
     assert aware.warnings == quiet.warnings == ()
