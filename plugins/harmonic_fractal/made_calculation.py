@@ -80,10 +80,13 @@ def _heights(made: Made, margin: int, rng: np.random.Generator) -> Array:
         step = float(np.asarray(structure_function(spacing, truth.dimension, truth.areal)))
         make = brownian_surface if lines > 1 else brownian_profiles
         return make(truth.dimension, step, (lines, points), rng)
-    x = spacing * (np.arange(points) - margin)
+    x, y = (
+        spacing * np.arange(-before, count - before, dtype=np.float64)
+        for before, count in ((margin, points), (beside, lines))
+    )
     if made.kind == "profile":
         return weierstrass_profile(waves_of(made), x, lines, rng)
-    return weierstrass_surface(waves_of(made), x, spacing * (np.arange(lines) - beside), rng)
+    return weierstrass_surface(waves_of(made), x, y, rng)
 
 
 def exact_structure_function(made: Made, lags: Array) -> Array:
@@ -97,8 +100,9 @@ def exact_structure_function(made: Made, lags: Array) -> Array:
 def levelled_structure_function(made: Made, lags: Array) -> Array:
     """Return S (k,), m^2, to be expected at whole spacings of lines that have lost their own straight line."""
     points, spacing = truth_of(made).shape[1], float(made.spacing)
-    every = np.concatenate([[0.0], exact_structure_function(made, spacing * np.arange(1, points))])
-    return levelled_structure(every)[np.round(lags / spacing).astype(int)]
+    beyond = exact_structure_function(made, spacing * np.arange(1, points, dtype=np.float64))
+    every = levelled_structure(np.concatenate([[0.0], beyond]))
+    return np.asarray(every[np.round(lags / spacing).astype(int)])
 
 
 def structure_of(surface: Surface) -> tuple[Array, Array]:

@@ -73,10 +73,11 @@ def structure_figure(made: Made, truth: Truth, answer: "MadeFlank", found: Estim
 
     figure = Figure(figsize=(WIDTH, 7.6), layout="constrained")
     upper, middle, lower = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
-    lags = np.geomspace(answer.lag[0], answer.lag[-1], 400)
+    shown = np.asarray(answer.lag, dtype=np.float64)
+    lags = np.geomspace(shown[0], shown[-1], 400)
     exact = exact_structure_function(made, lags)
-    levelled = levelled_structure_function(made, answer.lag)
-    curves = ((answer.lag, answer.structure_function), (lags, exact), (answer.lag, levelled))
+    own = np.asarray(answer.structure_function, dtype=np.float64)
+    curves = ((shown, own), (lags, exact), (shown, levelled_structure_function(made, shown)))
     for panel, over in ((upper, None), (middle, truth)):
         _curves(panel, over, curves, found)
     upper.set_yscale("log")

@@ -87,7 +87,7 @@ def found_again(record: "Run") -> "Sequence[Block]":
         note="Half width: of the 95 % interval by resampling lines, neighbours together. It cannot see what all lines "
         "of one flank share: flanks of other seeds stray by up to twice as much about what levelling lets expect.",
     )
-    return [Words(FOUND_AGAIN), table, *([Words(_refused(along), "finding")] if along.reason else [])]
+    return [Words(FOUND_AGAIN), table, *_said(along)]
 
 
 def _expected(made: Made, found: Estimate) -> tuple[str | float | None, ...]:
@@ -121,8 +121,12 @@ def _half_widths(found: Estimate) -> tuple[float | None, float | None]:
     return float(half[0]), float(half[1] / np.log(10.0))
 
 
-def _refused(found: Estimate) -> str:
-    return f"The estimator refuses this flank: {found.reason}. What was fitted stands for comparison only."
+def _said(found: Estimate) -> list[Words]:
+    """Say why the estimator refuses the flank, or what it doubts."""
+    if found.reason:
+        text = f"The estimator refuses this flank: {found.reason}. What was fitted stands for comparison only."
+        return [Words(text, "finding")]
+    return [Words(f"The estimator says: {text}.", "warning") for text in found.warnings]
 
 
 SECTIONS = [

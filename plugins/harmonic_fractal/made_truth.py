@@ -65,16 +65,16 @@ def waves_of(made: Made) -> Waves:
     """Return the waves, with G of their own form: S along the lines is that of the truth however many directions."""
     truth = truth_of(made)
     if made.kind == "profile":
-        roughness = converted(truth.areal, truth.dimension, made.density, source="areal", target="profile")
+        roughness = float(converted(truth.areal, truth.dimension, made.density, source="areal", target="profile"))
     else:
         exponent = 4.0 - 2.0 * truth.dimension
-        single = converted(truth.areal, truth.dimension, made.density, source="areal", target="one_direction")
+        single = float(converted(truth.areal, truth.dimension, made.density, source="areal", target="one_direction"))
         angles = np.pi * np.arange(1, made.directions + 1) / made.directions
-        share = np.mean(np.abs(np.cos(angles)) ** exponent)  # of S across one ridge, along the lines
+        share = float(np.mean(np.abs(np.cos(angles)) ** exponent))  # of S across one ridge, along the lines
         roughness = single / share ** (1.0 / (2.0 - exponent))
     return Waves(
         dimension=truth.dimension,
-        roughness=float(roughness),
+        roughness=roughness,
         lowest=truth.lowest,
         highest=truth.highest,
         density=float(made.density),
