@@ -1,0 +1,370 @@
+"""The sheet of a harmonic drive: what its sections say, and what its figures show, read back and compared."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from harmonic_fractal.cleaning import without_line
+from harmonic_fractal.drawn_flank import map_figure, profiles_figure, structure_figure
+from harmonic_fractal.drawn_interface import conventions, flanks, interface
+from harmonic_fractal.drawn_look import signed
+from harmonic_fractal.drawn_pair import pair_figure, stiffness
+from harmonic_fractal.drawn_torsion import torsion
+from harmonic_fractal.estimate import Estimation, estimate_of
+from harmonic_fractal.flank import Flank
+from harmonic_fractal.generators_brownian import brownian_surface
+from harmonic_fractal.model import HARMONIC_FRACTAL
+from harmonic_fractal.surface import Direction, Lines, Surface
+from harmonic_fractal.validity import Validity
+from truing import Drawing, Table, Words
+from truing.calculation import Calculation, calculate
+from truing.setup import default_setup
+
+SPACING = 0.5e-6
+
+
+def run(**inputs: Any) -> Calculation:
+    """A drive with these inputs and the study that looks at validity."""
+    return calculate(replace(default_setup(HARMONIC_FRACTAL, **inputs), studies=(Validity(),)))
+
+
+def patch(heights: NDArray[np.float64], name: str, chosen: Any = "both", **said: Any) -> Flank:
+    """A flank as it is after reading, with both directions estimated."""
+    surface = Surface(heights, SPACING, SPACING, name)
+    settings = Estimation(resamples=50)
+    axes: list[Direction] = ["x", "y", "both"] if chosen == "both" else ["x", "y"]
+    lines = {axis: Lines(without_line(surface.lines(axis).heights), SPACING) for axis in axes}
+    estimates = tuple(estimate_of(lines[axis], axis, settings) for axis in axes)
+    facts: dict[str, Any] = {"reason": "", "warnings": (), "sq_raw": 1e-7, "sq_plane": 9e-8, "sq_second_order": 8e-8}
+    return Flank(raw=surface, surface=surface, estimates=estimates, chosen=chosen, **(facts | said))
+
+
+@pytest.fixture(scope="module")
+def good() -> Flank:
+    """A patch of fractional Brownian motion of D_s = 1.5, alike in all directions."""
+    return patch(brownian_surface(1.5, 1e-16, (120, 300), np.random.default_rng(5)), "good.csv")
+
+
+@pytest.fixture(scope="module")
+def bad() -> Flank:
+    """A patch of smooth hills: no self-affine range."""
+    x, y = np.arange(300) * SPACING, np.arange(120)[:, None] * SPACING
+    heights = 1e-7 * np.sin(2 * np.pi * x / 40e-6) * np.cos(2 * np.pi * y / 35e-6)
+    found = patch(heights, "hills.csv", None)
+    return replace(found, reason=found.estimates[0].reason)
+
+
+@pytest.fixture(scope="module")
+def measured(good: Flank) -> Calculation:
+    return run(surface=good, reference_torque="1 N*m")
+
+
+@pytest.fixture(scope="module")
+def refused(bad: Flank) -> Calculation:
+    return run(surface=bad)
+
+
+@pytest.fixture(scope="module")
+def stated() -> Calculation:
+    return run()
+
+
+def words(blocks: Any, kind: str = "") -> str:
+    """All words of some blocks."""
+    return " ".join(block.text for block in blocks if isinstance(block, Words) and kind in ("", block.kind))
+
+
+def titles(blocks: Any) -> list[str]:
+    return [block.title for block in blocks if isinstance(block, (Table, Drawing))]
+
+
+def table(blocks: Any, title: str) -> Table:
+    """The table whose title holds these words."""
+    return next(block for block in blocks if isinstance(block, Table) and title in block.title)
+
+
+def line(panel: Any, label: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The data of the line with this label."""
+    found = next(item for item in panel.get_lines() if label in str(item.get_label()))
+    return np.asarray(found.get_xdata(), dtype=float), np.asarray(found.get_ydata(), dtype=float)
+
+
+# Sections
+
+
+def test_every_result_stands_in_one_section() -> None:
+    named = [name for section in HARMONIC_FRACTAL.sheet for name in section.names]
+    assert len(named) == len(set(named))
+    assert set(HARMONIC_FRACTAL.result_fields) - set(named) == {"lag"}
+
+
+def test_sections_are_in_the_order_of_the_calculation() -> None:
+    order = ["flanks", "D and G", "Stiffness of one pair", "Clearance", "Mesh", "Torsion"]
+    found = [section.title for section in HARMONIC_FRACTAL.sheet]
+    places = [next(place for place, title in enumerate(found) if word in title) for word in order]
+    assert places == sorted(places)
+
+
+# Flanks
+
+
+def test_without_a_surface_the_sheet_says_so(stated: Calculation) -> None:
+    assert (
+        words(flanks(stated.record))
+        == "No flank was measured: D and G are as stated, and how sure they are is not known."
+    )
+    assert stated.answers["surface_accepted"] == 1
+    assert stated.passed
+
+
+def test_a_good_surface_is_used_and_shown(measured: Calculation, good: Flank) -> None:
+    blocks = flanks(measured.record)
+    assert words(blocks, "warning") == ""
+    assert "good.csv, is used" in words(blocks)
+    assert "agree and are pooled" in words(blocks)
+    assert [title.split(": ")[1] for title in titles(blocks)] == [
+        "from above", "profiles", "structure function and local dimension", "what each direction says", "local slopes",
+    ]  # fmt: skip
+    rows = table(blocks, "what each direction says").rows
+    assert [row[0] for row in rows] == ["along x", "along y", "x and y together"]
+    assert [row[-1] for row in rows] == ["self-affine, not used", "self-affine, not used", "used"]
+    assert good.used is not None
+    assert measured.answers["dimension"] == pytest.approx(good.used.dimension + 1)
+    assert measured.passed
+
+
+def test_a_refused_surface_fails_the_check_and_says_whose_contact_it_is(refused: Calculation) -> None:
+    blocks = flanks(refused.record)
+    said = words(blocks, "warning")
+    assert said.startswith("REFUSED: the flank of the flexspline, hills.csv")
+    assert "The contact below is NOT that of this surface: it is that of the D and G stated in the inputs" in said
+    assert "inputs, D = 2.4 and G = 1·10⁻¹¹ m." in said
+    assert "no self-affine range" in said
+    assert "for comparison only" in said
+    rows = table(blocks, "what each direction says").rows
+    assert {row[-1] for row in rows} == {"refused, for comparison only"}
+    local = table(blocks, "local slopes").rows
+    assert len(local) >= 6
+    assert float(local[0][1] or 0.0) < 1.05  # smooth at short lags
+    assert refused.answers["surface_accepted"] == 0
+    assert not refused.passed
+    assert [check.name for check in refused.checks if not check.passed] == ["surface_accepted"]
+    assert any("surface is refused" in text for text in refused.warnings)
+    assert float(refused.answers["stiffness"]) == pytest.approx(1.95e9, rel=1e-3)
+
+
+def test_a_refused_mating_flank_leaves_that_flank_smooth(good: Flank, bad: Flank) -> None:
+    found = run(surface=good, mating_surface=bad, reference_torque="1 N*m")
+    assert "mating_dimension is not stated, so the circular spline is taken as smooth" in words(flanks(found.record))
+    assert not found.passed
+    assert table(interface(found.record), "Both flanks").rows[1][-1] == "smooth"
+
+
+def test_one_direction_is_said(good: Flank) -> None:
+    along = replace(good, chosen="y", warnings=("the direction y alone is used; along x: no self-affine range",))
+    found = run(surface=along, reference_torque="1 N*m")
+    said = words(flanks(found.record))
+    assert "It is taken along y only" in said
+    assert any("the direction y alone is used" in text for text in found.warnings)
+    assert table(interface(found.record), "Both flanks").rows[0][-1] == "measured, along y only"
+
+
+def test_one_direction_that_was_asked_for_is_a_warning_too(good: Flank) -> None:
+    found = run(surface=replace(good, chosen="x"), reference_torque="1 N*m")
+    assert any(text.endswith("surface is taken along x only") for text in found.warnings)
+
+
+def test_warnings_of_the_file_reach_sheet_and_terminal(good: Flank) -> None:
+    found = run(
+        surface=replace(good, warnings=("7.0% of the points are missing, more than 5%",)), reference_torque="1 N*m"
+    )
+    assert "7.0% of the points are missing" in words(flanks(found.record), "warning")
+    assert any("7.0% of the points are missing" in text for text in found.warnings)
+
+
+def test_noise_has_a_column(good: Flank) -> None:
+    noisy = replace(good, estimates=tuple(replace(each, noise=3e-9) for each in good.estimates))
+    found = table(flanks(run(surface=noisy, reference_torque="1 N*m").record), "what each direction says")
+    assert found.columns[-2:] == ("noise", "verdict")
+    assert [row[-2] for row in found.rows] == pytest.approx([3.0, 3.0, 3.0])
+
+
+def test_map_shows_the_heights_with_the_longer_side_across(good: Flank) -> None:
+    turned = Surface(good.surface.heights.T, SPACING, SPACING, "turned")
+    for flank in (good, replace(good, surface=turned)):
+        image = map_figure(flank).axes[0].get_images()[0]
+        shown: Any = image.get_array()
+        assert shown.shape == (120, 300)
+        np.testing.assert_allclose(shown, 1e9 * good.surface.heights)
+        assert image.get_extent() == pytest.approx([0.0, 149.5, 0.0, 59.5])
+
+
+def test_profiles_are_lines_of_the_direction_used(good: Flank) -> None:
+    panel: Any = profiles_figure(replace(good, chosen="y")).axes[0]
+    drawn = [np.asarray(item.get_ydata(), dtype=float) for item in panel.get_lines()]
+    columns = [1e9 * (column - column.mean()) for column in good.surface.heights.T]
+    assert len(drawn) == 4
+    for values in drawn:
+        assert any(np.allclose(values - values.mean(), column) for column in columns)
+
+
+def test_a_long_profile_keeps_its_peaks() -> None:
+    heights = np.zeros((1, 9600))
+    heights[0, 4321] = 5e-6
+    profile = Surface(heights, SPACING, float("nan"), "long.csv")
+    flank = Flank(raw=profile, surface=profile, estimates=(), chosen="x", reason="", warnings=())
+    panel: Any = profiles_figure(flank).axes[0]
+    x, z = (np.asarray(values, dtype=float) for values in panel.get_lines()[0].get_data())
+    assert len(x) <= 2000
+    assert np.ptp(z) == pytest.approx(5000.0)
+    assert x[np.argmax(z)] == pytest.approx(4321 * 0.5, abs=10 * 0.5)
+
+
+def test_structure_figure_shows_points_fit_and_local_dimension(good: Flank) -> None:
+    upper, lower = structure_figure(good).axes
+    used = good.used
+    assert used is not None
+    lags, fit = line(upper, "fit both together")
+    slope = np.polyfit(np.log(lags), np.log(fit), 1)[0]
+    assert 2.0 - slope / 2.0 == pytest.approx(used.dimension, abs=1e-9)
+    points = dict(zip(*line(upper, "both together"), strict=True))
+    assert points[min(points)] == pytest.approx(1e18 * float(used.all_values[0]))
+    np.testing.assert_allclose(fit, np.interp(lags, list(points), list(points.values())), rtol=0.15)
+    np.testing.assert_allclose(line(lower, "used")[1], used.dimension)
+
+
+def test_structure_figure_of_a_refused_surface_is_for_comparison(bad: Flank) -> None:
+    upper, _ = structure_figure(bad).axes
+    labels = [str(item.get_label()) for item in upper.get_lines()]
+    assert any(label.endswith("for comparison only") for label in labels)
+    assert not any("range" in label for label in labels)
+
+
+# D and G
+
+
+def test_conventions_of_one_surface() -> None:
+    """At D_s = 1.5 and a density of 1.5: the areal G is 3.87 times that of a profile, and 2 pi are missing usually."""
+    found = run(fractal_dimension=2.5, fractal_roughness="1e-9 m", convention="profile", reference_torque="1 N*m")
+    rows = conventions(found.record).rows
+    values = {str(row[0]).split(",")[0]: row[2] for row in rows[:1]} | {"profile": rows[2][2], "usual": rows[3][2]}
+    assert values["areal"] == pytest.approx(3.87e-9, rel=2e-3)
+    assert values["profile"] == pytest.approx(1e-9)
+    assert values["usual"] == pytest.approx(2 * np.pi * 1e-9)
+    assert rows[1][2] == pytest.approx(3.87e-9 * 2 / np.pi, rel=2e-3)  # q = 2/pi at 1.5
+    assert "without (2π)" in str(rows[3][0])
+
+
+def test_both_flanks_stand_beside_their_sum() -> None:
+    found = run(mating_dimension=2.4, mating_roughness="1e-11 m")
+    rows = table(interface(found.record), "Both flanks").rows
+    assert rows[0][1:3] == pytest.approx((2.4, 1e-11))
+    assert rows[2][2] == pytest.approx(1e-11 * 2 ** (1 / 0.8))
+    assert rows[2][-1] == "sum of the structure functions"
+
+
+# One pair
+
+
+def test_pair_figure_goes_through_the_results(stated: Calculation) -> None:
+    upper, lower = pair_figure(stated.record.inputs).axes
+    at = 25.0
+    for panel, label, name, factor in (
+        (upper, "(used)", "stiffness", 1.0), (lower, "amplitude of the largest", "clearance", 1e9),
+        (lower, "what closes", "closing_clearance", 1e9),
+    ):  # fmt: skip
+        load, values = line(panel, label)
+        found = np.exp(np.interp(np.log(at), np.log(load), np.log(values)))
+        assert found == pytest.approx(factor * float(stated.answers[name]), rel=2e-3)
+
+
+def test_pair_figure_shows_every_reading(stated: Calculation) -> None:
+    """At 25 N: 3.47e9 N/m with scaled tips, 2.16e8 with first yield; 3.0e8 by the rms height of 172 nm."""
+    upper, lower = pair_figure(stated.record.inputs).axes
+    for label, expected in (
+        ("area, tip radius follows", 3.47e9), ("first yield, tip radius its own", 2.16e8), ("Persson", 3.0e8),
+    ):  # fmt: skip
+        load, values = line(upper, label)
+        assert np.exp(np.interp(np.log(25.0), np.log(load), np.log(values))) == pytest.approx(expected, rel=0.01)
+    labels = [str(item.get_label()) for item in lower.get_lines()]
+    assert sum("equation 7" in label for label in labels) == 3
+
+
+def test_table_over_the_load(stated: Calculation) -> None:
+    rows = table(stiffness(stated.record), "over its load").rows
+    known = {row[0]: row[1] for row in rows}
+    for load, expected in (
+        (0.1, 1.59e7),
+        (1.0, 1.19e8),
+        (5.0, 4.82e8),
+        (10.0, 8.80e8),
+        (25.0, 1.95e9),
+        (100.0, 6.50e9),
+    ):
+        assert known[load] == pytest.approx(expected, rel=3e-3)
+
+
+def test_below_resolution_is_a_warning_on_sheet_and_terminal(stated: Calculation) -> None:
+    assert "Extrapolated below resolution" in words(stiffness(stated.record), "warning")
+    assert any("extrapolated below resolution" in text for text in stated.warnings)
+    coarse = run(sampling="0.05 um")
+    assert float(coarse.answers["resolved_share"]) > 0.3
+    assert words(stiffness(coarse.record), "warning") == ""
+    assert not any("resolution" in text for text in coarse.warnings)
+
+
+def test_all_plastic_is_a_warning_on_sheet_and_terminal() -> None:
+    found = run(pair_load="1e-5 N")
+    assert "All contacts of the pair are plastic" in words(stiffness(found.record), "warning")
+    assert any("all contacts of the pair are plastic" in text for text in found.warnings)
+
+
+def test_mostly_plastic_is_a_warning() -> None:
+    found = run(critical_rule="yield_onset", reference_torque="1 N*m")
+    assert any("58% of the load is on plastic contacts" in text for text in found.warnings)
+
+
+# Torsion
+
+
+def test_torsion_beside_the_catalogue(stated: Calculation) -> None:
+    """Size 20 above a ratio of 50: 7/16000 rad at T_1, 18/25000 more at T_2, 25/29000 more at twice that."""
+    rows = table(torsion(stated.record), "torques of the catalogue").rows
+    assert [row[0] for row in rows] == [7.0, 25.0, 50.0]
+    assert [row[3] for row in rows] == pytest.approx([437.5, 1157.5, 1157.5 + 25e6 / 29000])
+    assert rows[1][1] == pytest.approx(1e6 * float(stated.answers["rough_torsion"]))
+    assert rows[1][4] == pytest.approx(100 * float(stated.answers["rough_share"]))
+    assert all(0.0 < float(row[4] or 0.0) < 1.0 for row in rows)
+    said = words(torsion(stated.record))
+    assert "at most 0.55 %" in said
+    assert "not the weakest link" in said
+    assert "everything around the mesh is rigid" in said
+
+
+def test_torsion_figure_goes_through_the_results() -> None:
+    found = run(drive_compliance="40 urad/(N*m)")
+    (drawing,) = (block for block in torsion(found.record) if isinstance(block, Drawing))
+    upper, lower = drawing.draw().axes
+    for label, name in (("catalogue", "catalogue_torsion"), ("this model", "torsion"), ("roughness", "rough_torsion")):
+        torque, values = line(upper, label)
+        assert np.interp(25.0, torque, values) == pytest.approx(1e6 * float(found.answers[name]), rel=5e-3)
+    assert lower.get_yscale() == "log"
+    assert float(found.answers["torsion"]) == pytest.approx(
+        25 * 40e-6 + float(found.answers["rough_torsion"]), rel=1e-4
+    )
+    assert "everything around the mesh is rigid" not in words(torsion(found.record))
+
+
+def test_a_drive_that_turns_the_other_way_has_the_same_table(stated: Calculation) -> None:
+    other = table(torsion(run(torque="-25 N*m").record), "torques of the catalogue")
+    assert other.rows == table(torsion(stated.record), "torques of the catalogue").rows
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(1e-11, "1·10⁻¹¹"), (0.056, "0.056"), (-3.5e-7, "−3.5·10⁻⁷"), (1.95e9, "1.95·10⁹")]
+)
+def test_numbers_in_words(value: float, text: str) -> None:
+    assert signed(value) == text
