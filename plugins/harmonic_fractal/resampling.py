@@ -8,6 +8,7 @@ ENOUGH_LINES = 20
 LINES_TOGETHER = 10
 PIECES = 50  # of all lines, across them
 FEWEST_BLOCKS = 4
+MOST_UNITS = 2000  # more lines are taken together by neighbours, so that samples of any map fit into memory
 
 
 def units_of(heights: Array, curve: StructureFunction, steps: Steps, block: int) -> tuple[StructureFunction, int]:
@@ -22,7 +23,9 @@ def units_of(heights: Array, curve: StructureFunction, steps: Steps, block: int)
     patch is correlated over its whole height. Pieces as long as the longest lag see 0.6 to 0.9 of it.
     """
     if block or (len(curve.sums) >= ENOUGH_LINES and are_independent(curve)):
-        return curve, _at_most(block or LINES_TOGETHER, len(curve.sums))
+        together = -(-len(curve.sums) // MOST_UNITS)
+        groups = _grouped(curve, together)
+        return groups, _at_most(-(-(block or LINES_TOGETHER) // together), len(groups.sums))
     pieces = StructureFunction(curve.lags, *piece_sums(heights, steps, PIECES))
     reach = steps[-1] * len(pieces.sums) / (heights.shape[1] - steps[-1])
     return pieces, _at_most(int(np.ceil(reach)), len(pieces.sums))
@@ -48,6 +51,13 @@ def block_weights(units: int, block: int, samples: int, seed: int) -> Array:
     for shift in range(block):
         weights += np.roll(starts, shift, axis=1)
     return weights
+
+
+def _grouped(curve: StructureFunction, together: int) -> StructureFunction:
+    if together == 1:
+        return curve
+    starts = np.arange(0, len(curve.sums), together)
+    return StructureFunction(curve.lags, np.add.reduceat(curve.sums, starts), np.add.reduceat(curve.counts, starts))
 
 
 def _at_most(block: int, units: int) -> int:
