@@ -34,7 +34,8 @@ def flanks_of(drive: Drive) -> tuple[Rough, Rough | None]:
 def is_half_stated(drive: Drive) -> "bool | NDArray[np.bool_]":
     """Return where one of dimension and roughness of the mating flank is stated without the other."""
     unknown = drive.mating_surface is None or drive.mating_surface.used is None
-    return unknown & (np.isnan(drive.mating_dimension) != np.isnan(drive.mating_roughness))
+    half: NDArray[np.bool_] = np.isnan(drive.mating_dimension) != np.isnan(drive.mating_roughness)
+    return unknown & half
 
 
 def interface_of(drive: Drive) -> Rough:

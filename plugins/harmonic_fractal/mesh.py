@@ -98,7 +98,8 @@ class Mesh:
     @property
     def plastic_share(self) -> Float:
         """The torque at which the first contact would turn elastic if there were just the pairs stated, N m."""
-        return self.plastic_limit * self.radius / self.arcs.shares[0]
+        torque: Float = self.plastic_limit * self.radius / self.arcs.shares[0]
+        return torque
 
     @property
     def plastic_torque(self) -> Float:
@@ -140,7 +141,8 @@ def pair_of(drive: Drive, contact: Contact) -> Pair:
 
 def load_of_largest(torque: Float, mesh: Mesh) -> Float:
     """Return the normal load of the pair that carries most, N."""
-    return np.abs(torque) * mesh.arcs.shares[0] / (mesh.radius * mesh.engagement.factor(torque))
+    load: Float = np.abs(torque) * mesh.arcs.shares[0] / (mesh.radius * mesh.engagement.factor(torque))
+    return load
 
 
 def torque_logarithm(torque: Float, mesh: Mesh) -> Float:

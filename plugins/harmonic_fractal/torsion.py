@@ -104,7 +104,7 @@ def _integrals(panels: Panels, mesh: Mesh, rows: int) -> tuple[NDArray[np.float6
     factor = mesh.engagement.of_rows(panels.row, rows, 2).factor(torque)
     step = torque / factor * micro.load_slope(size, pair.law) * grown / ((1.0 + grown) * TURN)
     loads = np.log(torque / (factor * share)) + mesh.arcs.offsets
-    whole, rough = _sums(micro.size_of(loads, pair.law), pair, mesh)
+    whole, rough = _sums(np.asarray(micro.size_of(loads, pair.law)), pair, mesh)
     shares = 0.5 * panels.width[:, np.newaxis] * weights * step[..., 0]
     return (shares / whole).sum(axis=1), (shares / rough).sum(axis=1)
 
