@@ -73,8 +73,11 @@ SHIPPED: dict[str, tuple[str, list[str]]] = {
     ),
     "gearing": ("rv_gearing", ["reliability.draws=2000", "load.points=9", "face_width.points=9"]),
     "screw": ("roller_screw_shift", ["shift.points=2001", "optimise.population=16", "optimise.generations=4"]),
+    "flank": ("harmonic_fractal", ["reliability.draws=2000"]),
 }  # fmt: skip
 """Sheets of shipped examples, with budgets that leave all figures and tables there and take a few seconds."""
+MEASURED = {"flank": DATA.parents[1] / "docs" / "examples" / "harmonic_matrix_y" / "inputs.toml"}
+"""Inputs files to look at instead of the plugin's example: this one has a measured surface."""
 
 
 @pytest.fixture(scope="session", params=["hostile", "hostile-full", *SHIPPED])
@@ -85,8 +88,9 @@ def sheet(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     if request.param in SHIPPED:
         plugin, options = SHIPPED[request.param]
         offer = kernel.offer(plugin)
-        assert offer.model.example is not None
-        setup = read_setup(offer.model.example, offer, overrides=[f"studies.{option}" for option in options])
+        inputs = MEASURED.get(request.param) or offer.model.example
+        assert inputs is not None
+        setup = read_setup(inputs, offer, overrides=[f"studies.{option}" for option in options])
     else:
         offer = kernel.offer("hostile_pin")
         setup = read_setup(DATA / "hostile_pin.toml", offer)
