@@ -238,6 +238,26 @@ def test_spacings_that_differ_cannot_be_pooled(tmp_path: Path) -> None:
         read_flank(file, direction="both")
 
 
+def test_a_flank_that_is_rougher_along_one_direction_is_not_pooled(tmp_path: Path) -> None:
+    """Ridges, of a random walk, above a surface alike in all directions: the same dimension, but other heights."""
+    walk = np.cumsum(np.random.default_rng(3).normal(0.0, 0.6, 180))
+    ridges = walk + rough()
+    found = read_flank(write(tmp_path, ridges))
+    assert found.chosen == "x"
+    assert [estimate.dimension for estimate in found.estimates] == pytest.approx([1.5, 1.5], abs=0.15)
+    assert "its structure function along x is" in found.warnings[0]
+    assert read_flank(write(tmp_path, ridges.T), sliding="y").chosen == "y"
+
+
+def test_a_direction_without_relief_is_refused(tmp_path: Path) -> None:
+    """Ridges alone: along them there is nothing but the rounding of the numbers in the file."""
+    profile = rough(2, (3, 300))[0]
+    found = read_flank(write(tmp_path, np.broadcast_to(profile, (150, 300))), form="none")
+    assert [bool(estimate.reason) for estimate in found.estimates] == [False, True]
+    assert found.chosen == "x"
+    assert "along y" in " ".join(found.warnings)
+
+
 @pytest.mark.parametrize("direction", ["x", "y", "both"])
 def test_the_direction_that_is_asked_for(direction: str, tmp_path: Path) -> None:
     found = read_flank(write(tmp_path, rough()), direction=direction)

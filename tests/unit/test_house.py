@@ -17,6 +17,7 @@ from shared import ROOT, Answer, process
 
 CODE = [*sorted((ROOT / "kernel").rglob("*.py")), *sorted((ROOT / "plugins").rglob("*.py"))]
 PACKAGES = sorted(path.parent.name for path in (ROOT / "plugins").glob("*/__init__.py"))
+EXTRAS = {"harmonic_fractal": {"SurfaceTopography"}}  # optional: imported inside a function, missed with a sentence
 SHARED = {"gear_geometry"}  # what several gear papers share: no hooks, and every plugin may import it
 FOR_AUTHORS = {"truing"}
 
@@ -105,7 +106,7 @@ def imports_of(file: Path) -> Iterator[str]:
 
 @pytest.mark.parametrize("package", PACKAGES)
 def test_a_plugin_imports_what_its_author_is_given(package: str) -> None:
-    allowed = {package, "numpy", "scipy", "matplotlib", *SHARED, *sys.stdlib_module_names}
+    allowed = {package, "numpy", "scipy", "matplotlib", *SHARED, *EXTRAS.get(package, ()), *sys.stdlib_module_names}
     for file in sorted((ROOT / "plugins" / package).rglob("*.py")):
         for name in imports_of(file):
             assert name in FOR_AUTHORS or name.split(".")[0] in allowed, f"{file} imports {name}"
