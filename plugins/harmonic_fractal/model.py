@@ -57,7 +57,7 @@ HARMONIC_FRACTAL = Model(
         Uncertainty(),
         Reliability(draws=20_000),
         Sweep(over="torque", at="0..50 N*m", points=51),
-        Optimise(population=60, generations=60, draws=512, verify=20_000),
+        Optimise(population=40, generations=50, chance="first_order", verify=20_000),
     ],
     sheet=SECTIONS,
     published=PUBLISHED,

@@ -21,6 +21,7 @@ from harmonic_fractal.surface import Direction, Lines, Surface
 from harmonic_fractal.validity import Validity
 from truing import Drawing, Table, Words
 from truing.calculation import Calculation, calculate
+from truing.report.content import input_rows
 from truing.setup import default_setup
 
 SPACING = 0.5e-6
@@ -361,6 +362,22 @@ def test_torsion_figure_goes_through_the_results() -> None:
 def test_a_drive_that_turns_the_other_way_has_the_same_table(stated: Calculation) -> None:
     other = table(torsion(run(torque="-25 N*m").record), "torques of the catalogue")
     assert other.rows == table(torsion(stated.record), "torques of the catalogue").rows
+
+
+def test_a_sweep_shows_what_changes() -> None:
+    setup = default_setup(HARMONIC_FRACTAL)
+    (study,) = (study for study in setup.studies if study.name == "sweep")
+    found = calculate(replace(setup, studies=(replace(study, points=6),))).outcomes["sweep"].blocks()  # type: ignore[type-var]
+    extremes = table(found, "Extremes along the torque")
+    rows = {row[0]: row[2:] for row in extremes.rows}
+    assert rows["catalogue_torsion"] == pytest.approx((0.0, 0.0, 2019.6, 50.0), rel=1e-4)
+    assert not {"dimension", "stiffness", "clearance", "cup_moment"} & set(rows)
+    assert "other results do not change" in extremes.note
+
+
+def test_an_input_file_that_is_not_given_is_said_so() -> None:
+    rows = {row.name: row.value.text for row in input_rows(default_setup(HARMONIC_FRACTAL))}
+    assert rows["surface"] == rows["mating_surface"] == rows["mating_dimension"] == "not given"
 
 
 @pytest.mark.parametrize(

@@ -219,6 +219,22 @@ def test_slopes_of_the_stiffness() -> None:
     assert answers["slope_load"] == pytest.approx(float(answers["load_exponent"]), rel=1e-6)
 
 
+def test_shares_of_what_scatters_together_are_explained(flanks: list[Flank]) -> None:
+    setup = default_setup(HARMONIC_FRACTAL, surface=flanks[0], reference_torque="100 mN*m")
+    (study,) = (study for study in setup.studies if study.name == "sensitivity")
+    found: Any = calculate(replace(setup, studies=(study,))).outcomes["sensitivity"]
+    assert "below 0" not in _note(found)
+    taken = {**found.share["stiffness"], "dimension_deviation": -0.65, "roughness_deviation": 1.64}
+    assert "A share below 0: the source scatters together with another" in _note(replace(found, share={
+        **found.share, "stiffness": taken,
+    }))  # fmt: skip
+
+
+def _note(found: Any) -> str:
+    """The note below the first table."""
+    return str(next(block for block in found.blocks() if isinstance(block, Table)).note)
+
+
 def test_a_slope_that_was_not_asked_for_is_none() -> None:
     drive = HARMONIC_FRACTAL.inputs()
     assert isinstance(drive, Drive)

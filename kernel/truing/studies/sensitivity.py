@@ -259,6 +259,8 @@ class Sensitivities:
             words.append(f"First-order standard deviation of all sources together: {size}.")
             if self.still & set(self.derivatives[result]):
                 words.append("No share: the tolerance is off, the source does not scatter.")
+        if any(share < 0.0 for share in self.share[result].values()):
+            words.append("A share below 0: the source scatters together with another, and takes away from its share.")
         if result in self.agreement:
             words.append(
                 f"Stated and numeric derivatives differ by at most {self.agreement[result]:.1e} of the largest."

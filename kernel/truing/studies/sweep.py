@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 LARGEST = 1_000_000
+ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,10 +116,10 @@ class Swept:
         table = self._extremes()
         if table.rows:
             blocks.append(table)
-        if self.shown and self._plain():
+        if self.shown and self._moving():
             from truing.studies.drawings import curves
 
-            blocks.append(Drawing(f"Along the {spoken(self.over)}", curves(self, self._plain()[:4])))
+            blocks.append(Drawing(f"Along the {spoken(self.over)}", curves(self, self._moving()[:4])))
         if self.failed:
             row, reason = self.failed[0]
             count = f"{len(self.failed)} of {len(self.axis)} points have no answer"
@@ -143,6 +144,13 @@ class Swept:
 
         return [name for name, values in self.results.items() if values.ndim == 1 and np.isfinite(values).any()]
 
+    def _moving(self) -> list[str]:
+        """Name those of them that change by more than rounding."""
+        import numpy as np
+
+        spans = {name: (np.nanmin(self.results[name]), np.nanmax(self.results[name])) for name in self._plain()}
+        return [name for name, (low, high) in spans.items() if not high - low <= ROUNDING * max(abs(low), abs(high))]
+
     def _extremes(self) -> Table:
         import numpy as np
 
@@ -150,12 +158,14 @@ class Swept:
 
         unit = self.units[self.over]
         rows: list[list[Any]] = []
-        for name in self._plain():
+        for name in self._moving():
             values = self.results[name]
             row: list[Any] = [name, unit_text(self.units[name])]
             for place in (int(np.nanargmin(values)), int(np.nanargmax(values))):
                 row += [float(from_si(values[place], self.units[name])), float(from_si(self.axis[place], unit))]
             rows.append(row)
         columns = ("result", "unit", "smallest", "at", "largest", "at")
+        still = len(self._plain()) - len(rows)
         note = f"Of {len(self.axis)} points; nothing is sought between them."
+        note += f" {still} other results do not change." if still > 1 else " One other result does not change." * still
         return Table(f"Extremes along the {spoken(self.over)}", columns, rows, ("", "", "", unit, "", unit), note)
