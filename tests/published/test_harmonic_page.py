@@ -272,6 +272,8 @@ def test_beside_the_catalogue(size: str, text: str, dimension: float, roughness:
 
 def test_the_torsion_beside_that_of_the_catalogue() -> None:
     assert f"it is {100 * DEFAULT['rough_share']:.2f} % for size 20 with the defaults" in WORDS
+    rougher = drive(**{**NANOMETRE, "reference_torque": 0.05})
+    assert f"and {100 * rougher['rough_share']:.1f} % with $D = 2.5$, $G = 1$ nm counted from 50 mN·m" in WORDS
     printed = polyline_of("20", 100.0)
     assert printed is not None
     torque = np.linspace(0.5, 50.0, 100)
