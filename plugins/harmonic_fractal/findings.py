@@ -35,8 +35,8 @@ FINDINGS = [
         title="The contact of the flanks is not the weakest part of the mesh",
         text="The patent says so. Rough contacts of 60 pairs of size 20 have 4.7e7 N m/rad (D = 2.4, G = 1e-11 m) or "
         "6.6e6 N m/rad (2.5, 1e-9 m); the maker prints 2.5e4 N m/rad for the drive. That is 0.05 % or 0.4 % of its "
-        "compliance at 25 N m, and 0.3 % of its torsion from 1 mN m on, or 1.9 % from 50 mN m. With 2e7 N/m for tooth and rim of each pair the mesh has "
-        "4 to 5 %. More than nine tenths lie in cup, wave generator and bearing.",
+        "compliance at 25 N m, and 0.3 % of its torsion from 1 mN m on, or 1.9 % from 50 mN m. With 2e7 N/m for tooth "
+        "and rim of each pair the mesh has 4 to 5 %. More than nine tenths lie in cup, wave generator and bearing.",
     ),
     Finding(
         title="Tuning the topography tunes the contact, hardly the drive",
