@@ -82,7 +82,7 @@ MESH: list[Effect[Drive, Stiffness]] = [
         needs=[SPEED, TEMPERATURE],
         acts_at_reference=True,
         unknowns=[
-            Unknown("stiffness", 0, 200, "kN/um", note="of a pair full of oil at 1000 rpm and 20 degC; 5 to 60"),
+            Unknown("stiffness", 0, 200, "kN/um", note="of a pair full of oil at 1000 rpm, 20 degC, 25 N*m; 5 to 60"),
         ],
         looks_like="the mesh is stiffer while it turns, most at a low speed and with warm oil, by one amount at any "
         "torque; nothing at rest",

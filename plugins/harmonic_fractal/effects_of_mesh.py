@@ -5,12 +5,14 @@ from dataclasses import replace
 import numpy as np
 
 from harmonic_fractal.conditions import TEMPERATURE
-from harmonic_fractal.effects_of_friction import RATED_SPEED
+from harmonic_fractal.effects_of_friction import RATED_SPEED, RATED_TORQUE
 from harmonic_fractal.quantities import Drive
 from truing import Float
 
 FILM_EXPONENT = 0.67  # of viscosity times speed in the thickness of the film
+LOAD_EXPONENT = -0.07  # of the load in it
 FILM_THINNING = 0.035  # 1/K, of the viscosity
+LEAST_TORQUE = 1e-3  # N*m, from which it is counted
 LEAST_FILM = 0.1  # over that at 1000 rpm and 20 degC: the roughness holds the flanks as far apart
 
 
@@ -35,11 +37,12 @@ def oil_film(drive: Drive, *, stiffness: Float, speed: Float, temperature: Float
     """The oil between the flanks carries beside their asperities, the stiffer the thinner it is; at rest it is gone.
 
     ``stiffness`` is that of a film which fills the flank of a pair at 1000 rpm and 20 degC: modulus of compression
-    times flank over thickness. The thickness follows (viscosity speed)^0.67 and is never less than a tenth of that
-    one, where the roughness holds it open; its hardly felt fall with the load (power -0.07) is left out.
+    times flank over thickness, under 25 N m. The thickness follows (viscosity speed)^0.67 torque^-0.07 and is never
+    less than a tenth of that one, where the roughness holds it open.
     """
     turns = np.abs(speed) / RATED_SPEED
     thickness = (np.exp(-FILM_THINNING * (temperature - TEMPERATURE.zero)) * turns) ** FILM_EXPONENT
+    thickness = thickness * (np.maximum(np.abs(drive.torque), LEAST_TORQUE) / RATED_TORQUE) ** LOAD_EXPONENT
     film = np.where(turns > 0.0, stiffness / np.maximum(thickness, LEAST_FILM), 0.0)
     return replace(drive, film_stiffness=drive.film_stiffness + film)
 

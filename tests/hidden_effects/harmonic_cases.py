@@ -1,0 +1,154 @@
+"""Harmonic drives with something wrong, or nothing: how they were measured, and with what noise."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hidden_effects.harmonic_machine import MESH, TORSION, Array, Hidden, Rows, shown
+
+Kind: TypeAlias = Literal["gaussian", "heavy", "autocorrelated", "growing"]
+Design: TypeAlias = Literal["loops", "climb", "points"]
+Strange: TypeAlias = Callable[[Rows], Array]
+KINDS: tuple[Kind, ...] = ("gaussian", "heavy", "autocorrelated", "growing")
+UNIT = {TORSION: "urad", MESH: "N*m/rad"}
+NOISE = {TORSION: 5.0, MESH: 6e4}
+PEAKS = (8.0, 16.0, 24.0, 32.0, 12.0, 40.0)
+MEMORY = 0.5
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wish:
+    """What a case is to be like: hidden unknowns in the units of the registry, and what nobody registered."""
+
+    seed: int
+    hidden: Hidden = field(default_factory=dict)
+    design: Design = "loops"
+    kind: Kind = "gaussian"
+    results: tuple[str, ...] = (TORSION,)
+    count: int = 60
+    strange: Strange | None = None
+    """Added to the first result, in its unit."""
+    tooth: float = np.inf
+    """Stiffness of a tooth in bending, N/m."""
+    logs: tuple[str, ...] = ("time", "wave_angle", "temperature", "cycles", "speed")
+    """What the rig writes down beside the torque and its past."""
+
+    def noise(self, result: str) -> float:
+        """Root mean square of the noise; a mesh that bends is ten times as soft."""
+        return NOISE[result] * (0.1 if result == MESH and np.isfinite(self.tooth) else 1.0)
+
+    @property
+    def title(self) -> str:
+        """What the case is called in the list of tests."""
+        hidden = "+".join(self.hidden) or (self.strange.__name__ if self.strange else "nothing")
+        return f"{hidden}-{self.design}-{self.kind}-{'+'.join(self.results)}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A record with its readings, rows held out with theirs, and what is true of the latter."""
+
+    wish: Wish
+    rows: Rows
+    held: Rows
+    readings: dict[str, Array]
+    held_readings: dict[str, Array]
+    held_true: dict[str, Array]
+
+
+def make_case(wish: Wish) -> Case:
+    """Put a drive on the rig, read it, and keep half of the readings back; both halves know the whole past.
+
+    Both begin with the clock, which counts from the first reading of a file.
+    """
+    rng = np.random.default_rng([wish.seed, 61])
+    every = measured(wish.design, 2 * wish.count, rng)
+    true = {name: values for name, values in shown(every, wish.hidden, wish.tooth).items() if name in wish.results}
+    if wish.strange is not None:
+        true[wish.results[0]] = true[wish.results[0]] + wish.strange(every)
+    is_held = np.zeros(len(every), dtype=bool)
+    is_held[[1, *rng.permutation(np.arange(2, len(every)))[: len(every) // 2 - 1]]] = True
+    parts = [np.flatnonzero(~is_held), np.flatnonzero(is_held)]
+    noise = {name: np.zeros(len(every)) for name in wish.results}
+    for places in parts:
+        for name in wish.results:
+            noise[name][places] = noise_of(wish.kind, every.taken(places), wish.noise(name), rng)
+    read = [{name: true[name][places] + noise[name][places] for name in wish.results} for places in parts]
+    return Case(
+        wish=wish,
+        rows=every.taken(parts[0]),
+        held=every.taken(parts[1]),
+        readings=read[0],
+        held_readings=read[1],
+        held_true={name: true[name][parts[1]] for name in wish.results},
+    )
+
+
+def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
+    """Rows in the order of the clock.
+
+    Loops: from rest up and down between growing and smaller peaks, each leg at its own speed and temperature. Climb:
+    from rest up to 50 N m once. Points: any torque to either side, every reading at its own state of the drive.
+    """
+    path = {"loops": _loops, "climb": _climb, "points": _points}[design](count, rng)
+    torque, turned, leg = path
+    legs = int(leg.max()) + 1
+    of_leg = {"temperature": rng.uniform(0, 60, legs)[leg], "speed": rng.choice([0, 250, 500, 1000, 2000], legs)[leg]}
+    if design == "points":
+        of_leg = {"temperature": rng.uniform(0, 60, count), "speed": rng.choice([0, 300, 600, 1200, 2400], count)}
+    time = np.sort(rng.uniform(0, 12, count))
+    time[:2] = 0.0
+    return Rows(
+        time=time,
+        torque=torque,
+        reversal_torque=turned,
+        peak_torque=np.maximum.accumulate(np.maximum(torque, turned)),
+        direction=np.zeros(count) if design == "points" else np.sign(torque - turned + 1e-12 * (leg % 2 * -2 + 1)),
+        wave_angle=rng.uniform(0, 360, count),
+        temperature=np.asarray(of_leg["temperature"]),
+        cycles=np.sort(rng.uniform(0, 2e6, count)) if design == "points" else 1.2e6 * (time / 12) ** 0.6,
+        speed=np.asarray(of_leg["speed"], dtype=float),
+    )
+
+
+def _loops(count: int, rng: np.random.Generator) -> tuple[Array, Array, NDArray[np.intp]]:
+    """Torques, where they last turned, and the number of the leg."""
+    ends = [0.0, *(sign * peak for peak in PEAKS for sign in (1.0, -1.0))]
+    ways = np.abs(np.diff(ends))
+    along = np.sort(rng.uniform(0, ways.sum(), count))
+    along[0] = 0.0
+    leg = np.searchsorted(np.cumsum(ways), along, side="right").astype(np.intp)
+    begun = np.array(ends)[leg]
+    torque = begun + np.sign(np.array(ends)[leg + 1] - begun) * (along - np.concatenate([[0], np.cumsum(ways)])[leg])
+    return np.round(torque, 3), begun, leg
+
+
+def _climb(count: int, rng: np.random.Generator) -> tuple[Array, Array, NDArray[np.intp]]:
+    torque = np.round(np.linspace(0.5, 50, count), 3)
+    return torque, np.full(count, torque[0]), np.zeros(count, dtype=np.intp)
+
+
+def _points(count: int, rng: np.random.Generator) -> tuple[Array, Array, NDArray[np.intp]]:
+    torque = np.round(rng.uniform(3, 45, count) * rng.choice([-1.0, 1.0], count), 3)
+    return torque, np.zeros(count), np.arange(count, dtype=np.intp)
+
+
+def noise_of(kind: Kind, rows: Rows, size: float, rng: np.random.Generator) -> Array:
+    """Noise of this root mean square: even, heavy in its tails, with a memory, or growing with the torque."""
+    count = len(rows)
+    if kind == "heavy":
+        return np.asarray(size * rng.standard_t(4, count) / np.sqrt(2))
+    draws = rng.standard_normal(count)
+    if kind == "autocorrelated":
+        noise = np.empty(count)
+        noise[0] = draws[0]
+        for place in range(1, count):
+            noise[place] = MEMORY * noise[place - 1] + np.sqrt(1 - MEMORY**2) * draws[place]
+        return size * noise
+    if kind == "growing":
+        spread = 0.4 + np.abs(rows.torque) / 25
+        return np.asarray(size * draws * spread / np.sqrt(np.mean(spread**2)))
+    return size * draws

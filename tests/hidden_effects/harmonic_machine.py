@@ -1,0 +1,200 @@
+"""A harmonic drive that rubs, creeps, wears, runs out of round and gets warm: its torsion from mechanics of its own.
+
+Nothing of the plugin is imported. Friction is a row of sliders behind springs, creep a row of dampers, play closes
+tooth by tooth, runout is the reach of a circle about a point. Torques N m, angles urad, times h, degC, r/min.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+from hidden_effects.harmonic_contact import FIRST_TORQUE, Array, Flanks, torques, torsion_of
+
+Hidden: TypeAlias = Mapping[str, Mapping[str, float]]  # effect -> unknown, in the units of the registry
+TORSION, MESH = "torsion", "mesh_stiffness"
+COMPLIANCE = 36.0  # urad/(N m), of all that is in series with the mesh, as the inputs have it
+RATED, PITCH, ALPHA = 25.0, 25.4e3, np.radians(20)  # N m, um
+SLIDERS = 400
+
+
+@dataclass(frozen=True)
+class Rows:
+    """What was set and measured beside the results, arrays (n,), in the order of the clock."""
+
+    time: Array
+    torque: Array
+    reversal_torque: Array
+    peak_torque: Array
+    direction: Array
+    wave_angle: Array
+    temperature: Array
+    cycles: Array
+    speed: Array
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def taken(self, places: NDArray[np.intp]) -> "Rows":
+        """Some of the rows."""
+        return Rows(**{name: values[places] for name, values in vars(self).items()})
+
+
+def of(hidden: Hidden, effect: str, unknown: str, otherwise: float = 0.0) -> float:
+    """An unknown of an effect, in the unit of the registry."""
+    return float(hidden.get(effect, {}).get(unknown, otherwise))
+
+
+# The mesh
+
+
+def flanks_at(row: int, rows: Rows, hidden: Hidden, tooth: float) -> Flanks:
+    """The flanks as they are at a row: run in, warm, full of oil."""
+    run_in = -np.expm1(-rows.cycles[row] / of(hidden, "asperity_smoothing", "cycle_scale", 1.0))
+    warmer = rows.temperature[row] - 20
+    softer = of(hidden, "modulus_temperature", "softening") * warmer * (1 + warmer / 2000)
+    base = Flanks()
+    return Flanks(
+        dimension=base.dimension + of(hidden, "asperity_smoothing", "dimension") * run_in,
+        roughness=base.roughness * float(np.exp(-of(hidden, "asperity_smoothing", "roughness") * run_in)),
+        modulus=base.modulus * (1 - softer),
+        film=film(rows.speed[row], warmer, hidden),
+        tooth=tooth * (1 - softer),
+    )
+
+
+def film(speed: float, warmer: float, hidden: Hidden) -> float:
+    """Stiffness of the oil in a pair, N/m; gone at rest, when the oil has had time to leave."""
+    if not speed:
+        return 0.0
+    viscosity = np.exp(np.interp(warmer, [-20, 0, 20, 40, 60], np.log([2.03, 1.0, 0.495, 0.246, 0.122])))
+    return of(hidden, "oil_film", "stiffness") * 1e9 / float((viscosity * abs(speed) / 1000) ** 0.67)
+
+
+def engaged(torque: Array, hidden: Hidden) -> Array:
+    """Pairs over those at no torque."""
+    scale = of(hidden, "engaged_pairs", "torque_scale", 1.0)
+    return np.asarray(1 + of(hidden, "engaged_pairs", "gain") * (1 - np.exp(-np.abs(torque) / scale)))
+
+
+def mesh(rows: Rows, hidden: Hidden, tooth: float) -> tuple[Array, Array]:
+    """Stiffness, N m/rad, and torsion, urad, of the mesh at every row."""
+    stiffness, torsion = np.zeros(len(rows)), np.zeros(len(rows))
+    made: dict[Flanks, tuple[Array, Array]] = {}
+    grid = torques()
+    number = engaged(grid, hidden)
+    for row, torque in enumerate(np.abs(rows.torque)):
+        flanks = flanks_at(row, rows, hidden, tooth)
+        if flanks not in made:
+            curve = number * flanks.stiffness(grid / number)
+            made[flanks] = curve, torsion_of(1e6 / curve, grid)
+        curve, angle = made[flanks]
+        stiffness[row] = np.exp(np.interp(np.log(max(torque, 1e-9)), np.log(grid), np.log(curve)))
+        torsion[row] = np.sign(rows.torque[row]) * np.interp(torque, grid, angle, left=0.0)
+    return stiffness, torsion
+
+
+# Angles
+
+
+def rubbing(rows: Rows, width: Array, scale: float) -> Array:
+    """What sliders behind springs hold back of the angle, on a path of torque that begins at rest.
+
+    Sliders let go one after another; they are many, and their number falls with the torque at which they do.
+    """
+    limits = (np.arange(SLIDERS) + 0.5) / SLIDERS * 6 * scale
+    weight = np.exp(-2 * limits / scale)
+    weight /= np.sum(weight * limits)
+    state, held, before = np.zeros(SLIDERS), np.zeros(len(rows)), 0.0
+    for row, turned in enumerate(rows.reversal_torque):
+        ways = (turned, rows.torque[row]) if row and turned != rows.reversal_torque[row - 1] else (rows.torque[row],)
+        for now in ways:
+            state = np.clip(state + now - before, -limits, limits)
+            before = now
+        held[row] = float(weight @ state)
+    return np.asarray(-0.5 * width * held)
+
+
+def friction(rows: Rows, hidden: Hidden) -> Array:
+    """Dry and viscous friction."""
+    whole = np.full(len(rows), of(hidden, "hysteresis", "loop"))
+    held = rubbing(rows, whole, of(hidden, "hysteresis", "torque_scale", 1.0))
+    thinning = of(hidden, "viscous_hysteresis", "thinning")
+    viscosity = np.exp(-thinning * (rows.temperature - 20))
+    width = of(hidden, "viscous_hysteresis", "loop") * viscosity * np.abs(rows.speed) / 1000
+    return held + rubbing(rows, width, of(hidden, "viscous_hysteresis", "torque_scale", 1.0))
+
+
+def play(rows: Rows, hidden: Hidden) -> Array:
+    """Gaps, of new and of worn teeth, and of splines that move apart; teeth close one after another."""
+    found = np.zeros(len(rows))
+    for name, size in (("lost_motion", of(hidden, "lost_motion", "play")), ("flank_wear", 1.0)):
+        spread = of(hidden, name, "torque_scale", 1.0)
+        closed = 2 * ndtr(np.sqrt(np.pi / 2) * 0.94 * rows.torque / spread) - 1
+        found += closed * (worn(rows, hidden) if name == "flank_wear" else size)
+    apart = of(hidden, "thermal_preload", "expansion") * 1e-6 * PITCH * (rows.temperature - 20)
+    return found + np.sign(rows.torque) * 1e6 * np.arctan(apart * np.tan(ALPHA) / PITCH)
+
+
+def worn(rows: Rows, hidden: Hidden) -> Array:
+    """The gap that both flanks of a pair have gained, as an angle, block of cycles by block."""
+    depth = np.zeros(len(rows))
+    for _ in range(100):
+        depth += of(hidden, "flank_wear", "rate") * rows.cycles / 100 / 1e6
+    return np.asarray(1e6 * 2 * depth / (PITCH * np.cos(ALPHA)))
+
+
+def turning(rows: Rows, hidden: Hidden) -> Array:
+    """Waves of the wave generator: a circle beside its centre; lobes with a little of the next even order."""
+    angle = np.radians(rows.wave_angle)
+    x, y = of(hidden, "eccentricity", "cosine"), of(hidden, "eccentricity", "sine")
+    reach = 2e4
+    found = np.hypot(reach * np.cos(angle) + x, reach * np.sin(angle) + y) - reach
+    cosine, sine = of(hidden, "ellipticity", "cosine"), of(hidden, "ellipticity", "sine")
+    lobes = cosine * np.cos(2 * angle) + sine * np.sin(2 * angle)
+    return np.asarray(found + lobes + 0.02 * np.hypot(cosine, sine) * np.cos(4 * angle))
+
+
+def crept(rows: Rows, hidden: Hidden) -> Array:
+    """Share by which springs behind dampers have given way: as many of them in every part of the logarithm of time."""
+    scale = of(hidden, "creep", "time_scale", 1.0)
+    delays = scale * np.exp(np.arange(-3, 14, 0.25) + 0.577)
+    # 1 - exp(-t/delay) over all delays, less what those shorter than the scale would add
+    weight = 0.25 * of(hidden, "creep", "share") * np.exp(-scale / delays)
+    return np.asarray(-np.expm1(-rows.time[:, None] / delays) @ weight)
+
+
+def set_of(rows: Rows, hidden: Hidden) -> Array:
+    """What the largest load so far has left behind."""
+    exponent = of(hidden, "first_load_set", "exponent", 1.0)
+    return np.asarray(of(hidden, "first_load_set", "set") * (np.maximum(rows.peak_torque, 0) / RATED) ** exponent)
+
+
+def stiffened(rows: Rows, hidden: Hidden) -> Array:
+    """How many times as stiff the mesh is after its first load, and by its lobes."""
+    angle = np.radians(rows.wave_angle)
+    again = np.where(np.abs(rows.torque) < rows.peak_torque, of(hidden, "first_load_set", "stiffening"), 0.0)
+    cosine, sine = of(hidden, "ellipticity", "stiffness_cosine"), of(hidden, "ellipticity", "stiffness_sine")
+    size, phase = np.hypot(cosine, sine), np.arctan2(sine, cosine)
+    lobes = size * np.cos(2 * angle - phase) + 0.02 * size * np.cos(4 * angle)
+    return np.asarray((1 + again) * (1 + lobes))
+
+
+def shown(rows: Rows, hidden: Hidden, tooth: float = np.inf) -> dict[str, Array]:
+    """What the gauges would show without noise: urad and N m/rad; teeth bend with ``tooth`` N/m."""
+    stiffness, torsion = mesh(rows, hidden, tooth)
+    softness = COMPLIANCE + of(hidden, "series_compliance", "compliance")
+    warmer = rows.temperature - 20
+    soft = of(hidden, "modulus_temperature", "softening") * warmer * (1 + warmer / 2000)
+    beyond = np.sign(rows.torque) * np.maximum(np.abs(rows.torque) - FIRST_TORQUE, 0)
+    elastic = torsion + beyond * softness / (1 - soft)
+    elastic = elastic * (1 + crept(rows, hidden))
+    angle = elastic + friction(rows, hidden) + play(rows, hidden) + turning(rows, hidden) + set_of(rows, hidden)
+    drift = of(hidden, "rig_drift", "rate") * rows.time
+    return {TORSION: angle + drift, MESH: stiffness * stiffened(rows, hidden)}
+
+
+__all__ = ["MESH", "TORSION", "Array", "Hidden", "Rows", "shown"]
