@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from harmonic_fractal.generators import Array, brownian_profiles
 from shared import Calc
 
 Refused = Callable[..., list[str]]
+SURFACES = Path(__file__).parents[1] / "data" / "surfaces"
 HEAD = "# spacing = 0.4 um\n# height_unit = um\n"
 
 
@@ -250,6 +252,24 @@ def test_bytes_that_are_no_text_and_no_format(refused: Refused, tmp_path: Path) 
     assert found.startswith("drive.toml:3: surface: ")
     assert "SurfaceTopography" in found
     assert len(found) < 500
+
+
+def test_without_the_extra_a_profilometer_file_says_what_to_install(
+    refused: Refused, calc: Calc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Texts are read all the same."""
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
+    binary = (SURFACES / "al3d-1.al3d").as_posix()
+    (found,) = refused(f'surface = {{ file = "{binary}" }}')
+    assert "pip install 'truing[surfaces]'" in found
+    assert "or export the heights as text" in found
+    (tmp_path / "text.toml").write_text(
+        f'[inputs]\nsurface = {{ file = "{(SURFACES / "hfm-1.hfm").as_posix()}" }}\n[studies]\nrun = []\n'
+    )
+    (tmp_path / "rows.csv").write_text("torque [N*m]\n25\n")
+    answer = calc("table", "harmonic_fractal", "--inputs", "text.toml", "--rows", "rows.csv")
+    assert answer.code == 0, answer.err
+    assert answer.out.count("\n") == 2
 
 
 @pytest.mark.parametrize("name", ["surface", "mating_surface"])
