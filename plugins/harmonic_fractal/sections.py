@@ -14,7 +14,7 @@ SECTIONS = [
     ),
     Section(
         "D and G of both flanks",
-        "dimension", "profile_dimension", "roughness", "structure_function",
+        "dimension", "profile_dimension", "roughness", "lag", "structure_function",
         text="Two rough flanks are taken as one against a smooth one. G is a number in metres that changes by factors "
         "with its convention; inside this calculation it is the areal one.",
         blocks=drawn_interface.interface,

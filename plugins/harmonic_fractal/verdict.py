@@ -62,4 +62,4 @@ def no_range(lags: Array, dimensions: Array) -> str:
 
 def span_of(shortest: float, longest: float) -> str:
     """Say from where to where lags, m, run."""
-    return f"{shortest * 1e6:.3g} um to {longest * 1e6:.3g} um"
+    return f"{shortest * 1e6:.4g} um to {longest * 1e6:.4g} um"

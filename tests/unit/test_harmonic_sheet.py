@@ -99,7 +99,7 @@ def line(panel: Any, label: str) -> tuple[NDArray[np.float64], NDArray[np.float6
 def test_every_result_stands_in_one_section() -> None:
     named = [name for section in HARMONIC_FRACTAL.sheet for name in section.names]
     assert len(named) == len(set(named))
-    assert set(HARMONIC_FRACTAL.result_fields) - set(named) == {"lag"}
+    assert set(HARMONIC_FRACTAL.result_fields) == set(named)
 
 
 def test_sections_are_in_the_order_of_the_calculation() -> None:
