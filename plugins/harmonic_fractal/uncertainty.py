@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from harmonic_fractal.quantities import Drive
-from truing import Block, Drawing, Table, TruingError, Words
+from truing import Block, Drawing, Table, TruingError, Words, quantity
 
 if TYPE_CHECKING:
     import numpy as np
@@ -119,15 +119,14 @@ class Propagated:
 
     def as_json(self) -> Mapping[str, Any]:
         """Return spread and correlation of the pairs, and by result median, interval and relative deviations."""
-        from truing.units import from_si
-
         if self.pairs is None or self.together is None:
             return {"draws": 0}
         results = {}
         for result in self.together:
             found, unit = self.summary(result), self.units[result]
-            numbers = {name: _known(from_si(getattr(found, name), unit)) for name in ("nominal", "median")}
-            interval = [_known(from_si(end, unit)) for end in (found.low, found.high)]
+            one = quantity(f"1 {unit}", unit)
+            numbers = {name: _known(getattr(found, name) / one) for name in ("nominal", "median")}
+            interval = [_known(end / one) for end in (found.low, found.high)]
             shares = {"relative_sd": _known(found.relative_sd), "if_independent": _known(found.independent_sd)}
             results[result] = {**numbers, "interval95": interval, "unit": unit, **shares, "failed": found.failed}
         sd = self.pairs.std(axis=0, ddof=1)
@@ -141,14 +140,13 @@ class Propagated:
 
     def blocks(self) -> Sequence[Block]:
         """Return what the pairs give, in a table and a figure."""
-        from truing.units import from_si
-
         if self.pairs is None or self.together is None:
             return [Words(NOTHING)]
         rows: list[tuple[str | float, ...]] = []
         for result in self.together:
             found, unit = self.summary(result), self.units[result]
-            numbers = (from_si(value, unit) for value in (found.nominal, found.median, found.low, found.high))
+            one = quantity(f"1 {unit}", unit)
+            numbers = (value / one for value in (found.nominal, found.median, found.low, found.high))
             shares = (100.0 * found.relative_sd, 100.0 * found.independent_sd)
             rows.append((result.replace("_", " "), *(float(value) for value in numbers), _spoken(unit), *shares))
         return [
@@ -223,9 +221,8 @@ def _known(value: Any) -> float | None:
 
 
 def _spoken(unit: str) -> str:
-    from truing.units import unit_text
-
-    return unit_text(unit)
+    """Write a unit as it is printed."""
+    return unit.replace("*", "·").replace("urad", "µrad").replace("um", "µm")
 
 
 def pairs_figure(pairs: "Array") -> "Figure":
@@ -233,6 +230,6 @@ def pairs_figure(pairs: "Array") -> "Figure":
     from harmonic_fractal.drawn_look import BLUE, panels, quiet
 
     figure, (panel,) = panels(1, 3.0)
-    panel.plot(pairs[:, 0], pairs[:, 1], ".", color=BLUE, markersize=2.5, alpha=0.5, rasterized=len(pairs) > 3000)
+    panel.plot(pairs[:, 0], pairs[:, 1], ".", color=BLUE, markersize=2.5, alpha=0.5, rasterized=True)
     quiet(panel, "deviation of D", "deviation of ln G")
     return figure
