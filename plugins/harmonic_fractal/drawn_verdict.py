@@ -101,21 +101,44 @@ def tables(flank: "Flank") -> "Iterator[Block]":
         columns, units = (*columns[:-1], "noise", columns[-1]), (*units[:-1], "nm", "")
         rows = [(*row[:-1], NANO * found.noise, row[-1]) for row, found in zip(rows, flank.estimates, strict=True)]
     yield Table(f"{name}: what each direction says", columns, rows, units)
+    yield _others(flank)
     yield _slopes(flank)
 
 
 def _row(found: "Estimate", flank: "Flank") -> tuple[str | float | None, ...]:
     low, high = (found.lags[0], found.lags[-1]) if found.lags.size else (None, None)
     state = "self-affine, not used" if found.is_accepted else "refused, for comparison only"
-    known = [value if value == value else None for value in (found.dimension, found.roughness, found.r_squared)]
+    known = [_known(value) for value in (found.dimension, found.roughness, found.r_squared)]
     return (
         ALONG[found.direction],
         None if low is None else MICRO * float(low),
         None if high is None else MICRO * float(high),
         *known,
-        found.line_scatter if found.line_scatter == found.line_scatter else None,
+        _known(found.line_scatter),
         "used" if found.direction == flank.chosen else state,
     )
+
+
+def _others(flank: "Flank") -> Table:
+    """The dimension by other ways, which only compare."""
+    rows = [
+        (
+            ALONG[found.direction],
+            *(_known(value) for value in (found.dimension, found.window_dimension, found.noise_dimension)),
+            _known(100.0 * found.noise_share),
+        )
+        for found in flank.estimates
+    ]
+    columns = ("direction", "fit of S", "roughness-length", "fit of S with noise", "noise in S at the shortest lag")
+    note = (
+        "The roughness-length method, which the patent names, looks at windows of a line; the fit with noise takes a "
+        "constant beside the power law. Where they differ much, D and G are partly those of instrument and window."
+    )
+    return Table(f"{flank.surface.name}: D_s by other ways, for comparison", columns, rows, ("", "", "", "", "%"), note)
+
+
+def _known(value: float) -> float | None:
+    return value if value == value else None
 
 
 def _slopes(flank: "Flank") -> Table:

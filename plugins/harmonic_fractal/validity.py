@@ -104,12 +104,14 @@ def _estimate_json(found: Any) -> dict[str, Any]:
         return [float(value) * factor if value == value else None for value in values]
 
     dimension, roughness, r_squared = known((found.dimension, found.roughness, found.r_squared))
+    window, with_noise, share = known((found.window_dimension, found.noise_dimension, found.noise_share))
     return {
         "accepted": found.is_accepted,
         "reason": found.reason,
         "profile_dimension": dimension,
         "roughness": {"value": roughness, "unit": "m", "convention": "areal"},
         "r_squared": r_squared,
+        "for_comparison": {"roughness_length": window, "with_noise": with_noise, "noise_share": share},
         "range": {"unit": "um", "values": known(found.range, 1e6)},
         "lags": {"unit": "um", "values": known(found.lags, 1e6)},
         "structure_function": {"unit": "um^2", "values": known(found.values, 1e12)},
