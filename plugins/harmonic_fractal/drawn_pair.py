@@ -10,7 +10,20 @@ from numpy.typing import NDArray
 
 from harmonic_fractal import clearance as gap
 from harmonic_fractal.contact import contact_of, pressed
-from harmonic_fractal.drawn_look import BLUE, GREEN, GREY, INK, NANO, ORANGE, acting, microns, panels, quiet, signed
+from harmonic_fractal.drawn_look import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    MICRO,
+    NANO,
+    ORANGE,
+    acting,
+    microns,
+    panels,
+    quiet,
+    signed,
+)
 from harmonic_fractal.interface import interface_of
 from harmonic_fractal.mesh import load_of_largest, mesh_of
 from truing import Drawing, Table, Words
@@ -134,7 +147,28 @@ def stiffness(record: "Run") -> "Sequence[Block]":
             rows, ("N", "N/m", "", "nm", "nm"),
         ),
     ]  # fmt: skip
-    return [*_limits(record), *blocks]
+    return [*_limits(record), *blocks, _single(drive, record)]
+
+
+def _single(drive: "Drive", record: "Run") -> Table:
+    """The largest contact, and the one that just turns elastic: a sphere of its own radius under its own load."""
+    contact = contact_of(drive, interface_of(drive))
+    rows: list[tuple[str | float, ...]] = []
+    for words, name in (("the largest", "largest_area"), ("just elastic", "critical_area")):
+        area = float(record.answers[name])
+        radius = np.sqrt(area / np.pi)
+        interference = 2.0 * float(gap.amplitude(radius, contact, drive.density))
+        tip = area / (2.0 * np.pi * interference)
+        force = 4.0 / 3.0 * float(contact.modulus) * np.sqrt(tip) * interference**1.5
+        stiffness = 2.0 * float(contact.modulus) * np.sqrt(area / (2.0 * np.pi)) * float(contact.tip_factor)
+        row = (MICRO * radius, NANO * interference, MICRO * tip, force, stiffness)
+        rows.append((words, *(float(value) for value in row)))
+    columns = ("contact", "radius, truncated", "interference", "tip radius", "elastic load", "stiffness")
+    note = (
+        "Truncated: where the undeformed flank is cut off; the real area of an elastic contact is half of it. The "
+        "interference is twice the clearance of equation 7 for that radius."
+    )
+    return Table("Single contacts", columns, rows, ("", "µm", "nm", "µm", "N", "N/m"), note)
 
 
 def _limits(record: "Run") -> "Sequence[Block]":

@@ -295,6 +295,22 @@ def test_pair_figure_shows_every_reading(stated: Calculation) -> None:
     assert sum("equation 7" in label for label in labels) == 3
 
 
+def test_single_contacts_are_spheres(stated: Calculation) -> None:
+    """Hertz: F R = 4/3 E a^3, stiffness 1.5 F/delta, a^2 = R delta; at the critical area F is hardness times area."""
+    rows = {
+        row[0]: [float(value or 0.0) for value in row[1:]] for row in table(stiffness(stated.record), "Single").rows
+    }
+    modulus = 1.1318681e11
+    for radius, interference, tip, force, spring in rows.values():
+        real = radius * 1e-6 / np.sqrt(2.0)
+        assert force * tip * 1e-6 == pytest.approx(4.0 / 3.0 * modulus * real**3, rel=1e-6)
+        assert spring == pytest.approx(1.5 * force / (interference * 1e-9), rel=1e-9)
+        assert real**2 == pytest.approx(tip * 1e-6 * interference * 1e-9, rel=1e-9)
+    area = float(stated.answers["critical_area"])
+    assert rows["just elastic"][3] == pytest.approx(3e9 * area, rel=1e-9)
+    assert rows["the largest"][1] == pytest.approx(2e9 * float(stated.answers["clearance"]))
+
+
 def test_table_over_the_load(stated: Calculation) -> None:
     rows = table(stiffness(stated.record), "over its load").rows
     known = {row[0]: row[1] for row in rows}
