@@ -11,9 +11,11 @@ from scipy.special import gamma
 from harmonic_fractal.calculation import harmonic_fractal
 from harmonic_fractal.catalogue import TABLE, polyline_of
 from harmonic_fractal.cleaning import without_form, without_line
+from harmonic_fractal.clearance import patch_rms
 from harmonic_fractal.fitting import noise_fit, straight_fit
 from harmonic_fractal.flank import read_flank
 from harmonic_fractal.generators import Waves, brownian_profiles, profile_sum
+from harmonic_fractal.interface import Rough
 from harmonic_fractal.micro import domain_factor
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.power_law import log_roughness_of, structure_function
@@ -291,6 +293,16 @@ def test_the_range_of_validity() -> None:
     assert f"that is {float(DEFAULT['resolved_share']):.3f} of the sampling interval" in WORDS
     first = TABLE["20"][0] / (TABLE["20"][2]["50"][0] * 1e3)
     assert f"$T_1/K_1 = {first * 1e4:.1f}\\cdot10^{{-4}}$ rad here" in WORDS
+
+
+def test_beside_contact_over_all_scales() -> None:
+    for settings, text in (
+        (NANOMETRE, "that is {:.1f} times softer than (12) at"),
+        ({}, "and {:.1f} times softer with"),
+    ):
+        found = drive(**settings)
+        height = patch_rms(Rough(dimension=found["dimension"], roughness=found["roughness"]), 0.2e-3, 1.5)
+        assert text.format(float(found["stiffness"] / (25.0 / (0.48 * height)))) in WORDS
 
 
 def test_every_effect_has_its_row() -> None:
