@@ -19,14 +19,18 @@ def turned(results: Stiffness, by: Float) -> Stiffness:
     return replace(results, torsion=results.torsion + by)
 
 
-def loop_share(torque: Float, reversal_torque: Float, peak_torque: Float, torque_scale: Float) -> Float:
-    """Return where on its loop the friction is: -1 where the torque has just turned, +1 once it has slipped through.
+def held_share(
+    drive: Drive, torque_scale: Float, direction: Float, reversal_torque: Float, peak_torque: Float
+) -> Float:
+    """Return what friction holds back, in halves of its loop: 1 once it has slipped on a way up, -1 on a way down.
 
-    1 - 2 exp(-|T - T_rev|/T_c) after a turn. The first load starts in the middle and slips through in half that
+    +-(1 - 2 exp(-|T - T_rev|/T_c)) after a turn. The first load starts in the middle and slips through in half that
     torque, 1 - exp(-2 |T - T_rev|/T_c), as Masing's rule has it; a loop that closes at its peak meets it there.
     """
-    way = np.abs(torque - reversal_torque) / torque_scale
-    share: Float = np.where(torque >= peak_torque, -np.expm1(-2.0 * way), 1.0 - 2.0 * np.exp(-way))
+    sense = np.sign(direction)
+    way = np.abs(drive.torque - reversal_torque) / torque_scale
+    is_first = (drive.torque >= peak_torque) & (sense > 0.0)
+    share: Float = sense * np.where(is_first, -np.expm1(-2.0 * way), 1.0 - 2.0 * np.exp(-way))
     return share
 
 
@@ -45,8 +49,7 @@ def hysteresis(
     So the loop takes up energy, and is never negative. Range: every turn but that of the first load follows a branch on
     which the friction has slipped through, so several ``torque_scale`` long. Of the direction only the sign counts.
     """
-    share = loop_share(drive.torque, reversal_torque, peak_torque, torque_scale)
-    return turned(results, -0.5 * loop * np.sign(direction) * share)
+    return turned(results, -0.5 * loop * held_share(drive, torque_scale, direction, reversal_torque, peak_torque))
 
 
 def viscous_hysteresis(
@@ -68,8 +71,7 @@ def viscous_hysteresis(
     """
     viscosity = np.exp(-thinning * (temperature - TEMPERATURE.zero))
     width = loop * viscosity * np.abs(speed) / RATED_SPEED
-    share = loop_share(drive.torque, reversal_torque, peak_torque, torque_scale)
-    return turned(results, -0.5 * width * np.sign(direction) * share)
+    return turned(results, -0.5 * width * held_share(drive, torque_scale, direction, reversal_torque, peak_torque))
 
 
 def lost_motion(drive: Drive, results: Stiffness, *, play: Float, torque_scale: Float) -> Stiffness:
