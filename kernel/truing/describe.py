@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
+import inspect
 from collections.abc import Mapping
 from typing import Any
 
-from truing.declare.fields import Axis, Found, Given, InputField, ResultField
+from truing.declare.fields import Axis, Found, Given, InputField, Loaded, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary
 from truing.declare.sources import Condition
 from truing.inputs_file.values import bounds_in_words
@@ -59,6 +60,7 @@ def _input(item: InputField) -> dict[str, Any]:
         "default": list(default) if isinstance(default, tuple) else default,
         "optional": item.is_optional,
         "choices": list(item.choices),
+        "options": list(inspect.signature(spec.reader).parameters)[1:] if isinstance(spec, Loaded) else [],
         "bounds": bounds_in_words(item, with_unit=False),
         "note": spec.note,
         "source": spec.source,

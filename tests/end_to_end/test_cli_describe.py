@@ -73,6 +73,15 @@ def test_describe_as_json(calc: Calc) -> None:
     assert {"slider_position", "slider_tilt", "stroke", "bdc_position", "adjustments"} <= set(results)
 
 
+def test_describe_names_what_the_reader_of_a_file_takes(calc: Calc) -> None:
+    (line,) = (text for text in calc("describe", "harmonic_fractal").out.split("\n") if text.startswith("  surface "))
+    assert " a file " in line
+    assert "options: spacing, spacing_x, spacing_y, height_unit, " in line
+    inputs = {item["name"]: item for item in json.loads(calc("describe", "harmonic_fractal", "--json").out)["inputs"]}
+    assert {"rectangle", "noise_aware", "direction", "sliding"} <= set(inputs["mating_surface"]["options"])
+    assert inputs["torque"]["options"] == []
+
+
 @pytest.mark.parametrize("plugin", ["press_linkage", str(PIN)])
 def test_the_example_keeps_the_schema(calc: Calc, plugin: str) -> None:
     schema = json.loads(calc("describe", plugin, "--json-schema").out)

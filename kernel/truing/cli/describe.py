@@ -84,8 +84,9 @@ def _unit(unit: str) -> str:
 
 def _input_row(item: dict[str, Any]) -> tuple[str, ...]:
     default = "optional" if item["default"] is None and item["optional"] else item["default"]
-    unit = " | ".join(item["choices"]) if item["choices"] else _unit(item["unit"])
-    note = "; ".join(text for text in (item["note"], item["bounds"], item["source"]) if text)
+    unit = " | ".join(item["choices"]) or ("a file" if item["kind"] == "file" else _unit(item["unit"]))
+    options = f"options: {', '.join(item['options'])}" if item["options"] else ""
+    note = "; ".join(text for text in (item["note"], item["bounds"], options, item["source"]) if text)
     return _row(item["name"], _symbol(item), "" if default is None else default, unit, note)
 
 
