@@ -10,7 +10,7 @@ from typing import Any
 from truing.declare.fields import read
 from truing.declare.model import Record
 from truing.errors import InfeasibleError
-from truing.evaluate import evaluate
+from truing.evaluate import acting_inputs, evaluate
 from truing.executors import open_executor
 from truing.prices import price_answers
 from truing.setup import Setup, SwitchedOn
@@ -38,7 +38,10 @@ class Calculation:
     @property
     def record(self) -> Record[Any, Any]:
         """The run as sections of the sheet see it."""
-        return Record(self.setup.inputs, self.results, self.answers, self.outcomes, self.setup.model.function)
+        return Record(
+            self.setup.inputs, self.results, self.answers, self.outcomes, self.setup.model.function,
+            acting=acting_inputs(self.setup),
+        )  # fmt: skip
 
 
 def calculate(setup: Setup, *, executor: Executor | None = None, progress: Progress = silent) -> Calculation:

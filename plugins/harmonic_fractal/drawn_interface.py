@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from harmonic_fractal.drawn_look import acting, signed
+from harmonic_fractal.drawn_look import signed
 from harmonic_fractal.drawn_verdict import said_of
 from harmonic_fractal.interface import flanks_of
 from harmonic_fractal.power_law import Convention, constant, converted
@@ -27,7 +27,7 @@ STATED = "No flank was measured: D and G are as stated, and how sure they are is
 
 def flanks(record: "Run") -> "Sequence[Block]":
     """Every measured flank with its verdict; else that nothing was measured."""
-    drive = acting(record)
+    drive = record.acting
     blocks: list[Block] = []
     if drive.surface is not None:
         blocks += said_of(
@@ -55,7 +55,7 @@ def interface(record: "Run") -> "Sequence[Block]":
 
 
 def _both(record: "Run") -> Table:
-    drive = acting(record)
+    drive = record.acting
     first, second = flanks_of(drive)
     rows = [
         ("flexspline", *_numbers(first), _origin(drive.surface)),
@@ -85,7 +85,7 @@ def _sum(drive: "Drive", second: "Rough | None") -> str:
 
 def conventions(record: "Run") -> Table:
     """G of both flanks in every convention, and by the constant that lacks a factor."""
-    drive, areal = acting(record), float(record.answers["roughness"])
+    drive, areal = record.acting, float(record.answers["roughness"])
     profile, density = float(record.answers["profile_dimension"]), float(drive.density)
     rows = [
         (

@@ -18,15 +18,6 @@ WIDTH = 6.4
 MICRO, NANO = 1e6, 1e9
 
 
-def acting(record: "Run") -> Drive:
-    """The inputs as effects leave them, from the first study that knows them; else those of the run."""
-    for outcome in record.studies.values():
-        inputs = getattr(outcome, "inputs", None)
-        if isinstance(inputs, Drive):
-            return inputs
-    return record.inputs
-
-
 def panels(rows: int, height: float, **options: Any) -> "tuple[Figure, Any]":
     """A figure as wide as the sheet with panels below one another."""
     from matplotlib.figure import Figure

@@ -18,7 +18,6 @@ from harmonic_fractal.drawn_look import (
     MICRO,
     NANO,
     ORANGE,
-    acting,
     microns,
     panels,
     quiet,
@@ -129,7 +128,7 @@ def _clearances(panel: Any, drive: "Drive", load: Array) -> None:
 
 def stiffness(record: "Run") -> "Sequence[Block]":
     """The pair over its load, in a figure and in numbers, with what limits the number."""
-    drive = acting(record)
+    drive = record.acting
     stated = float(drive.pair_load)
     curves = loaded(drive, np.array(sorted({*LOADS, stated})))
     columns = zip(curves.load, curves.stiffness, curves.exponent, NANO * curves.amplitude, NANO * curves.closing,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from harmonic_fractal.calculation import around_of
 from harmonic_fractal.catalogue import Polyline, polyline_of, ratio_of
 from harmonic_fractal.contact import contact_of
-from harmonic_fractal.drawn_look import BLUE, GREY, INK, MICRO, ORANGE, acting, panels, quiet, signed
+from harmonic_fractal.drawn_look import BLUE, GREY, INK, MICRO, ORANGE, panels, quiet, signed
 from harmonic_fractal.interface import interface_of
 from harmonic_fractal.mesh import mesh_of
 from harmonic_fractal.torsion import mesh_torsion
@@ -53,7 +53,7 @@ def torsions(drive: "Drive", printed: Polyline, torque: Array) -> Torsions:
 
 def torsion(record: "Run") -> "Sequence[Block]":
     """The figure, the table at the torques of the catalogue, and what follows."""
-    drive = acting(record)
+    drive = record.acting
     printed = polyline_of(drive.catalogue_size, ratio_of(drive))
     if printed is None:
         return []

@@ -5,7 +5,6 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from roller_screw_shift.drawn_course import limits_figure, objectives_figure
-from roller_screw_shift.drawn_look import acting, outcome_of
 from roller_screw_shift.drawn_teeth import sliding_figure, teeth_figure
 from roller_screw_shift.drawn_weights import front_figure, triangle_figure
 from roller_screw_shift.shifts import Chosen, before
@@ -52,8 +51,8 @@ CORNERS = (
 
 def signs(record: "Run") -> "Sequence[Block]":
     """The sign convention in words, and the pair to scale."""
-    pair = acting(record)
-    chosen = outcome_of(record, Chosen)
+    pair = record.acting
+    chosen = record.outcome(Chosen)
     draw = partial(teeth_figure, pair, places(record, chosen))
     return [Words(CONVENTION), Drawing("Roller and ring", draw, PATH)]
 
@@ -61,7 +60,7 @@ def signs(record: "Run") -> "Sequence[Block]":
 def places(record: "Run", chosen: "Chosen | None") -> list[tuple[str, float]]:
     """The shifts that are drawn: before and after the optimisation, or what is stated where there was none."""
     if chosen is None or chosen.field is None:
-        return [("as stated", float(acting(record).roller_shift))]
+        return [("as stated", float(record.acting.roller_shift))]
     first = before(chosen.field)
     words = "before, no shift of the roller" if first == 0.0 else "before, nearest to no shift"
     return [(words, first), ("optimum", chosen.shift)]
@@ -69,7 +68,7 @@ def places(record: "Run", chosen: "Chosen | None") -> list[tuple[str, float]]:
 
 def sliding(record: "Run") -> "Sequence[Block]":
     """Specific sliding along the path of contact."""
-    pair, chosen = acting(record), outcome_of(record, Chosen)
+    pair, chosen = record.acting, record.outcome(Chosen)
     shown = places(record, chosen)
     if chosen is not None and chosen.field is not None:
         shown = [("before", shown[0][1]), ("as stated", float(pair.roller_shift)), ("optimum", chosen.shift)]
@@ -78,7 +77,7 @@ def sliding(record: "Run") -> "Sequence[Block]":
 
 def limits(record: "Run") -> "Sequence[Block]":
     """Which shifts keep every limit."""
-    chosen = outcome_of(record, Chosen)
+    chosen = record.outcome(Chosen)
     if chosen is None:
         return []
     caption = (
@@ -93,7 +92,7 @@ def limits(record: "Run") -> "Sequence[Block]":
 
 def choice(record: "Run") -> "Sequence[Block]":
     """Ranges, weights, objectives, optimum."""
-    chosen = outcome_of(record, Chosen)
+    chosen = record.outcome(Chosen)
     if chosen is None or chosen.field is None:
         return []
     caption = "The first objective is to be large, the others are to be small."
@@ -108,14 +107,14 @@ def choice(record: "Run") -> "Sequence[Block]":
 
 def weights(record: "Run") -> "Sequence[Block]":
     """What the weights choose."""
-    chosen = outcome_of(record, Chosen)
+    chosen = record.outcome(Chosen)
     if chosen is None or chosen.field is None:
         return []
     field = chosen.field
     blocks: list[Block] = [
         Drawing(
             "The front, and what the weights choose",
-            partial(front_figure, chosen, field, outcome_of(record, Optimum)),
+            partial(front_figure, chosen, field, record.outcome(Optimum)),
             PLANES,
         )
     ]

@@ -17,20 +17,6 @@ WIDTH = 6.4
 MM = 1e3
 
 
-def outcome_of(record: "Run", kind: type[Any]) -> Any:
-    """The outcome of the first study of this kind, None where none ran."""
-    return next((found for found in record.studies.values() if isinstance(found, kind)), None)
-
-
-def acting(record: "Run") -> Pair:
-    """The inputs as effects leave them, from the first study that knows them; else those of the run."""
-    for outcome in record.studies.values():
-        inputs = getattr(outcome, "inputs", None)
-        if isinstance(inputs, Pair):
-            return inputs
-    return record.inputs
-
-
 def panels(rows: int, height: float, **options: Any) -> "tuple[Figure, Any]":
     """A figure as wide as the sheet with panels below one another."""
     from matplotlib.figure import Figure

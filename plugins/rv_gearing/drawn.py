@@ -9,7 +9,7 @@ import numpy as np
 from rv_gearing.capacity import Reserve
 from rv_gearing.catalogue import MODULE, catalogue_table
 from rv_gearing.drawn_groups import groups_figure, stresses_figure, window_words
-from rv_gearing.drawn_look import acting, number, outcome_of
+from rv_gearing.drawn_look import number
 from rv_gearing.drawn_mesh import mesh_figure, meshing_of
 from rv_gearing.drawn_safeties import AXES, safeties_figure
 from rv_gearing.drawn_tooth import notched_of, root_figure
@@ -34,7 +34,7 @@ DIGITS: dict[Column, int] = {"ratio": 4, "deviation": 3, "torque": 2, "centre_di
 
 def search(record: "Run") -> "Sequence[Block]":
     """All groups as a table, where they lie in the window, and the catalogue beside them."""
-    found = outcome_of(record, Found)
+    found = record.outcome(Found)
     if found is None:
         return []
     if not found.count:
@@ -94,7 +94,7 @@ def geometry(record: "Run") -> "Sequence[Block]":
         "as their rack generates them. A to E: path of contact, in single contact between B and D; C: pitch point. "
         "Dotted: base circles; chain lines: pitch circles."
     )
-    meshing = meshing_of(record, acting(record))
+    meshing = meshing_of(record, record.acting)
     return [Drawing("Sun and planets, and one mesh", partial(mesh_figure, meshing), caption)]
 
 
@@ -105,7 +105,7 @@ def bending(record: "Run") -> "Sequence[Block]":
         "axis of the tooth at the height of its arm; grey: the force at the outer point of single contact, for "
         "method B."
     )
-    teeth = notched_of(record, acting(record))
+    teeth = notched_of(record, record.acting)
     return [Drawing("Critical sections of the teeth", partial(root_figure, teeth), caption)]
 
 
@@ -124,7 +124,7 @@ def method_b(record: "Run") -> "Sequence[Block]":
 
 def comparison(record: "Run") -> "Sequence[Block]":
     """Stresses and safeties of all groups."""
-    found = outcome_of(record, Found)
+    found = record.outcome(Found)
     if found is None or not len(found.groups) or not any(np.isfinite(found.strength[name]).any() for name in STRENGTH):
         return []
     note = "Under the power or torque of the run, with the same face width, material and factors. " + _rated_words(
@@ -148,7 +148,7 @@ def courses(record: "Run") -> "Sequence[Block]":
         caption = "Dotted: what is asked of each. Breakage goes with the load, pitting with its square root."
         title = f"Safeties over the {over}"
         blocks.append(Drawing(title, partial(safeties_figure, swept, here), caption if not blocks else ""))
-    reserve = outcome_of(record, Reserve)
+    reserve = record.outcome(Reserve)
     if reserve is not None and np.isfinite(reserve.torque).any():
         torque = float(np.min(reserve.torque))
         words = f"{reserve.governing[0].upper()}{reserve.governing[1:]} comes first, at {torque:.1f} N m at the output."
@@ -160,5 +160,5 @@ def _here(record: "Run", over: str) -> float:
     """Where the run itself lies along an input."""
     if over == "load_torque":
         return number(record, "output_torque")
-    value = getattr(acting(record), over, np.nan)
+    value = getattr(record.acting, over, np.nan)
     return float(value) if np.ndim(value) == 0 else float("nan")

@@ -19,23 +19,6 @@ WIDTH = 6.4
 MM, MPA = 1e3, 1e-6
 
 
-def acting(record: "Run") -> Gearing:
-    """The inputs as effects leave them, from the first study that knows them; else those of the run."""
-    for outcome in record.studies.values():
-        inputs = getattr(outcome, "inputs", None)
-        if isinstance(inputs, Gearing):
-            return inputs
-    return record.inputs
-
-
-def outcome_of(record: "Run", kind: type[Any], name: str = "") -> Any:
-    """The outcome of the first study of this kind (and name), None where none ran."""
-    for key, found in record.studies.items():
-        if isinstance(found, kind) and name in ("", key):
-            return found
-    return None
-
-
 def number(record: "Run", name: str) -> float:
     """One result, SI."""
     return float(record.answers[name])

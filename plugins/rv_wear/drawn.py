@@ -16,7 +16,6 @@ from rv_wear.drawn_flank import (
     wear_figure,
 )
 from rv_wear.drawn_fronts import PRINTED_OPTIMA, at_printed_wear, better, fronts_figure
-from rv_wear.drawn_look import acting, outcome_of
 from rv_wear.drawn_mesh import mesh_figure
 from rv_wear.least_costs import Fronts
 from rv_wear.modifications import Ground
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
 
 def geometry(record: "Run") -> "Sequence[Block]":
     """The mesh to scale, and the clearance along the flank."""
-    reducer = acting(record)
+    reducer = record.acting
     mesh = (
         "To scale, the crank to the right. Filled pins carry; each arrow is the force of a pin on the new disc, along "
         "its line of action through the pitch point. ψ: phase angle of a pin. l: arm of its force about the centre of "
@@ -48,7 +47,7 @@ def geometry(record: "Run") -> "Sequence[Block]":
 
 def forces(record: "Run") -> "Sequence[Block]":
     """Forces along the flank by both ways of sharing, and how far these are apart."""
-    reducer = acting(record)
+    reducer = record.acting
     largest, one = difference_of_sharing(reducer)
     words = (
         f"With Hertz at every pin the largest force of the new disc is {100 * abs(largest):.1f} % "
@@ -64,12 +63,12 @@ def forces(record: "Run") -> "Sequence[Block]":
 
 def wear(record: "Run") -> "Sequence[Block]":
     """Wear along the flank, and over the working time."""
-    reducer = acting(record)
+    reducer = record.acting
     blocks: list[Block] = []
     if float(reducer.working_time) > 0.0:
         caption = "By the law of wear alone. Where the disc wears, the neighbours take over load: the worn part widens."
         blocks.append(Drawing("Wear along the flank", partial(wear_figure, reducer), caption))
-    swept = outcome_of(record, Swept)
+    swept = record.outcome(Swept)
     if swept is not None and swept.over == "working_time" and {"max_wear", "backlash"} <= set(swept.results):
         caption = "Backlash of the reducer whose errors lie at the middle of their zones."
         blocks.append(Drawing("Wear and backlash over the years", partial(history_figure, swept), caption))
@@ -78,17 +77,17 @@ def wear(record: "Run") -> "Sequence[Block]":
 
 def other_discs(record: "Run") -> "Sequence[Block]":
     """The paper's Figs. 1 and 2."""
-    ground = outcome_of(record, Ground)
+    ground = record.outcome(Ground)
     if ground is None:
         return []
     caption = "As Figs. 1 and 2 of the paper: new discs of one radial clearance, and their wear early in life."
-    draw = partial(modifications_figure, ground, acting(record))
+    draw = partial(modifications_figure, ground, record.acting)
     return [Drawing("Forces and wear of discs ground in other ways", draw, caption)]
 
 
 def influence(record: "Run") -> "Sequence[Block]":
     """The sixteen indices beside those of the paper's Table 2."""
-    if not isinstance(outcome_of(record, Sensitivities), Sensitivities):
+    if record.outcome(Sensitivities) is None:
         return []
     found = {number: float(record.answers[f"index_{number}"]) for number in FACTORS}
     if not all(value == value for value in found.values()):
@@ -102,7 +101,7 @@ def influence(record: "Run") -> "Sequence[Block]":
 def reliability(record: "Run") -> "Sequence[Block]":
     """The paper's Figs. 4 and 5."""
     blocks: list[Block] = []
-    born = outcome_of(record, Newborn)
+    born = record.outcome(Newborn)
     if born is not None:
         caption = f"As Fig. 4 of the paper: {len(born.new)} machines, the first ones of the study 'reliability'."
         found = born.as_json()["new"]
@@ -110,7 +109,7 @@ def reliability(record: "Run") -> "Sequence[Block]":
             caption += f" New: mean {found['mean']:.3f}′, standard deviation {found['sd']:.3f}′, largest "
             caption += f"{found['largest']:.3f}′. The paper: about 0.7′, and all below 1′."
         blocks.append(Drawing("Backlash of new machines", partial(machines_figure, born), caption))
-    odds = outcome_of(record, Odds)
+    odds = record.outcome(Odds)
     if odds is not None and odds.curve is not None and odds.curve.over == "working_time":
         caption = "As Fig. 5 of the paper. It says that the reliability begins to fall after 4000 h."
         blocks.append(Drawing("Reliability over the working time", partial(reliability_figure, odds), caption))
@@ -119,7 +118,7 @@ def reliability(record: "Run") -> "Sequence[Block]":
 
 def costs(record: "Run") -> "Sequence[Block]":
     """What each zone costs, and what another width would."""
-    bill = outcome_of(record, Bill)
+    bill = record.outcome(Bill)
     if bill is None or not bill.widths:
         return []
     form = str(record.inputs.cost_form)
@@ -131,11 +130,11 @@ def costs(record: "Run") -> "Sequence[Block]":
 
 def better_tolerances(record: "Run") -> "Sequence[Block]":
     """The paper's Figs. 6 and 7."""
-    fronts = outcome_of(record, Fronts)
+    fronts = record.outcome(Fronts)
     if fronts is None or not any(front.designs for front in fronts.fronts):
         return []
     start = (float(record.answers["tolerance_price"]), float(record.answers["max_wear"]))
-    optimum = outcome_of(record, Optimum)
+    optimum = record.outcome(Optimum)
     caption = (
         "As Fig. 6 of the paper. For every equidistant modification (written beside the points) the widths of least "
         "cost, from those in force to twice as wide, that reach the required reliability; large marks: the knees."
@@ -144,7 +143,7 @@ def better_tolerances(record: "Run") -> "Sequence[Block]":
         caption += " Points: the front that the search of the study 'optimise' came to, a check of it."
     draw = partial(fronts_figure, fronts, optimum, start)
     blocks: list[Block] = [Drawing("Cost and wear", draw, caption), Words(_beside_the_paper(fronts))]
-    odds = outcome_of(record, Odds)
+    odds = record.outcome(Odds)
     if odds is not None and odds.curve is not None and odds.curve.over == "working_time" and better(fronts):
         caption = (
             "As Fig. 7 of the paper: the reducer as stated, and to first order the knees of the fronts with their cost "

@@ -22,20 +22,6 @@ SHADES = ("#12314d", "#1f5a8a", "#4f86b3", "#7d9a3c", "#c8941e", "#c8541e")
 DASHES = ("-", "--", "-.", (0, (1, 1)), (0, (6, 1, 1, 1)), (0, (3, 1)))
 
 
-def acting(record: "Run") -> Reducer:
-    """The inputs as effects leave them, from the first study that knows them; else those of the run."""
-    for outcome in record.studies.values():
-        inputs = getattr(outcome, "inputs", None)
-        if isinstance(inputs, Reducer):
-            return inputs
-    return record.inputs
-
-
-def outcome_of(record: "Run", kind: type[Any]) -> Any:
-    """The outcome of the first study of this kind, None where none ran."""
-    return next((found for found in record.studies.values() if isinstance(found, kind)), None)
-
-
 def hours_of(reducer: Reducer) -> str:
     """The working time in words."""
     return f"{float(reducer.working_time) / HOUR:.4g} h"

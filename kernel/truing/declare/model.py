@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
 R = TypeVar("R")
+T = TypeVar("T")
 Level = Literal["short", "normal", "full"]
 
 
@@ -42,13 +43,25 @@ class Study(Protocol):
 
 @dataclass(frozen=True)
 class Record(Generic[I, R]):
-    """A finished run as sections see it: inputs and results in SI, every answer by flat name, outcomes by study."""
+    """A finished run as sections see it: inputs and results in SI, every answer by flat name, outcomes by study.
+
+    ``inputs`` are as stated, ``acting`` as the effects that are on leave them (the same where none is given).
+    """
 
     inputs: I
     results: R
     answers: Mapping[str, Any]
     studies: Mapping[str, Any]
     function: Callable[[I], R]
+    acting: I = None  # type: ignore[assignment]  # never None: see below
+
+    def __post_init__(self) -> None:
+        if self.acting is None:
+            object.__setattr__(self, "acting", self.inputs)
+
+    def outcome(self, kind: type[T]) -> T | None:
+        """Return the outcome of the first study of this kind, None where none ran."""
+        return next((found for found in self.studies.values() if isinstance(found, kind)), None)
 
 
 @dataclass(frozen=True, init=False)
