@@ -368,6 +368,11 @@ def test_a_flank_that_cannot_be_made(refused: Refused, lines: list[str], words: 
     assert words in found
 
 
+def test_a_study_is_named_once(refused: Refused) -> None:
+    (found,) = refused('torque = "1 N*m"', studies='run = ["uncertainty"]\n[studies.uncertainty]\ndraws = 5')
+    assert found == "drive.toml:7: study 'uncertainty': draws = 5, but 20 to 100000 can be propagated"
+
+
 @pytest.mark.parametrize(
     ("setting", "words"),
     [('file = "a/b.csv"', "plain name"), ('file = "flank.txt"', "ends in .csv"), ('height_unit = "km"', "um or nm")],

@@ -120,7 +120,9 @@ def studies_of(model: Model[Any, Any], values: Values, faults: list[tuple[tuple[
     for study in model.studies:
         options = {path[2]: value for path, value in values.items() if path[:2] == ("studies", study.name)}
         studies[study.name], wrong = _with_options(study, options)
-        faults += [(("studies", study.name, name), f"study '{study.name}': {words}") for name, words in wrong.items()]
+        named = f"study '{study.name}': "  # once, whether the study says it too or not
+        for name, words in wrong.items():
+            faults.append((("studies", study.name, name), named + words.removeprefix(named)))
     chosen = values.get(("studies", "run"))
     return tuple(studies.values()) if chosen is None else tuple(studies[name] for name in chosen if name in studies)
 
