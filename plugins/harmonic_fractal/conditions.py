@@ -19,17 +19,18 @@ DIRECTION = Condition(
     note="way of the torque: +1 while it grows, -1 while it falls, 0 for the mean of both",
 )  # fmt: skip
 WAVE_ANGLE = Condition(
-    "wave_angle", "deg", reference=0, low=0, high=360, note="of the wave generator, against the circular spline"
+    "wave_angle", "deg", reference=0, low=0, high=360, note="angle of the wave generator, against the circular spline"
 )  # fmt: skip
 TEMPERATURE = Condition(
-    "temperature", "degC", reference=20, low=-10, high=80, note="of the drive and its lubricant, when measured"
+    "temperature", "degC", reference=20, low=-10, high=80,
+    note="temperature of the drive and its lubricant, when measured",
 )  # fmt: skip
 CYCLES = Condition(
     "cycles", "", reference=0, low=0, high=1e8, note="meshes of a pair of teeth in service, since new"
 )  # fmt: skip
 TIME = Condition(
-    "time", "h", reference=0, derived="since_start", low=0, high=100, note="under torque, since the first row"
+    "time", "h", reference=0, derived="since_start", low=0, high=100, note="time under torque, since the first row"
 )  # fmt: skip
 SPEED = Condition(
-    "speed", "rpm", reference=0, low=0, high=6000, note="of the wave generator; the sign is its sense of turning"
+    "speed", "rpm", reference=0, low=0, high=6000, note="speed of the wave generator; the sign is its sense of turning"
 )  # fmt: skip

@@ -40,13 +40,13 @@ class Drive:
         1e-11, "m", symbol="G_1", note="fractal roughness of the flank, in the convention stated beside it",
         source="typical", above=0, at_most=1e-3, stated_with="convention",
     )  # fmt: skip
-    mating_dimension: Float = given(None, "", symbol="D_2", note="of the mating flank; not given: that one is smooth",
-                                    above=2, below=3)  # fmt: skip
-    mating_roughness: Float = given(None, "m", symbol="G_2", note="of the mating flank; not given: that one is smooth",
+    mating_dimension: Float = given(None, "", symbol="D_2", note="fractal dimension of the mating flank; without it "
+                                    "that one is smooth", above=2, below=3)  # fmt: skip
+    mating_roughness: Float = given(None, "m", symbol="G_2", note="fractal roughness of the mating flank, likewise",
                                     above=0, at_most=1e-3, stated_with="convention")  # fmt: skip
     convention: Literal["areal", "one_direction", "profile"] = given(
-        "areal", note="of G as stated: areal (ridges in all directions), one_direction (ridges across the trace), or "
-        "profile (Weierstrass-Mandelbrot profile, with the logarithm of the density)",
+        "areal", note="convention of G as stated: areal (ridges in all directions), one_direction (ridges across the "
+        "trace), or profile (Weierstrass-Mandelbrot profile, with the logarithm of the density)",
     )  # fmt: skip
     density: Float = given(1.5, "", symbol="gamma", note="ratio of neighbouring frequencies of the surface",
                            source=PATENT, above=1, at_most=10)  # fmt: skip
@@ -82,8 +82,8 @@ class Drive:
                                 at_most=100)  # fmt: skip
     peak_height: Float = given(None, "um", symbol="S_z1", note="height of the flank; else that of its surface, else of "
                                "its fractal patch", above=0, at_most=1000)  # fmt: skip
-    mating_peak_height: Float = given(None, "um", symbol="S_z2", note="of the mating flank; else as above", at_least=0,
-                                      at_most=1000)  # fmt: skip
+    mating_peak_height: Float = given(None, "um", symbol="S_z2", note="height of the mating flank; else as above",
+                                      at_least=0, at_most=1000)  # fmt: skip
     # The drive
     catalogue_size: SIZES = given("20", note="size in the catalogue, with which the torsion is compared")
     pitch_radius: Float = given(25.4, "mm", symbol="r_p", note="pitch radius", source=CATALOGUE, above=0, at_most=5000)
@@ -110,24 +110,24 @@ class Drive:
         at_least=0, at_most=1e6,
     )  # fmt: skip
     # What is asked
-    required_stiffness: Float = given(0.0, "N/m", symbol="K_req", note="of the pair; 0: nothing is asked", at_least=0,
-                                      at_most=1e15)  # fmt: skip
-    required_reliability: Float = given(0.95, "", symbol="R_req", note="share of drives that are to reach it", above=0,
+    required_stiffness: Float = given(0.0, "N/m", symbol="K_req", note="stiffness asked of the pair; 0: none",
+                                      at_least=0, at_most=1e15)  # fmt: skip
+    required_reliability: Float = given(0.95, "", symbol="R_req", note="share of drives that must reach it", above=0,
                                         below=1)  # fmt: skip
     # Neutral inputs: errors and effects reach the calculation through them
     dimension_deviation: Float = given(0.0, "", symbol="Delta D", at_least=-1, at_most=1,
-                                       note=f"of the dimension of both flanks together, {NEUTRAL}")  # fmt: skip
+                                       note=f"deviation of D of both flanks together, {NEUTRAL}")  # fmt: skip
     roughness_deviation: Float = given(0.0, "", symbol="Delta ln G", at_least=-30, at_most=30,
-                                       note=f"of ln G of both flanks together, {NEUTRAL}")  # fmt: skip
-    modulus_factor: Float = given(1.0, "", symbol="f_E", note=f"on the elasticity of all steel parts, {NEUTRAL}",
+                                       note=f"deviation of ln G of both flanks together, {NEUTRAL}")  # fmt: skip
+    modulus_factor: Float = given(1.0, "", symbol="f_E", note=f"factor on the elasticity of all steel, {NEUTRAL}",
                                   above=0, at_most=10)  # fmt: skip
     engaged_factor: Float = given(1.0, "", symbol="f_N", note=f"engaged pairs over those stated, {NEUTRAL}", above=0,
                                   at_most=100)  # fmt: skip
     engaged_gain: Float = given(0.0, "", symbol="g_N", note="pairs that come to bear under a large torque, over those "
                                 f"without it, {NEUTRAL}", at_least=0, at_most=100)  # fmt: skip
-    engaged_torque: Float = given(20.0, "N*m", symbol="T_N", note=f"torque under which 63 % of them have, {NEUTRAL}",
+    engaged_torque: Float = given(20.0, "N*m", symbol="T_N", note=f"torque under which 63 % of those bear, {NEUTRAL}",
                                   above=0, at_most=1e6)  # fmt: skip
-    film_stiffness: Float = given(0.0, "N/m", symbol="k_oil", note="of an oil film that would fill the whole flank, "
+    film_stiffness: Float = given(0.0, "N/m", symbol="k_oil", note="stiffness of an oil film that fills the flank, "
                                   "beside the contacts of a pair", at_least=0)  # fmt: skip
     spot_width: Float = given(0.0, "um", symbol="w_s", note="standard deviation of the weight by which an instrument "
                               f"averages along a line, for the structure function alone, {NEUTRAL}", at_least=0,
