@@ -42,8 +42,8 @@ CATALOGUE = "catalogues of harmonic drives: three stiffnesses, hysteresis and lo
 MASING = (
     "Masing, G., Eigenspannungen und Verfestigung beim Messing, 2nd Int. Congress of Applied Mechanics, Zurich 1926"
 )
-FRICTION_SCALE = Unknown("torque_scale", 0.2, 100, "N*m", note="way of the torque after which 63 % has turned round")
-PLAY_SCALE = Unknown("torque_scale", 0.05, 50, "N*m", note="torque at which 76 % of the play is crossed")
+FRICTION_SCALE = Unknown("torque_scale", 0.2, 500, "N*m", note="way of the torque after which 63 % has turned round")
+PLAY_SCALE = Unknown("torque_scale", 0.05, 500, "N*m", note="torque at which 76 % of the play is crossed")
 
 
 def wave(limit: float, unit: str, prefix: str = "", of: str = "the torsion") -> list[Unknown]:
@@ -70,7 +70,7 @@ MESH: list[Effect[Drive, Stiffness]] = [
         on_inputs=engaged_pairs,
         unknowns=[
             Unknown("gain", 0, 2, "", note="of pairs at a large torque, over those stated; 1.7 from 15 to 40 %"),
-            Unknown("torque_scale", 1, 200, "N*m", note="torque after which 63 % of them have come to bear"),
+            Unknown("torque_scale", 1, 500, "N*m", note="torque after which 63 % of them have come to bear"),
         ],
         looks_like="the mesh stiffens with the torque more than its flanks do, most where its teeth bend",
         why="the flexspline gives way under its load and lays more teeth against those of the circular spline",
@@ -82,7 +82,7 @@ MESH: list[Effect[Drive, Stiffness]] = [
         needs=[SPEED, TEMPERATURE],
         acts_at_reference=True,
         unknowns=[
-            Unknown("stiffness", 0, 200, "kN/um", note="of a pair full of oil at 1000 rpm, 20 degC, 25 N*m; 5 to 60"),
+            Unknown("stiffness", 0, 200, "kN/um", note="of a pair full of oil at 1000 rpm, 20 degC, T_2; 5 to 60"),
         ],
         looks_like="the mesh is stiffer while it turns, most at a low speed and with warm oil, by one amount at any "
         "torque; nothing at rest",
@@ -188,7 +188,7 @@ FRICTION: list[Effect[Drive, Stiffness]] = [
         on_results=first_load_set,
         needs=[PEAK_TORQUE],
         unknowns=[
-            Unknown("set", 0, 300, "urad", note="after a load of 25 N*m; 6 to 60"),
+            Unknown("set", 0, 300, "urad", note="after a load of T_2 in the catalogue; 6 to 60"),
             Unknown("exponent", 1, 1.5, "", note="power of the peak torque"),
             Unknown("stiffening", 0, 2, "", note="of the mesh below the peak; 0.1 to 0.6"),
         ],

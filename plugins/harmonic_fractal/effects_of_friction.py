@@ -5,18 +5,23 @@ from dataclasses import replace
 import numpy as np
 
 from harmonic_fractal.answers import Stiffness
+from harmonic_fractal.catalogue import TABLE
 from harmonic_fractal.conditions import TEMPERATURE
 from harmonic_fractal.quantities import Drive
 from truing import Float
 
 MILLION = 1e6
-RATED_TORQUE = 25.0  # N*m, of size 20 in the catalogue
 RATED_SPEED = 1000.0 / 60.0  # turns per second
 
 
 def turned(results: Stiffness, by: Float) -> Stiffness:
     """Return the results with an angle, rad, on the torsion."""
     return replace(results, torsion=results.torsion + by)
+
+
+def rated_torque(drive: Drive) -> float:
+    """Return T_2 of the size in the catalogue, N m: 25 for size 20."""
+    return TABLE[drive.catalogue_size][1]
 
 
 def held_share(
@@ -105,10 +110,10 @@ def thermal_preload(drive: Drive, results: Stiffness, *, expansion: Float, tempe
 def first_load_set(drive: Drive, results: Stiffness, *, peak_torque: Float, **unknowns: Float) -> Stiffness:
     """The first load leaves a set behind, and below its peak the flattened flanks are stiffer than they were.
 
-    The set is ``set`` (peak/25 N m)^``exponent``; the mesh is stiffer by the share ``stiffening`` wherever the torque
-    is below the largest so far.
+    The set is ``set`` (peak/T_2)^``exponent``, with T_2 = 25 N m for size 20; the mesh is stiffer by the share
+    ``stiffening`` wherever the torque is below the largest so far.
     """
-    height = np.maximum(peak_torque, 0.0) / RATED_TORQUE
+    height = np.maximum(peak_torque, 0.0) / rated_torque(drive)
     left = unknowns.get("set", 0.0) * height ** unknowns.get("exponent", 1.0)
     again = np.abs(drive.torque) < peak_torque
     stiffer = 1.0 + np.where(again, unknowns.get("stiffening", 0.0), 0.0)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from harmonic_fractal.conditions import TEMPERATURE
-from harmonic_fractal.effects_of_friction import RATED_SPEED, RATED_TORQUE
+from harmonic_fractal.effects_of_friction import RATED_SPEED, rated_torque
 from harmonic_fractal.quantities import Drive
 from truing import Float
 
@@ -36,13 +36,13 @@ def engaged_pairs(drive: Drive, *, gain: Float, torque_scale: Float) -> Drive:
 def oil_film(drive: Drive, *, stiffness: Float, speed: Float, temperature: Float) -> Drive:
     """The oil between the flanks carries beside their asperities, the stiffer the thinner it is; at rest it is gone.
 
-    ``stiffness`` is that of a film which fills the flank of a pair at 1000 rpm and 20 degC: modulus of compression
-    times flank over thickness, under 25 N m. The thickness follows (viscosity speed)^0.67 torque^-0.07 and is never
-    less than a tenth of that one, where the roughness holds it open.
+    ``stiffness`` is that of a film which fills the flank of a pair at 1000 rpm, 20 degC and T_2 of the catalogue, 25 N m
+    for size 20: modulus of compression times flank over thickness. The thickness follows (viscosity speed)^0.67
+    torque^-0.07 and is never less than a tenth of that one, where the roughness holds it open.
     """
     turns = np.abs(speed) / RATED_SPEED
     thickness = (np.exp(-FILM_THINNING * (temperature - TEMPERATURE.zero)) * turns) ** FILM_EXPONENT
-    thickness = thickness * (np.maximum(np.abs(drive.torque), LEAST_TORQUE) / RATED_TORQUE) ** LOAD_EXPONENT
+    thickness = thickness * (np.maximum(np.abs(drive.torque), LEAST_TORQUE) / rated_torque(drive)) ** LOAD_EXPONENT
     film = np.where(turns > 0.0, stiffness / np.maximum(thickness, LEAST_FILM), 0.0)
     return replace(drive, film_stiffness=drive.film_stiffness + film)
 

@@ -208,8 +208,10 @@ def asked(size: str, ratio: int, read: tuple[Array, Array]) -> tuple[dict[str, A
     from truing.runs.diagnosis_document import diagnosis_document
 
     offer = Kernel.installed().offer("harmonic_fractal")
+    larger = int(size) / 20
     text = (
-        f'[inputs]\ncatalogue_size = "{size}"\npitch_radius = "{1.27 * int(size):g} mm"\n'
+        f'[inputs]\ncatalogue_size = "{size}"\npitch_radius = "{25.4 * larger:g} mm"\n'
+        f'face_width = "{10 * larger:g} mm"\nflank_height = "{0.4 * larger * 100 / ratio:g} mm"\n'
         f"flexspline_teeth = {2 * ratio}\nengaged_pairs = {2 * int(0.3 * ratio)}\n"
     )
     with TemporaryDirectory() as name:
