@@ -1,7 +1,8 @@
 """The machine as measured: what the model says at every row, and what each tolerated input would change.
 
-All rows of a file are one machine. Its inputs lie within their tolerances: a prior of mean and standard deviation each.
-Collinear inputs are carried as few directions, each with unit prior.
+All rows of a file are one machine. Its inputs lie within their tolerances: a prior of mean and standard deviation each,
+and of their correlation where they are drawn together. Collinear inputs are carried as few directions, each with unit
+prior.
 """
 
 from __future__ import annotations
@@ -9,12 +10,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import permutations
 from typing import TYPE_CHECKING, Any
 
 from truing.diagnosis.columns import MANY, in_blocks, times
 from truing.diagnosis.records import Records
 from truing.gauge import one_machine, read_by_gauge
 from truing.setup import Setup
+from truing.studies.scatter import root_of, scatter_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -63,6 +66,33 @@ class Machine:
 
         means = np.array([item.mean / item.sd for item in self.inputs])
         return {name: times(slopes, means) for name, slopes in self.slopes.items()}
+
+    @cached_property
+    def together(self) -> NDArray[np.float64] | None:
+        """How unit directions move the inputs, in standard deviations (inputs, inputs); None where none are drawn."""
+        import numpy as np
+
+        alike = np.eye(len(self.inputs))
+        for cause in scatter_of(self.start).causes:
+            if cause.function is None:
+                continue
+            covariance = cause.covariance()
+            places = [(one, place) for place, item in enumerate(self.inputs)
+                      for one, column in enumerate(cause.columns) if column == item.name]  # fmt: skip
+            for (one, here), (other, there) in permutations(places, 2):
+                first, second = self.inputs[here], self.inputs[there]
+                if first.file == second.file:
+                    alike[here, there] = covariance[one, other] / (first.sd * second.sd)
+        return root_of(alike) if np.any(alike != np.eye(len(alike))) else None
+
+    def directions(self, gram: NDArray[np.float64], rows: int) -> NDArray[np.float64]:
+        """Return the combinations of inputs that the data can see, (inputs, K), each with unit prior.
+
+        ``gram`` holds the inner products of the slopes over ``rows`` values, in units of the noise.
+        """
+        if self.together is None:
+            return directions_of(gram, rows)
+        return self.together @ directions_of(self.together.T @ gram @ self.together, rows)
 
 
 def predict(setup: Setup, records: Records) -> Predicted:

@@ -18,7 +18,7 @@ from truing.diagnosis.evidence import (
     starts_of,
 )
 from truing.diagnosis.hypotheses import NOTHING, Batch, Hypothesis, batches_of
-from truing.diagnosis.machine import Machine, directions_of, gram_of
+from truing.diagnosis.machine import Machine, gram_of
 from truing.diagnosis.noise import (
     SETTINGS,
     Spread,
@@ -137,7 +137,7 @@ def evidence_of(problem: Problem, noise: NoiseModel, rows: NDArray[np.bool_]) ->
     places = {name: np.flatnonzero(rows & np.isfinite(noise.residuals[name])) for name in noise.scales}
     total = sum(len(here) for here in places.values())
     gram = sum(gram_of(machine.slopes[name], here) / noise.scales[name] ** 2 for name, here in places.items())
-    directions = directions_of(np.asarray(gram), total)
+    directions = machine.directions(np.asarray(gram), total)
     channels = []
     for name, scale in noise.scales.items():
         here = places[name]

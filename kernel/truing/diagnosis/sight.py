@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from truing.diagnosis.candidates import Term
 from truing.diagnosis.columns import Column, Design, acting, in_blocks
-from truing.diagnosis.machine import Machine, directions_of, gram_of
+from truing.diagnosis.machine import Machine, gram_of
 from truing.diagnosis.shapes import Library
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def _products(machine: Machine, scales: Mapping[str, float], columns: Sequence[C
     import numpy as np
 
     rows = len(machine.records)
-    moves = directions_of(
+    moves = machine.directions(
         np.asarray(sum(gram_of(machine.slopes[name]) / scale**2 for name, scale in scales.items())),
         rows * len(scales),
     )

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from truing.diagnosis.candidates import Candidate, Curve, Term, si_bounds, stacked, variants_of
 from truing.diagnosis.chords import REACH, chord, has_chords, may_bend
-from truing.diagnosis.machine import Machine, directions_of, gram_of
+from truing.diagnosis.machine import Machine, gram_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -113,7 +113,7 @@ class Parting:
 
         slopes = self.machine.slopes
         gram = np.asarray(sum(gram_of(slopes[name]) / scale**2 for name, scale in self.scales.items()))
-        moves = directions_of(gram, len(self.machine.records) * len(self.scales))
+        moves = self.machine.directions(gram, len(self.machine.records) * len(self.scales))
         inputs = np.concatenate([np.nan_to_num(slopes[name] @ moves) / scale for name, scale in self.scales.items()])
         made = np.column_stack([inputs, *(stacked(curve, self.scales) for curve in curves)])
         return visible(made.T @ made, moves.shape[1])

@@ -199,7 +199,8 @@ def _gap(there: Machine, name: str, names: tuple[str, str], apart: Matrix) -> _G
     import numpy as np
 
     apart = np.abs(apart)
-    scatter = np.sqrt(np.sum(there.slopes[name] ** 2, axis=1))
+    slopes = there.slopes[name] if there.together is None else there.slopes[name] @ there.together
+    scatter = np.sqrt(np.sum(slopes**2, axis=1))
     least = LEAST_SHARE * float(np.nanmax(np.abs(there.base[name]), initial=0.0))
     seen = np.isfinite(apart) & (apart > least) & (apart > CLEAR * scatter)
     if not seen.any():

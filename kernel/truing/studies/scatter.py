@@ -180,7 +180,7 @@ def _stand_in(spread: Drawn, columns: tuple[str, ...]) -> NDArray[np.float64]:
 
     deviations = spread.function(np.random.default_rng(0), FIXED_DRAWS)
     joint = np.array([np.asarray(deviations[column], dtype=float) for column in columns])
-    return _root(np.atleast_2d(np.cov(joint)))
+    return root_of(np.atleast_2d(np.cov(joint)))
 
 
 def _of_effect(item: SwitchedOn) -> Cause | None:
@@ -198,11 +198,11 @@ def _of_effect(item: SwitchedOn) -> Cause | None:
     columns = tuple(effect_column(item.effect.name, name) for name in names)
     spread = np.sqrt(np.diag(covariance))
     distributions = tuple(Distribution(value, float(sd)) for value, sd in zip(values, spread, strict=True))
-    mixing = _root(covariance) if item.covariance else None
+    mixing = root_of(covariance) if item.covariance else None
     return Cause(f"effects.{item.effect.name}", columns, values, distributions, mixing)
 
 
-def _root(covariance: NDArray[np.float64]) -> NDArray[np.float64]:
+def root_of(covariance: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return a matrix whose product with its transpose is the covariance, also where that is singular."""
     import numpy as np
 
