@@ -22,8 +22,8 @@ class Stiffness:
     )  # fmt: skip
     # The interface
     surface_accepted: Float = found(
-        "", symbol="I_a", note="whether measured flanks are self-affine: 1, or 0 where one is refused and the stated D and "
-        "G stand for it", method="local slopes of the structure function", digits=1,
+        "", symbol="I_a", note="whether measured flanks are self-affine: 1, or 0 where one is refused and the stated D "
+        "and G stand for it", method="local slopes of the structure function", digits=1,
     )  # fmt: skip
     spacing: Float = found("um", symbol="dx_s", note="sampling interval behind D and G",
                            method="of the flank that was measured, else as stated")  # fmt: skip
