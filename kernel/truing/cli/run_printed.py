@@ -36,6 +36,8 @@ def lines_of(done: Done, folder: Path, *, with_titles: bool) -> Iterator[str]:
         count = f"{len(broken)} of {len(calculation.checks)} checks"
         yield f"{count} FAIL: {', '.join(broken)} (exit code 1; the sheet shows why)"
     yield f"sheet: {folder / 'sheet.html'}"
+    for outcome in done.calculation.outcomes.values():
+        yield from (f"beside it: {folder / name}" for name in getattr(outcome, "files", ()))
 
 
 def _cases_lines(cases: CasesTable, setup: Setup) -> Iterator[str]:
