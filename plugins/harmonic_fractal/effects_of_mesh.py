@@ -36,8 +36,8 @@ def engaged_pairs(drive: Drive, *, gain: Float, torque_scale: Float) -> Drive:
 def oil_film(drive: Drive, *, stiffness: Float, speed: Float, temperature: Float) -> Drive:
     """The oil between the flanks carries beside their asperities, the stiffer the thinner it is; at rest it is gone.
 
-    ``stiffness`` is that of a film which fills the flank of a pair at 1000 rpm, 20 degC and T_2 of the catalogue, 25 N m
-    for size 20: modulus of compression times flank over thickness. The thickness follows (viscosity speed)^0.67
+    ``stiffness`` is that of a film which fills the flank of a pair at 1000 rpm, 20 degC and T_2 of the catalogue, 25 N
+    m for size 20: modulus of compression times flank over thickness. The thickness follows (viscosity speed)^0.67
     torque^-0.07 and is never less than a tenth of that one, where the roughness holds it open.
     """
     turns = np.abs(speed) / RATED_SPEED
