@@ -1,5 +1,6 @@
 """The numbers on the theory page of the harmonic drive are those that its formulas and the calculation give."""
 
+import inspect
 import re
 from pathlib import Path
 from typing import Any
@@ -309,3 +310,18 @@ def test_every_effect_has_its_row() -> None:
     named = set(re.findall(r"^\| `(\w+)` \| [^|]+ \| [^|]+ \| [^|]+ \|$", PAGE, re.MULTILINE))
     assert set(HARMONIC_FRACTAL.effects) <= named
     assert len(HARMONIC_FRACTAL.effects) == 18
+
+
+def test_every_option_of_a_measured_surface_is_in_its_table() -> None:
+    text = (ROOT / "docs" / "how-to" / "read_a_measured_surface.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| (`[^|]+`) \| ([^|]*) \|", text[text.index("## Options") :], re.MULTILINE))
+    named = {name: default for names, default in rows.items() for name in re.findall(r"`(\w+)`", names)}
+    taken = {name: item for name, item in inspect.signature(read_flank).parameters.items() if name != "path"}
+    assert list(named) == list(taken)
+    for name, item in taken.items():
+        if isinstance(item.default, bool):
+            assert named[name] == f"`{str(item.default).lower()}`"
+        elif isinstance(item.default, int):
+            assert named[name] == str(item.default)
+        elif item.default:
+            assert named[name] == f'`"{item.default}"`'
