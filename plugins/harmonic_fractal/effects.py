@@ -42,8 +42,9 @@ CATALOGUE = "catalogues of harmonic drives: three stiffnesses, hysteresis and lo
 MASING = (
     "Masing, G., Eigenspannungen und Verfestigung beim Messing, 2nd Int. Congress of Applied Mechanics, Zurich 1926"
 )
-FRICTION_SCALE = Unknown("torque_scale", 0.2, 500, "N*m", note="way of the torque after which 63 % has turned round")
-PLAY_SCALE = Unknown("torque_scale", 0.05, 500, "N*m", note="torque at which 76 % of the play is crossed")
+PARTS = "in parts of T_2 of the size in the catalogue (25 N*m for size 20)"
+FRICTION_SCALE = Unknown("torque_scale", 0.005, 4, "", note=f"torque after which 63 % has turned round, {PARTS}")
+PLAY_SCALE = Unknown("torque_scale", 0.002, 1, "", note=f"torque at which 76 % of the play is crossed, {PARTS}")
 
 
 def wave(limit: float, unit: str, prefix: str = "", of: str = "the torsion") -> list[Unknown]:
@@ -70,7 +71,7 @@ MESH: list[Effect[Drive, Stiffness]] = [
         on_inputs=engaged_pairs,
         unknowns=[
             Unknown("gain", 0, 2, "", note="of pairs at a large torque, over those stated; 1.7 from 15 to 40 %"),
-            Unknown("torque_scale", 1, 500, "N*m", note="torque after which 63 % of them have come to bear"),
+            Unknown("torque_scale", 0.04, 8, "", note=f"torque after which 63 % of them have come to bear, {PARTS}"),
         ],
         looks_like="the mesh stiffens with the torque more than its flanks do, most where its teeth bend",
         why="the flexspline gives way under its load and lays more teeth against those of the circular spline",

@@ -33,7 +33,7 @@ def held_share(
     torque, 1 - exp(-2 |T - T_rev|/T_c), as Masing's rule has it; a loop that closes at its peak meets it there.
     """
     sense = np.sign(direction)
-    way = np.abs(drive.torque - reversal_torque) / torque_scale
+    way = np.abs(drive.torque - reversal_torque) / (torque_scale * rated_torque(drive))
     is_first = (drive.torque >= peak_torque) & (sense > 0.0)
     share: Float = sense * np.where(is_first, -np.expm1(-2.0 * way), 1.0 - 2.0 * np.exp(-way))
     return share
@@ -52,7 +52,8 @@ def hysteresis(
     """Dry friction holds the angle back by half of the loop: behind a torque that grows, and before one that falls.
 
     So the loop takes up energy, and is never negative. Range: every turn but that of the first load follows a branch on
-    which the friction has slipped through, so several ``torque_scale`` long. Of the direction only the sign counts.
+    which the friction has slipped through, so several ``torque_scale`` (in parts of T_2) long. Of the direction only
+    the sign counts.
     """
     return turned(results, -0.5 * loop * held_share(drive, torque_scale, direction, reversal_torque, peak_torque))
 
@@ -79,9 +80,15 @@ def viscous_hysteresis(
     return turned(results, -0.5 * width * held_share(drive, torque_scale, direction, reversal_torque, peak_torque))
 
 
+def crossed(drive: Drive, torque_scale: Float) -> Float:
+    """Return the share of a play that is crossed, in the sense of the torque; the scale is in parts of T_2."""
+    share: Float = np.tanh(drive.torque / (torque_scale * rated_torque(drive)))
+    return share
+
+
 def lost_motion(drive: Drive, results: Stiffness, *, play: Float, torque_scale: Float) -> Stiffness:
     """The teeth cross their play and come to bear one after another: ``play`` to either side of the middle."""
-    return turned(results, play * np.tanh(drive.torque / torque_scale))
+    return turned(results, play * crossed(drive, torque_scale))
 
 
 def flank_wear(drive: Drive, results: Stiffness, *, rate: Float, torque_scale: Float, cycles: Float) -> Stiffness:
@@ -92,9 +99,8 @@ def flank_wear(drive: Drive, results: Stiffness, *, rate: Float, torque_scale: F
     as any other play is.
     """
     gap = 2.0 * rate * cycles / MILLION
-    return turned(
-        results, gap / (drive.pitch_radius * np.cos(drive.pressure_angle)) * np.tanh(drive.torque / torque_scale)
-    )
+    lever = drive.pitch_radius * np.cos(drive.pressure_angle)
+    return turned(results, gap / lever * crossed(drive, torque_scale))
 
 
 def thermal_preload(drive: Drive, results: Stiffness, *, expansion: Float, temperature: Float) -> Stiffness:

@@ -29,7 +29,7 @@ def engaged_pairs(drive: Drive, *, gain: Float, torque_scale: Float) -> Drive:
     """
     both = drive.engaged_gain + gain
     share = np.where(both > 0.0, gain / np.where(both > 0.0, both, 1.0), 0.0)
-    scale = drive.engaged_torque + share * (torque_scale - drive.engaged_torque)
+    scale = drive.engaged_torque + share * (torque_scale * rated_torque(drive) - drive.engaged_torque)
     return replace(drive, engaged_gain=both, engaged_torque=scale)
 
 

@@ -31,8 +31,8 @@ from hidden_effects.plugin_asking import Answer  # noqa: E402
 
 Wishes = Wish | SurfaceWish
 CLEAR: list[tuple[str, dict[str, float], str]] = [  # effect, unknowns, result in which it shows
-    ("series_compliance", {"compliance": 8}, TORSION),
-    ("engaged_pairs", {"gain": 1.6, "torque_scale": 12}, MESH),
+    ("series_compliance", {"compliance": 12}, TORSION),
+    ("engaged_pairs", {"gain": 1.8, "torque_scale": 0.8}, MESH),
     ("oil_film", {"stiffness": 0.03}, MESH),
     ("asperity_smoothing", {"dimension": 0.03, "roughness": 0.6, "cycle_scale": 2e5}, MESH),
     ("modulus_temperature", {"softening": 8e-4}, TORSION),
@@ -40,12 +40,12 @@ CLEAR: list[tuple[str, dict[str, float], str]] = [  # effect, unknowns, result i
     ("ellipticity", {"cosine": 20, "sine": -25}, TORSION),
     ("ellipticity", {"stiffness_cosine": 0.08, "stiffness_sine": 0.06}, MESH),
     ("eccentricity", {"cosine": -16, "sine": 20}, TORSION),
-    ("hysteresis", {"loop": 200, "torque_scale": 4}, TORSION),
-    ("viscous_hysteresis", {"loop": 100, "torque_scale": 5, "thinning": 0.03}, TORSION),
-    ("lost_motion", {"play": 60, "torque_scale": 3}, TORSION),
+    ("hysteresis", {"loop": 200, "torque_scale": 0.16}, TORSION),
+    ("viscous_hysteresis", {"loop": 100, "torque_scale": 0.2, "thinning": 0.03}, TORSION),
+    ("lost_motion", {"play": 60, "torque_scale": 0.12}, TORSION),
     ("first_load_set", {"set": 40, "exponent": 1.2}, TORSION),
     ("first_load_set", {"stiffening": 0.3}, MESH),
-    ("flank_wear", {"rate": 1.0, "torque_scale": 2}, TORSION),
+    ("flank_wear", {"rate": 1.0, "torque_scale": 0.08}, TORSION),
     ("thermal_preload", {"expansion": 3}, TORSION),
     ("rig_drift", {"rate": 6}, TORSION),
     ("waviness", {"square": 0.01, "wavelength": 25}, ""),

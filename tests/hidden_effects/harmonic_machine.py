@@ -48,6 +48,11 @@ def of(hidden: Hidden, effect: str, unknown: str, otherwise: float = 0.0) -> flo
     return float(hidden.get(effect, {}).get(unknown, otherwise))
 
 
+def scale_of(hidden: Hidden, effect: str) -> float:
+    """The scale of torque of an effect, N m; the registry has it in parts of that of the size."""
+    return RATED * of(hidden, effect, "torque_scale", 1.0)
+
+
 # The mesh
 
 
@@ -76,7 +81,7 @@ def film(speed: float, warmer: float, hidden: Hidden) -> float:
 
 def engaged(torque: Array, hidden: Hidden) -> Array:
     """Pairs over those at no torque."""
-    scale = of(hidden, "engaged_pairs", "torque_scale", 1.0)
+    scale = scale_of(hidden, "engaged_pairs")
     return np.asarray(1 + of(hidden, "engaged_pairs", "gain") * (1 - np.exp(-np.abs(torque) / scale)))
 
 
@@ -121,18 +126,18 @@ def rubbing(rows: Rows, width: Array, scale: float) -> Array:
 def friction(rows: Rows, hidden: Hidden) -> Array:
     """Dry and viscous friction."""
     whole = np.full(len(rows), of(hidden, "hysteresis", "loop"))
-    held = rubbing(rows, whole, of(hidden, "hysteresis", "torque_scale", 1.0))
+    held = rubbing(rows, whole, scale_of(hidden, "hysteresis"))
     thinning = of(hidden, "viscous_hysteresis", "thinning")
     viscosity = np.exp(-thinning * (rows.temperature - 20))
     width = of(hidden, "viscous_hysteresis", "loop") * viscosity * np.abs(rows.speed) / 1000
-    return held + rubbing(rows, width, of(hidden, "viscous_hysteresis", "torque_scale", 1.0))
+    return held + rubbing(rows, width, scale_of(hidden, "viscous_hysteresis"))
 
 
 def play(rows: Rows, hidden: Hidden) -> Array:
     """Gaps, of new and of worn teeth, and of splines that move apart; teeth close one after another."""
     found = np.zeros(len(rows))
     for name, size in (("lost_motion", of(hidden, "lost_motion", "play")), ("flank_wear", 1.0)):
-        spread = of(hidden, name, "torque_scale", 1.0)
+        spread = scale_of(hidden, name)
         closed = 2 * ndtr(np.sqrt(np.pi / 2) * 0.94 * rows.torque / spread) - 1
         found += closed * (worn(rows, hidden) if name == "flank_wear" else size)
     apart = of(hidden, "thermal_preload", "expansion") * 1e-6 * PITCH * (rows.temperature - 20)

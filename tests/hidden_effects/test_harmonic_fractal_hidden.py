@@ -47,26 +47,26 @@ STIFF: dict[str, Any] = {"design": "points", "results": (MESH,)}
 NAMED: list[Wish | SurfaceWish] = [
     Wish(
         seed=31,
-        hidden={"hysteresis": {"loop": 200, "torque_scale": 4}, "eccentricity": {"cosine": -12, "sine": 16}},
+        hidden={"hysteresis": {"loop": 200, "torque_scale": 0.16}, "eccentricity": {"cosine": -12, "sine": 16}},
         logs=("wave_angle", "temperature"),
     ),
     Wish(
         seed=32,
         hidden={
-            "viscous_hysteresis": {"loop": 100, "torque_scale": 5, "thinning": 0.03},
+            "viscous_hysteresis": {"loop": 100, "torque_scale": 0.2, "thinning": 0.03},
             "modulus_temperature": {"softening": 8e-4},
         },
         logs=("temperature", "speed"),
     ),
     Wish(
         seed=33,
-        hidden={"lost_motion": {"play": 60, "torque_scale": 3}, "ellipticity": {"cosine": 15, "sine": -20}},
+        hidden={"lost_motion": {"play": 60, "torque_scale": 0.12}, "ellipticity": {"cosine": 15, "sine": -20}},
         kind="autocorrelated",
         logs=("time", "wave_angle"),
     ),
     Wish(
         seed=34,
-        hidden={"series_compliance": {"compliance": 8}, "rig_drift": {"rate": 6}},
+        hidden={"series_compliance": {"compliance": 12}, "rig_drift": {"rate": 6}},
         kind="growing",
         logs=("time", "temperature"),
     ),
@@ -78,7 +78,7 @@ NAMED: list[Wish | SurfaceWish] = [
     ),
     Wish(
         seed=36,
-        hidden={"flank_wear": {"rate": 1.0, "torque_scale": 2}, "creep": {"share": 0.02, "time_scale": 0.1}},
+        hidden={"flank_wear": {"rate": 1.0, "torque_scale": 0.08}, "creep": {"share": 0.02, "time_scale": 0.1}},
         logs=("time", "cycles"),
     ),
     Wish(seed=37, hidden={"oil_film": {"stiffness": 0.03}}, kind="heavy", logs=("speed", "temperature"), **STIFF),
@@ -92,7 +92,7 @@ NAMED: list[Wish | SurfaceWish] = [
         logs=("wave_angle",),
         **STIFF,
     ),
-    Wish(seed=12, hidden={"engaged_pairs": {"gain": 1.2, "torque_scale": 12}}, tooth=2e7, logs=("speed",), **STIFF),
+    Wish(seed=12, hidden={"engaged_pairs": {"gain": 1.8, "torque_scale": 0.8}}, tooth=2e7, logs=("speed",), **STIFF),
     Wish(
         seed=14,
         hidden={"asperity_smoothing": {"dimension": 0.02, "roughness": 0.4, "cycle_scale": 2e5}},

@@ -85,7 +85,7 @@ def test_warm_steel_softens_all_that_is_in_series() -> None:
 def test_pairs_that_bend_share_the_torque_with_those_that_come() -> None:
     """Teeth that bend make the mesh stiffer in proportion to their number, and the torsion is summed on the way."""
     drive = drive_at(tooth_stiffness=1e4, drive_compliance=0.0, reference_torque=0.1)
-    values = {"gain": 1.5, "torque_scale": 8.0}
+    values = {"gain": 1.5, "torque_scale": 0.32}
     assert stiffer("engaged_pairs", drive, **values) == pytest.approx(1 + 1.5 * (1 - exp(-25 / 8)), rel=1e-3)
     radius = 25.4e-3 * cos(20 * DEGREE)
     softness = quad(lambda torque: 1 / (1 + 1.5 * (1 - exp(-torque / 8))), 0.1, 25)[0] / (60 * 1e4 * radius**2)
@@ -120,7 +120,7 @@ def test_asperities_go_and_leave_another_surface() -> None:
 
 def test_friction_takes_up_energy_and_closes_its_loop() -> None:
     """Behind on the way up and before on the way down; a turn begins where the last leg ended."""
-    values = {"loop": 200e-6, "torque_scale": 2.0}
+    values = {"loop": 200e-6, "torque_scale": 0.08}
     torque = np.linspace(-40, 40, 401)
     up = np.array([turned("hysteresis", drive_at(one), **values, **LEG) for one in torque[::40]])
     down_leg = {"direction": -1.0, "reversal_torque": 40.0, "peak_torque": 40.0}
@@ -132,25 +132,25 @@ def test_friction_takes_up_energy_and_closes_its_loop() -> None:
 
 def test_the_first_load_begins_in_the_middle_of_the_loop() -> None:
     """Masing: a branch is the first load, twice as large and twice as long."""
-    first = float(held_share(drive_at(3.0), 2.0, 1.0, 0.0, 3.0))
-    later = float(held_share(drive_at(6.0 - 40.0), 2.0, 1.0, -40.0, 40.0))
+    first = float(held_share(drive_at(3.0), 0.08, 1.0, 0.0, 3.0))
+    later = float(held_share(drive_at(6.0 - 40.0), 0.08, 1.0, -40.0, 40.0))
     assert first == pytest.approx(1 - exp(-3.0))
     assert later + 1 == pytest.approx(2 * first)
-    assert float(held_share(drive_at(0.0), 2.0, 1.0, 0.0, 0.0)) == 0
-    assert float(held_share(drive_at(3.0), 2.0, 0.0, 0.0, 3.0)) == 0
+    assert float(held_share(drive_at(0.0), 0.08, 1.0, 0.0, 0.0)) == 0
+    assert float(held_share(drive_at(3.0), 0.08, 0.0, 0.0, 3.0)) == 0
 
 
 def test_drag_is_in_proportion_to_viscosity_and_speed() -> None:
-    values = {"loop": 100e-6, "torque_scale": 2.0, "thinning": 0.03, **LEG}
+    values = {"loop": 100e-6, "torque_scale": 0.08, "thinning": 0.03, **LEG}
     found = turned("viscous_hysteresis", drive_at(30), **values, speed=-500 * RPM, temperature=ROOM - 20)
     assert found == pytest.approx(-0.5 * 100 * 0.5 * exp(0.6), rel=1e-6)
     assert turned("viscous_hysteresis", drive_at(30), **values, speed=0.0, temperature=ROOM) == 0
 
 
 def test_play_wear_and_heat_shift_the_torsion_in_the_sense_of_the_torque() -> None:
-    play = {"play": 60e-6, "torque_scale": 3.0}
+    play = {"play": 60e-6, "torque_scale": 0.12}
     assert turned("lost_motion", drive_at(-3.0), **play) == pytest.approx(-60 * tanh(1))
-    worn = turned("flank_wear", drive_at(30), rate=1e-6, torque_scale=1.0, cycles=2e6)
+    worn = turned("flank_wear", drive_at(30), rate=1e-6, torque_scale=0.04, cycles=2e6)
     assert worn == pytest.approx(2 * 2e-6 / (25.4e-3 * cos(20 * DEGREE)) / URAD)  # 167.6 urad
     apart = turned("thermal_preload", drive_at(-5), expansion=2e-6, temperature=ROOM + 40)
     assert apart == pytest.approx(-2e-6 * 40 * tan(20 * DEGREE) / URAD)  # 29.1 urad: gap dr tan(alpha) over r_p
