@@ -1,8 +1,7 @@
 """What the rough flanks leave out of the torsion and the stiffness of a drive, or of a measured surface.
 
-They act in the order declared: first what changes flanks, pairs and springs, then what is added to the torsion (creep
-before all of it, since only what is elastic creeps), then the surface, then the readings. A new effect is a function
-beside the others and one more entry in EFFECTS.
+They act in the order declared: first what changes flanks, pairs and springs, then what is added to the torsion, then
+the surface, then the readings. A new effect is a function beside the others and one more entry in EFFECTS.
 """
 
 from harmonic_fractal.answers import Stiffness

@@ -11,8 +11,13 @@ from truing import Float
 
 
 def creep(drive: Drive, results: Stiffness, *, share: Float, time_scale: Float, time: Float) -> Stiffness:
-    """The twist goes on under torque: by ``share`` of itself each time that the time grows e-fold."""
-    return turned(results, share * results.torsion * np.log1p(np.maximum(time, 0.0) / time_scale))
+    """The twist goes on under torque: by ``share`` of itself each time that the time grows e-fold.
+
+    Only what is elastic creeps: the mesh and what is in series with it.
+    """
+    beyond = np.sign(drive.torque) * np.maximum(np.abs(drive.torque) - drive.reference_torque, 0.0)
+    elastic = results.mesh_torsion + results.series_compliance * beyond
+    return turned(results, share * elastic * np.log1p(np.maximum(time, 0.0) / time_scale))
 
 
 def ellipticity(drive: Drive, results: Stiffness, *, wave_angle: Float, **unknowns: Float) -> Stiffness:

@@ -5,6 +5,7 @@ Numbers marked as reference follow by hand: size 20 has a pitch radius of 25.4 m
 
 from dataclasses import replace
 from math import cos, erf, exp, log, pi, sqrt, tan, tanh
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,9 @@ from harmonic_fractal.effects import EFFECTS
 from harmonic_fractal.effects_of_friction import held_share
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.quantities import Drive
-from truing import Effect
+from truing import Effect, Kernel
+from truing.diagnosis.reading import read_records
+from truing.inputs_file import read_setup
 
 URAD, UM, NM, ROOM = 1e-6, 1e-6, 1e-9, 293.15
 HOUR, RPM, DEGREE = 3600.0, 1 / 60, pi / 180
@@ -178,6 +181,20 @@ def test_creep_and_drift_go_on_with_time() -> None:
     found = turned("creep", drive, share=0.01, time_scale=0.5 * HOUR, time=2 * HOUR)
     assert found == pytest.approx(0.01 * log(5) * harmonic_fractal(drive).torsion / URAD)
     assert turned("rig_drift", drive, rate=6e-6 / HOUR, time=2 * HOUR) == pytest.approx(12)
+
+
+def test_turns_direction_and_peak_are_made_from_the_torque(tmp_path: Path) -> None:
+    torque = [0, 4, 8, 2, -6, -8, 0, 12, 11]
+    (tmp_path / "loop.csv").write_text(
+        "torque [N*m],torsion [urad]\n" + "".join(f"{one},{at}\n" for at, one in enumerate(torque))
+    )
+    (tmp_path / "inputs.toml").write_text('plugin = "harmonic_fractal"\n')
+    offer = Kernel.installed().offer("harmonic_fractal")
+    setup = read_setup(tmp_path / "inputs.toml", offer)
+    made = read_records([tmp_path / "loop.csv"], offer, setup).rows.columns
+    assert list(made["reversal_torque"]) == [0, 0, 0, 8, 8, 8, -8, -8, 12]
+    assert list(made["direction"]) == [1, 1, 1, -1, -1, -1, 1, 1, -1]
+    assert list(made["peak_torque"]) == [0, 4, 8, 8, 8, 8, 8, 12, 12]
 
 
 def raised(name: str, **values: float) -> NDArray[np.float64]:
