@@ -23,7 +23,6 @@ from hidden_effects.gearing_asking import diagnosed  # noqa: E402
 from hidden_effects.gearing_cases import (  # noqa: E402
     CONTACT,
     ERROR,
-    KINDS,
     LOSS,
     PLAY,
     SUN_ROOT,
@@ -32,6 +31,7 @@ from hidden_effects.gearing_cases import (  # noqa: E402
     Wish,
     make_case,
 )
+from hidden_effects.noises import KINDS  # noqa: E402
 
 STRESS = (SUN_ROOT, CONTACT)
 CLEAR: list[tuple[str, dict[str, float], tuple[str, ...], Design]] = [

@@ -19,8 +19,9 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np  # noqa: E402
 
+from hidden_effects.noises import KINDS  # noqa: E402
 from hidden_effects.rv_asking import diagnosed  # noqa: E402
-from hidden_effects.rv_cases import BACKLASH, KINDS, WEAR, Design, Wish, make_case  # noqa: E402
+from hidden_effects.rv_cases import BACKLASH, WEAR, Design, Wish, make_case  # noqa: E402
 
 CLEAR: dict[str, dict[str, float]] = {
     "thermal_clearance": {"expansion": 11.5}, "running_in": {"depth": 0.9, "run_in_time": 300},

@@ -21,13 +21,13 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np  # noqa: E402
 
+from hidden_effects.noises import KINDS  # noqa: E402
 from hidden_effects.plugin_asking import Answer  # noqa: E402
 from hidden_effects.screw_asking import diagnosed  # noqa: E402
 from hidden_effects.screw_cases import (  # noqa: E402
     AXIAL,
     BACKLASH,
     ERROR,
-    KINDS,
     RING,
     STRESSES,
     TORQUE,

@@ -8,11 +8,10 @@ import numpy as np
 
 from hidden_effects.gearing_machine import Hidden, Rows, shown
 from hidden_effects.gearing_stage import Array, Stage
+from hidden_effects.noises import Kind, held_out, noise_of, title_of
 
-Kind: TypeAlias = Literal["gaussian", "heavy", "autocorrelated", "growing"]
 Design: TypeAlias = Literal["rig", "sweep", "one_way"]
 Strange: TypeAlias = Callable[[Rows], dict[str, Array]]
-KINDS: tuple[Kind, ...] = ("gaussian", "heavy", "autocorrelated", "growing")
 SUN_ROOT, PLANET_ROOT, CONTACT = "root_stress_sun", "root_stress_planet", "contact_stress"
 ERROR, PLAY, LOSS, WARMTH = "transmission_error", "backlash", "efficiency", "flank_temperature"
 UNIT = {SUN_ROOT: "MPa", PLANET_ROOT: "MPa", CONTACT: "MPa", ERROR: "um", PLAY: "um", LOSS: "1", WARMTH: "degC"}
@@ -37,8 +36,7 @@ class Wish:
     @property
     def title(self) -> str:
         """What the case is called in the list of tests."""
-        hidden = "+".join(self.hidden) or (self.strange.__name__ if self.strange else "nothing")
-        return f"{hidden}-{self.design}-{self.kind}-{'+'.join(self.results)}"
+        return title_of(self.hidden, self.strange, self.design, self.kind, "+".join(self.results))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,14 +59,13 @@ def make_case(wish: Wish) -> Case:
     """Draw a machine within its tolerances, measure it, and put the noise on."""
     rng = np.random.default_rng([wish.seed, 75])
     every = measured(wish.design, wish.count + HELD_OUT, rng)
-    is_held = np.zeros(len(every), dtype=bool)
-    is_held[rng.permutation(np.arange(1, len(every)))[:HELD_OUT]] = True
-    rows, held = every.taken(np.flatnonzero(~is_held)), every.taken(np.flatnonzero(is_held))
+    rows, held = (every.taken(places) for places in held_out(len(every), HELD_OUT, rng))
     stage = built(rng)
     parts = []
     for part in (rows, held):
         true = _true(wish, part, stage)
-        noise = {name: noise_of(wish.kind, part, NOISE[name], rng) for name in wish.results}
+        spread = 0.4 + 1.6 * np.abs(part.load_torque) / 1300
+        noise = {name: noise_of(wish.kind, spread, NOISE[name], rng) for name in wish.results}
         parts.append({name: true[name] + noise[name] for name in wish.results})
     return Case(wish=wish, rows=rows, held=held, stage=stage, readings=parts[0], held_readings=parts[1])
 
@@ -100,21 +97,3 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
         oil_temperature=rng.uniform(25, 80, count),
         input_angle=rng.uniform(0, 1.3 * TURN_OF_OUTPUT, count),
     )
-
-
-def noise_of(kind: Kind, rows: Rows, size: float, rng: np.random.Generator) -> Array:
-    """Noise of this root mean square: independent and normal, heavy in its tails, with a memory, or growing."""
-    count = len(rows)
-    if kind == "heavy":
-        return np.asarray(size * rng.standard_t(4, count) / np.sqrt(2))
-    draws = rng.standard_normal(count)
-    if kind == "autocorrelated":
-        rho, noise = 0.5, np.empty(count)
-        noise[0] = draws[0]
-        for place in range(1, count):
-            noise[place] = rho * noise[place - 1] + np.sqrt(1 - rho**2) * draws[place]
-        return size * noise
-    if kind == "growing":
-        spread = 0.4 + 1.6 * np.abs(rows.load_torque) / 1300
-        return np.asarray(size * draws * spread / np.sqrt(np.mean(spread**2)))
-    return size * draws

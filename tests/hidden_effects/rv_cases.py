@@ -6,12 +6,11 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
+from hidden_effects.noises import Kind, held_out, noise_of, title_of
 from hidden_effects.rv_machine import LIFE, RATED, ROUGHNESS_SCATTER, SPEED, ZONES, Array, Hidden, Rows, shown
 
-Kind: TypeAlias = Literal["gaussian", "heavy", "autocorrelated", "growing"]
 Design: TypeAlias = Literal["endurance", "fleet"]
 Strange: TypeAlias = Callable[[Rows], Array]
-KINDS: tuple[Kind, ...] = ("gaussian", "heavy", "autocorrelated", "growing")
 BACKLASH, WEAR = "backlash", "max_wear"
 UNIT = {BACKLASH: "arcmin", WEAR: "um"}
 NOISE = {BACKLASH: 0.01, WEAR: 0.1}
@@ -34,8 +33,7 @@ class Wish:
     @property
     def title(self) -> str:
         """What the case is called in the list of tests."""
-        hidden = "+".join(self.hidden) or (self.strange.__name__ if self.strange else "nothing")
-        return f"{hidden}-{self.design}-{self.kind}-{'+'.join(self.results)}"
+        return title_of(self.hidden, self.strange, self.design, self.kind, "+".join(self.results))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,15 +56,14 @@ def make_case(wish: Wish) -> Case:
     """Draw a machine within its zones, measure it, and put the noise on."""
     rng = np.random.default_rng([wish.seed, 74])
     every = measured(wish.design, wish.count + HELD_OUT, rng)
-    is_held = np.zeros(len(every), dtype=bool)
-    is_held[rng.permutation(np.arange(1, len(every)))[:HELD_OUT]] = True
-    rows, held = every.taken(np.flatnonzero(~is_held)), every.taken(np.flatnonzero(is_held))
+    rows, held = (every.taken(places) for places in held_out(len(every), HELD_OUT, rng))
     off = {name: float(width / 6 * rng.standard_normal()) for name, width in ZONES.items()}
     off["roughness"] = float(ROUGHNESS_SCATTER * rng.standard_normal())
     parts = []
     for part in (rows, held):
         true = _true(wish, part, off)
-        noise = {name: noise_of(wish.kind, part, NOISE[name], rng) for name in wish.results}
+        spread = 0.4 + 1.6 * part.working_time / LIFE
+        noise = {name: noise_of(wish.kind, spread, NOISE[name], rng) for name in wish.results}
         parts.append({name: true[name] + noise[name] for name in wish.results})
     return Case(wish=wish, rows=rows, held=held, off=off, readings=parts[0], held_readings=parts[1])
 
@@ -102,21 +99,3 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
         measuring_torque=rng.uniform(0, 300, count),
         direction=rng.choice([-1.0, 1.0], count),
     )
-
-
-def noise_of(kind: Kind, rows: Rows, size: float, rng: np.random.Generator) -> Array:
-    """Noise of this root mean square: independent and normal, heavy in its tails, with a memory, or growing."""
-    count = len(rows)
-    if kind == "heavy":
-        return np.asarray(size * rng.standard_t(4, count) / np.sqrt(2))
-    draws = rng.standard_normal(count)
-    if kind == "autocorrelated":
-        rho, noise = 0.5, np.empty(count)
-        noise[0] = draws[0]
-        for place in range(1, count):
-            noise[place] = rho * noise[place - 1] + np.sqrt(1 - rho**2) * draws[place]
-        return size * noise
-    if kind == "growing":
-        spread = 0.4 + 1.6 * rows.working_time / LIFE
-        return np.asarray(size * draws * spread / np.sqrt(np.mean(spread**2)))
-    return size * draws

@@ -6,12 +6,11 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
+from hidden_effects.noises import Kind, held_out, noise_of, title_of
 from hidden_effects.screw_machine import WIDTHS, Array, Hidden, Rows, shown
 
-Kind: TypeAlias = Literal["gaussian", "heavy", "autocorrelated", "growing"]
 Design: TypeAlias = Literal["bench", "loaded", "endurance"]
 Strange: TypeAlias = Callable[[Rows], Array]
-KINDS: tuple[Kind, ...] = ("gaussian", "heavy", "autocorrelated", "growing")
 ROLLER, RING, ERROR = "root_stress_roller", "root_stress_ring", "transmission_error"
 WEAR, AXIAL, TORQUE, BACKLASH = "wear_depth", "axial_shift", "friction_torque", "backlash"
 STRESSES = (ROLLER, RING)
@@ -19,7 +18,6 @@ UNIT = {ROLLER: "MPa", RING: "MPa", ERROR: "um", WEAR: "um", AXIAL: "um", TORQUE
 NOISE = {ROLLER: 1.5, RING: 2.0, ERROR: 0.5, WEAR: 0.1, AXIAL: 2.0, TORQUE: 5e-4, BACKLASH: 0.4}
 LOADS: Mapping[Design, tuple[float, float]] = {"bench": (2.0, 20.0), "loaded": (12.0, 20.0), "endurance": (5.0, 20.0)}
 HELD_OUT = 200
-MEMORY = 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,8 +36,7 @@ class Wish:
     @property
     def title(self) -> str:
         """What the case is called in the list of tests."""
-        hidden = "+".join(self.hidden) or (self.strange.__name__ if self.strange else "nothing")
-        return f"{hidden}-{self.design}-{self.kind}-{'+'.join(self.results)}"
+        return title_of(self.hidden, self.strange, self.design, self.kind, "+".join(self.results))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,14 +59,14 @@ def make_case(wish: Wish) -> Case:
     """Draw a screw within its tolerances, measure it, and put the noise on."""
     rng = np.random.default_rng([wish.seed, 58])
     every = measured(wish.design, wish.count + HELD_OUT, rng)
-    is_held = np.zeros(len(every), dtype=bool)
-    is_held[rng.permutation(np.arange(1, len(every)))[:HELD_OUT]] = True
-    rows, held = every.taken(np.flatnonzero(~is_held)), every.taken(np.flatnonzero(is_held))
+    rows, held = (every.taken(places) for places in held_out(len(every), HELD_OUT, rng))
     off = {name: float(width / 6 * rng.standard_normal()) for name, width in WIDTHS.items()}
     parts = []
     for part in (rows, held):
         true = _true(wish, part, off)
-        parts.append({name: true[name] + noise_of(wish.kind, part, NOISE[name], rng) for name in wish.results})
+        spread = 0.4 + part.axial_load / 12
+        noise = {name: noise_of(wish.kind, spread, NOISE[name], rng) for name in wish.results}
+        parts.append({name: true[name] + noise[name] for name in wish.results})
     return Case(wish=wish, rows=rows, held=held, off=off, readings=parts[0], held_readings=parts[1])
 
 
@@ -103,21 +100,3 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
         screw_angle=rng.uniform(0, 40 * 360, count),
         cycles=cycles,
     )
-
-
-def noise_of(kind: Kind, rows: Rows, size: float, rng: np.random.Generator) -> Array:
-    """Noise of this root mean square: even, heavy in its tails, with a memory, or growing with the load."""
-    count = len(rows)
-    if kind == "heavy":
-        return np.asarray(size * rng.standard_t(4, count) / np.sqrt(2))
-    draws = rng.standard_normal(count)
-    if kind == "autocorrelated":
-        noise = np.empty(count)
-        noise[0] = draws[0]
-        for place in range(1, count):
-            noise[place] = MEMORY * noise[place - 1] + np.sqrt(1 - MEMORY**2) * draws[place]
-        return size * noise
-    if kind == "growing":
-        spread = 0.4 + rows.axial_load / 12
-        return np.asarray(size * draws * spread / np.sqrt(np.mean(spread**2)))
-    return size * draws

@@ -16,7 +16,6 @@ from hidden_effects.screw_cases import (
     AXIAL,
     BACKLASH,
     ERROR,
-    KINDS,
     NOISE,
     RING,
     ROLLER,
@@ -26,7 +25,6 @@ from hidden_effects.screw_cases import (
     Wish,
     make_case,
     measured,
-    noise_of,
 )
 from hidden_effects.screw_machine import ROLLER_FACTOR, Array, Hidden, Rows, shown
 
@@ -236,13 +234,6 @@ def test_the_generator_has_the_root_stress_of_the_design() -> None:
     nominal = 51.943 / (4 * 0.5) * ROLLER_FACTOR
     assert read[ROLLER] == pytest.approx([nominal, 2 * nominal], rel=1e-5)
     assert read[BACKLASH] == pytest.approx([0, 0], abs=1e-9)
-
-
-def test_noise_has_its_size() -> None:
-    rng = np.random.default_rng(1)
-    rows = measured("bench", 4000, rng)
-    for kind in KINDS:
-        assert rms(noise_of(kind, rows, 0.01, rng)) == pytest.approx(0.01, rel=0.06)
 
 
 SIZES: Hidden = {name: unknowns for wish in [*NAMED, *PLACES["alike"]] for name, unknowns in wish.hidden.items()}

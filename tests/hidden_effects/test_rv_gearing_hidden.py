@@ -14,7 +14,6 @@ from hidden_effects.gearing_asking import diagnosed
 from hidden_effects.gearing_cases import (
     CONTACT,
     ERROR,
-    KINDS,
     LOSS,
     NOISE,
     PLANET_ROOT,
@@ -25,7 +24,6 @@ from hidden_effects.gearing_cases import (
     Wish,
     make_case,
     measured,
-    noise_of,
 )
 from hidden_effects.gearing_machine import Rows, shown
 from hidden_effects.gearing_stage import Array, Stage
@@ -240,13 +238,6 @@ def test_a_face_carries_more_at_one_end_as_the_standard_has_it() -> None:
     for ratio, factor in ((0.0, 1.0), (0.4, 1.4), (1.0, 2.0), (4.0, 4.0)):
         found = spread(np.array([ratio * 2 * 60 / 14]), np.array([14.0]), np.array([60.0]))
         assert found[0] == pytest.approx(factor, rel=3e-3)
-
-
-def test_noise_has_its_size() -> None:
-    rng = np.random.default_rng(1)
-    rows = measured("rig", 4000, rng)
-    for kind in KINDS:
-        assert rms(noise_of(kind, rows, 0.01, rng)) == pytest.approx(0.01, rel=0.06)
 
 
 @pytest.mark.parametrize("wish", NAMED, ids=lambda wish: wish.title)

@@ -178,15 +178,6 @@ def test_the_generator_wears_as_the_paper_prints() -> None:
     assert shown(ends, {}, {})[BACKLASH] == pytest.approx([0.698, 0.949], abs=1.5e-3)
 
 
-def test_noise_has_its_size() -> None:
-    from hidden_effects.rv_cases import KINDS, noise_of
-
-    rng = np.random.default_rng(1)
-    rows = measured("fleet", 4000, rng)
-    for kind in KINDS:
-        assert rms(noise_of(kind, rows, 0.01, rng)) == pytest.approx(0.01, rel=0.06)
-
-
 SIZES: dict[str, Any] = {name: unknowns for wish in NAMED for name, unknowns in wish.hidden.items()}
 
 
