@@ -24,9 +24,10 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import numpy as np  # noqa: E402
 
 from hidden_effects.harmonic_asking import diagnosed  # noqa: E402
-from hidden_effects.harmonic_cases import KINDS, Case, Wish, make_case  # noqa: E402
+from hidden_effects.harmonic_cases import Case, Wish, make_case  # noqa: E402
 from hidden_effects.harmonic_machine import MESH, TORSION, Array, Rows  # noqa: E402
 from hidden_effects.harmonic_surface import SurfaceCase, SurfaceWish, make_surface, true_structure  # noqa: E402
+from hidden_effects.noises import KINDS  # noqa: E402
 from hidden_effects.plugin_asking import Answer  # noqa: E402
 
 Wishes = Wish | SurfaceWish

@@ -8,15 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hidden_effects.harmonic_machine import MESH, TORSION, Array, Hidden, Rows, shown
+from hidden_effects.noises import Kind, noise_of, title_of
 
-Kind: TypeAlias = Literal["gaussian", "heavy", "autocorrelated", "growing"]
 Design: TypeAlias = Literal["loops", "climb", "points"]
 Strange: TypeAlias = Callable[[Rows], Array]
-KINDS: tuple[Kind, ...] = ("gaussian", "heavy", "autocorrelated", "growing")
 UNIT = {TORSION: "urad", MESH: "N*m/rad"}
 NOISE = {TORSION: 5.0, MESH: 6e4}
 PEAKS = (8.0, 16.0, 24.0, 32.0, 12.0, 40.0)
-MEMORY = 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,8 +41,7 @@ class Wish:
     @property
     def title(self) -> str:
         """What the case is called in the list of tests."""
-        hidden = "+".join(self.hidden) or (self.strange.__name__ if self.strange else "nothing")
-        return f"{hidden}-{self.design}-{self.kind}-{'+'.join(self.results)}"
+        return title_of(self.hidden, self.strange, self.design, self.kind, "+".join(self.results))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,9 +70,10 @@ def make_case(wish: Wish) -> Case:
     is_held[[1, *rng.permutation(np.arange(2, len(every)))[: len(every) // 2 - 1]]] = True
     parts = [np.flatnonzero(~is_held), np.flatnonzero(is_held)]
     noise = {name: np.zeros(len(every)) for name in wish.results}
+    spread = 0.4 + np.abs(every.torque) / 25
     for places in parts:
         for name in wish.results:
-            noise[name][places] = noise_of(wish.kind, every.taken(places), wish.noise(name), rng)
+            noise[name][places] = noise_of(wish.kind, spread[places], wish.noise(name), rng)
     read = [{name: true[name][places] + noise[name][places] for name in wish.results} for places in parts]
     return Case(
         wish=wish,
@@ -134,21 +132,3 @@ def _climb(count: int, rng: np.random.Generator) -> tuple[Array, Array, NDArray[
 def _points(count: int, rng: np.random.Generator) -> tuple[Array, Array, NDArray[np.intp]]:
     torque = np.round(rng.uniform(3, 45, count) * rng.choice([-1.0, 1.0], count), 3)
     return torque, np.zeros(count), np.arange(count, dtype=np.intp)
-
-
-def noise_of(kind: Kind, rows: Rows, size: float, rng: np.random.Generator) -> Array:
-    """Noise of this root mean square: even, heavy in its tails, with a memory, or growing with the torque."""
-    count = len(rows)
-    if kind == "heavy":
-        return np.asarray(size * rng.standard_t(4, count) / np.sqrt(2))
-    draws = rng.standard_normal(count)
-    if kind == "autocorrelated":
-        noise = np.empty(count)
-        noise[0] = draws[0]
-        for place in range(1, count):
-            noise[place] = MEMORY * noise[place - 1] + np.sqrt(1 - MEMORY**2) * draws[place]
-        return size * noise
-    if kind == "growing":
-        spread = 0.4 + np.abs(rows.torque) / 25
-        return np.asarray(size * draws * spread / np.sqrt(np.mean(spread**2)))
-    return size * draws

@@ -14,6 +14,7 @@ import numpy as np
 
 from hidden_effects.harmonic_contact import Array
 from hidden_effects.harmonic_machine import Hidden, of
+from hidden_effects.noises import title_of
 
 STRUCTURE = "structure_function"
 DIMENSION, ROUGHNESS = 2.4, 1e-5  # um, of a surface with ridges in all directions: the defaults
@@ -49,8 +50,7 @@ class SurfaceWish:
     @property
     def title(self) -> str:
         """What the case is called in the list of tests."""
-        hidden = "+".join(self.hidden) or (self.strange.__name__ if self.strange else "nothing")
-        return f"{hidden}-surface"
+        return title_of(self.hidden, self.strange, "surface")
 
 
 @dataclass(frozen=True, kw_only=True)

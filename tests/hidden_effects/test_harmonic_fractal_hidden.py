@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from hidden_effects.harmonic_asking import diagnosed
-from hidden_effects.harmonic_cases import KINDS, Case, Wish, make_case, measured, noise_of
+from hidden_effects.harmonic_cases import Case, Wish, make_case, measured
 from hidden_effects.harmonic_contact import Flanks, table
 from hidden_effects.harmonic_machine import MESH, TORSION, Array, Rows, shown
 from hidden_effects.harmonic_surface import (
@@ -235,13 +235,6 @@ def test_lines_have_the_structure_function_of_a_power_law() -> None:
         each_line = structure(heights, step)
         error = each_line.std(ddof=1) / len(each_line) ** 0.5
         assert each_line.mean() == pytest.approx(true_structure(wish, np.array([0.2 * step]))[0], abs=4 * error)
-
-
-def test_noise_has_its_size() -> None:
-    rng = np.random.default_rng(1)
-    rows = measured("loops", 4000, rng)
-    for kind in KINDS:
-        assert rms(noise_of(kind, rows, 5.0, rng)) == pytest.approx(5.0, rel=0.06)
 
 
 SIZES = [(name, unknowns, wish) for wish in NAMED if isinstance(wish, Wish) for name, unknowns in wish.hidden.items()]
