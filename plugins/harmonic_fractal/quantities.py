@@ -110,8 +110,8 @@ class Drive:
         at_least=0, at_most=1e6,
     )  # fmt: skip
     # What is asked
-    required_stiffness: Float = given(0.0, "N/m", symbol="K_req", note="stiffness asked of the pair; 0: none",
-                                      at_least=0, at_most=1e15)  # fmt: skip
+    required_stiffness: Float = given(None, "N/m", symbol="K_req", note="stiffness asked of the pair; not given: none",
+                                      above=0, at_most=1e15)  # fmt: skip
     required_reliability: Float = given(0.95, "", symbol="R_req", note="share of drives that must reach it", above=0,
                                         below=1)  # fmt: skip
     # Neutral inputs: errors and effects reach the calculation through them

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from study_models import CHAIN, UNIFORMS, WEAR, setup_of
 
-from truing import Require
+from truing import Float, Maximise, Model, Optimise, Optimum, Require, Vary, found, given, inputs, results
 from truing.calculation import calculate
 from truing.studies.checks import chance_check, margin_of
+from truing.studies.optimise_goals import bounds_of
 
 
 def check_of(model, require, **values):
@@ -61,3 +62,47 @@ def test_a_limit_is_printed_in_the_unit_of_its_result() -> None:
     (check,) = calculate(replace(setup, units={"gap": "um"})).checks
     assert (check.value, check.limit, check.unit) == (pytest.approx(10e3), pytest.approx(11e3), "um")
     assert np.isclose(check.margin, 1 / 11)
+
+
+@inputs
+class Bar:
+    """A bar of which a stiffness may be asked."""
+
+    stiffness: Float = given(100.0, "N/m")
+    asked: Float = given(None, "N/m")
+
+
+@results
+class Answer:
+    """What it has."""
+
+    rate: Float = found("N/m")
+    double: Float = found("N/m")
+
+
+def bar(bar_: Bar) -> Answer:
+    return Answer(rate=bar_.stiffness, double=2.0 * bar_.stiffness)
+
+
+BAR = Model(
+    name="bar",
+    title="Bar",
+    function=bar,
+    objectives=[
+        Require("rate", at_least="asked"), Require("double", at_most="300 N/m"), Vary("stiffness", "50 N/m", "200 N/m"),
+        Maximise("rate"),
+    ],
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("asked", "names"), [({}, ["double"]), ({"asked": 80.0}, ["rate", "double"])])
+def test_a_limit_that_is_not_given_asks_for_nothing(asked: dict[str, float], names: list[str]) -> None:
+    setup = setup_of(BAR, **asked)
+    assert [check.name for check in calculate(setup).checks] == names
+    assert sorted(bound.name for bound in bounds_of(setup)) == sorted(names)
+
+
+def test_a_search_without_the_limit_goes_to_its_end() -> None:
+    setup = replace(setup_of(BAR), studies=(Optimise(population=8, generations=12),))
+    (best,) = calculate(setup).record.outcome(Optimum).as_json()["front"]
+    assert best["objectives"]["rate"] == pytest.approx(150.0, rel=5e-3)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import isnan
 from typing import Any
 
 from truing.declare.fields import in_si
@@ -35,8 +36,15 @@ def margin_of(value: float, limit: float, *, at_least: bool = False) -> float:
 
 def limits(setup: Setup, answers: dict[str, Any]) -> list[Limit]:
     """Return every requirement of the model in numbers; ``answers`` holds the nominal results in SI."""
-    requires = [item for item in setup.model.objectives if isinstance(item, Require)]
+    requires = requirements(setup)
     return [_limit(require, requires, setup, answers) for require in requires if require.result in answers]
+
+
+def requirements(setup: Setup) -> list[Require]:
+    """Return the requirements of the model; one whose limit is an input that is not given asks for nothing."""
+    fields = setup.model.input_fields
+    every = [item for item in setup.model.objectives if isinstance(item, Require)]
+    return [item for item in every if item.limit not in fields or not isnan(float(setup.nominal(item.limit)))]
 
 
 def _limit(require: Require, others: list[Require], setup: Setup, answers: dict[str, Any]) -> Limit:

@@ -14,7 +14,7 @@ from truing.declare.fields import in_si
 from truing.declare.goals import Maximise, Minimise, Require
 from truing.errors import UsageError
 from truing.setup import Setup
-from truing.studies.checks import check_name
+from truing.studies.checks import check_name, requirements
 
 if TYPE_CHECKING:
     import numpy as np
@@ -138,7 +138,7 @@ def given_by_studies(setup: Setup) -> set[str]:
 
 def bounds_of(setup: Setup) -> tuple[Bound, ...]:
     """Return the limits on results of the function and on the sum of the prices, those by chance last."""
-    requires = [item for item in setup.model.objectives if isinstance(item, Require)]
+    requires = requirements(setup)
     known = {*setup.model.own_result_fields, TOTAL_PRICE}
     found: list[Bound] = []
     for item in sorted(
@@ -154,7 +154,8 @@ def bounds_of(setup: Setup) -> tuple[Bound, ...]:
 def left_out(setup: Setup) -> tuple[str, ...]:
     """Say which objectives and limits the search cannot see."""
     theirs = given_by_studies(setup)
-    named = [item.result for item in setup.model.objectives if isinstance(item, (Minimise, Maximise, Require))]
+    goals = [item for item in setup.model.objectives if isinstance(item, (Minimise, Maximise))]
+    named = [item.result for item in (*goals, *requirements(setup))]
     return tuple(
         f"'{name}' is given by a study once per run, so the search does not follow it"
         for name in dict.fromkeys(named)
@@ -166,7 +167,7 @@ def constants(setup: Setup, answers: Mapping[str, Any]) -> tuple[tuple[str, floa
     """Return the limits that are results of earlier studies: they stay what they are."""
     import numpy as np
 
-    limits = {item.limit for item in setup.model.objectives if isinstance(item, Require)}
+    limits = {item.limit for item in requirements(setup)}
     theirs = limits & given_by_studies(setup) & set(answers)
     return tuple((name, float(answers[name])) for name in sorted(theirs) if np.ndim(answers[name]) == 0)
 
