@@ -6,11 +6,11 @@ import csv
 import io
 import json
 from collections.abc import Callable
-from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any
 
 import pytest
+from measured import calc_here
 
 from shared import Calc
 from truing import Kernel
@@ -23,16 +23,12 @@ Table = Callable[..., list[dict[str, float]]]
 @pytest.fixture(scope="module")
 def example(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
     """Write the example file and run it, once, with a small search for the front."""
-    from truing.cli import main
-
     folder = tmp_path_factory.mktemp("screw")
-    inputs, output = folder / "screw.toml", folder / "run"
-    assert main(["init", "roller_screw_shift", "-o", str(inputs), "-q"]) == 0
+    assert calc_here(folder, "init", "roller_screw_shift", "-o", "screw.toml", "-q").code == 0
     few = [word for size in ("population=16", "generations=6") for word in ("--set", f"studies.optimise.{size}")]
-    said = io.StringIO()
-    with redirect_stdout(said):
-        assert main(["run", "roller_screw_shift", "--inputs", str(inputs), "-o", str(output), "--json", *few]) == 0
-    return output, json.loads(said.getvalue())
+    told = calc_here(folder, "run", "roller_screw_shift", "--inputs", "screw.toml", "-o", "run", "--json", *few)
+    assert told.code == 0, told.err
+    return folder / "run", json.loads(told.out)
 
 
 @pytest.fixture

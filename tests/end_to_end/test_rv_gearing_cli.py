@@ -6,11 +6,11 @@ import csv
 import io
 import json
 from collections.abc import Callable
-from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any
 
 import pytest
+from measured import calc_here
 
 from shared import Calc
 from truing import Kernel
@@ -25,16 +25,12 @@ GROUP_5 = {"root_stress_sun": 230.83, "root_stress_planet": 214.75, "contact_str
 @pytest.fixture(scope="module")
 def example(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
     """Write the example file and run it as it stands, once, with fewer draws."""
-    from truing.cli import main
-
     folder = tmp_path_factory.mktemp("gearing")
-    inputs, output = folder / "gearing.toml", folder / "run"
-    assert main(["init", "rv_gearing", "-o", str(inputs), "-q"]) == 0
+    assert calc_here(folder, "init", "rv_gearing", "-o", "gearing.toml", "-q").code == 0
     few = ["--set", "studies.reliability.draws=2000"]
-    said = io.StringIO()
-    with redirect_stdout(said):
-        assert main(["run", "rv_gearing", "--inputs", str(inputs), "-o", str(output), "--json", *few]) == 0
-    return output, json.loads(said.getvalue())
+    told = calc_here(folder, "run", "rv_gearing", "--inputs", "gearing.toml", "-o", "run", "--json", *few)
+    assert told.code == 0, told.err
+    return folder / "run", json.loads(told.out)
 
 
 def value(found: dict[str, Any], name: str) -> Any:
