@@ -51,7 +51,10 @@ def no_range(lags: Array, dimensions: Array) -> str:
     """Say in words why there is no self-affine range."""
     known = np.isfinite(dimensions)
     if not known.any():
-        return "no self-affine range: no local slope of the structure function could be taken"
+        return (
+            "no self-affine range: no local slope of the structure function could be taken, because hardly a lag has "
+            "100 pairs of points or a difference of height; take longer lines, or more of them"
+        )
     low, high = float(dimensions[known].min()), float(dimensions[known].max())
     return (
         f"no self-affine range: over no decade of lags does the local dimension of the profile vary by less than "

@@ -73,3 +73,37 @@ def test_switches_counts_and_files_on_the_command_line(tmp_path: Path, text: str
     assert setup.inputs.is_hardened is expected
     assert (setup.inputs.planets, setup.inputs.reading, setup.inputs.orders) == (5, "printed", (4,))
     assert setup.inputs.surface.heights == (1.0, 2.0, 4.0)
+
+
+@pytest.mark.parametrize(
+    "stated", ['surface = { file = "flank.txt", spacing = "0.4 um" }', 'surface = "flank.txt"'], ids=["table", "file"]
+)
+def test_an_option_of_a_data_file_on_the_command_line(tmp_path: Path, stated: str) -> None:
+    (tmp_path / "flank.txt").write_text("1\n2\n4\n")
+    (tmp_path / "stage.toml").write_text(f"[inputs]\n{stated}\n")
+    setup = read_setup(tmp_path / "stage.toml", STAGE_OFFER, overrides=['surface.spacing="0.5 um"'])
+    assert setup.inputs.surface.spacing == "0.5 um"
+    assert setup.inputs.surface.heights == (1.0, 2.0, 4.0)
+
+
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        ("surface.spacng=1 um", "the reader takes no 'spacng'; beside file it takes: spacing, height_unit."),
+        ("surface.file=none.txt", "there is no file 'none.txt'"),
+    ],
+)
+def test_an_option_that_is_none_is_named_with_the_override(tmp_path: Path, option: str, words: str) -> None:
+    (tmp_path / "flank.txt").write_text("1\n2\n4\n")
+    (tmp_path / "stage.toml").write_text(f"[inputs]\n{SURFACE.replace('=', ' = ', 1)}\n")
+    with pytest.raises(InputError) as caught:
+        read_setup(tmp_path / "stage.toml", STAGE_OFFER, overrides=[option])
+    (line,) = str(caught.value).splitlines()
+    assert line.startswith(f"--set {option}: surface: ")
+    assert words in line
+
+
+def test_an_option_without_its_file_asks_for_the_file(tmp_path: Path) -> None:
+    (tmp_path / "stage.toml").write_text("[inputs]\n")
+    with pytest.raises(InputError, match=r"--set surface\.spacing=1 um: surface is read from a data file"):
+        read_setup(tmp_path / "stage.toml", STAGE_OFFER, overrides=["surface.spacing=1 um"])

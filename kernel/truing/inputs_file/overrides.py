@@ -25,6 +25,8 @@ def apply_overrides(document: Document, model: Model[Any, Any], overrides: Seque
             document.faults.append(Fault("write name=value, such as load='3 kN'", place))
             continue
         path = _path(name, model)
+        if len(path) == 3 and path[0] == "inputs":
+            _open_table(document, path[1], place)
         _put(document, path, _value(path, value, model), place)
 
 
@@ -33,12 +35,17 @@ def _one_line(text: str) -> str:
 
 
 def _path(name: str, model: Model[Any, Any]) -> tuple[str, ...]:
-    """Return the section and name that a dotted name means; a plain name is an input or a condition."""
+    """Return the section and name that a dotted name means; a plain name is an input or a condition.
+
+    Behind the name of an input that is read from a data file stands an option of its reader.
+    """
     first, _, rest = name.partition(".")
     if rest and first in SECTIONS:
         if first in {"effects", "studies"}:
             return (first, *rest.split(".", 1))
         return (first, rest)
+    if rest and first in model.input_fields and model.input_fields[first].kind == "file":
+        return ("inputs", first, rest)
     if name not in model.input_fields and name in model.known_conditions:
         return ("conditions", name)
     if name not in model.input_fields and name in {"seed", "detail"}:
@@ -56,6 +63,14 @@ def _value(path: tuple[str, ...], text: str, model: Model[Any, Any]) -> Any:
         return tomllib.loads(f"value = {text}")["value"]
     except (ValueError, RecursionError, KeyError):
         return text
+
+
+def _open_table(document: Document, name: str, place: str) -> None:
+    """Let options stand beside the data file of an input, also where the file is all that was written."""
+    inputs = document.data.get("inputs")
+    if isinstance(inputs, dict) and isinstance(inputs.get(name), str):
+        inputs[name] = {"file": inputs[name]}
+    document.places["inputs", name] = (place, None)
 
 
 def _put(document: Document, path: tuple[str, ...], value: Any, place: str) -> None:
