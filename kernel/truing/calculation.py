@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 from truing.declare.fields import read
@@ -35,12 +36,12 @@ class Calculation:
         """Whether every check on the sheet holds."""
         return all(check.passed for check in self.checks)
 
-    @property
+    @cached_property
     def record(self) -> Record[Any, Any]:
         """The run as sections of the sheet see it."""
         return Record(
             self.setup.inputs, self.results, self.answers, self.outcomes, self.setup.model.function,
-            acting=acting_inputs(self.setup),
+            acting_inputs(self.setup),
         )  # fmt: skip
 
 

@@ -182,25 +182,17 @@ def _placed(name: str, found: Rows, machine: Setup, rows: RowsFile, places: Sequ
         return values
     wanted = rows.axes[along][list(places)]
     shape = (len(wanted), values.shape[1])
-    return _read_at(wanted, np.broadcast_to(found.results[along], shape), np.broadcast_to(values, shape))
+    curves = zip(wanted, np.broadcast_to(found.results[along], shape), np.broadcast_to(values, shape), strict=True)
+    return np.array([_read_at(place, axis, curve) for place, axis, curve in curves])
 
 
-def _read_at(
-    places: NDArray[np.float64], axes: NDArray[np.float64], curves: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Read each curve (n, k) at one place (n,) of its axis (n, k); the ends may be missed by rounding."""
+def _read_at(place: float, axis: NDArray[np.float64], curve: NDArray[np.float64]) -> float:
+    """Read a curve at one place of its axis; the ends may be missed by rounding."""
     import numpy as np
 
-    order = np.argsort(axes, axis=1, kind="stable")
-    axes, curves = np.take_along_axis(axes, order, axis=1), np.take_along_axis(curves, order, axis=1)
-    low, high = axes[:, 0], axes[:, -1]
-    rounding = 1e-9 * np.maximum(np.abs(low), np.abs(high))
-    is_on = (low - rounding <= places) & (places <= high + rounding)  # false for NaN
-    places = np.clip(np.where(is_on, places, low), low, high)
-    after = np.clip(np.sum(axes < places[:, None], axis=1), min(1, axes.shape[1] - 1), axes.shape[1] - 1)
-    rows, before = np.arange(len(places)), np.maximum(after - 1, 0)
-    span = axes[rows, after] - axes[rows, before]
-    share = np.where(span > 0, (places - axes[rows, before]) / np.where(span > 0, span, 1.0), 1.0)
-    read = curves[rows, before] * (1.0 - share) + curves[rows, after] * share
-    exact = np.where(share >= 1.0, curves[rows, after], np.where(share <= 0.0, curves[rows, before], read))
-    return np.where(is_on, exact, np.nan)
+    order = np.argsort(axis)
+    low, high = axis[order[0]], axis[order[-1]]
+    rounding = 1e-9 * max(abs(low), abs(high))
+    if not low - rounding <= place <= high + rounding:
+        return float("nan")
+    return float(np.interp(place, axis[order], curve[order]))

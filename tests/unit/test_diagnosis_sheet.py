@@ -402,3 +402,20 @@ def test_every_verdict_ends_with_exit_code_0(
 ) -> None:
     monkeypatch.setattr(sys.modules["truing.diagnosis.engine"], "diagnose", lambda *_, **__: sample())
     assert calc("diagnose", plugin, "--data", "press record.csv", "-q").code == 0
+
+
+# Several causes
+
+
+def test_of_several_causes_the_sheet_and_the_terminal_say_the_shares() -> None:
+    one = replace(named().causes[0], share=0.75)
+    made = replace(named(), causes=(one, replace(one, effect="sensor_offset", share=0.25)))
+    (table,) = (block for chapter in sheet_of(made).chapters for block in chapter.blocks
+                if isinstance(block, TableView) and block.title == "Named")  # fmt: skip
+    assert [row[-1] for row in table.rows] == ["75 %", "25 %"]
+    assert table.note == (
+        "Share: of the mean squares of what the named causes add to the model, over all rows in units of the noise."
+    )
+    said = "\n".join(report(made, Path("folder")))
+    assert f"shares of the correction: {spoken(one.effect)} 75 %, sensor offset 25 %" in said
+    assert "shares of the correction" not in "\n".join(report(named(), Path("folder")))

@@ -134,7 +134,7 @@ def test_truing_reports_adds_what_its_page_shows(spring: ModuleType) -> None:
     assert section.title == "Wire"
     assert section.blocks is not None
     setup = default_setup(offer.model)
-    (wire,) = section.blocks(Record(setup.inputs, evaluate(setup), {}, {}, offer.model.function))
+    (wire,) = section.blocks(Record(setup.inputs, evaluate(setup), {}, {}, offer.model.function, setup.inputs))
     volume_mm3 = math.pi / 4 * 1.0**2 * math.pi * 8.0 * 8.0
     assert isinstance(wire, Table)
     assert wire.rows[0][1] == pytest.approx(volume_mm3 * 7.85e-3, rel=1e-3)

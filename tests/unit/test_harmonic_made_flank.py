@@ -164,7 +164,9 @@ def test_a_filter_is_told_in_the_head_of_the_file() -> None:
 @pytest.mark.parametrize("values", [{}, {"kind": "profile", "width": 0.0, "noise": "50 nm"}, {"kind": "brownian"}])
 def test_the_sheet_draws_and_says_what_was_made(values: dict[str, Any]) -> None:
     inputs = made(**values)
-    record = Record(inputs=inputs, results=made_flank(inputs), answers={}, studies={}, function=made_flank)
+    record = Record(
+        inputs=inputs, results=made_flank(inputs), answers={}, studies={}, function=made_flank, acting=inputs
+    )
     blocks = [block for section in SECTIONS if section.blocks for block in section.blocks(record)]
     drawings = [block for block in blocks if isinstance(block, Drawing)]
     assert len(drawings) == (2 if values.get("width") == 0.0 else 3)
@@ -180,7 +182,9 @@ def test_the_sheet_draws_and_says_what_was_made(values: dict[str, Any]) -> None:
 def test_spikes_are_seen_and_taken_out() -> None:
     """Half a per cent of points, twenty times the root of S at one spacing: 0.18 too much, and back again."""
     inputs = made(kind="brownian", fractal_dimension=2.5, spikes="0.5 %", spike_height=20 * np.sqrt(2.5e-17))
-    record = Record(inputs=inputs, results=made_flank(inputs), answers={}, studies={}, function=made_flank)
+    record = Record(
+        inputs=inputs, results=made_flank(inputs), answers={}, studies={}, function=made_flank, acting=inputs
+    )
     (table,) = (block for block in SECTIONS[-1].blocks(record) if isinstance(block, Table))  # type: ignore[misc]
     found = {str(row[0]): row[1] for row in table.rows}
     assert found["along the lines, x"] - 2.5 > 0.12

@@ -20,6 +20,8 @@ MOST_CASES = 40
 
 def lines_of(done: Done, folder: Path, *, with_titles: bool) -> Iterator[str]:
     """Say what a run found, and what fails; ``with_titles`` puts the results under the sections of the sheet."""
+    from truing.studies.bench import files_of
+
     calculation = done.calculation
     model = calculation.setup.model
     yield one_line(f"{model.name}: {model.title}")
@@ -36,8 +38,8 @@ def lines_of(done: Done, folder: Path, *, with_titles: bool) -> Iterator[str]:
         count = f"{len(broken)} of {len(calculation.checks)} checks"
         yield f"{count} FAIL: {', '.join(broken)} (exit code 1; the sheet shows why)"
     yield f"sheet: {folder / 'sheet.html'}"
-    for outcome in done.calculation.outcomes.values():
-        yield from (f"beside it: {folder / name}" for name in getattr(outcome, "files", ()))
+    for outcome in calculation.outcomes.values():
+        yield from (f"beside it: {folder / name}" for name in files_of(outcome))
 
 
 def _cases_lines(cases: CasesTable, setup: Setup) -> Iterator[str]:

@@ -80,7 +80,7 @@ def _of_axes(model: Model[Any, Any]) -> Iterator[str]:
 def _of_companions(model: Model[Any, Any]) -> Iterator[str]:
     """Say which inputs are to be stated with one that does not exist."""
     for name, item in model.input_fields.items():
-        other = getattr(item.spec, "stated_with", "")
+        other = item.spec.stated_with
         if other and (other == name or other not in model.input_fields):
             meant = near_miss(other, model.input_fields)
             yield f"the input '{name}' is stated with '{other}', which is no other input.{meant}"

@@ -45,7 +45,7 @@ class Study(Protocol):
 class Record(Generic[I, R]):
     """A finished run as sections see it: inputs and results in SI, every answer by flat name, outcomes by study.
 
-    ``inputs`` are as stated, ``acting`` as the effects that are on leave them (the same where none is given).
+    ``inputs`` are as stated, ``acting`` as the effects that are on leave them.
     """
 
     inputs: I
@@ -53,11 +53,7 @@ class Record(Generic[I, R]):
     answers: Mapping[str, Any]
     studies: Mapping[str, Any]
     function: Callable[[I], R]
-    acting: I = None  # type: ignore[assignment]  # never None: see below
-
-    def __post_init__(self) -> None:
-        if self.acting is None:
-            object.__setattr__(self, "acting", self.inputs)
+    acting: I
 
     def outcome(self, kind: type[T]) -> T | None:
         """Return the outcome of the first study of this kind, None where none ran."""

@@ -53,6 +53,7 @@ class Loaded:
     symbol: str = ""
     unit: str | None = None
     along: str = ""
+    stated_with: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,24 +24,25 @@ def by_share(full: Contest, best: Fit, causes: tuple[Cause, ...]) -> tuple[Cause
 
     if len(causes) < 2:
         return causes
-    squares = [float(np.sum(np.square(_part(full, best, cause)))) for cause in causes]
-    if not sum(squares) > 0:
+    fitter = Fitter(full, best.hypothesis)
+    squares = np.array([np.sum(np.square(_part(fitter, best, cause))) for cause in causes])
+    if not squares.sum() > 0:
         return causes
-    weighed = [replace(cause, share=size / sum(squares)) for cause, size in zip(causes, squares, strict=True)]
+    shares = squares / squares.sum()
+    weighed = [replace(cause, share=float(share)) for cause, share in zip(causes, shares, strict=True)]
     return tuple(sorted(weighed, key=lambda cause: -cause.share))
 
 
-def _part(full: Contest, best: Fit, cause: Cause) -> NDArray[np.float64]:
+def _part(fitter: Fitter, best: Fit, cause: Cause) -> NDArray[np.float64]:
     """Return what a cause adds to all results, one below the other, in units of their noise."""
     import numpy as np
 
-    fitter = Fitter(full, best.hypothesis)
     off = best.values.copy()
     for place, item in enumerate(best.parameters):
-        if not item.is_shape and _owner(full, best, item.piece) == cause.effect:
+        if not item.is_shape and _owner(fitter.contest, best, item.piece) == cause.effect:
             off[place] = 0.0
     without = fitter.predicted(off, best.directions)
-    channels = full.evidence.channels
+    channels = fitter.contest.evidence.channels
     return np.concatenate(
         [(best.predicted[item.name] - without[item.name])[item.rows] / item.scale for item in channels]
     )

@@ -54,7 +54,7 @@ def unexplained(model: Model[Any, Any], document: Document) -> Iterator[tuple[tu
     section = document.data.get("inputs")
     stated = section if isinstance(section, dict) else {}
     for name, item in model.input_fields.items():
-        other = getattr(item.spec, "stated_with", "")
+        other = item.spec.stated_with
         if name in stated and other and other not in stated:
             choices = model.input_fields[other].choices
             meant = f" ({', '.join(choices)})" if choices else ""

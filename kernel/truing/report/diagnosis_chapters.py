@@ -136,9 +136,7 @@ def _named_table(diagnosis: Diagnosis) -> TableView:
     if len(rows) < 2:
         return _table("Named", heads, rows)
     shares = [percent(cause.share) for cause in diagnosis.causes]
-    note = (
-        "Share: of what all named causes add to the model, over all rows; one that works against the rest is below 0."
-    )
+    note = "Share: of the mean squares of what the named causes add to the model, over all rows in units of the noise."
     with_shares = [(*row, share) for row, share in zip(rows, shares, strict=True)]
     return _table("Named", (*heads, "Share"), with_shares, (3,), note)
 

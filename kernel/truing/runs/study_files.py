@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from truing.errors import PluginError
+from truing.studies.bench import files_of
 
 if TYPE_CHECKING:
     from truing.studies.bench import Outcome
@@ -22,7 +23,7 @@ def study_files(outcomes: Mapping[str, Outcome], taken: Mapping[str, str | bytes
     """
     found: dict[str, str | bytes] = {}
     for study, outcome in outcomes.items():
-        for name, content in getattr(outcome, "files", {}).items():
+        for name, content in files_of(outcome).items():
             if not NAME.fullmatch(name) or name.endswith("."):
                 raise PluginError(f"study '{study}' names its file {name!r}; a plain file name is wanted")
             if name.casefold() in {other.casefold() for other in (*taken, *KEPT, *found)}:

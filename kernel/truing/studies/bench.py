@@ -83,6 +83,12 @@ class Bench:
         return evaluate_rows(self.setup, columns, rows, wanted=results).results
 
 
+def files_of(outcome: Outcome) -> Mapping[str, str | bytes]:
+    """Return the files that an outcome leaves in the run folder, by name; nothing where it has none."""
+    files: Mapping[str, str | bytes] = getattr(outcome, "files", {})
+    return files
+
+
 class Outcome(Protocol):
     """What a study found; the sheet and results.json ask it for their part.
 
