@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from harmonic_fractal.cleaning import cut, quantisation, root_mean_square, spikes_of, without_form
+from harmonic_fractal.estimate import FEWEST_POINTS
 from harmonic_fractal.flank_options import Options
 from harmonic_fractal.surface import Surface
 
 FEW_MISSING, MANY_MISSING = 0.05, 0.20  # shares of the points: above the one a warning, above the other an error
 FEW_SPIKES = 0.02
-FEWEST_POINTS = 64  # of a line
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

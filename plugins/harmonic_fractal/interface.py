@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harmonic_fractal.estimate import Estimate
+from harmonic_fractal.fitting import straight_fit
 from harmonic_fractal.flank import Flank
-from harmonic_fractal.power_law import constant, converted, structure_function
+from harmonic_fractal.power_law import converted, log_roughness_of, structure_function
 from harmonic_fractal.quantities import Drive
 from truing import Float
 
@@ -101,15 +102,13 @@ def _sum_or_first(first: Rough, second: Rough, drive: Drive) -> Rough:
 
 
 def _sum(first: Rough, second: Rough, drive: Drive) -> Rough:
-    share = np.linspace(0.0, 1.0, POINTS)
-    low, high = (np.log(np.asarray(end)[..., None]) for end in range_of(drive))
-    lags = np.exp(low + (high - low) * share)
+    """Return the power law through the sum of two; it is fitted over the place within the range of lags, 0 to 1."""
+    place = np.linspace(0.0, 1.0, POINTS)
+    low, high = (np.log(np.asarray(end)) for end in range_of(drive))
+    lags = np.exp(low[..., None] + (high - low)[..., None] * place)
     heights = sum(structure_function(lags, np.asarray(one.dimension)[..., None] - 1.0,
                                      np.asarray(one.roughness)[..., None]) for one in (first, second))  # fmt: skip
-    x, y = np.log(lags), np.log(heights)
-    centred = x - x.mean(axis=-1, keepdims=True)
-    slope = (centred * y).sum(axis=-1) / np.square(centred).sum(axis=-1)
+    law = straight_fit(np.exp(place), np.asarray(heights))
+    slope = law.slope / (high - low)
     dimension = 2.0 - slope / 2.0
-    intercept = y.mean(axis=-1) - slope * x.mean(axis=-1)
-    logarithm = (intercept - np.log(constant(dimension, drive.density, "areal"))) / (2.0 * (dimension - 1.0))
-    return Rough(dimension=dimension + 1.0, roughness=np.exp(logarithm))
+    return Rough(dimension=dimension + 1.0, roughness=np.exp(log_roughness_of(law.intercept - slope * low, dimension)))
