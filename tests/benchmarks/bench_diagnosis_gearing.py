@@ -6,11 +6,8 @@ every noise. A name counts if it is the verdict alone. Prints counts, the names 
 interval held the truth.
 """
 
-import argparse
 import os
 import sys
-from collections import Counter
-from dataclasses import dataclass, field
 from pathlib import Path
 
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -19,6 +16,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np  # noqa: E402
 
+from benchmarks.diagnosis_tally import Tally, asked_by  # noqa: E402
 from hidden_effects.gearing_asking import diagnosed  # noqa: E402
 from hidden_effects.gearing_cases import (  # noqa: E402
     CONTACT,
@@ -64,17 +62,6 @@ MEASURED: list[tuple[tuple[str, ...], Design]] = [
 SHAPES = {"resonance_speed", "damping", "torque_scale"}
 
 
-@dataclass
-class Tally:
-    """What was said, counted."""
-
-    nothing: int = 0
-    false_alarms: int = 0
-    said: Counter[str] = field(default_factory=Counter)
-    covered: list[bool] = field(default_factory=list)
-    seconds: list[float] = field(default_factory=list)
-
-
 def wished(place: int, seed: int) -> Wish:
     """The case of a place in the list and a seed: of three the first hides nothing."""
     rng = np.random.default_rng([seed, 9])
@@ -88,69 +75,13 @@ def wished(place: int, seed: int) -> Wish:
     return Wish(seed=seed, hidden={name: unknowns}, results=results, design=design, kind=kind)
 
 
-def judge(wish: Wish, tally: Tally) -> None:
-    """Ask one case, count what was said, and print it where it is not the truth alone."""
+def judge(place: int, seed: int, tally: Tally) -> None:
+    """Ask one case and count what was said."""
+    wish = wished(place, seed)
     answer = diagnosed(make_case(wish))
-    document, tally.seconds = answer.document, [*tally.seconds, answer.seconds]
-    names = {cause["effect"] for cause in document["causes"]}
-    if not wish.hidden:
-        tally.nothing += 1
-        tally.false_alarms += document["verdict"] != "none"
-        said = "nothing" if document["verdict"] == "none" else "false alarm"
-    else:
-        said = said_of(wish, document)
-        tally.said[said] += 1
-    if said == "named":
-        check_sizes(wish, document, tally)
-    elif said != "nothing":
-        print(f"  {wish.seed} {wish.title} {wish.hidden}: {said}: {sorted(names)}", flush=True)
-
-
-def said_of(wish: Wish, document: dict[str, object]) -> str:
-    """In a word, what a document says of the effect that is hidden."""
-    (hidden,) = wish.hidden
-    causes, others = document["causes"], document["alternatives"]
-    assert isinstance(causes, list)
-    assert isinstance(others, list)
-    names = {cause["effect"] for cause in causes}
-    if names == {hidden}:
-        return "named" if document["remainder"] is None else "with an unknown remainder"
-    if any(hidden in cause["same_as"] for cause in causes):
-        return "same curve"
-    if hidden in names:
-        return "with something else"
-    if any(other["causes"] == [hidden] for other in others):
-        return "alternative"
-    return "another name" if names else str(document["verdict"])
-
-
-def check_sizes(wish: Wish, document: dict[str, object], tally: Tally) -> None:
-    """Count the intervals that hold the truth."""
-    causes = document["causes"]
-    assert isinstance(causes, list)
-    found = {name: known for cause in causes for name, known in cause["unknowns"].items()}
-    for name, value in next(iter(wish.hidden.values())).items():
-        low, high = found[name]["interval95"] if name in found else (0.0, 0.0)
-        tally.covered.append((low is None or low <= value) and (high is None or value <= high))
-        if not tally.covered[-1]:
-            print(f"  {wish.seed} {wish.title}: {name} is {value:.4g}, not {low} to {high}", flush=True)
-
-
-def main() -> None:
-    """Read the options and run."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--cases", type=int, default=40)
-    parser.add_argument("--seed", type=int, default=1000, help="the first seed")
-    options = parser.parse_args()
-    tally = Tally()
-    for place in range(options.cases):
-        judge(wished(place, options.seed + place), tally)
-    hidden = sum(tally.said.values())
-    print(f"nothing hidden: {tally.false_alarms} false alarms in {tally.nothing}")
-    print(f"one effect hidden: {hidden}; " + ", ".join(f"{name} {many}" for name, many in tally.said.most_common()))
-    print(f"intervals that hold the truth: {sum(tally.covered)} of {len(tally.covered)}")
-    print(f"seconds: median {np.median(tally.seconds):.1f}, longest {max(tally.seconds):.1f}")
+    if tally.count(wish, answer.document, answer.seconds) == "named":
+        tally.cover(wish, answer.document["causes"][0])
 
 
 if __name__ == "__main__":
-    main()
+    asked_by(__doc__, 40, judge)

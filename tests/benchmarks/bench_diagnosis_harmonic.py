@@ -8,11 +8,8 @@ rows that were not fitted over that of the truth itself. ``--catalogue`` asks fo
 instead: which causes carry the torsion, and with what shares.
 """
 
-import argparse
 import os
 import sys
-from collections import Counter
-from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -23,6 +20,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np  # noqa: E402
 
+from benchmarks.diagnosis_tally import Tally, parsed  # noqa: E402
 from hidden_effects.harmonic_asking import diagnosed  # noqa: E402
 from hidden_effects.harmonic_cases import Case, Wish, make_case  # noqa: E402
 from hidden_effects.harmonic_machine import MESH, TORSION, Array, Rows  # noqa: E402
@@ -67,19 +65,6 @@ STIFFNESS = {  # of the catalogues, kN m/rad, by size and ratio (100 stands for 
 }
 
 
-@dataclass
-class Tally:
-    """What was said, counted."""
-
-    nothing: int = 0
-    false_alarms: int = 0
-    strange: Counter[str] = field(default_factory=Counter)
-    said: Counter[str] = field(default_factory=Counter)
-    covered: list[bool] = field(default_factory=list)
-    left: list[float] = field(default_factory=list)
-    seconds: list[float] = field(default_factory=list)
-
-
 def fifth_order(rows: Rows) -> Array:
     """A wave that nobody registered."""
     return 12 * np.sin(5 * np.radians(rows.wave_angle) + 0.4)
@@ -120,40 +105,16 @@ def wished(seed: int) -> Wishes:
 
 
 def judge(seed: int, tally: Tally) -> None:
-    """Ask one case, count what was said, and print it where it is not the truth alone."""
+    """Ask one case and count what was said."""
     wish = wished(seed)
     case = make_case(wish) if isinstance(wish, Wish) else make_surface(wish)
     answer = diagnosed(case)
-    document, tally.seconds = answer.document, [*tally.seconds, answer.seconds]
-    if wish.strange is not None:
-        said = "called unknown" if document["verdict"] == "unknown" else str(document["verdict"])
-        tally.strange[said] += 1
-    elif not wish.hidden:
-        tally.nothing += 1
-        tally.false_alarms += document["verdict"] != "none"
-        said = "nothing" if document["verdict"] == "none" else "false alarm"
-    else:
-        said = verdict_on(document, next(iter(wish.hidden)))
-        tally.said[said] += 1
+    said = tally.count(wish, answer.document, answer.seconds)
+    if wish.hidden:
         tally.left.append(left_over(case, answer))
-        if said == "named":
-            held(case, document["causes"][0], tally)
-    if said not in {"nothing", "named", "same curve", "called unknown"}:
-        named = [cause["effect"] for cause in document["causes"]]
-        print(f"  {seed} {wish.title}: {said}: {named}", flush=True)
-
-
-def verdict_on(document: dict[str, Any], hidden: str) -> str:
-    """How near to the truth an answer is."""
-    causes = document["causes"]
-    named = [{cause["effect"], *cause["same_as"]} for cause in causes]
-    if len(named) == 1 and document["remainder"] is None and hidden in named[0]:
-        return "named" if causes[0]["effect"] == hidden else "same curve"
-    if any(hidden in names for names in named):
-        return "with something else"
-    if [hidden] in [other["causes"] for other in document["alternatives"]]:
-        return "alternative"
-    return str(document["verdict"]) if document["verdict"] != "named" else "another name"
+    if said == "named":
+        (cause,) = answer.document["causes"]
+        tally.cover(wish, cause, without={OF_ITS_OWN.get(cause["effect"], "")})
 
 
 def left_over(case: Case | SurfaceCase, answer: Answer) -> float:
@@ -166,17 +127,6 @@ def left_over(case: Case | SurfaceCase, answer: Answer) -> float:
     read = case.held_readings[name]
     left, least = (np.mean(((read - values) / scale) ** 2) for values in (answer.predicted[name], true))
     return float(np.sqrt(left / least))
-
-
-def held(case: Case | SurfaceCase, cause: dict[str, Any], tally: Tally) -> None:
-    """Count which intervals hold the truth."""
-    for name, value in case.wish.hidden[cause["effect"]].items():
-        if name not in cause["unknowns"] or OF_ITS_OWN.get(cause["effect"]) == name:
-            continue
-        low, high = cause["unknowns"][name]["interval95"]
-        tally.covered.append((low is None or low <= value) and (high is None or value <= high))
-        if not tally.covered[-1]:
-            print(f"  {case.wish.seed} {case.wish.title}: {name} is {value:.4g}, not {low} to {high}", flush=True)
 
 
 # The catalogue
@@ -231,24 +181,14 @@ def asked(size: str, ratio: int, read: tuple[Array, Array]) -> tuple[dict[str, A
 
 def main() -> None:
     """Read the options and run."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--cases", type=int, default=40)
-    parser.add_argument("--seed", type=int, default=1000, help="the first seed")
-    parser.add_argument("--catalogue", action="store_true", help="ask for the drives of the catalogue instead")
-    options = parser.parse_args()
+    options = parsed(__doc__, 40, catalogue="ask for the drives of the catalogue instead")
     if options.catalogue:
         catalogue(options.seed)
         return
     tally = Tally()
     for seed in range(options.seed, options.seed + options.cases):
         judge(seed, tally)
-    print(f"nothing hidden: {tally.false_alarms} false alarms in {tally.nothing}")
-    print("something unregistered: " + ", ".join(f"{name} {many}" for name, many in tally.strange.most_common()))
-    told = ", ".join(f"{name} {many}" for name, many in tally.said.most_common())
-    print(f"one effect hidden: {sum(tally.said.values())}; {told}")
-    print(f"intervals that hold the truth: {sum(tally.covered)} of {len(tally.covered)}")
-    print(f"error on rows not fitted, over the truth: median {np.median(tally.left):.3f}, worst {max(tally.left):.2f}")
-    print(f"seconds: median {np.median(tally.seconds):.1f}, longest {max(tally.seconds):.1f}")
+    tally.tell()
 
 
 if __name__ == "__main__":

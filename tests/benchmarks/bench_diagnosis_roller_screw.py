@@ -7,13 +7,9 @@ or another name of its curve. Prints counts, the names of what went wrong, how o
 the error on rows that were not fitted over that of the truth itself.
 """
 
-import argparse
 import os
 import sys
-from collections import Counter
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
@@ -21,6 +17,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np  # noqa: E402
 
+from benchmarks.diagnosis_tally import Tally, asked_by  # noqa: E402
 from hidden_effects.noises import KINDS  # noqa: E402
 from hidden_effects.plugin_asking import Answer  # noqa: E402
 from hidden_effects.screw_asking import diagnosed  # noqa: E402
@@ -57,18 +54,6 @@ SHAPES = {"resonance_speed", "damping", "phase"}
 EVERY = (*STRESSES, ERROR, WEAR, AXIAL, TORQUE, BACKLASH)
 
 
-@dataclass
-class Tally:
-    """What was said, counted."""
-
-    nothing: int = 0
-    false_alarms: int = 0
-    said: Counter[str] = field(default_factory=Counter)
-    covered: list[bool] = field(default_factory=list)
-    left: list[float] = field(default_factory=list)
-    seconds: list[float] = field(default_factory=list)
-
-
 def wished(seed: int) -> Wish:
     """The case of a seed."""
     rng = np.random.default_rng([seed, 31])
@@ -86,37 +71,15 @@ def wished(seed: int) -> Wish:
     return Wish(seed=seed, hidden={name: sizes}, design=design, kind=kind, results=results)
 
 
-def judge(seed: int, tally: Tally) -> None:
-    """Ask one case, count what was said, and print it where it is not the truth alone."""
+def judge(_: int, seed: int, tally: Tally) -> None:
+    """Ask one case and count what was said."""
     case = make_case(wished(seed))
     answer = diagnosed(case)
-    document, tally.seconds = answer.document, [*tally.seconds, answer.seconds]
-    if not case.wish.hidden:
-        tally.nothing += 1
-        tally.false_alarms += document["verdict"] != "none"
-        said = "nothing" if document["verdict"] == "none" else "false alarm"
-    else:
-        said = verdict_on(document, next(iter(case.wish.hidden)))
-        tally.said[said] += 1
+    said = tally.count(case.wish, answer.document, answer.seconds)
+    if case.wish.hidden:
         tally.left.append(left_over(case, answer))
-        if said == "named":
-            held(case, document["causes"][0], tally)
-    if said not in {"nothing", "named", "same curve"}:
-        named = [cause["effect"] for cause in document["causes"]]
-        print(f"  {seed} {case.wish.title}: {said}: {named}", flush=True)
-
-
-def verdict_on(document: dict[str, Any], hidden: str) -> str:
-    """How near to the truth an answer is."""
-    causes = document["causes"]
-    named = [{cause["effect"], *cause["same_as"]} for cause in causes]
-    if len(named) == 1 and document["remainder"] is None and hidden in named[0]:
-        return "named" if causes[0]["effect"] == hidden else "same curve"
-    if any(hidden in names for names in named):
-        return "with something else"
-    if [hidden] in [other["causes"] for other in document["alternatives"]]:
-        return "alternative"
-    return str(document["verdict"]) if document["verdict"] != "named" else "another name"
+    if said == "named":
+        tally.cover(case.wish, answer.document["causes"][0])
 
 
 def left_over(case: Case, answer: Answer) -> float:
@@ -129,33 +92,5 @@ def left_over(case: Case, answer: Answer) -> float:
     )
 
 
-def held(case: Case, cause: dict[str, Any], tally: Tally) -> None:
-    """Count which intervals hold the truth."""
-    for name, value in case.wish.hidden[cause["effect"]].items():
-        if name not in cause["unknowns"]:
-            continue
-        low, high = cause["unknowns"][name]["interval95"]
-        tally.covered.append((low is None or low <= value) and (high is None or value <= high))
-        if not tally.covered[-1]:
-            print(f"  {case.wish.seed} {case.wish.title}: {name} is {value:.4g}, not {low} to {high}", flush=True)
-
-
-def main() -> None:
-    """Read the options and run."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--cases", type=int, default=32)
-    parser.add_argument("--seed", type=int, default=1000, help="the first seed")
-    options = parser.parse_args()
-    tally = Tally()
-    for seed in range(options.seed, options.seed + options.cases):
-        judge(seed, tally)
-    print(f"nothing hidden: {tally.false_alarms} false alarms in {tally.nothing}")
-    told = ", ".join(f"{name} {many}" for name, many in tally.said.most_common())
-    print(f"one effect hidden: {sum(tally.said.values())}; {told}")
-    print(f"intervals that hold the truth: {sum(tally.covered)} of {len(tally.covered)}")
-    print(f"error on rows not fitted, over the truth: median {np.median(tally.left):.3f}, worst {max(tally.left):.2f}")
-    print(f"seconds: median {np.median(tally.seconds):.1f}, longest {max(tally.seconds):.1f}")
-
-
 if __name__ == "__main__":
-    main()
+    asked_by(__doc__, 32, judge)
