@@ -37,6 +37,9 @@ def run(
         bool, typer.Option("--resume", help="Keep finished batches, and take up those of an interrupted run.")
     ] = False,
     pdf: Annotated[bool, typer.Option("--pdf", help="Print the sheet to PDF with an installed browser.")] = False,
+    excel: Annotated[
+        bool, typer.Option("--excel", help="Add results.csv for a spreadsheet with a decimal comma.")
+    ] = False,
     as_json: AsJson = False,
 ) -> int:
     """Run the calculation and its studies and write the calculation sheet."""
@@ -49,7 +52,7 @@ def run(
     offer = find_offer(plugin, settings)
     setup = read_or_example(offer, inputs, changed or (), word=plugin, settings=settings)
     folder = output or Path("runs") / (inputs.stem if inputs else offer.name)
-    order = RunOrder(folder, cases, workers=workers or 1, cluster=cluster, resume=resume, pdf=pdf)
+    order = RunOrder(folder, cases, workers=workers or 1, cluster=cluster, resume=resume, pdf=pdf, excel=excel)
     with progress_bar(settings) as progress, told_by_line(setup), _told_what_is_kept(order, settings):
         done = perform(setup, offer, order, progress)
     _say_beside(done, settings)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from io import StringIO
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,7 +11,7 @@ import typer
 from truing.cli.console import Settings, out, say, settings_of, verb
 from truing.cli.load import find_offer
 from truing.cli.words import Changed, OutputFile, Plugin
-from truing.errors import OutputError
+from truing.errors import OutputError, UsageError
 
 if TYPE_CHECKING:
     from truing.measurements import RowsFile
@@ -26,14 +26,19 @@ def table(
     rows: Annotated[Path, typer.Option("--rows", help="A CSV file; columns replace inputs and conditions row by row.")],
     output: OutputFile = None,
     changed: Changed = None,
+    excel: Annotated[
+        bool, typer.Option("--excel", help="Write the file for a spreadsheet with a decimal comma (needs -o).")
+    ] = False,
 ) -> int:
     """Print what the gauge would show at every row: the file's columns, then the results, units in the header."""
     from truing.gauge import shown_by_gauge
     from truing.inputs_file import read_setup
     from truing.inputs_file.culprit import told_by_line
-    from truing.measurements import read_rows, write_table
+    from truing.measurements import EXCEL, PLAIN, read_rows, table_text, write_table
 
     settings = settings_of(context)
+    if excel and output is None:
+        raise UsageError("--excel writes a file for a spreadsheet; name it with -o")
     _demand_new(output, inputs, rows)
     offer = find_offer(plugin, settings)
     setup = read_setup(inputs, offer, overrides=changed or ())
@@ -41,12 +46,14 @@ def table(
     _say_unused(read, setup, settings)
     with told_by_line(setup):
         shown = shown_by_gauge(setup, read)
-    kept = {text: cells for text, cells in read.cells.items() if text.partition("[")[0].strip() not in shown.values}
+    kept = {text: cells for text, cells in read.cells.items() if _name(text) not in shown.values}
     headers = [*kept, *(f"{name} [{shown.units[name] or '1'}]" for name in shown.values)]
-    text = StringIO()
-    write_table(output or text, headers, [*kept.values(), *shown.values.values()])
+    cells = [_with_commas(text, column, setup) if excel else column for text, column in kept.items()]
+    columns = [*cells, *shown.values.values()]
     if output is None:
-        out(text.getvalue().removesuffix("\n"))
+        out(table_text(headers, columns).removesuffix("\n"))
+    else:
+        write_table(output, headers, columns, form=EXCEL if excel else PLAIN)
     for row, reason in shown.reasons.items():
         say(f"{rows}:{read.lines[row]}: {reason}")
     if output is not None:
@@ -59,6 +66,21 @@ def _demand_new(output: Path | None, *read: Path) -> None:
     for path in read:
         if output is not None and output.exists() and path.exists() and output.samefile(path):
             raise OutputError(f"{output} is read by this command; name another file for the output")
+
+
+def _name(header: str) -> str:
+    """Return the name in a header as written."""
+    return header.partition("[")[0].strip()
+
+
+def _with_commas(header: str, cells: Sequence[str], setup: Setup) -> Sequence[str]:
+    """Return a column as written, its numbers with decimal commas; names of runs and words are no numbers."""
+    from truing.measurements.cell_text import with_comma
+    from truing.measurements.overriding import NAMES, REMARKS
+
+    item = setup.model.input_fields.get(_name(header))
+    is_word = item.kind in {"choice", "text"} if item is not None else _name(header) in {"run", *NAMES, *REMARKS}
+    return cells if is_word else with_comma(cells)
 
 
 def _say_unused(read: RowsFile, setup: Setup, settings: Settings) -> None:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from truing.measurements.overriding import Case, RowsFile, read_cases, read_rows
 from truing.measurements.table import DataTable, read_table
-from truing.measurements.writing import write_table
+from truing.measurements.writing import EXCEL, PLAIN, Form, table_text, write_table
 
-__all__ = ["Case", "DataTable", "RowsFile", "read_cases", "read_rows", "read_table", "write_table"]
+__all__ = [
+    "EXCEL", "PLAIN", "Case", "DataTable", "Form", "RowsFile", "read_cases", "read_rows", "read_table", "table_text",
+    "write_table",
+]  # fmt: skip

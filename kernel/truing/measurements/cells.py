@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from truing.errors import UnitError
+from truing.measurements.cell_text import MISSING_WORDS, NUMBER
 from truing.measurements.csv_text import Faults, Header
 from truing.units.grammar import shown
 from truing.units.names import PURE
@@ -16,9 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-_NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
 _COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?|(?=[eE]|$))(?:[eE][+-]?\d+)?")
-_MISSING_WORDS = {"nan", "na", "n/a", "#n/a", "null", "none", "-"}
 _INFINITE = re.compile(r"[+-]?(?:inf|infinity|∞)", re.IGNORECASE)
 
 
@@ -29,12 +28,12 @@ def read_cell(text: str, *, decimal_comma: bool, may_be_missing_word: bool = Fal
         return math.nan
     if decimal_comma and "," in cell and _COMMA.fullmatch(cell):
         cell = cell.replace(",", ".")
-    if _NUMBER.fullmatch(cell):
+    if NUMBER.fullmatch(cell):
         value = float(cell)
         if math.isfinite(value):
             return value
         raise ValueError(f"{shown(text)} is too large for a number")
-    if cell.lower() in _MISSING_WORDS:
+    if cell.lower() in MISSING_WORDS:
         if may_be_missing_word:
             return math.nan
         raise ValueError(f"{shown(text)} is no number; leave the cell empty where a value is missing")
@@ -48,7 +47,7 @@ def _wrong(cell: str) -> str:
         return f"{shown(cell)} has a decimal comma; put semicolons between the columns, or write a point"
     if re.fullmatch(r"[+-]?\d{1,3}(?:[.,' ]\d{3})+(?:[.,]\d+)?", cell):
         return f"{shown(cell)} has marks between the thousands; write the digits alone"
-    if re.fullmatch(_NUMBER.pattern + r"\s*[^\d\s,;.]+.*", cell):
+    if re.fullmatch(NUMBER.pattern + r"\s*[^\d\s,;.]+.*", cell):
         return f"{shown(cell)} holds more than a number; the unit stands in the header, as in 'load [N]'"
     return f"{shown(cell)} is no number"
 

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import TextIO
 
 from truing.errors import Fault, InputError
 from truing.inputs_file.files import refuse_file
+from truing.measurements.cell_text import MARK, all_unguarded
 from truing.units.grammar import shown
 
 LARGEST_TABLE = 512_000_000
@@ -111,7 +113,7 @@ def opened(path: Path) -> Iterator[CsvFile]:
     instead = "the first line of a table holds the names, with units such as 'load [N]'"
     refuse_file(path, largest=LARGEST_TABLE, instead=instead, is_table=True)
     try:
-        with path.open(encoding="utf-8-sig", newline="") as stream:
+        with path.open(encoding="utf-8", newline="") as stream:
             yield _table(path, stream, instead)
     except UnicodeDecodeError:
         raise InputError([Fault("is not UTF-8 text; save it as CSV UTF-8", str(path), _foreign_line(path))]) from None
@@ -132,7 +134,8 @@ def _foreign_line(path: Path) -> int:
 
 def _table(path: Path, stream: TextIO, instead: str) -> CsvFile:
     faults = Faults(str(path))
-    lines = _without_comments(stream)
+    beginning = stream.readline()
+    lines = _without_comments(chain([beginning.removeprefix(MARK)], stream))
     position, first = 0, ""
     for first in lines:
         position += 1
@@ -142,11 +145,13 @@ def _table(path: Path, stream: TextIO, instead: str) -> CsvFile:
         raise InputError([Fault(f"is empty; {instead}", str(path), 1)])
     delimiter = _delimiter(first)
     rows = _rows(first, lines, position, delimiter, faults)
+    if delimiter == ";" and beginning.startswith(MARK):
+        rows = ((all_unguarded(row), line) for row, line in rows)
     header, line = next(rows, ([], position))
     return CsvFile(faults, _headers(header, line, faults), line, delimiter != ",", rows)
 
 
-def _without_comments(stream: TextIO) -> Iterator[str]:
+def _without_comments(stream: Iterable[str]) -> Iterator[str]:
     for line in stream:
         yield "\n" if line.lstrip().startswith("#") else line
 

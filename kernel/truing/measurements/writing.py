@@ -6,21 +6,42 @@ import csv
 import math
 import os
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path
 from typing import Any, TextIO
 
 from truing.errors import OutputError
+from truing.measurements.cell_text import MARK, guarded
 
 
-def write_table(target: Path | TextIO, headers: Sequence[str], columns: Sequence[Iterable[Any]]) -> None:
+@dataclass(frozen=True)
+class Form:
+    """How a table is written: the mark before it, what parts cells and lines, and the decimal mark."""
+
+    mark: str = ""
+    delimiter: str = ","
+    decimal: str = "."
+    line_end: str = "\n"
+    is_guarded: bool = False
+
+
+PLAIN = Form()
+EXCEL = Form(MARK, ";", ",", "\r\n", is_guarded=True)
+"""What a spreadsheet with a decimal comma opens by a double click."""
+
+
+def write_table(
+    target: Path | TextIO, headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form: Form = PLAIN
+) -> None:
     """Write columns under headers such as "depth [um]"; the numbers are in these units already.
 
-    Numbers are written so that they read back exactly (at most 17 digits), NaN and None as empty cells. A path is
-    written atomically. Raises OutputError where it cannot be written.
+    Numbers are written so that they read back exactly (at most 17 digits), NaN and None as empty cells; words stay as
+    they are. A path is written atomically. Raises OutputError where it cannot be written.
     """
     if not isinstance(target, Path):
-        _write(target, headers, columns)
+        _write(target, headers, columns, form)
         return
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -29,7 +50,7 @@ def write_table(target: Path | TextIO, headers: Sequence[str], columns: Sequence
         raise OutputError(f"{target}: cannot be written: {error.strerror or error}") from error
     try:
         with os.fdopen(handle, "w", encoding="utf-8", newline="") as stream:
-            _write(stream, headers, columns)
+            _write(stream, headers, columns, form)
         Path(name).chmod(0o666 & ~umask())
         Path(name).replace(target)
     except OSError as error:
@@ -47,13 +68,31 @@ def umask() -> int:
     return mask
 
 
-def _write(stream: TextIO, headers: Sequence[str], columns: Sequence[Iterable[Any]]) -> None:
+def table_text(headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form: Form = PLAIN) -> str:
+    """Return a table as the text of its file."""
+    stream = StringIO(newline="")
+    _write(stream, headers, columns, form)
+    return stream.getvalue()
+
+
+def _write(stream: TextIO, headers: Sequence[str], columns: Sequence[Iterable[Any]], form: Form) -> None:
     if len(headers) != len(columns):
         raise ValueError(f"{len(headers)} headers for {len(columns)} columns")
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(headers)
+    stream.write(form.mark)
+    minimal, everything = (
+        csv.writer(stream, delimiter=form.delimiter, lineterminator=form.line_end, quoting=quoting)
+        for quoting in (csv.QUOTE_MINIMAL, csv.QUOTE_ALL)
+    )
+    alone = [""] if form.delimiter != "," and len(headers) == 1 else []
+    for row in _rows(headers, columns, form):
+        # a line that begins with # would be a comment; a column alone must show what parts the cells
+        (everything if row and row[0].startswith("#") else minimal).writerow(row + alone)
+
+
+def _rows(headers: Sequence[str], columns: Sequence[Iterable[Any]], form: Form) -> Iterator[list[str]]:
+    yield [_cell(header, form) for header in headers]
     for row in zip(*(_plain(column) for column in columns), strict=True):
-        writer.writerow([_cell(value) for value in row])
+        yield [_cell(value, form) for value in row]
 
 
 def _plain(column: Any) -> Iterable[Any]:
@@ -62,11 +101,13 @@ def _plain(column: Any) -> Iterable[Any]:
     return plain
 
 
-def _cell(value: Any) -> str:
+def _cell(value: Any, form: Form) -> str:
     if value is None:
         return ""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, float):
-        return repr(value) if math.isfinite(value) else "" if math.isnan(value) else str(value)
-    return str(value)
+        text = repr(value) if math.isfinite(value) else "" if math.isnan(value) else str(value)
+        return text if form.decimal == "." else text.replace(".", form.decimal)
+    text = str(value)
+    return guarded(text) if form.is_guarded and isinstance(value, str) else text

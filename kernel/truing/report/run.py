@@ -37,6 +37,7 @@ class RunOrder:
     cluster: str = ""
     resume: bool = False
     pdf: bool = False
+    excel: bool = False
 
     @property
     def place(self) -> str:
@@ -99,6 +100,7 @@ def _perform(setup: Setup, offer: Offer, order: RunOrder, *, progress: Progress,
         run_info={**run_info(started), **computed},
         sheets=sheets,
         cases=cases,
+        excel=order.excel,
     )
     return Done(calculation, document, cases, note, tuple(computed["warnings"]), computed["resumed"])
 

@@ -17,6 +17,7 @@ from truing.errors import OutputError, UnknownPluginError
 from truing.measurements.writing import umask
 from truing.runs.documents import SCHEMA, large_arrays, results_document
 from truing.runs.inputs_written import complete_inputs
+from truing.runs.spreadsheet import spreadsheets
 from truing.runs.study_files import study_files
 
 if TYPE_CHECKING:
@@ -49,13 +50,14 @@ def write_run(
     sheets: Mapping[str, str | bytes],
     cases: CasesTable | None = None,
     arrays: Mapping[str, Any] | None = None,
+    excel: bool = False,
 ) -> dict[str, Any]:
     """Write a run folder and return results.json as data.
 
     ``sheets`` holds files by name ("sheet.html", "sheet.md", "sheet.pdf"), ``run_info`` what run.json says of this one
-    run (date, duration, machine, workers), ``arrays`` further arrays for arrays.npz. Files of studies stand beside
-    them. A folder that is there already is replaced whole if it is a run of ours. Raises OutputError where it is not,
-    or where nothing can be written.
+    run (date, duration, machine, workers), ``arrays`` further arrays for arrays.npz; ``excel`` adds tables for a
+    spreadsheet. Files of studies stand beside them. A folder that is there already is replaced whole if it is a run of
+    ours. Raises OutputError where it is not, or where nothing can be written.
     """
     document = results_document(calculation, provenance, cases=cases)
     versions = {"truing": provenance.kernel, "python": provenance.python, **provenance.packages}
@@ -66,6 +68,7 @@ def write_run(
         "results.json": json_text(document),
         "run.json": json_text(run),
         **sheets,
+        **(spreadsheets(document, calculation.setup.model) if excel else {}),
     }
     large = {**large_arrays(calculation), **(arrays or {})}
     if large:
@@ -199,13 +202,25 @@ def _put_in_place(part: Path, target: Path) -> None:
 
 def load_run(folder: Path) -> dict[str, Any]:
     """Return results.json of a run folder; raises UnknownPluginError where there is no such run."""
-    path = folder if folder.name == "results.json" else folder / "results.json"
+    return _loaded(folder, "run")
+
+
+def load_either(folder: Path) -> dict[str, Any]:
+    """Return results.json of a run folder or diagnosis.json of a diagnosis; raises UnknownPluginError for others."""
+    name = DOCUMENTS["diagnosis"][0]
+    return _loaded(folder, "diagnosis" if folder.name == name or (folder / name).is_file() else "run")
+
+
+def _loaded(folder: Path, kind: Kind) -> dict[str, Any]:
+    name, schema = DOCUMENTS[kind]
+    path = folder if folder.name == name else folder / name
     if not path.is_file():
-        raise UnknownPluginError(f"{folder}: no run folder, it holds no results.json")
+        raise UnknownPluginError(f"{folder}: no {kind} folder, it holds no {name}")
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise UnknownPluginError(f"{path}: cannot be read: {error}") from None
-    if not isinstance(document, dict) or document.get("schema") != SCHEMA:
-        raise UnknownPluginError(f"{path}: is no {SCHEMA} document; name a folder that calc run has written")
+    if not isinstance(document, dict) or document.get("schema") != schema:
+        verb = "run" if kind == "run" else "diagnose"
+        raise UnknownPluginError(f"{path}: is no {schema} document; name a folder that calc {verb} has written")
     return document

@@ -36,5 +36,8 @@ def study_files(outcomes: Mapping[str, Outcome], taken: Mapping[str, str | bytes
     return found
 
 
-KEPT = ("inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md", "sheet.pdf", "arrays.npz")
+KEPT = (
+    "inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md", "sheet.pdf", "arrays.npz", "results.csv",
+    "cases.csv",
+)  # fmt: skip
 """Names that a run folder uses itself, or may use."""

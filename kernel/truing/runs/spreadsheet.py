@@ -1,0 +1,119 @@
+"""The numbers of a run as tables that a spreadsheet with a decimal comma opens by a double click."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from truing.measurements import EXCEL, table_text
+
+if TYPE_CHECKING:
+    from truing.declare.model import Model
+
+HEADERS = ("part", "name", "place", "value", "unit", "limit", "margin", "verdict", "note")
+Row = dict[str, Any]
+
+
+def spreadsheets(document: Mapping[str, Any], model: Model[Any, Any]) -> dict[str, str]:
+    """Return results.csv, every number of results.json with its unit, and cases.csv where there are cases."""
+    rows = [*_single(document, model), *_spread_out(document, model)]
+    found = {"results.csv": table_text(HEADERS, [[row.get(name) for row in rows] for name in HEADERS], form=EXCEL)}
+    if "cases" in document:
+        found["cases.csv"] = _cases(document["cases"])
+    return found
+
+
+def _single(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[Row]:
+    """Give what is one number, or one word: results, checks, inputs, and what acts on them."""
+    yield from _named("result", document["results"], _notes(model))
+    for check in document["checks"]:
+        verdict = "pass" if check["passed"] else "FAILS"
+        said = {name: check[name] for name in ("name", "value", "unit", "limit", "margin")}
+        yield {"part": "check", **said, "verdict": verdict}
+    yield from _named("input", document["inputs"], _notes(model))
+    for name, tolerance in document["tolerances"].items():
+        for target, item in tolerance["on"].items():
+            for part in ("mean", "sd"):
+                said = {"name": target, "place": part, "value": item[part], "unit": item["unit"]}
+                yield {"part": "tolerance", **said, "note": f"{name}: {tolerance['spread']}"}
+    yield from _named("condition", document["conditions"], {})
+    for name, unknowns in document["effects"].items():
+        for unknown, item in unknowns.items():
+            said = {"part": "effect", "name": f"{name}.{unknown}", "unit": item["unit"]}
+            yield {**said, "value": item["value"]}
+            if "sd" in item:
+                yield {**said, "place": "sd", "value": item["sd"]}
+    yield {"part": "run", "name": "seed", "value": document["seed"]}
+
+
+def _notes(model: Model[Any, Any]) -> dict[str, str]:
+    from truing.formulas.symbols import printable
+
+    return {name: printable(item.spec.note) for name, item in (model.input_fields | model.result_fields).items()}
+
+
+def _named(part: str, items: Mapping[str, Any], notes: Mapping[str, str]) -> Iterator[Row]:
+    for name, item in items.items():
+        if not isinstance(item["value"], (list, dict)):
+            note = f"in arrays.npz: {item['array']}" if "array" in item else notes.get(name, "")
+            yield {"part": part, "name": name, "value": item["value"], "unit": item["unit"], "note": note}
+
+
+def _spread_out(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[Row]:
+    """Give what has many numbers, one a row: results and inputs along an axis, and what the studies say."""
+    for part in ("result", "input"):
+        for name, item in document[f"{part}s"].items():
+            if isinstance(item["value"], (list, dict)):
+                for place, value in _leaves(item["value"]):
+                    yield {"part": part, "name": name, "place": place, "value": value, "unit": item["unit"]}
+    for name, outcome in document["studies"].items():
+        for place, value in _leaves(outcome):
+            yield {"part": "study", "name": name, "place": place, "value": value}
+
+
+def _leaves(value: Any, place: str = "") -> Iterator[tuple[str, Any]]:
+    """Give every number, word and truth in a document with the way to it; places in a list begin with 1."""
+    if isinstance(value, Mapping):
+        for key, one in value.items():
+            yield from _leaves(one, f"{place}.{key}" if place else str(key))
+    elif isinstance(value, list):
+        for number, one in enumerate(value, start=1):
+            yield from _leaves(one, f"{place}[{number}]")
+    else:
+        yield place, value
+
+
+def _cases(cases: Sequence[Mapping[str, Any]]) -> str:
+    """Return the cases, one a row: what they change and what they answer, units in the header."""
+    columns: dict[str, list[Any]] = {"case": [], "row": []}
+    for place, case in enumerate(cases):
+        found = {
+            "case": case["name"],
+            "row": case["row"],
+            **_with_units(case["values"]),
+            **_with_units(case["results"]),
+        }
+        if case["checks"]:
+            found["margin [1]"] = min((check["margin"] for check in case["checks"]), key=_order)
+        found["verdict"] = _verdict(case)
+        for header in {**columns, **found}:
+            columns.setdefault(header, [None] * place).append(found.get(header))
+    return table_text(list(columns), list(columns.values()), form=EXCEL)
+
+
+def _with_units(items: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values under headers with their units; words have none."""
+    words = {name for name, item in items.items() if isinstance(item["value"], (str, bool))}
+    headers = {name: name if name in words else f"{name} [{item['unit'] or '1'}]" for name, item in items.items()}
+    return {headers[name]: item["value"] for name, item in items.items()}
+
+
+def _order(margin: float | None) -> float:
+    return float("-inf") if margin is None else margin
+
+
+def _verdict(case: Mapping[str, Any]) -> str:
+    if case["failed"]:
+        return f"failed: {case['failed']}"
+    verdict = "pass" if all(check["passed"] for check in case["checks"]) else "FAILS"
+    return f"{verdict}, governing" if case["governing"] else verdict
