@@ -1,0 +1,47 @@
+"""Formulas of a page become MathML when the site is built: no script, no font, nothing to wait for."""
+
+from __future__ import annotations
+
+import html
+import logging
+import re
+from functools import lru_cache
+
+from latex2mathml.converter import convert
+
+_FORMULA = re.compile(
+    r'<(?P<tag>span|div) class="arithmatex">\\(?P<open>[\[(])(?P<latex>.*?)\\[\])]</(?P=tag)>', re.DOTALL
+)
+_TAG = re.compile(r"\\tag\{([^}]*)\}")
+_BRACE = re.compile(r"(?<=>)\\([{}])(?=</mo>)")
+"""A sized brace, of which latex2mathml leaves the backslash."""
+_UNREAD = re.compile(r"\\|>&<")
+_log = logging.getLogger("mkdocs.manual")
+
+
+def with_mathml(text: str, page: str) -> str:
+    """Set every formula of a page's HTML; a warning, which a strict build does not forgive, where one cannot be."""
+
+    def written(item: re.Match[str]) -> str:
+        latex = html.unescape(item["latex"]).strip()
+        display = item["open"] == "["
+        try:
+            made = mathml(latex, display)
+        except Exception as error:
+            _log.warning("%s: the formula %s cannot be set: %r", page, latex, error)
+            return html.escape(latex)
+        if _UNREAD.search(re.sub(r'alttext="[^"]*"', "", made)):
+            _log.warning("%s: the formula %s has a word that is not known", page, latex)
+        return f'<div class="formula" tabindex="0">{made}</div>' if display else made
+
+    return _FORMULA.sub(written, text)
+
+
+@lru_cache(maxsize=4096)
+def mathml(latex: str, display: bool) -> str:
+    """Return LaTeX as MathML, with the LaTeX as its words for those who cannot see it; a tag stands beside it."""
+    bare = _TAG.sub("", latex)
+    readable = bare.replace("{aligned}", "{align*}")  # the one of the two that latex2mathml knows
+    made: str = _BRACE.sub(r"\1", convert(readable, display="block" if display else "inline"))
+    tag = "".join(f'<span class="tag">({number})</span>' for number in _TAG.findall(latex))
+    return made.replace("<math ", f'<math alttext="{html.escape(bare.strip())}" ', 1) + tag
