@@ -2,24 +2,37 @@
 
 from __future__ import annotations
 
+import io
 import json
+import re
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from shared import Calc
+from truing.cli.changes import amount_of
 from truing.runs.comparison import Change, changes, differing
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 
 
-@pytest.fixture
-def runs(calc: Calc) -> Calc:
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make three runs: two alike, and one with another load."""
+    from truing.cli import main
+
+    folder = tmp_path_factory.mktemp("runs")
     for name, more in (("first", ()), ("again", ()), ("heavy", ("--set", "load=2300 N"))):
-        answer = calc("run", PIN, "-q", "-o", name, *more)
-        assert answer.code in {0, 1}
-    return calc
+        assert main(["run", str(PIN), "-q", "-o", str(folder / name), *more]) in {0, 1}
+    return folder
+
+
+@pytest.fixture
+def runs(calc: Calc, made: Path) -> Calc:
+    """Run ``calc`` where these runs are."""
+    return partial(calc, cwd=made)
 
 
 def test_equal_runs(runs: Calc) -> None:
@@ -32,11 +45,20 @@ def test_different_runs(runs: Calc) -> None:
     answer = runs("compare", "first", "heavy")
     assert (answer.code, answer.err) == (1, "")
     lines = [" ".join(line.split()) for line in answer.out.split("\n")]
-    assert lines[0] == "what name first heavy"
-    assert "inputs load 120 N 2300 N" in lines
-    assert "results pressure 4.2857143 MPa 82.142857 MPa" in lines
+    assert lines[0] == "what name first heavy change"
+    assert "inputs load 120 N 2300 N x 19.2" in lines
+    assert "tolerances load sd 3 % sd 3 % sd x 19.2" in lines
+    assert "results pressure 4.2857143 MPa 82.142857 MPa x 19.2" in lines
     assert not any(line.startswith("results distance") for line in lines)
-    assert any(line.startswith("checks pressure 1 ") and line.endswith("(fails)") for line in lines)
+
+
+def test_a_check_that_flipped_stands_above_all_others(runs: Calc) -> None:
+    there = runs("compare", "first", "heavy").out.split("\n")[1]
+    assert there.split()[:3] == ["checks", "pressure", "1"]
+    assert "(fails)" in there
+    assert "now FAILS, -80" in there
+    back = runs("compare", "heavy", "first").out.split("\n")[1]
+    assert "now passes, +4" in back
 
 
 def test_different_runs_as_json(runs: Calc) -> None:
@@ -58,9 +80,9 @@ def test_what_is_no_run_is_refused(runs: Calc, tmp_path: Path, content: str | No
     (tmp_path / "other").mkdir()
     if content is not None:
         (tmp_path / "other/results.json").write_text(content)
-    answer = runs("compare", "first", "other")
+    answer = runs("compare", "first", tmp_path / "other")
     assert (answer.code, answer.out) == (2, "")
-    assert answer.err.startswith("calc: other")
+    assert answer.err.startswith(f"calc: {tmp_path / 'other'}")
     assert answer.err.count("\n") == 1
 
 
@@ -96,7 +118,108 @@ def test_tolerances_effects_and_studies_in_words(calc: Calc, tmp_path: Path) -> 
     calc("run", PIN, "-q", "-o", "warm", "--inputs", "warm.toml")
     lines = [" ".join(line.split()) for line in calc("compare", "cold", "warm").out.split("\n")]
     assert "tolerances load sd 3 % sd 1 %" in lines
-    assert "effects warm_probe - slope = 1 um/K" in lines
+    assert "effects warm_probe - slope = 1 um/K new" in lines
     assert any(
         line.startswith("studies reliability ") and line.endswith("values differ (see results.json)") for line in lines
     )
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        ({"value": 8.0, "unit": "mm"}, {"value": 9.0, "unit": "mm"}, "+12.5 %"),
+        ({"value": 8.0, "unit": "mm"}, {"value": 7.0, "unit": "mm"}, "-12.5 %"),
+        ({"value": -1.0, "unit": "mm"}, {"value": -1.5, "unit": "mm"}, "+50 %"),
+        ({"value": 0.0, "unit": "mm"}, {"value": -1.5, "unit": "mm"}, "-1.5 mm"),
+        ({"value": 20.0, "unit": "degC"}, {"value": 25.0, "unit": "degC"}, "+5 K"),
+        ({"value": 1.0, "unit": "mm"}, {"value": 0.25, "unit": "m"}, "in another unit"),
+        ({"value": 2.0, "unit": ""}, {"value": 80.0, "unit": ""}, "x 40"),
+        ({"value": 9, "unit": ""}, {"value": 8, "unit": ""}, "-1"),
+        ({"value": 1.0, "unit": ""}, {"value": 1.0 + 1e-11, "unit": ""}, "below 1e-09 of it"),
+        ({"value": "printed", "unit": ""}, {"value": "physical", "unit": ""}, ""),
+        ({"value": True, "unit": ""}, {"value": False, "unit": ""}, ""),
+        (None, {"value": 1.0, "unit": ""}, "new"),
+        ({"value": 1.0, "unit": ""}, None, "gone"),
+        ({"value": [1.0, 2.0], "unit": ""}, {"value": [1.0, 3.0], "unit": ""}, "1 of 2 values differ"),
+    ],
+)
+def test_by_how_much(before: Any, after: Any, words: str) -> None:
+    assert amount_of(Change("inputs", "x", before, after)) == words
+
+
+def test_a_limit_that_moved_is_said() -> None:
+    check = {"value": 5.0, "limit": 8.0, "unit": "mm", "margin": 0.375, "passed": True}
+    change = Change("checks", "depth", check, {**check, "limit": 6.0, "margin": 1 / 6})
+    assert amount_of(change) == "limit 8 -> 6"
+
+
+class Terminal(io.StringIO):
+    """A terminal that keeps what it is shown."""
+
+    def isatty(self) -> bool:
+        """It is one."""
+        return True
+
+
+def shown(monkeypatch: pytest.MonkeyPatch, **environment: str) -> str:
+    """What a terminal of 120 columns shows of the first run beside the heavy one."""
+    from truing.cli import main
+
+    screen = Terminal()
+    for name in ("NO_COLOR", "FORCE_COLOR", "TERM", "COLORTERM"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in {"COLUMNS": "120", "TERM": "xterm", **environment}.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr("sys.stdout", screen)
+    assert main(["compare", "first", "heavy"]) == 1
+    return screen.getvalue()
+
+
+def test_colour_on_a_terminal_repeats_the_words(runs: Calc, monkeypatch: pytest.MonkeyPatch) -> None:
+    plain = runs("compare", "first", "heavy").out
+    coloured = shown(monkeypatch)
+    flip = next(line for line in coloured.split("\n") if "now FAILS" in line)
+    assert "\x1b[1;31m" in flip
+    assert re.sub(r"\x1b\[[\d;]*m", "", coloured) == plain
+
+
+@pytest.mark.parametrize("environment", [{"NO_COLOR": "1"}, {"TERM": "dumb"}])
+def test_no_colour_where_none_is_wanted(
+    runs: Calc, monkeypatch: pytest.MonkeyPatch, environment: dict[str, str]
+) -> None:
+    plain = runs("compare", "first", "heavy").out
+    assert shown(monkeypatch, **environment) == plain
+
+
+def diagnosed(folder: Path, document: dict[str, Any]) -> Path:
+    folder.mkdir()
+    whole = {"schema": "truing.diagnosis/1", "plugin": {}, "kernel": "1", "seed": 0, "verdict": "none", **document}
+    (folder / "diagnosis.json").write_text(json.dumps(whole), encoding="utf-8")
+    return folder
+
+
+def cause(value: float) -> dict[str, Any]:
+    fitted = {"value": value, "unit": "um", "interval95": [5.9, 6.1]}
+    return {"effect": "play", "unknowns": {"clearance": fitted}, "same_as": [], "share": 1.0}
+
+
+def test_two_diagnoses(calc: Calc, tmp_path: Path) -> None:
+    diagnosed(tmp_path / "calm", {})
+    diagnosed(tmp_path / "found", {"verdict": "named", "unique": True, "causes": [cause(6.0)]})
+    diagnosed(tmp_path / "moved", {"verdict": "named", "unique": True, "causes": [cause(6.06)]})
+    lines = [" ".join(line.split()) for line in calc("compare", "calm", "found").out.split("\n")]
+    assert lines[1] == "verdict verdict none named"
+    assert "causes play - named new" in lines
+    assert "causes play.clearance - 6 um new" in lines
+    answer = calc("compare", "found", "moved")
+    assert (answer.code, answer.err) == (1, "")
+    (line,) = [" ".join(line.split()) for line in answer.out.split("\n")[1:-1]]
+    assert line == "causes play.clearance 6 um 6.06 um +1 %, within its interval"
+    assert calc("compare", "found", "found").out == "equal\n"
+
+
+def test_a_run_beside_a_diagnosis_is_refused(runs: Calc, tmp_path: Path) -> None:
+    diagnosed(tmp_path / "calm", {})
+    answer = runs("compare", "first", tmp_path / "calm")
+    assert (answer.code, answer.out) == (2, "")
+    assert answer.err == "calc: the first is a run and the second a diagnosis; compare two of one kind\n"
