@@ -1,103 +1,58 @@
-"""The conformance kit: what every calculation must keep, ours and strangers'.
+"""What the author of a plugin tests with: every promise of a calculation, and whether its effects can be found.
 
 In a test file of your plugin::
 
     from my_plugin import MY_MODEL
-    from truing.testing import conformance
+    from truing.testing import assert_finds, conformance, hide
 
     test_my_model = conformance(MY_MODEL)
 
-Each check is one test; a check that fails says in one sentence what to change. Needs pytest (``truing[testing]``).
+    def test_settling_is_found() -> None:
+        assert_finds(hide("settling", "4 um", noise="0.1 kN", model=MY_MODEL, over={"torque": "60..110 N*m"}))
+
+    def test_it_runs(calc) -> None:
+        assert calc("run", "my_plugin").code == 0
+
+Needs pytest (``truing[testing]``), which then knows the fixtures of ``truing.testing.fixtures`` by itself.
 """
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from truing.declare.model import Model
-from truing.testing import declared, formulas, running, sources
-from truing.testing.subject import Subject
+if TYPE_CHECKING:
+    from truing.testing.finding import assert_finds, assert_finds_nothing, finds_every_effect
+    from truing.testing.fixtures import Answer, Calc
+    from truing.testing.hidden import Answered, Hidden, recorded
+    from truing.testing.hiding import hide
+    from truing.testing.kit import CHECKS, ConformanceCheck, conformance, failures
 
-__all__ = ["CHECKS", "ConformanceCheck", "conformance", "failures"]
+_HOMES = {
+    "truing.testing.finding": ("assert_finds", "assert_finds_nothing", "finds_every_effect"),
+    "truing.testing.fixtures": ("Answer", "Calc"),
+    "truing.testing.hidden": ("Answered", "Hidden", "recorded"),
+    "truing.testing.hiding": ("hide",),
+    "truing.testing.kit": ("CHECKS", "ConformanceCheck", "conformance", "failures"),
+}
+_HOME = {name: module for module, names in _HOMES.items() for name in names}
 
-
-@dataclass(frozen=True)
-class ConformanceCheck:
-    """One promise of every model: ``run`` raises AssertionError with a sentence where it is broken."""
-
-    name: str
-    run: Callable[[Subject], None]
-    needs_run: bool = True
-
-    @property
-    def promise(self) -> str:
-        """What is checked, in a sentence."""
-        return (self.run.__doc__ or "").partition("\n")[0]
-
-
-def _report_order(subject: Subject) -> None:
-    """Pairs of effects that do not commute within 1 % are named, as a warning."""
-    for sentence in sources.order_matters(subject):
-        warnings.warn(f"{subject.model.name}: effects {sentence}; they act in the order of declaration", stacklevel=2)
+__all__ = [  # noqa: RUF022  # in the order of the page
+    "conformance", "failures", "CHECKS", "ConformanceCheck",
+    "hide", "Hidden", "assert_finds", "assert_finds_nothing", "finds_every_effect", "recorded", "Answered",
+    "Answer", "Calc",
+]  # fmt: skip
 
 
-CHECKS: tuple[ConformanceCheck, ...] = (
-    ConformanceCheck("units are known", declared.units_are_known, needs_run=False),
-    ConformanceCheck("defaults keep their bounds", declared.defaults_keep_their_bounds, needs_run=False),
-    ConformanceCheck("finite at defaults", running.finite_at_defaults, needs_run=False),
-    ConformanceCheck("goals can be read", declared.goals_can_be_read, needs_run=False),
-    ConformanceCheck("spreads resolve", sources.spreads_resolve, needs_run=False),
-    ConformanceCheck("printed numbers are of results", declared.printed_numbers_are_of_results, needs_run=False),
-    ConformanceCheck("sheet is in order", declared.sheet_is_in_order, needs_run=False),
-    ConformanceCheck("formulas have the unit", formulas.formulas_have_the_unit),
-    ConformanceCheck("formulas equal the function", formulas.formulas_equal_the_function),
-    ConformanceCheck("batch equals loop", running.batch_equals_loop),
-    ConformanceCheck("inputs untouched", running.inputs_untouched),
-    ConformanceCheck("seeds decide", running.seeds_decide),
-    ConformanceCheck("serial equals parallel", running.serial_equals_parallel),
-    ConformanceCheck("derivatives are exact", running.derivatives_are_exact),
-    ConformanceCheck("bounds are answered", running.bounds_are_answered),
-    ConformanceCheck("inputs survive a file", declared.inputs_survive_a_file),
-    ConformanceCheck("example can be read", declared.example_can_be_read),
-    ConformanceCheck("zero is the base", sources.zero_is_the_base),
-    ConformanceCheck("references are neutral", sources.references_are_neutral),
-    ConformanceCheck("effects act", sources.effects_act),
-    ConformanceCheck("only last results are edited", sources.only_last_results_are_edited),
-    ConformanceCheck("order of effects", _report_order),
-)
-"""Every check, in the order in which they are run."""
+def __getattr__(name: str) -> Any:
+    """Import a name when it is first used: pytest loads the fixtures of this package wherever Truing is installed."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'truing.testing' has no attribute '{name}'")
+    from importlib import import_module
+
+    value = getattr(import_module(_HOME[name]), name)
+    globals()[name] = value
+    return value
 
 
-def conformance(model: Model[Any, Any]) -> Callable[[ConformanceCheck], None]:
-    """Return a pytest test, parametrised by check: ``test_pin_wear = conformance(PIN_WEAR)``.
-
-    What needs a running model is skipped where the defaults cannot be calculated, because one check says so already.
-    """
-    import pytest
-
-    subject = Subject(model)
-
-    @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.name)
-    def test(check: ConformanceCheck) -> None:
-        if check.needs_run and subject.obstacle:
-            pytest.skip(f"the defaults cannot be calculated: {subject.obstacle}")
-        check.run(subject)
-
-    return test
-
-
-def failures(model: Model[Any, Any]) -> dict[str, str]:
-    """Return the sentence of every check that the model does not pass, by the name of the check."""
-    subject = Subject(model)
-    found: dict[str, str] = {}
-    for check in CHECKS:
-        if check.needs_run and subject.obstacle:
-            continue
-        try:
-            check.run(subject)
-        except Exception as error:  # whatever a model under test raises is its failure
-            found[check.name] = str(error)
-    return found
+def __dir__() -> list[str]:
+    return sorted(set(globals()) | set(__all__))

@@ -1,0 +1,276 @@
+"""Demanding that a diagnosis finds what was hidden, and nothing where nothing was; saying what was found instead."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from truing.declare.model import Model
+from truing.errors import UsageError
+from truing.testing.hidden import Hidden
+from truing.testing.hiding import hide
+from truing.testing.subject import fail
+
+if TYPE_CHECKING:
+    from truing.declare.sources import Effect
+    from truing.diagnosis.result import Cause, Diagnosis, Seen
+
+WITHIN = 1.2
+
+
+def assert_finds(hidden: Hidden, *, within: float = WITHIN) -> Diagnosis:
+    """Diagnose the record and demand what was hidden: the name, the size, and the gain; return the diagnosis.
+
+    The name is that of the only cause, or stands in its ``same_as`` (on this record both draw one curve). Every size
+    lies in its 95 % interval. On the rows held out, which were never fitted, the error of every measured result falls
+    to ``within`` times the noise or less. Where something unregistered was hidden, the verdict is "unknown".
+    Raises AssertionError with one sentence on what was found instead and what to change, and UsageError where nothing
+    was hidden.
+    """
+    if hidden.effect is None and not hidden.is_strange:
+        raise UsageError("nothing was hidden, so nothing can be found; assert_finds_nothing(hidden) is for that")
+    diagnosis = hidden.answered.diagnosis
+    if hidden.effect is None:
+        _demand_unknown(hidden, diagnosis)
+    else:
+        _demand_sizes(hidden, _demand_name(hidden, diagnosis))
+    _demand_gain(hidden, within)
+    return diagnosis
+
+
+def assert_finds_nothing(hidden: Hidden) -> Diagnosis:
+    """Diagnose the record and demand that nothing is named and no remainder seen; return the diagnosis.
+
+    Raises AssertionError with what was found, and UsageError where something was hidden.
+    """
+    if hidden.effect is not None or hidden.is_strange:
+        raise UsageError(f"{_hidden_words(hidden)} was hidden; assert_finds(hidden) is for that")
+    diagnosis = hidden.answered.diagnosis
+    if diagnosis.verdict != "none":
+        fail(
+            f"{_model(hidden)}: nothing was hidden, but {_found(diagnosis)}; a diagnosis errs in some records of a "
+            "hundred: try another seed, and if it is found there too, state the tolerances as wide as they are"
+        )
+    return diagnosis
+
+
+def finds_every_effect(
+    model: Model[Any, Any],
+    noise: str | Mapping[str, str],
+    *,
+    sizes: Mapping[str, Any] | None = None,
+    by: Mapping[str, Callable[..., Any]] | None = None,
+    exceptions: Mapping[str, str] | None = None,
+    **more: Any,
+) -> Callable[[str], None]:
+    """Return a pytest test, parametrised by effect, that every effect the model declares is found where it is hidden.
+
+    ``noise`` and all ``more`` are those of ``hide``; ``sizes`` and ``by`` are by effect, without a size it is half of
+    what the bounds allow. ``exceptions`` says of an effect why it cannot be found; it is then expected to fail, and one
+    that is found all the same fails: take the exception away. Raises UsageError for an effect that is not declared.
+    """
+    import pytest
+
+    stated, reasons, made = dict(sizes or {}), dict(exceptions or {}), dict(by or {})
+    unknown = sorted({*stated, *reasons, *made} - set(model.effects))
+    if unknown or not model.effects:
+        what = f"no effect '{unknown[0]}'" if unknown else "no effect of its own"
+        raise UsageError(f"{model.name} declares {what}")
+    for name, reason in reasons.items():
+        if not reason.strip():
+            raise UsageError(f"{model.name}: say why '{name}' cannot be found; an exception needs its reason")
+
+    @pytest.mark.parametrize("effect", list(model.effects))
+    def test(effect: str) -> None:
+        hidden = hide(effect, stated.get(effect), noise, model=model, by=made.get(effect), **more)
+        try:
+            assert_finds(hidden)
+        except AssertionError:
+            if effect in reasons:
+                pytest.xfail(reasons[effect])
+            raise
+        if effect in reasons:
+            fail(f"{model.name}: '{effect}' is found, but an exception is stated for it; take the exception away")
+
+    return test
+
+
+def _demand_name(hidden: Hidden, diagnosis: Diagnosis) -> Cause:
+    """Return the cause that carries the name of what was hidden, and demand that it is the only one."""
+    name = hidden.effect
+    named = [cause for cause in diagnosis.causes if _carries(cause, hidden)]
+    if not named:
+        fail(f"{_model(hidden)}: {_hidden_words(hidden)} was hidden, but {_found(diagnosis)}; {_advice(hidden)}")
+    if len(diagnosis.causes) > 1 or diagnosis.remainder is not None:
+        fail(
+            f"{_model(hidden)}: {_hidden_words(hidden)} was hidden and '{name}' is named, but something beside it too: "
+            f"{_found(diagnosis)}; try another seed; if it stays, the curve of '{name}' is not what was hidden"
+        )
+    return named[0]
+
+
+def _carries(cause: Cause, hidden: Hidden) -> bool:
+    """Whether a cause is what was hidden: by its name and, of an effect with parts, of the right part; or the same."""
+    if cause.effect == hidden.effect:
+        return {unknown.name for unknown in cause.unknowns} == set(hidden.truth)
+    return hidden.effect in cause.same_as
+
+
+def _demand_sizes(hidden: Hidden, cause: Cause) -> None:
+    """Demand that every interval holds the truth; a cause with another name has other unknowns."""
+    from truing.report.diagnosis_words import fitted_text
+
+    if cause.effect != hidden.effect:
+        return
+    for unknown in cause.unknowns:
+        true = hidden.truth[unknown.name]
+        slack = 1e-9 * abs(true)
+        above = unknown.low is None or unknown.low - slack <= true
+        if above and (unknown.high is None or true <= unknown.high + slack):
+            continue
+        fail(
+            f"{_model(hidden)}: '{cause.effect}' is named, but its size is wrong: {fitted_text(unknown)}, hidden was "
+            f"{_quantity(true, unknown.unit)}; one interval in twenty misses: try another seed; if that misses too, "
+            "another effect or a tolerance takes a part of it, or the curve is not what was hidden"
+        )
+
+
+def _demand_unknown(hidden: Hidden, diagnosis: Diagnosis) -> None:
+    """Demand that what nobody registered is called unknown."""
+    if diagnosis.verdict == "unknown":
+        return
+    if diagnosis.verdict == "named":
+        advice = "it draws nearly the same curve; measure another result, or vary more (over)"
+    else:
+        advice = "make it larger, measure more rows, or with less noise"
+    fail(f"{_model(hidden)}: something unregistered was hidden, but {_found(diagnosis)}; {advice}")
+
+
+def _demand_gain(hidden: Hidden, within: float) -> None:
+    """Demand that rows that were never fitted are predicted about as well as their noise allows."""
+    for result, noise in hidden.noise.items():
+        if result not in hidden.answered.predicted:
+            fail(f"{_model(hidden)}: '{result}' was measured and is not used; {_notes(hidden)}")
+        error = hidden.answered.error_of(result)
+        if not error <= within * noise:
+            unit = hidden.setup.print_unit(result)
+            fail(
+                f"{_model(hidden)}: on rows that were not fitted the error of '{result}' is "
+                f"{_difference(error, unit)}, {error / noise:.2f} times its noise ({_difference(noise, unit)}); "
+                f"{within:g} times was demanded: fit more rows, or the curve is not what was hidden"
+            )
+
+
+def _notes(hidden: Hidden) -> str:
+    return "; ".join(hidden.answered.diagnosis.records.notes) or "no reason is given"
+
+
+def _found(diagnosis: Diagnosis) -> str:
+    """Say what was found, in one clause."""
+    from truing.report.diagnosis_words import cause_text, listed
+
+    parts = [f"'{cause.effect}' was named ({cause_text(cause)})" for cause in diagnosis.causes]
+    remainder = diagnosis.remainder
+    if remainder is not None:
+        over = listed([f"'{name}'" for name in remainder.depends_on])
+        parts.append(f"something unregistered over {over} was found ({remainder.shape})")
+    return listed(parts) if parts else "nothing was found"
+
+
+def _advice(hidden: Hidden) -> str:
+    """Say what to change so that the effect is found."""
+    name, diagnosis = hidden.effect or "", hidden.answered.diagnosis
+    missing = diagnosis.not_measured.get(name)
+    if missing:
+        return f"not measured: add {', '.join(missing)} to over"
+    seen = _seen(hidden)
+    if seen is not None and seen.smallest is None:
+        return f"not excited: {_vary(hidden)}"
+    rivals = [item for item in diagnosis.alternatives if name in item.causes]
+    if rivals and diagnosis.causes:
+        return f"cannot be told apart from '{diagnosis.causes[0].effect}': {_next(diagnosis)}"
+    return _too_small(hidden, seen) if seen is not None else f"what was hidden is not its curve, or {_vary(hidden)}"
+
+
+def _seen(hidden: Hidden) -> Seen | None:
+    """Return what the diagnosis says of how small the effect may be."""
+    known = {item.name: item for item in hidden.answered.diagnosis.seen}
+    names = [hidden.effect, *(f"{hidden.effect}.{unknown}" for unknown in hidden.truth)]
+    return next((known[name] for name in names if name in known), None)
+
+
+def _too_small(hidden: Hidden, seen: Seen) -> str:
+    """Compare what was hidden with what can be seen."""
+    assert seen.smallest is not None
+    smallest = _quantity(seen.smallest.value, seen.smallest.unit)
+    if seen.sight == "hidden in the tolerances":
+        return (
+            f"hidden in the tolerances: what is left of it beside them is seen from {smallest} on; hide more, measure "
+            "a result that they do not move, or vary more (over)"
+        )
+    unknown = _main_unknown(hidden)
+    true = abs(hidden.truth.get(unknown, 0.0))
+    if true < seen.smallest.value:
+        return f"too small: it is seen from {smallest} on; hide more, measure more rows, or with less noise"
+    return (
+        f"it should be seen from {smallest} on: try another seed; if it is never found, the curve that was hidden is "
+        f"not that of '{hidden.effect}' (a sign, a unit), or {_vary(hidden)}"
+    )
+
+
+def _main_unknown(hidden: Hidden) -> str:
+    """Return the first amplitude that was hidden."""
+    effect = _effect(hidden)
+    return next((one.name for one in effect.unknowns if one.is_amplitude and hidden.truth.get(one.name)), "")
+
+
+def _effect(hidden: Hidden) -> Effect[Any, Any]:
+    return hidden.setup.model.known_effects[hidden.effect or ""]
+
+
+def _vary(hidden: Hidden) -> str:
+    """Say what to vary: the conditions of the effect, else the inputs."""
+    effect = _effect(hidden)
+    names = [*(need.made_from or need.name for need in effect.needs), *effect.reads]
+    records = hidden.answered.diagnosis.records.covariates
+    steady = [name for name in names if name not in records or records[name].is_constant]
+    if steady:
+        return f"vary {', '.join(steady)} (over)"
+    return f"vary {', '.join(names)} further, or an input that brings it out (over)" if names else (
+        "vary an input that brings it out (over), or measure a result that it changes (measure)"
+    )  # fmt: skip
+
+
+def _next(diagnosis: Diagnosis) -> str:
+    """Say what the diagnosis asks for to tell two causes apart."""
+    from truing.report.diagnosis_words import settings_text
+
+    if not diagnosis.next:
+        return "nothing that can be measured here tells them apart; measure another result"
+    point = diagnosis.next[0]
+    return f"measure {settings_text(point)}" if point.measure else f"measure at {settings_text(point)}"
+
+
+def _hidden_words(hidden: Hidden) -> str:
+    if hidden.effect is None:
+        return "something unregistered"
+    units = {one.name: one.unit for one in _effect(hidden).unknowns}
+    sizes = ", ".join(f"{name} {_quantity(value, units[name])}" for name, value in hidden.truth.items())
+    return f"'{hidden.effect}' ({sizes})"
+
+
+def _quantity(value: float, unit: str) -> str:
+    from truing.units import from_si
+
+    return f"{float(from_si(value, unit)):.4g} {unit}".strip()
+
+
+def _difference(value: float, unit: str) -> str:
+    from truing.units import difference_unit, unit_factor
+
+    own = difference_unit(unit)
+    return f"{value / unit_factor(own):.3g} {own}".strip()
+
+
+def _model(hidden: Hidden) -> str:
+    return hidden.setup.model.name

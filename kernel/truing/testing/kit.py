@@ -1,0 +1,103 @@
+"""The conformance kit: what every calculation must keep, ours and strangers'.
+
+In a test file of your plugin::
+
+    from my_plugin import MY_MODEL
+    from truing.testing import conformance
+
+    test_my_model = conformance(MY_MODEL)
+
+Each check is one test; a check that fails says in one sentence what to change. Needs pytest (``truing[testing]``).
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from truing.declare.model import Model
+from truing.testing import declared, formulas, running, sources
+from truing.testing.subject import Subject
+
+__all__ = ["CHECKS", "ConformanceCheck", "conformance", "failures"]
+
+
+@dataclass(frozen=True)
+class ConformanceCheck:
+    """One promise of every model: ``run`` raises AssertionError with a sentence where it is broken."""
+
+    name: str
+    run: Callable[[Subject], None]
+    needs_run: bool = True
+
+    @property
+    def promise(self) -> str:
+        """What is checked, in a sentence."""
+        return (self.run.__doc__ or "").partition("\n")[0]
+
+
+def _report_order(subject: Subject) -> None:
+    """Pairs of effects that do not commute within 1 % are named, as a warning."""
+    for sentence in sources.order_matters(subject):
+        warnings.warn(f"{subject.model.name}: effects {sentence}; they act in the order of declaration", stacklevel=2)
+
+
+CHECKS: tuple[ConformanceCheck, ...] = (
+    ConformanceCheck("units are known", declared.units_are_known, needs_run=False),
+    ConformanceCheck("defaults keep their bounds", declared.defaults_keep_their_bounds, needs_run=False),
+    ConformanceCheck("finite at defaults", running.finite_at_defaults, needs_run=False),
+    ConformanceCheck("goals can be read", declared.goals_can_be_read, needs_run=False),
+    ConformanceCheck("spreads resolve", sources.spreads_resolve, needs_run=False),
+    ConformanceCheck("printed numbers are of results", declared.printed_numbers_are_of_results, needs_run=False),
+    ConformanceCheck("sheet is in order", declared.sheet_is_in_order, needs_run=False),
+    ConformanceCheck("formulas have the unit", formulas.formulas_have_the_unit),
+    ConformanceCheck("formulas equal the function", formulas.formulas_equal_the_function),
+    ConformanceCheck("batch equals loop", running.batch_equals_loop),
+    ConformanceCheck("inputs untouched", running.inputs_untouched),
+    ConformanceCheck("seeds decide", running.seeds_decide),
+    ConformanceCheck("serial equals parallel", running.serial_equals_parallel),
+    ConformanceCheck("derivatives are exact", running.derivatives_are_exact),
+    ConformanceCheck("bounds are answered", running.bounds_are_answered),
+    ConformanceCheck("inputs survive a file", declared.inputs_survive_a_file),
+    ConformanceCheck("example can be read", declared.example_can_be_read),
+    ConformanceCheck("zero is the base", sources.zero_is_the_base),
+    ConformanceCheck("references are neutral", sources.references_are_neutral),
+    ConformanceCheck("effects act", sources.effects_act),
+    ConformanceCheck("only last results are edited", sources.only_last_results_are_edited),
+    ConformanceCheck("order of effects", _report_order),
+)
+"""Every check, in the order in which they are run."""
+
+
+def conformance(model: Model[Any, Any]) -> Callable[[ConformanceCheck], None]:
+    """Return a pytest test, parametrised by check: ``test_pin_wear = conformance(PIN_WEAR)``.
+
+    What needs a running model is skipped where the defaults cannot be calculated, because one check says so already.
+    """
+    import pytest
+
+    subject = Subject(model)
+
+    @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.name)
+    def test(check: ConformanceCheck) -> None:
+        if check.needs_run and subject.obstacle:
+            pytest.skip(f"the defaults cannot be calculated: {subject.obstacle}")
+        check.run(subject)
+
+    return test
+
+
+def failures(model: Model[Any, Any]) -> dict[str, str]:
+    """Return the sentence of every check that the model does not pass, by the name of the check."""
+    subject = Subject(model)
+    found: dict[str, str] = {}
+    for check in CHECKS:
+        if check.needs_run and subject.obstacle:
+            continue
+        try:
+            check.run(subject)
+        except Exception as error:  # whatever a model under test raises is its failure
+            found[check.name] = str(error)
+    return found
