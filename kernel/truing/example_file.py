@@ -17,6 +17,8 @@ from truing.setup import DEFAULT_SEED
 from truing.units.names import PURE
 
 WIDTH = 100
+SCHEMA_MARK = "#:schema "
+"""What begins the comment by which editors that use Taplo find the schema of a file."""
 HEAD = {"project": "", "drawing": "", "revision": "", "prepared_by": "", "checked_by": "", "approved_by": ""}
 
 
@@ -34,6 +36,17 @@ def example_text(offer: Offer) -> str:
                 f"{offer.model.example}: the example of '{offer.name}' cannot be read: {error}"
             ) from error
     return "\n".join(_lines(offer)) + "\n"
+
+
+def schema_name(offer: Offer) -> str:
+    """Return the name of the file that holds the JSON Schema of the model's inputs files."""
+    return f"{offer.name}.schema.json"
+
+
+def with_schema_line(text: str, schema: str) -> str:
+    """Return an inputs file that names its schema, a file beside it, in the first line; an earlier such line goes."""
+    first, _, rest = text.partition("\n")
+    return f"{SCHEMA_MARK}./{schema}\n{rest if first.startswith(SCHEMA_MARK) else text}"
 
 
 def _lines(offer: Offer) -> Iterator[str]:

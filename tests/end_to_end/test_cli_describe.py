@@ -7,10 +7,14 @@ import tomllib
 from importlib.metadata import version
 from pathlib import Path
 
+import pin_wear
 import pytest
 from jsonschema import Draft202012Validator
 
 from shared import Calc
+from truing import Kernel
+from truing.example_file import example_text
+from truing.inputs_file import json_schema
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 INSTALLED = ["harmonic_fractal", "press_linkage", "roller_screw_shift", "rv_gearing", "rv_wear"]
@@ -82,24 +86,12 @@ def test_describe_names_what_the_reader_of_a_file_takes(calc: Calc) -> None:
     assert inputs["torque"]["options"] == []
 
 
-@pytest.mark.parametrize("plugin", ["press_linkage", str(PIN)])
-def test_the_example_keeps_the_schema(calc: Calc, plugin: str) -> None:
-    schema = json.loads(calc("describe", plugin, "--json-schema").out)
-    Draft202012Validator.check_schema(schema)
-    example = calc("init", plugin)
-    assert (example.code, example.err) == (0, "")
-    judge = Draft202012Validator(schema)
-    document = tomllib.loads(example.out)
-    assert list(judge.iter_errors(document)) == []
-    wrong = {**document, "inputs": {**document.get("inputs", {}), "lod": "3 N"}}
-    assert [error.validator for error in judge.iter_errors(wrong)] == ["additionalProperties"]
-    assert [*judge.iter_errors({"shet": {}})]
-
-
 def test_init_writes_once(calc: Calc, tmp_path: Path) -> None:
     answer = calc("init", "press_linkage", "-o", "press.toml")
     assert (answer.code, answer.out) == (0, "")
-    assert answer.err == "wrote press.toml; now: calc run press_linkage --inputs press.toml\n"
+    assert answer.err == (
+        "wrote press.toml and press_linkage.schema.json; now: calc run press_linkage --inputs press.toml\n"
+    )
     written = (tmp_path / "press.toml").read_text(encoding="utf-8")
     assert tomllib.loads(written)["inputs"]["reading"] == "printed"
     assert any(line.startswith("#") and '"printed" repeats the paper' in line for line in written.split("\n"))
@@ -111,7 +103,52 @@ def test_init_writes_once(calc: Calc, tmp_path: Path) -> None:
     answer = calc("init", "press_linkage", "-o", "press.toml", "--force", "-q")
     assert (answer.code, answer.out, answer.err) == (0, "", "")
     assert (tmp_path / "press.toml").read_text(encoding="utf-8") == written
-    assert [path.name for path in tmp_path.iterdir()] == ["press.toml"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["press.toml", "press_linkage.schema.json"]
+
+
+@pytest.mark.parametrize("word", ["press_linkage", "harmonic_fractal.made_flank", str(PIN)])
+def test_the_file_names_the_schema_beside_it(calc: Calc, tmp_path: Path, word: str) -> None:
+    assert calc("init", word, "-o", "own.toml", "-q").code == 0
+    text = (tmp_path / "own.toml").read_text(encoding="utf-8")
+    mark, name = text.split("\n")[0].split(" ")
+    assert (mark, name) == ("#:schema", f"./{'pin_wear' if word == str(PIN) else word}.schema.json")
+    schema = json.loads((tmp_path / name).read_text(encoding="utf-8"))
+    assert schema == json.loads(calc("describe", word, "--json-schema").out)
+    assert text.split("\n", 1)[1] == calc("init", word).out
+    Draft202012Validator.check_schema(schema)
+
+
+def test_the_schema_judges_every_example_as_an_editor_does() -> None:
+    offers = [*Kernel.installed().offers.values(), Kernel([pin_wear]).offer("pin_wear")]
+    assert len(offers) > 6
+    for offer in offers:
+        judge, document = Draft202012Validator(json_schema(offer)), tomllib.loads(example_text(offer))
+        assert list(judge.iter_errors(document)) == []
+        wrong = {**document, "inputs": {**document.get("inputs", {}), "lod": "3 N"}}
+        assert [error.validator for error in judge.iter_errors(wrong)] == ["additionalProperties"]
+        assert [*judge.iter_errors({"shet": {}})]
+
+
+def test_the_text_on_the_output_names_no_file(calc: Calc, tmp_path: Path) -> None:
+    assert "#:schema" not in calc("init", PIN).out
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_schema_is_replaced_only_when_told_to(calc: Calc, tmp_path: Path) -> None:
+    assert calc("init", PIN, "-o", "one.toml").code == 0
+    schema = tmp_path / "pin_wear.schema.json"
+    right = schema.read_bytes()
+    assert calc("init", PIN, "-o", "two.toml").code == 0  # it is the same one
+    schema.write_text("{}")
+    answer = calc("init", PIN, "-o", "three.toml")
+    sentence = "exists already and is another schema; say --force to replace it, or --no-schema"
+    assert (answer.code, answer.err) == (2, f"calc: pin_wear.schema.json {sentence}\n")
+    assert calc("init", PIN, "-o", "three.toml", "--no-schema").code == 0
+    assert not (tmp_path / "three.toml").read_text(encoding="utf-8").startswith("#:schema")
+    assert schema.read_text() == "{}"
+    assert calc("init", PIN, "-o", "three.toml", "--force").code == 0
+    assert schema.read_bytes() == right
+    assert {path.name for path in tmp_path.iterdir()} == {schema.name, "one.toml", "two.toml", "three.toml"}
 
 
 def test_init_into_a_folder_that_is_not_there(calc: Calc, tmp_path: Path) -> None:

@@ -77,7 +77,7 @@ WORDS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"
 FORMULAS = st.builds(str.__add__, st.sampled_from(["=", "'=", "''+", "-", " @", "'", "#", '"', "=\n"]), WORDS)
 
 
-@drawing(max_examples=150, deadline=None)
+@drawing(max_examples=60, deadline=None)
 @drawn(st.lists(st.tuples(FORMULAS, st.floats(allow_infinity=False)), min_size=1))
 def test_anything_reads_back_as_it_was(tmp_path_factory: pytest.TempPathFactory, rows: list[tuple[str, float]]) -> None:
     path = tmp_path_factory.getbasetemp() / "sheet.csv"

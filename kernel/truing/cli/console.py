@@ -67,9 +67,14 @@ def out(text: str) -> None:
 
 
 def out_json(document: Any) -> None:
-    """Print one JSON document; characters that a terminal obeys are written as escapes, so that it reads back alike."""
-    text = json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False)
-    out(_ORDERS.sub(lambda found: f"\\u{ord(found[0]):04x}", text))
+    """Print one JSON document."""
+    out(json_text(document))
+
+
+def json_text(document: Any, *, indent: int | None = 1) -> str:
+    """Return a document as JSON; what a terminal would obey is written as an escape, so that it reads back alike."""
+    text = json.dumps(document, ensure_ascii=False, indent=indent, allow_nan=False)
+    return _ORDERS.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
 
 
 def say(text: str) -> None:

@@ -1,12 +1,14 @@
-"""calc init: a commented inputs file that holds the paper's example."""
+"""calc init: a commented inputs file that holds the paper's example, and the schema by which editors complete it."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from truing.cli.console import out, settings_of, verb
+from truing.cli.console import json_text, out, settings_of, verb
 from truing.cli.load import find_offer
 from truing.cli.words import OutputFile, Plugin
 from truing.errors import OutputError
@@ -17,21 +19,60 @@ def init(
     context: typer.Context,
     plugin: Plugin,
     output: OutputFile = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
+    no_schema: Annotated[bool, typer.Option("--no-schema", help="Write no schema for editors beside it.")] = False,
 ) -> int:
     """Write a commented inputs file that holds the paper's example."""
-    from truing.example_file import example_text
+    from truing.example_file import example_text, schema_name, with_schema_line
 
     settings = settings_of(context)
-    text = example_text(find_offer(plugin, settings))
+    offer = find_offer(plugin, settings)
+    text = example_text(offer)
     if output is None:
         out(text.rstrip("\n"))
         return 0
-    if output.exists() and not force:
-        raise OutputError(f"{output} exists already; choose another name or say --force")
-    try:
-        output.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise OutputError(f"{output} cannot be written: {error.strerror}") from None
-    settings.say(f"wrote {output}; now: calc run {plugin} --inputs {output}")
+    files = {output: text}
+    if not no_schema:
+        from truing.inputs_file import json_schema
+
+        schema = output.parent / schema_name(offer)
+        files = {output: with_schema_line(text, schema.name), schema: json_text(json_schema(offer), indent=None) + "\n"}
+    if not force:
+        _demand_new(output, files)
+    _write(files)
+    settings.say(f"wrote {' and '.join(map(str, files))}; now: calc run {plugin} --inputs {output}")
     return 0
+
+
+def _demand_new(output: Path, files: Mapping[Path, str]) -> None:
+    """Raise OutputError where a file is there already, unless it is a schema that would be the same."""
+    if output.exists():
+        raise OutputError(f"{output} exists already; choose another name or say --force")
+    for path, content in files.items():
+        if path.exists() and not _holds(path, content):
+            raise OutputError(f"{path} exists already and is another schema; say --force to replace it, or --no-schema")
+
+
+def _holds(path: Path, content: str) -> bool:
+    try:
+        return path.read_bytes() == content.encode()
+    except OSError:
+        return False
+
+
+def _write(files: Mapping[Path, str]) -> None:
+    """Write the files, all of them complete or none; raises OutputError."""
+    made: list[Path] = []
+    try:
+        for path, content in files.items():
+            if path.is_dir():
+                raise OutputError(f"{path} cannot be written: it is a folder")
+            made.append(path.with_name(f".{path.name}.part"))
+            made[-1].write_text(content, encoding="utf-8", newline="\n")
+        for part, path in zip(made, files, strict=True):
+            part.replace(path)
+    except OSError as error:
+        raise OutputError(f"{path} cannot be written: {error.strerror}") from None
+    finally:
+        for part in made:
+            part.unlink(missing_ok=True)
