@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from truing.cli import compare, describe, diagnose, init, plugins, run, table, verify
+from truing.cli import compare, describe, diagnose, init, new, plugins, run, table, verify
 from truing.cli.console import out
 
 app = typer.Typer(
@@ -44,3 +44,4 @@ app.command("table")(table.table)
 app.command("diagnose")(diagnose.diagnose)
 app.command("verify")(verify.verify)
 app.command("compare")(compare.compare)
+app.command("new")(new.new)

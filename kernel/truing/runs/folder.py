@@ -148,14 +148,41 @@ def _what_is_there(folder: Path, kind: Kind) -> str:
 def write_folder(folder: Path, files: Mapping[str, str | bytes], kind: Kind = "run") -> None:
     """Write files into a folder that appears complete or not at all; an earlier one of its kind is replaced whole."""
     demand_place(folder, kind)
+    place_folder(folder, files, kind)
+
+
+def place_folder(folder: Path, files: Mapping[str, str | bytes], what: str) -> None:
+    """Write files, by their paths inside, into a folder that appears complete or not at all; ``what`` it will be.
+
+    A folder that is there is replaced whole: ask first. An empty one stays where it is and is filled, so that whoever
+    works in it goes on doing so. Raises OutputError where nothing can be written.
+    """
     target = folder.resolve() if folder.is_symlink() else folder.absolute()
+    is_filled = target.is_dir() and not any(target.iterdir())
     try:
-        with _made_parents(target.parent), _beside(target) as part:
+        with _made_parents(target.parent), _beside(target / target.name if is_filled else target) as part:
             for name, content in files.items():
+                (part / name).parent.mkdir(parents=True, exist_ok=True)
                 (part / name).write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
-            _put_in_place(part, target)
+            if is_filled:
+                _fill(target, part)
+            else:
+                _put_in_place(part, target)
     except OSError as error:
-        raise OutputError(f"{folder}: the {kind} cannot be written: {error.strerror or error}") from error
+        raise OutputError(f"{folder}: the {what} cannot be written: {error.strerror or error}") from error
+
+
+def _fill(target: Path, part: Path) -> None:
+    """Move everything into an empty folder, or nothing."""
+    names = [item.name for item in part.iterdir()]
+    try:
+        for name in names:
+            (part / name).rename(target / name)
+    except BaseException:
+        for name in names:
+            if not (part / name).exists():
+                (target / name).rename(part / name)
+        raise
 
 
 @contextmanager

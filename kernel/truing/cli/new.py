@@ -1,0 +1,71 @@
+"""calc new: a plugin of one's own, as a project or as a single file."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from truing.cli.console import settings_of, verb
+from truing.errors import UsageError
+
+if TYPE_CHECKING:
+    from truing.new_project import Plan
+
+
+@verb
+def new(
+    context: typer.Context,
+    name: Annotated[str, typer.Argument(help="The plugin's name: lower-case words joined by _.")],
+    title: Annotated[str | None, typer.Option("--title", help="The title of its sheet (the name without it).")] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="The folder (or single file) to write (NAME without it).")
+    ] = None,
+    single: Annotated[bool, typer.Option("--single-file", help="One Python file instead of a project.")] = False,
+) -> int:
+    """Write a plugin of your own: package, tests, entry point, CI; it works as written."""
+    from truing.new_project import Plan, check_name, check_title, title_of
+
+    check_name(name)
+    if title is not None:
+        check_title(title)
+    plan = Plan(name, title.strip() if title is not None else title_of(name))
+    steps = _file(plan, output) if single else _project(plan, output)
+    settings_of(context).say(
+        "\n".join([*steps, "the physics in it is a placeholder, a clamped bar: replace it by your own"])
+    )
+    return 0
+
+
+def _project(plan: Plan, output: Path | None) -> list[str]:
+    """Write a project; return what to type next."""
+    from truing.new_project import project, write_project
+
+    folder = output if output is not None else Path(plan.name)
+    files = project(plan)
+    write_project(folder, files)
+    return [
+        f"wrote {folder}: {len(files)} files; now:",
+        f"  cd {shlex.quote(str(folder))}",
+        '  pip install -e ".[test]"',
+        f"  calc diagnose {plan.name} --data measured.csv",
+    ]
+
+
+def _file(plan: Plan, output: Path | None) -> list[str]:
+    """Write a single file; return what to type next."""
+    from truing.new_project import single_file, write_single_file
+
+    path = output if output is not None else Path(f"{plan.name}.py")
+    if path.suffix != ".py":
+        raise UsageError(f"--output: {path} is no name of a Python file; with --single-file it ends in .py")
+    write_single_file(path, single_file(plan, path.name))
+    word = shlex.quote(str(path) if path.is_absolute() else f"./{path.as_posix()}")
+    return [
+        f"wrote {path}; now:",
+        f"  calc run {word}",
+        f"  calc init {word} -o {plan.name}.toml",
+        f"  python -m pytest {word}",
+    ]
