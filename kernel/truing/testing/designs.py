@@ -64,17 +64,21 @@ class Design:
     rows: int
     runs: int
 
+    @property
+    def is_record(self) -> bool:
+        """Whether the rows of a run are places on an axis."""
+        return any(column.places for column in self.columns)
+
     def drawn(self, rng: np.random.Generator) -> dict[str, Any]:
         """Return the columns by header, as they are written: space-filling, and in the order of the clock."""
         import numpy as np
         from scipy.stats import qmc
 
-        is_record = any(column.places for column in self.columns)
         count = self.rows * self.runs
         spread = [column for column in self.columns if not (column.rises or column.places)]
-        points = self.runs if is_record else count
+        points = self.runs if self.is_record else count
         shares = qmc.Halton(max(len(spread), 1), seed=rng).random(points)
-        shares = np.repeat(shares, self.rows, axis=0) if is_record else shares
+        shares = np.repeat(shares, self.rows, axis=0) if self.is_record else shares
         found: dict[str, Any] = {RUN: np.repeat(np.arange(1, self.runs + 1), self.rows)} if self.runs > 1 else {}
         clock = (np.arange(count) + rng.random(count)) / count
         for column in self.columns:

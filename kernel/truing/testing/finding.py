@@ -189,7 +189,9 @@ def _advice(hidden: Hidden) -> str:
     rivals = [item for item in diagnosis.alternatives if name in item.causes]
     if rivals and diagnosis.causes:
         return f"cannot be told apart from '{diagnosis.causes[0].effect}': {_next(diagnosis)}"
-    return _too_small(hidden, seen) if seen is not None else f"what was hidden is not its curve, or {_vary(hidden)}"
+    if seen is None:
+        return f"too small for this noise, or what was hidden is not its curve: hide more, or {_vary(hidden)}"
+    return _too_small(hidden, seen)
 
 
 def _seen(hidden: Hidden) -> Seen | None:
