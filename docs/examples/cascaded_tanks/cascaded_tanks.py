@@ -1,0 +1,326 @@
+"""Two tanks, one above the other: a pump fills the upper one, which empties into the lower one, which drains."""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dgtsv
+
+from truing import (
+    Effect,
+    Float,
+    Model,
+    Require,
+    Section,
+    Tolerance,
+    Unknown,
+    axis,
+    column,
+    feasible,
+    found,
+    given,
+    hookimpl,
+    inputs,
+    normal,
+    results,
+)
+
+Array = NDArray[np.float64]
+FULL = 10.0
+"""Level of a full tank on the scale of the gauge, V; the gauge reads no more."""
+FILM = 1e-3
+"""Level below which an outlet runs in proportion to the level, V: so an empty tank stays empty."""
+LONGEST_STEP = 2.0
+"""Longest step of the calculation, s."""
+MOST_ROUNDS = 60
+SETTLED = 1e-9
+
+
+@inputs
+class Tanks:
+    """Two tanks, pump and record; levels are measured in volts of the gauge, flows in volts per second.
+
+    With the outflow k sqrt(x) of Torricelli, ``upper_outflow`` is k1 sqrt(10 V) of the literature, ``lower_outflow`` is
+    k3 sqrt(10 V), ``section_ratio`` is k2 / k1 and ``pump_rate`` is k4.
+    """
+
+    times: Float = given(tuple(4.0 * step for step in range(151)), "s", along="time", note="when the voltage is set")
+    pump_voltage: Float = given((3.0,) * 151, "V", symbol="u", along="time", note="held until the next time")
+    pump_rate: Float = given(0.04, "1/s", symbol="k_4", note="rise of the upper level, per volt of the pump", above=0)
+    upper_outflow: Float = given(0.16, "V/s", symbol="q_1", note="outflow of a full upper tank", above=0)
+    lower_outflow: Float = given(0.16, "V/s", symbol="q_3", note="outflow of a full lower tank", above=0)
+    section_ratio: Float = given(1.0, "", symbol="a", note="section of the upper tank over that of the lower", above=0)
+    upper_start: Float = given(5.2, "V", symbol="x_10", note="level of the upper tank at the start", at_least=0)
+    lower_start: Float = given(5.2, "V", symbol="x_20", note="level of the lower tank at the start", at_least=0)
+    upper_exponent: Float = given(0.5, "", symbol="e_1", note="of the upper outlet; 1/2 after Torricelli", above=0)
+    lower_exponent: Float = given(0.5, "", symbol="e_3", note="of the lower outlet; 1/2 after Torricelli", above=0)
+    upper_rim: Float = given(FULL, "V", symbol="r_1", note="level at which the upper tank runs over", above=0)
+    upper_spill: Float = given(0.0, "1/s", symbol="w_1", note="what runs over it, per volt above", at_least=0)
+    caught_share: Float = given(
+        0.5, "", symbol="c", note="share of the spilt water that the lower tank catches", at_least=0, at_most=1
+    )
+    lower_spill: Float = given(0.0, "1/s", symbol="w_2", note="what runs over the full lower tank", at_least=0)
+    upper_leak: Float = given(0.0, "1/s", symbol="l_1", note="seepage of the upper tank, per volt", at_least=0)
+    lower_leak: Float = given(0.0, "1/s", symbol="l_2", note="seepage of the lower tank, per volt", at_least=0)
+    dead_voltage: Float = given(0.0, "V", symbol="u_0", note="below it the pump does not turn", at_least=0)
+    pump_bend: Float = given(0.0, "1/V", symbol="b", note="what the pump delivers more, per volt and volt")
+
+
+NUMBERS = tuple(item.name for item in fields(Tanks) if item.name not in {"times", "pump_voltage"})
+"""Every input that is one number per row."""
+
+
+@results
+class Levels:
+    """The record, and where it would end."""
+
+    time: Float = axis("s", symbol="t", follows="times")
+    upper_level: Float = found(
+        "V", symbol="x_1", along="time", note="level of the upper tank", method="trapezoidal rule, all steps at once"
+    )
+    level: Float = found(
+        "V", symbol="x_2", along="time", note="level of the lower tank", method="trapezoidal rule, all steps at once"
+    )
+    highest: Float = found("V", symbol="x_2max", note="highest level of the lower tank", formula="max(level)")
+    pumped: Float = found("V", note="water pumped, in volts of the upper tank", method="sum over the steps")
+    drained: Float = found("V", note="water through the lower outlet, in the same unit", method="sum over the steps")
+    lost: Float = found("V", note="water spilt and leaked, in the same unit", method="sum over the steps")
+
+
+@dataclass(frozen=True)
+class Tank:
+    """What leaves one tank at a level; every field is a number or an array (n, 1)."""
+
+    outflow: Float
+    exponent: Float
+    rim: Float
+    spill: Float
+    leak: Float
+
+    def through(self, level: Array) -> Array:
+        """What leaves through the outlet, V/s."""
+        return np.asarray(
+            self.outflow * (np.maximum(level, FILM) / FULL) ** self.exponent * np.minimum(level / FILM, 1)
+        )
+
+    def over(self, level: Array) -> Array:
+        """What leaves over the rim, V/s."""
+        return np.asarray(self.spill * np.maximum(level - self.rim, 0))
+
+    def leaving(self, level: Array) -> Array:
+        """All that leaves, V/s."""
+        return np.asarray(self.through(level) + self.over(level) + self.leak * level)
+
+    def steepness(self, level: Array) -> Array:
+        """How much more leaves per volt of level, 1/s."""
+        deep = np.maximum(level, FILM)
+        outlet = self.outflow * (deep / FULL) ** self.exponent / deep * np.where(level > FILM, self.exponent, 1.0)
+        return np.asarray(outlet + self.spill * (level > self.rim) + self.leak)
+
+
+@dataclass(frozen=True)
+class Course:
+    """Steps of a calculation: their lengths (m,) in s, and every how many of them the record has a row."""
+
+    step: Array
+    parts: int
+
+    def mean(self, flow: Array) -> Array:
+        """Mean of a flow (n, m + 1) over each step, (n, m)."""
+        return np.asarray((flow[:, 1:] + flow[:, :-1]) / 2)
+
+    def total(self, flow: Array) -> Array:
+        """What a flow, the mean of each step (n, m), adds up to, (n,)."""
+        return np.asarray(flow @ self.step)
+
+    def at_rows(self, level: Array) -> Array:
+        """The level at the times of the record."""
+        return np.asarray(level[:, :: self.parts])
+
+
+def course_of(times: Array) -> Course:
+    """Divide the times between the rows of a record into steps that are short enough."""
+    parts = int(np.ceil(np.max(np.diff(times)) / LONGEST_STEP - 1e-9))
+    return Course(np.repeat(np.diff(times) / parts, parts), parts)
+
+
+def filled(tank: Tank, start: Array, inflow: Array, step: Array) -> Array:
+    """Follow the level of a tank from its start (n,): levels (n, m + 1) in V; NaN in a row that comes to no end.
+
+    ``inflow`` (n, m) is the mean over each of the m steps, ``step`` (m,) their lengths in s. The trapezoidal rule: all
+    steps of all rows are one bidiagonal system of equations, solved by Newton's method.
+    """
+    level = np.repeat(start[:, None], len(step) + 1, axis=1)
+    half, change = step / 2, np.zeros(level.shape)
+    own, before, left = np.ones(level.shape), np.zeros(level.shape), np.zeros(level.shape)
+    for _ in range(MOST_ROUNDS):
+        leaving, steep = tank.leaving(level), tank.steepness(level)
+        left[:, 1:] = np.diff(level) - step * inflow + half * (leaving[:, 1:] + leaving[:, :-1])
+        own[:, 1:] = 1 + half * steep[:, 1:]
+        before[:, :-1] = half * steep[:, :-1] - 1
+        solved = dgtsv(before.ravel()[:-1], own.ravel(), np.zeros(level.size - 1), left.ravel())
+        change = solved[3].reshape(level.shape)
+        level = level - change
+        if not np.max(np.abs(change)) > SETTLED:
+            break
+    return np.where(np.max(np.abs(change), axis=-1, keepdims=True) <= SETTLED, level, np.nan)
+
+
+def cascaded_tanks(tanks: Tanks) -> Levels:
+    """Torricelli's law for two tanks; numbers or arrays (n,), series (k,).
+
+    The upper level follows x1' = k4 u - k1 sqrt(x1), the lower one x2' = k2 sqrt(x1) - k3 sqrt(x2). The voltage is held
+    from each time to the next.
+    """
+    times, voltage = np.asarray(tanks.times, dtype=float), np.asarray(tanks.pump_voltage, dtype=float)
+    feasible(len(times) == len(voltage) and len(times) > 1, "times and pump_voltage are not equally long series")
+    feasible(np.all(np.diff(times) > 0), "the times of the record do not rise from row to row")
+    course, size = course_of(times), np.broadcast(*(getattr(tanks, name) for name in NUMBERS)).shape
+    rows = size or (1,)
+    upper, lower = uppermost(tanks), lowermost(tanks)
+    turning = np.maximum(voltage - column(tanks.dead_voltage), 0)
+    pumped = column(tanks.pump_rate) * turning * (1 + column(tanks.pump_bend) * turning)
+    pumped = np.broadcast_to(pumped, (*rows, len(times)))[:, :-1].repeat(course.parts, axis=1)
+    above = filled(upper, np.broadcast_to(tanks.upper_start, rows), pumped, course.step)
+    spilt = course.mean(upper.over(above))
+    caught = column(tanks.caught_share) * spilt
+    coming = column(tanks.section_ratio) * (course.mean(upper.through(above)) + caught)
+    below = filled(lower, np.broadcast_to(tanks.lower_start, rows), coming, course.step)
+    feasible(np.all(np.isfinite(below), axis=-1).reshape(size), "the levels cannot be calculated: a step has no end")
+    drained = course.total(course.mean(lower.through(below)))
+    lost = course.total(spilt - caught + column(tanks.upper_leak) * course.mean(above))
+    lost = lost + course.total(course.mean(lower.leaving(below) - lower.through(below))) / tanks.section_ratio
+    level = course.at_rows(below)
+    return Levels(
+        time=times,
+        upper_level=course.at_rows(above).reshape(*size, len(times)),
+        level=level.reshape(*size, len(times)),
+        highest=np.max(level, axis=-1).reshape(size),
+        pumped=course.total(pumped).reshape(size),
+        drained=(drained / tanks.section_ratio).reshape(size),
+        lost=lost.reshape(size),
+    )
+
+
+def uppermost(tanks: Tanks) -> Tank:
+    """The upper tank."""
+    own = (tanks.upper_outflow, tanks.upper_exponent, tanks.upper_rim, tanks.upper_spill, tanks.upper_leak)
+    return Tank(*map(column, own))
+
+
+def lowermost(tanks: Tanks) -> Tank:
+    """The lower tank, whose rim is where the gauge ends."""
+    own = (tanks.lower_outflow, tanks.lower_exponent, FULL, tanks.lower_spill, tanks.lower_leak)
+    return Tank(*map(column, own))
+
+
+def overflow(tanks: Tanks, *, spill: Float, rim: Float, caught: Float) -> Tanks:
+    """Water runs over the rim of the upper tank, the more the higher it stands; the lower tank catches a share."""
+    return replace(tanks, upper_spill=tanks.upper_spill + spill, upper_rim=rim, caught_share=caught)
+
+
+def lower_overflow(tanks: Tanks, *, spill: Float) -> Tanks:
+    """Water runs over the rim of the lower tank."""
+    return replace(tanks, lower_spill=tanks.lower_spill + spill)
+
+
+def outlet_losses(tanks: Tanks, *, upper: Float = 0.0, lower: Float = 0.0) -> Tanks:
+    """Losses that grow with the flow: the outflow follows another power of the level than 1/2."""
+    return replace(tanks, upper_exponent=tanks.upper_exponent + upper, lower_exponent=tanks.lower_exponent + lower)
+
+
+def leak(tanks: Tanks, *, upper: Float = 0.0, lower: Float = 0.0) -> Tanks:
+    """Water seeps away in proportion to the level."""
+    return replace(tanks, upper_leak=tanks.upper_leak + upper, lower_leak=tanks.lower_leak + lower)
+
+
+def dead_zone(tanks: Tanks, *, below: Float) -> Tanks:
+    """The pump does not turn below a voltage, and above it delivers in proportion to the rest."""
+    return replace(tanks, dead_voltage=tanks.dead_voltage + below)
+
+
+def pump_curve(tanks: Tanks, *, bend: Float) -> Tanks:
+    """The pump delivers more, or less, than in proportion to its voltage."""
+    return replace(tanks, pump_bend=tanks.pump_bend + bend)
+
+
+def sensor_ceiling(tanks: Tanks, base: Levels, *, missed: Float) -> Levels:
+    """The gauge ends at 10 V: a share of what is above is not shown; 1 is a gauge that is at its stop."""
+    return replace(base, level=base.level - column(missed) * np.maximum(base.level - FULL, 0))
+
+
+EFFECTS = [
+    Effect(
+        "overflow", on_inputs=overflow,
+        looks_like="high levels come too low and too late, after the pump has run fast",
+        unknowns=[
+            Unknown("spill", 0, 0.5, "1/s", note="what runs over, per volt above the rim"),
+            Unknown("rim", 4, 16, "V", note="level of the rim"),
+            Unknown("caught", 0.05, 1, note="share that falls into the lower tank"),
+        ],
+    ),
+    Effect(
+        "lower_overflow", on_inputs=lower_overflow, looks_like="the level cannot rise above 10 V, and falls at once",
+        unknowns=[Unknown("spill", 0, 0.5, "1/s", note="what runs over, per volt above 10 V")],
+    ),
+    Effect(
+        "outlet_losses", on_inputs=outlet_losses, parts=[["upper"], ["lower"]],
+        looks_like="high and low levels err to opposite sides",
+        unknowns=[
+            Unknown("upper", -0.3, 0.5, note="change of the exponent of the upper outlet"),
+            Unknown("lower", -0.3, 0.5, note="change of the exponent of the lower outlet"),
+        ],
+    ),
+    Effect(
+        "leak", on_inputs=leak, parts=[["upper"], ["lower"]], looks_like="all levels too low, high ones more",
+        unknowns=[
+            Unknown("upper", 0, 0.01, "1/s", note="seepage of the upper tank, per volt"),
+            Unknown("lower", 0, 0.01, "1/s", note="seepage of the lower tank, per volt"),
+        ],
+    ),
+    Effect(
+        "dead_zone", on_inputs=dead_zone, looks_like="low voltages fill less than high ones",
+        unknowns=[Unknown("below", 0, 1, "V", note="voltage at which the pump begins to turn")],
+    ),
+    Effect(
+        "pump_curve", on_inputs=pump_curve, looks_like="high voltages fill more, or less, than low ones",
+        unknowns=[Unknown("bend", -0.1, 0.2, "1/V", note="what is delivered more, per volt and volt")],
+    ),
+    Effect(
+        "sensor_ceiling", on_reading=sensor_ceiling, looks_like="the gauge stands at 10 V",
+        unknowns=[Unknown("missed", 0, 1, note="share of what is above 10 V that is not shown")],
+    ),
+]  # fmt: skip
+
+TOLERANCES = [
+    Tolerance("pump_rate", normal(sd="10 %"), why="pump and hose are not calibrated"),
+    Tolerance("outflows", normal(sd="10 %"), on=["upper_outflow", "lower_outflow"], why="bores and edges of outlets"),
+    Tolerance("section_ratio", normal(sd="3 %"), why="two tubes of one kind"),
+    Tolerance("upper_start", normal(sd="1 V"), why="nobody measured it; the record begins near a balance"),
+    Tolerance("lower_start", normal(sd="0.1 V"), why="from the first readings"),
+]
+
+CITES = [
+    "M. Schoukens, P. Mattsson, T. Wigren, J.-P. Noel, Cascaded tanks benchmark combining soft and hard "
+    "nonlinearities, Workshop on Nonlinear System Identification Benchmarks, Brussels 2016",
+]
+
+CASCADED_TANKS = Model(
+    name="cascaded_tanks",
+    title="Two tanks in cascade",
+    summary="Torricelli's law, without losses and with tanks that have no rim.",
+    function=cascaded_tanks,
+    cites=CITES,
+    errors=[*TOLERANCES, *EFFECTS],
+    objectives=[Require("highest", at_most="10 V")],
+    sheet=[
+        Section("Levels", "upper_level", "level", "highest"),
+        Section("Balance of the water", "pumped", "drained", "lost"),
+    ],
+)
+
+
+@hookimpl
+def truing_models() -> list[Model[Tanks, Levels]]:
+    """Offer one calculation: cascaded_tanks."""
+    return [CASCADED_TANKS]
