@@ -9,6 +9,7 @@ from typing import Any
 
 from truing.declare.fields import Axis, Found, Given, InputField, Loaded, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary
+from truing.declare.published import Published
 from truing.declare.sources import Condition
 from truing.inputs_file.values import bounds_in_words
 from truing.kernel import Offer
@@ -30,6 +31,7 @@ def description(offer: Offer) -> dict[str, Any]:
                 "spread": item.spread.text,
                 "on": list(item.on),
                 "why": item.why,
+                "source": item.source,
                 "price": dataclasses.asdict(item.price) if item.price else None,
             }
             for item in model.tolerances.values()
@@ -44,6 +46,10 @@ def description(offer: Offer) -> dict[str, Any]:
         },
         "objectives": [_objective(item) for item in model.objectives],
         "studies": [study.name for study in model.studies],
+        "sheet": [{"title": section.title, "results": list(section.names)} for section in model.sheet],
+        "published": [_published(item) for item in model.published],
+        "findings": [dataclasses.asdict(item) for item in model.findings],
+        "exceptions": {str(name): reason for name, reason in model.exceptions.items()},
         "cites": list(model.cites),
         "added": [dataclasses.asdict(item) for item in offer.added],
     }
@@ -78,6 +84,8 @@ def _result(item: ResultField) -> dict[str, Any]:
         "unit": item.unit,
         "note": spec.note,
         "formula": formula,
+        "method": spec.method if isinstance(spec, Found) else "",
+        "source": spec.source if isinstance(spec, Found) else "",
         "along": item.along if kind == "result" else "",
     }
 
@@ -99,12 +107,15 @@ def _effect(effect: Any) -> dict[str, Any]:
         "name": effect.name,
         "acts_on": effect.place,
         "looks_like": effect.looks_like,
+        "why": effect.why,
+        "source": effect.source,
         "unknowns": [
             {
                 "name": item.name,
                 "low": item.low,
                 "high": item.high,
                 "unit": item.unit,
+                "note": item.note,
                 "amplitude": item.is_amplitude,
                 "whole": item.whole,
                 "along": item.along,
@@ -113,6 +124,21 @@ def _effect(effect: Any) -> dict[str, Any]:
         ],
         "needs": [item.name for item in effect.needs],
         "parts": [list(part) for part in effect.parts],
+    }
+
+
+def _published(item: Published) -> dict[str, Any]:
+    return {
+        "name": item.name,
+        "result": item.result,
+        "value": item.value,
+        "unit": item.unit,
+        "where": item.where,
+        "settings": dict(item.settings),
+        "agrees_to": item.agrees_to,
+        "verdict": item.verdict,
+        "obtained": item.obtained,
+        "why": item.why,
     }
 
 

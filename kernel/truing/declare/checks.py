@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from truing.declare.fields import hints_of
 from truing.declare.goals import Maximise, Minimise, PriceByChoice, Require, Vary, prices_in
 from truing.declare.near_miss import near_miss
+from truing.declare.promises import PROMISES
 from truing.declare.sources import Condition, Effect, Tolerance
 from truing.declare.specs import Axis, Found
 from truing.declare.spreads import Band, ByChoice, Drawn, Grade, Spread
@@ -33,6 +34,7 @@ def check_model(model: Model[Any, Any]) -> None:
         *_of_objectives(model),
         *_of_sheet(model),
         *_of_formulas(model),
+        *_of_exceptions(model),
     ]
     if faults:
         raise DeclarationError(f"model '{model.name}': " + "; ".join(faults))
@@ -51,6 +53,14 @@ def _of_names(model: Model[Any, Any]) -> Iterator[str]:
         yield f"two error sources are called '{name}'"
     for name in _twice(study.name for study in model.studies):
         yield f"two studies are called '{name}'"
+
+
+def _of_exceptions(model: Model[Any, Any]) -> Iterator[str]:
+    for name, reason in model.exceptions.items():
+        if name not in PROMISES:
+            yield f"an exception is declared from '{name}', which is no check of the kit.{near_miss(name, PROMISES)}"
+        elif not reason.strip():
+            yield f"the exception from '{name}' gives no reason"
 
 
 def _twice(names: Iterable[str]) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Literal, Protocol, TypeVar
@@ -12,6 +12,7 @@ from truing.declare.checks import TOTAL_PRICE, check_model
 from truing.declare.fields import InputField, ResultField, hints_of, in_si, input_fields, make, read, result_fields
 from truing.declare.goals import Objective, prices_in
 from truing.declare.near_miss import near_miss
+from truing.declare.promises import Promise
 from truing.declare.published import Finding, Published
 from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance
 from truing.declare.specs import Found
@@ -95,7 +96,8 @@ class Model(Generic[I, R]):
     """A calculation: ``function`` takes SI floats or arrays (n,) and returns the same, no I/O, no globals.
 
     ``derivatives(inputs)`` may give exact ones, ``{result: {input: value}}`` in SI. ``example`` is the commented inputs
-    file that ``calc init`` writes. Everything is checked when the model is made; a fault raises DeclarationError.
+    file that ``calc init`` writes. ``exceptions`` names checks of the conformance kit that the model does not pass, each
+    with the reason. Everything is checked when the model is made; a fault raises DeclarationError.
     """
 
     name: str
@@ -111,6 +113,7 @@ class Model(Generic[I, R]):
     derivatives: Callable[[I], Mapping[str, Mapping[str, Any]]] | None = None
     example: Path | None = None
     summary: str = ""
+    exceptions: Mapping[Promise, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check_model(self)

@@ -27,6 +27,8 @@ class Provenance:
     """What guests added: what, plugin, version."""
     files: Mapping[str, str] = field(default_factory=dict)
     """Data files that were read, with the hash of their content."""
+    exceptions: Mapping[str, str] = field(default_factory=dict)
+    """Promises that the calculation is known not to keep, with the reason."""
 
 
 def provenance_of(setup: Setup, *, date: str = "") -> Provenance:
@@ -44,6 +46,7 @@ def provenance_of(setup: Setup, *, date: str = "") -> Provenance:
         date=date,
         added=tuple((item.what, item.plugin, item.version) for item in setup.added),
         files=dict(setup.files),
+        exceptions={str(name): reason for name, reason in setup.model.exceptions.items()},
     )
 
 

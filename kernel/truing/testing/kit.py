@@ -1,34 +1,22 @@
-"""The conformance kit: what every calculation must keep, ours and strangers'.
-
-In a test file of your plugin::
-
-    from my_plugin import MY_MODEL
-    from truing.testing import conformance
-
-    test_my_model = conformance(MY_MODEL)
-
-Each check is one test; a check that fails says in one sentence what to change. Needs pytest (``truing[testing]``).
-"""
+"""The conformance kit: what every calculation must keep, ours and strangers'."""
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from truing.declare.model import Model
+from truing.declare.promises import Promise
 from truing.testing import declared, formulas, running, sources
-from truing.testing.subject import Subject
-
-__all__ = ["CHECKS", "ConformanceCheck", "conformance", "failures"]
+from truing.testing.subject import Subject, fail
 
 
 @dataclass(frozen=True)
 class ConformanceCheck:
     """One promise of every model: ``run`` raises AssertionError with a sentence where it is broken."""
 
-    name: str
+    name: Promise
     run: Callable[[Subject], None]
     needs_run: bool = True
 
@@ -36,12 +24,6 @@ class ConformanceCheck:
     def promise(self) -> str:
         """What is checked, in a sentence."""
         return (self.run.__doc__ or "").partition("\n")[0]
-
-
-def _report_order(subject: Subject) -> None:
-    """Pairs of effects that do not commute within 1 % are named, as a warning."""
-    for sentence in sources.order_matters(subject):
-        warnings.warn(f"{subject.model.name}: effects {sentence}; they act in the order of declaration", stacklevel=2)
 
 
 CHECKS: tuple[ConformanceCheck, ...] = (
@@ -66,7 +48,7 @@ CHECKS: tuple[ConformanceCheck, ...] = (
     ConformanceCheck("references are neutral", sources.references_are_neutral),
     ConformanceCheck("effects act", sources.effects_act),
     ConformanceCheck("only last results are edited", sources.only_last_results_are_edited),
-    ConformanceCheck("order of effects", _report_order),
+    ConformanceCheck("order of effects", sources.order_is_free),
 )
 """Every check, in the order in which they are run."""
 
@@ -74,7 +56,8 @@ CHECKS: tuple[ConformanceCheck, ...] = (
 def conformance(model: Model[Any, Any]) -> Callable[[ConformanceCheck], None]:
     """Return a pytest test, parametrised by check: ``test_pin_wear = conformance(PIN_WEAR)``.
 
-    What needs a running model is skipped where the defaults cannot be calculated, because one check says so already.
+    What needs a running model is skipped where the defaults cannot be calculated, because one check says so already. A
+    check from which the model declares an exception is expected to fail; one that is kept all the same fails.
     """
     import pytest
 
@@ -84,20 +67,49 @@ def conformance(model: Model[Any, Any]) -> Callable[[ConformanceCheck], None]:
     def test(check: ConformanceCheck) -> None:
         if check.needs_run and subject.obstacle:
             pytest.skip(f"the defaults cannot be calculated: {subject.obstacle}")
-        check.run(subject)
+        said = _said(check, subject)
+        reason = model.exceptions.get(check.name, "")
+        if said and reason:
+            pytest.xfail(reason)
+        _demand_exception(check, subject, said)
 
     return test
 
 
 def failures(model: Model[Any, Any]) -> dict[str, str]:
-    """Return the sentence of every check that the model does not pass, by the name of the check."""
+    """Return the sentence of every check that the model does not pass, by the name of the check.
+
+    Known exceptions are left out; one whose check is kept is a failure.
+    """
     subject = Subject(model)
     found: dict[str, str] = {}
     for check in CHECKS:
         if check.needs_run and subject.obstacle:
             continue
         try:
-            check.run(subject)
+            said = _said(check, subject)
+            if not (said and check.name in model.exceptions):
+                _demand_exception(check, subject, said)
         except Exception as error:  # whatever a model under test raises is its failure
             found[check.name] = str(error)
     return found
+
+
+def _said(check: ConformanceCheck, subject: Subject) -> AssertionError | None:
+    """Run a check and return what it says against the model."""
+    try:
+        check.run(subject)
+    except AssertionError as failure:
+        return failure
+    return None
+
+
+def _demand_exception(check: ConformanceCheck, subject: Subject, said: AssertionError | None) -> None:
+    """Raise what a check says; where it says nothing, demand that no exception is declared from it."""
+    if said is not None:
+        raise said
+    if check.name in subject.model.exceptions:
+        fail(
+            f"{subject.model.name}: '{check.name}' holds, but the model declares a known exception from it; take the "
+            "exception away"
+        )

@@ -128,6 +128,16 @@ def _users(subject: Subject) -> Iterator[tuple[str, str]]:
             yield from ((name, item.name) for name in meant & set(subject.model.own_result_fields) - {item.name})
 
 
+def order_is_free(subject: Subject) -> None:
+    """Effects at one place commute: their order changes no result by more than 1 % of what they do."""
+    found = order_matters(subject)
+    if found:
+        fail(
+            f"{subject.model.name}: effects {'; '.join(found)}; they act in the order of declaration: say why that is "
+            'right, exceptions={"order of effects": "..."} of the model'
+        )
+
+
 def order_matters(subject: Subject) -> list[str]:
     """Name the pairs of effects at one place whose order changes a result by more than 1 % of what they do."""
     setup = _off_reference(subject.setup)
