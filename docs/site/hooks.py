@@ -12,8 +12,8 @@ from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 from pymdownx.slugs import slugify
 
-from manual import links, marks, mathematics, navigation
-from manual.places import PROJECT, ROOT, place_in_site
+from manual import links, made, marks, mathematics, navigation
+from manual.places import PROJECT, ROOT
 
 _HEADING = re.compile(r"^# (.+)$|^## (\S.*)$", re.MULTILINE)
 
@@ -27,17 +27,20 @@ def on_files(files: Files, *, config: MkDocsConfig) -> Files:
     """Add the pages beside docs/ and what they link to; derive the navigation."""
     for name, place in PROJECT.items():
         files.append(File.generated(config, place, abs_src_path=str(ROOT / name)))
-    for place, source in links.files_to_copy().items():
-        files.append(File.generated(config, place, abs_src_path=str(source)))
+    for place, item in {**links.files_to_copy(), **made.files()}.items():
+        if isinstance(item, Path):
+            files.append(File.generated(config, place, abs_src_path=str(item)))
+        else:
+            files.append(File.generated(config, place, content=item))
     config.nav = navigation.navigation({file.src_uri: _heading(file) for file in files.documentation_pages()})
     return files
 
 
 def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: Files) -> str:
-    """Show files' names above their blocks; make links that lead out of docs/ lead to the copies."""
+    """Fill in what is made, show the names of files above their blocks, turn links out of docs/ to the copies."""
     source = page.file.abs_src_path
     text = links.for_the_site(markdown, Path(source)) if source else markdown
-    return marks.with_titles(text)
+    return made.filled(marks.with_titles(text))
 
 
 def on_page_content(html: str, *, page: Page, config: MkDocsConfig, files: Files) -> str:
@@ -61,4 +64,4 @@ def on_post_build(*, config: MkDocsConfig) -> None:
 def _heading(file: File) -> str:
     """Return the first heading of a page without its marks."""
     found = _HEADING.search(file.content_string)
-    return (found[1] or found[2]).replace("`", "").strip() if found else place_in_site(Path(file.src_uri))
+    return (found[1] or found[2]).replace("`", "").strip() if found else file.name

@@ -15,6 +15,8 @@ LONGEST = 42
 FOLDERS = ("tutorial", "how-to", "reference", "explanation", "examples", "gallery")
 """The folders in the order of the navigation; any other comes after them, what lies beside docs/ at the end."""
 
+MODEL = re.compile(r"reference/models/(?!README).*\.md")
+"""Pages that go by the name that is typed."""
 _ENTRY = re.compile(r"\[([^\]]+)\]\(([^)\s#]+\.md)\)")
 Titles = Mapping[str, str]
 
@@ -34,6 +36,7 @@ def navigation(pages: Titles) -> list[dict[str, Any]]:
     linked = titles_of_index()
     order = {place: number for number, place in enumerate(linked)}
     titles = {place: _title(linked.get(place), own) for place, own in pages.items()}
+    titles |= {place: PurePosixPath(place).stem for place in pages if MODEL.fullmatch(place)}
     first = {"Truing: the manual": "index.md"}
     rest = [place for place in pages if place != "index.md"]
     ordered = sorted(rest, key=lambda place: (order.get(place, len(order)), place))
