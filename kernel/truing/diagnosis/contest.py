@@ -105,7 +105,7 @@ def _all_scored(
     favourites = best_terms(first)
     terms = terms_for_pairs(problem, frozenset(piece.place for piece in favourites))
     two = [
-        search(evidence, pairs(terms), settings),
+        search(evidence, pairs(terms, problem.beside), settings),
         search(evidence, mixed(favourites, problem.shape_pieces, problem.like), settings),
     ]
     finer = [hypothesis for each in two for hypothesis in _finer(problem, each)]

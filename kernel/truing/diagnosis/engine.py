@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from truing.declare.near_miss import near_miss
+from truing.diagnosis.beside import second_beside_first
 from truing.diagnosis.contest import Contest, contest
 from truing.diagnosis.decide import Decision, alternatives, best_alone, decide, without_needless_inputs
 from truing.diagnosis.design import next_points
@@ -57,11 +58,12 @@ def _diagnose(setup: Setup, records: Records, step: _Steps) -> Diagnosis:
     decision = decide(full, seed=setup.seed)
     step.done("significance")
     best, decision = _certain(full, decision)
-    again = second_look(full, decision.winner, best, ~records.held_out)
-    if again is not None:
-        full = without_needless_inputs(again)
-        decision = decide(full, seed=setup.seed)
-        best, decision = _certain(full, decision)
+    for look in (second_look, second_beside_first):
+        again = look(full, decision.winner, best, ~records.held_out)
+        if again is not None:
+            full = without_needless_inputs(again)
+            decision = decide(full, seed=setup.seed)
+            best, decision = _certain(full, decision)
     step.done("fit")
     problem = full.problem
     answer = _answer(problem, full, decision, best, raw)

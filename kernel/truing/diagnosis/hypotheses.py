@@ -99,8 +99,8 @@ def _alone(kind: Kind, pieces: tuple[Piece, ...]) -> tuple[Hypothesis, ...]:
 
 
 @lru_cache(maxsize=REMEMBERED)
-def _paired(terms: tuple[Piece, ...]) -> tuple[Hypothesis, ...]:
-    return _members("two", [(a, b) for a, b in combinations(terms, 2) if a.owner != b.owner])
+def _paired(terms: tuple[Piece, ...], beside: tuple[tuple[Piece, Piece], ...]) -> tuple[Hypothesis, ...]:
+    return _members("two", [*((a, b) for a, b in combinations(terms, 2) if a.owner != b.owner), *beside])
 
 
 @lru_cache(maxsize=REMEMBERED)
@@ -115,9 +115,9 @@ def singles(terms: Sequence[Piece]) -> list[Hypothesis]:
     return list(_alone("one", tuple(terms)))
 
 
-def pairs(terms: Sequence[Piece]) -> list[Hypothesis]:
-    """Return every pair of variants of two different causes."""
-    return list(_paired(tuple(terms)))
+def pairs(terms: Sequence[Piece], beside: Sequence[tuple[Piece, Piece]] = ()) -> list[Hypothesis]:
+    """Return every pair of variants of two different causes, and those that only go with one another."""
+    return list(_paired(tuple(terms), tuple(beside)))
 
 
 def shapes(groups: Sequence[Piece]) -> list[Hypothesis]:

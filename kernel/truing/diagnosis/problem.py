@@ -29,7 +29,8 @@ class Problem:
     """Everything that competes. ``twins`` holds, by place of a candidate, others that are the same curve here.
 
     ``shape_results`` holds, by the owner of a shape piece, the place of the shape and the results it acts on;
-    ``like`` the (candidate, shape owner) pairs in which the shape reproduces the cause.
+    ``like`` the (candidate, shape owner) pairs in which the shape reproduces the cause. ``beside`` are pairs of which
+    the second has the curve that it has beside the first.
     """
 
     machine: Machine
@@ -45,6 +46,7 @@ class Problem:
     twins: Mapping[int, tuple[Twin, ...]]
     like: frozenset[tuple[int, int]]
     unexcited: tuple[str, ...]
+    beside: tuple[tuple[Piece, Piece], ...] = ()
 
     def same_curve(self, owner: int, coefficients: Sequence[float]) -> tuple[str, ...]:
         """Return the names of what may be the curve of a candidate with these coefficients as well."""
@@ -259,8 +261,10 @@ def stride(count: int, *, sparse: bool = False) -> int:
 
 def near(problem: Problem, piece: Piece) -> list[Piece]:
     """Return the variants of the same cause that were passed over beside one: those up to the next that was tried."""
-    pieces = _by_owner(problem)[piece.owner]
+    pieces = _by_owner(problem).get(piece.owner, [])
     every = stride(len(pieces))
+    if piece not in pieces:  # it goes with one other cause only
+        return []
     at = pieces.index(piece)
     return [each for place, each in enumerate(pieces) if 0 < abs(place - at) <= every] if every > 1 else []
 
@@ -324,6 +328,22 @@ def of_their_own(problem: Problem, pieces: Sequence[Piece]) -> Problem:
     owners = {piece.owner for piece in pieces if piece.kind == "term"}
     left = {place: tuple(twin for twin in twins if twin.place not in owners) for place, twins in problem.twins.items()}
     return replace(problem, twins={**dict.fromkeys(owners, ()), **left})
+
+
+def with_pairs(problem: Problem, terms: Sequence[tuple[Term, Term]]) -> Problem:
+    """Return the problem with further pairs: a first term, and a second as it is beside that one."""
+    made, count = _Columns(problem.columns), len(problem.terms)
+    every = list({id(term): term for pair in terms for term in pair}.values())
+    pieces = {id(term): made.term(count + place, term) for place, term in enumerate(every)}
+    added = tuple((pieces[id(first)], pieces[id(second)]) for first, second in terms)
+    return replace(
+        problem, terms=(*problem.terms, *every), columns=tuple(made.columns), beside=(*problem.beside, *added)
+    )
+
+
+def without_pieces(problem: Problem) -> Problem:
+    """Return the problem with nothing that competes."""
+    return replace(problem, terms=(), columns=(), term_pieces=(), input_pieces=(), shape_pieces=(), beside=())
 
 
 def _with_terms(problem: Problem, new: Sequence[Term]) -> Problem:

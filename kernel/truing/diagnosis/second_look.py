@@ -38,10 +38,10 @@ def second_look(full: Contest, place: int, best: Fit, rows: NDArray[np.bool_]) -
         return None
     plain = replace(full, noise=replace(full.noise, residuals=residuals_of(full.problem.machine)))
     tried = [(each, other, fit(each, other)) for each, other in _worth_it(full, plain, place, rows)]
-    worth = [_worth(each, found) for each, _, found in tried]
-    if not tried or max(worth) < _worth(plain, best) + BETTER:
+    worths = [worth(each, found) for each, _, found in tried]
+    if not tried or max(worths) < worth(plain, best) + BETTER:
         return None
-    return _held_again(tried[worth.index(max(worth))], full.noise, rows)
+    return _held_again(tried[worths.index(max(worths))], full.noise, rows)
 
 
 def _worth_it(full: Contest, plain: Contest, winner: int, rows: NDArray[np.bool_]) -> Iterator[tuple[Contest, int]]:
@@ -64,7 +64,7 @@ def _owns(problem: Problem, hypothesis: Hypothesis, what: str) -> bool:
     return any(is_smooth(shape) for owner in owners for shape in owner.shapes)
 
 
-def _worth(plain: Contest, found: Fit) -> float:
+def worth(plain: Contest, found: Fit) -> float:
     """Return the log-likelihood of the readings as they are at the parameters of a fit, these paid for."""
     import numpy as np
 
@@ -75,9 +75,8 @@ def _worth(plain: Contest, found: Fit) -> float:
     return sum(likelihood_of(part) for part in np.split(left, ends)) - price
 
 
-def _held_again(better: tuple[Contest, int, Fit], before: NoiseModel, rows: NDArray[np.bool_]) -> Contest:
-    """Hold the contest again with what an exact fit says of the noise, and with its sizes and shapes on the grid."""
-    plain, place, found = better
+def noise_after(plain: Contest, place: int, found: Fit, before: NoiseModel) -> NoiseModel:
+    """Return the noise as an exact fit of one of the hypotheses of a contest says it is."""
     machine, evidence = plain.problem.machine, plain.evidence
     fitted = tuple(
         (found.predicted[channel.name] - machine.base[channel.name] - machine.shifts[channel.name])[channel.rows]
@@ -85,9 +84,15 @@ def _held_again(better: tuple[Contest, int, Fit], before: NoiseModel, rows: NDAr
         for channel in evidence.channels
     )
     solution = replace(plain.solution(place), fitted=fitted)
-    noise = learned(plain.problem, evidence, solution, plain.noise.residuals, before)
+    return learned(plain.problem, evidence, solution, plain.noise.residuals, before)
+
+
+def _held_again(better: tuple[Contest, int, Fit], before: NoiseModel, rows: NDArray[np.bool_]) -> Contest:
+    """Hold the contest again with what an exact fit says of the noise, and with its sizes and shapes on the grid."""
+    plain, place, found = better
     problem = at_shapes(plain.problem, found.hypothesis.pieces, _shapes(found))
-    return contest(bent(of_their_own(problem, found.hypothesis.pieces), _sizes(found)), noise, rows, rounds=1)
+    problem = bent(of_their_own(problem, found.hypothesis.pieces), _sizes(found))
+    return contest(problem, noise_after(plain, place, found, before), rows, rounds=1)
 
 
 def _shapes(found: Fit) -> dict[int, dict[str, float]]:

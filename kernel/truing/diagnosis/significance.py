@@ -153,7 +153,7 @@ def first_stage(contest: Contest, best: int, *, seed: int) -> Null:
     nothing = contest.solution(0)
     rich = [
         *singles(problem.term_pieces),
-        *pairs(terms_for_pairs(problem, sparse=True)),
+        *pairs(terms_for_pairs(problem, sparse=True), problem.beside),
         *shapes(problem.shape_pieces),
     ]
     excess = float(found.score[best] - found.score[0])
@@ -169,7 +169,7 @@ def second_stage(contest: Contest, one: int, two: int, *, with_shapes: bool, see
     beside = list(hypothesis.pieces) if hypothesis.kind == "one" else best_terms(found)
     groups = list(problem.shape_pieces) if hypothesis.kind == "one" else list(hypothesis.pieces)
     rich = [
-        *pairs(terms_for_pairs(problem, sparse=True)),
+        *pairs(terms_for_pairs(problem, sparse=True), problem.beside),
         *mixed([piece for piece in beside if piece.kind == "term"], groups, problem.like),
     ]
     excess = float(found.score[two] - found.score[one])
