@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from truing.cli import compare, describe, diagnose, init, new, plugins, run, table, verify
+from truing.cli import compare, describe, diagnose, explain, init, new, plugins, run, table, verify
 from truing.cli.console import out
 
 app = typer.Typer(
@@ -39,6 +39,7 @@ def _common(
 app.command("plugins")(plugins.plugins)
 app.command("describe")(describe.describe)
 app.command("init")(init.init)
+app.command("explain")(explain.explain)
 app.command("run")(run.run)
 app.command("table")(table.table)
 app.command("diagnose")(diagnose.diagnose)

@@ -1,0 +1,63 @@
+"""calc explain: one result, input, effect or tolerance of a calculation, and what it has to do with the others."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from truing.cli.console import Settings, out, out_json, progress_bar, settings_of, verb
+from truing.cli.load import find_offer, read_or_example
+from truing.cli.words import AsJson, Changed
+from truing.errors import UsageError
+from truing.kernel import Offer
+
+
+@verb
+def explain(
+    context: typer.Context,
+    what: Annotated[str, typer.Argument(help="PLUGIN.NAME; or a plugin or Python file, and the name behind it.")],
+    name: Annotated[str, typer.Argument(help="The name, where it does not stand in WHAT.")] = "",
+    inputs: Annotated[
+        Path | None, typer.Option("--inputs", "-i", help="The inputs file; without it the shipped example.")
+    ] = None,
+    changed: Changed = None,
+    as_json: AsJson = False,
+) -> int:
+    """Explain a result: formula, what it is made from, what moves it; or an input, an effect, a tolerance."""
+    from truing.cli.explain_printed import lines_of, width_of_page
+    from truing.explain import told
+    from truing.inputs_file.culprit import told_by_line
+
+    settings = settings_of(context)
+    offer, wanted = _asked(what, name, settings)
+    setup = read_or_example(offer, inputs, changed or (), word=offer.name, settings=settings)
+    with progress_bar(settings) as progress, told_by_line(setup):
+        document = told(setup, offer, wanted, progress=progress)
+    if as_json:
+        out_json(document)
+    else:
+        out("\n".join(lines_of(document, width_of_page())))
+    return 0
+
+
+def _asked(what: str, name: str, settings: Settings) -> tuple[Offer, str]:
+    """Return the calculation and the name that the words mean."""
+    from truing.explain import SECTIONS
+
+    if name:
+        return find_offer(what, settings), name
+    if what.endswith(".py"):
+        raise UsageError(f"explain what of {what}? Write its name behind it: calc explain {what} RESULT")
+    plugin, _, last = what.rpartition(".")
+    outer, _, section = plugin.rpartition(".")
+    if outer and section in SECTIONS:
+        plugin, last = outer, f"{section}.{last}"
+    if plugin:
+        return find_offer(plugin, settings), last
+    offer = find_offer(what, settings)
+    first = next(iter(offer.model.result_fields))
+    raise UsageError(
+        f"explain what of {what}? Name it, as in calc explain {what}.{first}; calc describe {what} lists all"
+    )

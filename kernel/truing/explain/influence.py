@@ -1,0 +1,114 @@
+"""How strongly a source moves a result: its share of the scatter, and what one per cent of it does."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from truing.setup import Setup
+from truing.studies.differences import exact_slopes, nominal_of, slopes
+from truing.studies.scatter import Scatter, scatter_of
+from truing.units.names import LEVELS
+
+NOTHING = 1e-10
+"""A source that moves a result by less than this share of it, when it changes by its own size, does not move it."""
+
+
+@dataclass(frozen=True)
+class Influence:
+    """What one source does to one result; along an axis every number is a root mean square.
+
+    ``step`` is the change of the result (SI) as the source grows by one per cent (a level of temperature by one kelvin;
+    None for a source that is 0), ``relative`` the same as a share of the result (None where that is 0), ``share`` the
+    part of the first-order variance of the result that is due to the scatter of the source.
+    """
+
+    source: str
+    step: float | None
+    relative: float | None
+    share: float
+    moves: bool
+
+
+@dataclass(frozen=True)
+class Influences:
+    """What moves each result: by result, with the standard deviation (SI) of all that scatters, and what to know."""
+
+    of: Mapping[str, tuple[Influence, ...]]
+    sd: Mapping[str, float]
+    warnings: tuple[str, ...]
+
+
+def differentiable(setup: Setup) -> list[str]:
+    """Return the inputs and conditions that a result can be differentiated by: numbers that are given."""
+    numbers = [name for name, item in setup.model.input_fields.items() if item.kind == "float"]
+    return [name for name in (*numbers, *setup.conditions) if (value := nominal_of(setup, name)) == value]
+
+
+def influences(setup: Setup, results: Sequence[str], sources: Sequence[str]) -> Influences:
+    """Differentiate results of the function by sources and by all that scatters, in one batch of the model."""
+    scatter = scatter_of(setup)
+    columns = tuple(dict.fromkeys([*sources, *scatter.columns]))
+    found = slopes(setup, results, columns, scatter)
+    exact = exact_slopes(setup)
+    of: dict[str, tuple[Influence, ...]] = {}
+    sd: dict[str, float] = {}
+    for result in results:
+        by_source = {**found.of[result], **{key: v for key, v in exact.get(result, {}).items() if key in columns}}
+        variance = {name: _mean(value) for name, value in scatter.variances(by_source).items()}
+        whole = sum(variance.values())
+        size = _size(found.nominal[result])
+        sd[result] = max(whole, 0.0) ** 0.5
+        of[result] = tuple(
+            _influence(
+                setup, scatter, name, by_source[name], size, variance.get(name, 0.0) / whole if whole > 0 else 0.0
+            )
+            for name in columns
+        )
+    return Influences(of, sd, found.warnings)
+
+
+def _influence(setup: Setup, scatter: Scatter, name: str, slope: Any, size: float, share: float) -> Influence:
+    from truing.units import unit_factor
+
+    value = nominal_of(setup, name)
+    is_level = name in _levels(setup)
+    steepness = _size(slope) * (-1.0 if getattr(slope, "ndim", 0) == 0 and slope < 0 else 1.0)
+    own = 1.0 if is_level else 0.01 * abs(value)
+    step = steepness * own if own and steepness == steepness else None
+    relative = step / size if step is not None and size else None
+    widest = max(abs(value), scatter.sd_of(name), 0.0 if value else unit_factor(_unit(setup, name)))
+    moves = steepness == steepness and abs(steepness) * widest > NOTHING * size
+    return Influence(name, step, relative, share, moves)
+
+
+def _unit(setup: Setup, name: str) -> str:
+    from truing.units import difference_unit
+
+    known = name in setup.model.input_fields or name in setup.model.known_conditions
+    return difference_unit(setup.unit_of(name)) if known else ""
+
+
+def _levels(setup: Setup) -> set[str]:
+    return {name for name in (*setup.model.input_fields, *setup.conditions) if setup.unit_of(name) in LEVELS}
+
+
+def _size(value: Any) -> float:
+    """Return the size of a number, or the root mean square of an array, NaN where any part is none."""
+    return math.sqrt(_mean(value * value))
+
+
+def _mean(value: Any) -> float:
+    return float(value.mean()) if getattr(value, "ndim", 0) else float(value)
+
+
+def by_share(found: Sequence[Influence]) -> list[Influence]:
+    """Return what scatters, the largest share of the scatter first."""
+    return sorted((one for one in found if one.share), key=lambda one: -abs(one.share))
+
+
+def by_slope(found: Sequence[Influence]) -> list[Influence]:
+    """Return what moves the result, the steepest first."""
+    return sorted((one for one in found if one.moves and one.step), key=lambda one: -abs(one.step or 0.0))
