@@ -28,6 +28,8 @@ from truing import (
 Array = NDArray[np.float64]
 FULL = 10.0
 """Level of a full tank on the scale of the gauge, V; the gauge reads no more."""
+CREST = 0.2
+"""How far the water stands above a rim when all that is to run over does, V."""
 FILM = 1e-3
 """Level below which an outlet runs in proportion to the level, V: so an empty tank stays empty."""
 LONGEST_STEP = 2.0
@@ -55,11 +57,15 @@ class Tanks:
     upper_exponent: Float = given(0.5, "", symbol="e_1", note="of the upper outlet; 1/2 after Torricelli", above=0)
     lower_exponent: Float = given(0.5, "", symbol="e_3", note="of the lower outlet; 1/2 after Torricelli", above=0)
     upper_rim: Float = given(FULL, "V", symbol="r_1", note="level at which the upper tank runs over", above=0)
-    upper_spill: Float = given(0.0, "1/s", symbol="w_1", note="what runs over it, per volt above", at_least=0)
+    upper_spill: Float = given(
+        0.0, "", symbol="s_1", note="share of the surplus that runs over it", at_least=0, at_most=1
+    )
     caught_share: Float = given(
         0.5, "", symbol="c", note="share of the spilt water that the lower tank catches", at_least=0, at_most=1
     )
-    lower_spill: Float = given(0.0, "1/s", symbol="w_2", note="what runs over the full lower tank", at_least=0)
+    lower_spill: Float = given(
+        0.0, "", symbol="s_2", note="share that runs over a full lower tank", at_least=0, at_most=1
+    )
     upper_leak: Float = given(0.0, "1/s", symbol="l_1", note="seepage of the upper tank, per volt", at_least=0)
     lower_leak: Float = given(0.0, "1/s", symbol="l_2", note="seepage of the lower tank, per volt", at_least=0)
     dead_voltage: Float = given(0.0, "V", symbol="u_0", note="below it the pump does not turn", at_least=0)
@@ -89,7 +95,7 @@ class Levels:
 
 @dataclass(frozen=True)
 class Tank:
-    """What leaves one tank at a level; every field is a number or an array (n, 1)."""
+    """What leaves one tank; every field is a number or an array (n, 1)."""
 
     outflow: Float
     exponent: Float
@@ -98,54 +104,56 @@ class Tank:
     leak: Float
 
     def through(self, level: Array) -> Array:
-        """What leaves through the outlet, V/s."""
+        """What leaves through the outlet at a level, V/s."""
         return np.asarray(
             self.outflow * (np.maximum(level, FILM) / FULL) ** self.exponent * np.minimum(level / FILM, 1)
         )
 
-    def over(self, level: Array) -> Array:
-        """What leaves over the rim, V/s."""
-        return np.asarray(self.spill * np.maximum(level - self.rim, 0))
+    def over(self, level: Array, inflow: Array) -> Array:
+        """What leaves over the rim, V/s: a share of what comes in and does not leave otherwise."""
+        surplus = np.maximum(inflow - self.through(level) - self.leak * level, 0)
+        return np.asarray(self.spill * np.clip((level - self.rim) / CREST, 0, 1) * surplus)
 
-    def leaving(self, level: Array) -> Array:
+    def leaving(self, level: Array, inflow: Array) -> Array:
         """All that leaves, V/s."""
-        return np.asarray(self.through(level) + self.over(level) + self.leak * level)
+        return np.asarray(self.through(level) + self.over(level, inflow) + self.leak * level)
 
-    def steepness(self, level: Array) -> Array:
+    def steepness(self, level: Array, inflow: Array) -> Array:
         """How much more leaves per volt of level, 1/s."""
         deep = np.maximum(level, FILM)
         outlet = self.outflow * (deep / FULL) ** self.exponent / deep * np.where(level > FILM, self.exponent, 1.0)
-        return np.asarray(outlet + self.spill * (level > self.rim) + self.leak)
+        surplus = np.maximum(inflow - self.through(level) - self.leak * level, 0)
+        height = (level - self.rim) / CREST
+        growing = np.where((height > 0) & (height < 1), surplus / CREST, 0)
+        below = self.spill * np.clip(height, 0, 1) * (surplus > 0)
+        return np.asarray((outlet + self.leak) * (1 - below) + self.spill * growing)
 
 
 @dataclass(frozen=True)
-class Course:
-    """Steps of a calculation: their lengths (m,) in s, and every how many of them the record has a row."""
+class Filled:
+    """The course of a tank over m steps: level (n, m + 1) in V, and flows, the mean of each step, (n, m) in V/s."""
 
-    step: Array
-    parts: int
-
-    def mean(self, flow: Array) -> Array:
-        """Mean of a flow (n, m + 1) over each step, (n, m)."""
-        return np.asarray((flow[:, 1:] + flow[:, :-1]) / 2)
-
-    def total(self, flow: Array) -> Array:
-        """What a flow, the mean of each step (n, m), adds up to, (n,)."""
-        return np.asarray(flow @ self.step)
-
-    def at_rows(self, level: Array) -> Array:
-        """The level at the times of the record."""
-        return np.asarray(level[:, :: self.parts])
+    level: Array
+    inflow: Array
+    drained: Array
+    spilt: Array
+    seeped: Array
 
 
-def course_of(times: Array) -> Course:
-    """Divide the times between the rows of a record into steps that are short enough."""
-    parts = int(np.ceil(np.max(np.diff(times)) / LONGEST_STEP - 1e-9))
-    return Course(np.repeat(np.diff(times) / parts, parts), parts)
+def course_of(tank: Tank, level: Array, inflow: Array) -> Filled:
+    """Say where the water went that came into a tank at these levels."""
+    begin, end = level[:, :-1], level[:, 1:]
+    return Filled(
+        level=level,
+        inflow=inflow,
+        drained=(tank.through(begin) + tank.through(end)) / 2,
+        spilt=(tank.over(begin, inflow) + tank.over(end, inflow)) / 2,
+        seeped=np.asarray(tank.leak * (begin + end) / 2),
+    )
 
 
-def filled(tank: Tank, start: Array, inflow: Array, step: Array) -> Array:
-    """Follow the level of a tank from its start (n,): levels (n, m + 1) in V; NaN in a row that comes to no end.
+def filled(tank: Tank, start: Array, inflow: Array, step: Array) -> Filled:
+    """Follow the level of a tank from its start (n,); NaN in a row that comes to no end.
 
     ``inflow`` (n, m) is the mean over each of the m steps, ``step`` (m,) their lengths in s. The trapezoidal rule: all
     steps of all rows are one bidiagonal system of equations, solved by Newton's method.
@@ -154,16 +162,23 @@ def filled(tank: Tank, start: Array, inflow: Array, step: Array) -> Array:
     half, change = step / 2, np.zeros(level.shape)
     own, before, left = np.ones(level.shape), np.zeros(level.shape), np.zeros(level.shape)
     for _ in range(MOST_ROUNDS):
-        leaving, steep = tank.leaving(level), tank.steepness(level)
-        left[:, 1:] = np.diff(level) - step * inflow + half * (leaving[:, 1:] + leaving[:, :-1])
-        own[:, 1:] = 1 + half * steep[:, 1:]
-        before[:, :-1] = half * steep[:, :-1] - 1
+        begin, end = level[:, :-1], level[:, 1:]
+        left[:, 1:] = end - begin - step * inflow + half * (tank.leaving(begin, inflow) + tank.leaving(end, inflow))
+        own[:, 1:] = 1 + half * tank.steepness(end, inflow)
+        before[:, :-1] = half * tank.steepness(begin, inflow) - 1
         solved = dgtsv(before.ravel()[:-1], own.ravel(), np.zeros(level.size - 1), left.ravel())
         change = solved[3].reshape(level.shape)
         level = level - change
         if not np.max(np.abs(change)) > SETTLED:
             break
-    return np.where(np.max(np.abs(change), axis=-1, keepdims=True) <= SETTLED, level, np.nan)
+    settled = np.max(np.abs(change), axis=-1, keepdims=True) <= SETTLED
+    return course_of(tank, np.where(settled, level, np.nan), inflow)
+
+
+def delivered(tanks: Tanks, voltage: Array) -> Array:
+    """What the pump delivers at a voltage (k,), (n, k) in V/s."""
+    turning = np.maximum(voltage - column(tanks.dead_voltage), 0)
+    return np.asarray(column(tanks.pump_rate) * turning * (1 + column(tanks.pump_bend) * turning))
 
 
 def cascaded_tanks(tanks: Tanks) -> Levels:
@@ -175,30 +190,27 @@ def cascaded_tanks(tanks: Tanks) -> Levels:
     times, voltage = np.asarray(tanks.times, dtype=float), np.asarray(tanks.pump_voltage, dtype=float)
     feasible(len(times) == len(voltage) and len(times) > 1, "times and pump_voltage are not equally long series")
     feasible(np.all(np.diff(times) > 0), "the times of the record do not rise from row to row")
-    course, size = course_of(times), np.broadcast(*(getattr(tanks, name) for name in NUMBERS)).shape
-    rows = size or (1,)
-    upper, lower = uppermost(tanks), lowermost(tanks)
-    turning = np.maximum(voltage - column(tanks.dead_voltage), 0)
-    pumped = column(tanks.pump_rate) * turning * (1 + column(tanks.pump_bend) * turning)
-    pumped = np.broadcast_to(pumped, (*rows, len(times)))[:, :-1].repeat(course.parts, axis=1)
-    above = filled(upper, np.broadcast_to(tanks.upper_start, rows), pumped, course.step)
-    spilt = course.mean(upper.over(above))
-    caught = column(tanks.caught_share) * spilt
-    coming = column(tanks.section_ratio) * (course.mean(upper.through(above)) + caught)
-    below = filled(lower, np.broadcast_to(tanks.lower_start, rows), coming, course.step)
-    feasible(np.all(np.isfinite(below), axis=-1).reshape(size), "the levels cannot be calculated: a step has no end")
-    drained = course.total(course.mean(lower.through(below)))
-    lost = course.total(spilt - caught + column(tanks.upper_leak) * course.mean(above))
-    lost = lost + course.total(course.mean(lower.leaving(below) - lower.through(below))) / tanks.section_ratio
-    level = course.at_rows(below)
+    parts = int(np.ceil(np.max(np.diff(times)) / LONGEST_STEP - 1e-9))
+    step, size = (
+        np.repeat(np.diff(times) / parts, parts),
+        np.broadcast(*(getattr(tanks, name) for name in NUMBERS)).shape,
+    )
+    rows, ratio = size or (1,), column(tanks.section_ratio)
+    pumped = np.broadcast_to(delivered(tanks, voltage), (*rows, len(times)))[:, :-1].repeat(parts, axis=1)
+    above = filled(uppermost(tanks), np.broadcast_to(tanks.upper_start, rows), pumped, step)
+    caught = column(tanks.caught_share) * above.spilt
+    below = filled(lowermost(tanks), np.broadcast_to(tanks.lower_start, rows), ratio * (above.drained + caught), step)
+    feasible(np.isfinite(below.level[:, -1]).reshape(size), "the levels cannot be calculated: a step comes to no end")
+    lost = above.spilt - caught + above.seeped + (below.spilt + below.seeped) / ratio
+    upper_level, level = above.level[:, ::parts], below.level[:, ::parts]
     return Levels(
         time=times,
-        upper_level=course.at_rows(above).reshape(*size, len(times)),
+        upper_level=upper_level.reshape(*size, len(times)),
         level=level.reshape(*size, len(times)),
         highest=np.max(level, axis=-1).reshape(size),
-        pumped=course.total(pumped).reshape(size),
-        drained=(drained / tanks.section_ratio).reshape(size),
-        lost=lost.reshape(size),
+        pumped=(pumped @ step).reshape(size),
+        drained=(below.drained / ratio @ step).reshape(size),
+        lost=(lost @ step).reshape(size),
     )
 
 
@@ -215,7 +227,7 @@ def lowermost(tanks: Tanks) -> Tank:
 
 
 def overflow(tanks: Tanks, *, spill: Float, rim: Float, caught: Float) -> Tanks:
-    """Water runs over the rim of the upper tank, the more the higher it stands; the lower tank catches a share."""
+    """A full upper tank runs over: it spills what comes in and does not drain; the lower tank catches a share."""
     return replace(tanks, upper_spill=tanks.upper_spill + spill, upper_rim=rim, caught_share=caught)
 
 
@@ -254,14 +266,14 @@ EFFECTS = [
         "overflow", on_inputs=overflow,
         looks_like="high levels come too low and too late, after the pump has run fast",
         unknowns=[
-            Unknown("spill", 0, 0.5, "1/s", note="what runs over, per volt above the rim"),
+            Unknown("spill", 0, 1, note="share of the surplus that runs over"),
             Unknown("rim", 4, 16, "V", note="level of the rim"),
             Unknown("caught", 0.05, 1, note="share that falls into the lower tank"),
         ],
     ),
     Effect(
         "lower_overflow", on_inputs=lower_overflow, looks_like="the level cannot rise above 10 V, and falls at once",
-        unknowns=[Unknown("spill", 0, 0.5, "1/s", note="what runs over, per volt above 10 V")],
+        unknowns=[Unknown("spill", 0, 1, note="share of the surplus that runs over")],
     ),
     Effect(
         "outlet_losses", on_inputs=outlet_losses, parts=[["upper"], ["lower"]],

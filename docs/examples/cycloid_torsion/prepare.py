@@ -31,9 +31,12 @@ def main(arguments: list[str]) -> int:
     if len(arguments) != 1:
         sys.stderr.write("name the published record: python prepare.py data.csv\n")
         return 2
+    if not Path(arguments[0]).is_file():
+        sys.stderr.write(f"{arguments[0]}: no such file; README.md says where the record comes from\n")
+        return 2
     try:
         table = prepared(Path(arguments[0]))
-    except (OSError, ValueError) as error:
+    except ValueError as error:
         sys.stderr.write(f"{error}\n")
         return 2
     with Path("measured.csv").open("w", encoding="utf-8", newline="") as lines:

@@ -12,20 +12,35 @@ COLUMNS = ["run [-]", "gearbox [-]", "motor_current [A]", "time [s]", "lever_tor
 HEADER = ["time [s]", "held [s]", "ratio [-]", "motor_current [A]", "lever_torque [N*m]", "record"]
 
 
-def plateau(rows: list[dict[str, str]]) -> list[list[str]]:
-    """Return every fourth row from 0.2 s after the torque came on, as a table with a header."""
-    torques = sorted(float(row["lever_torque [N*m]"]) for row in rows)
-    level = torques[3 * len(torques) // 4]
-    start = next(float(row["time [s]"]) for row in rows if float(row["lever_torque [N*m]"]) > 0.9 * level)
-    kept = [row for row in rows if float(row["time [s]"]) >= start + 0.2][::4]
-    end = start + (float(kept[-1]["time [s]"]) - start) / 3
+Row = dict[str, str]
+
+
+def plateau(rows: list[Row], torques: list[float], times: list[float]) -> list[list[str]]:
+    """Return every fourth row from 0.2 s after the torque came on, as a table with a header; too few rows give none."""
+    level = sorted(torques)[3 * len(torques) // 4]
+    start = next(time for time, torque in zip(times, torques, strict=True) if torque >= 0.9 * level)
+    kept = [(time, row) for time, row in zip(times, rows, strict=True) if time >= start + 0.2][::4]
+    if len(kept) < 12:
+        return []
+    end = start + (kept[-1][0] - start) / 3
     made = [HEADER]
-    for row in kept:
-        time, ratio = row["time [s]"], "1" if row["gearbox [-]"] == "0" else "20"
-        role = "fit" if float(time) < end else "validation"
-        held = f"{float(time) - start:.4f}"
-        made.append([time, held, ratio, row["motor_current [A]"], row["lever_torque [N*m]"], role])
+    for time, row in kept:
+        ratio, role = "1" if row["gearbox [-]"] == "0" else "20", "fit" if time < end else "validation"
+        held = f"{time - start:.4f}"
+        made.append([row["time [s]"], held, ratio, row["motor_current [A]"], row["lever_torque [N*m]"], role])
     return made
+
+
+def numbers(path: Path, rows: list[Row], column: str) -> list[float]:
+    """Return a column as numbers. Raises ValueError with file and line at the first cell that is none."""
+    found = []
+    for row in rows:
+        try:
+            found.append(float(row[column]))
+        except (TypeError, ValueError):
+            name = column.split()[0]
+            raise ValueError(f"{path}:{row['line']}: {name} '{row[column]}' is no number") from None
+    return found
 
 
 def prepared(path: Path) -> dict[str, list[list[str]]]:
@@ -35,8 +50,17 @@ def prepared(path: Path) -> dict[str, list[list[str]]]:
         missing = [name for name in COLUMNS if name not in (table.fieldnames or [])]
         if missing:
             raise ValueError(f"{path}:1: no column '{missing[0]}'; README.md says which file is meant")
-        runs = {run: list(rows) for run, rows in groupby(table, key=lambda row: row["run [-]"])}
-    return {run: plateau(rows) for run, rows in runs.items()}
+        every = [{**row, "line": str(table.line_num)} for row in table]
+    made = {}
+    for run, group in groupby(every, key=lambda row: row["run [-]"]):
+        rows = list(group)
+        torques, times = numbers(path, rows, "lever_torque [N*m]"), numbers(path, rows, "time [s]")
+        made[run] = plateau(rows, torques, times)
+        if not made[run]:
+            raise ValueError(f"{path}: the plateau of run {run} is too short")
+    if not made:
+        raise ValueError(f"{path}: there are no rows in it")
+    return made
 
 
 def main(arguments: list[str]) -> int:
@@ -44,9 +68,12 @@ def main(arguments: list[str]) -> int:
     if len(arguments) != 1:
         sys.stderr.write("name the published record: python prepare.py data.csv\n")
         return 2
+    if not Path(arguments[0]).is_file():
+        sys.stderr.write(f"{arguments[0]}: no such file; README.md says where the record comes from\n")
+        return 2
     try:
         tables = prepared(Path(arguments[0]))
-    except (OSError, ValueError) as error:
+    except ValueError as error:
         sys.stderr.write(f"{error}\n")
         return 2
     for run, table in tables.items():
