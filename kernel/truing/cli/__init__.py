@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 
@@ -25,6 +26,10 @@ def _run(words: list[str]) -> int:
     from truing.cli.console import Settings, utf8_streams
 
     utf8_streams()
+    if "_CALC_COMPLETE" in os.environ:
+        from truing.cli.completion import answer_the_shell
+
+        return answer_the_shell(app)
     end = words.index("--") if "--" in words else len(words)
     said = {FLAGS[word] for word in words[:end] if word in FLAGS}
     kept = [word for word in words[:end] if word not in FLAGS] + words[end:]

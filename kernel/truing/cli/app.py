@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from truing.cli import compare, describe, diagnose, explain, init, new, plugins, run, table, verify
+from truing.cli import compare, completion, describe, diagnose, explain, init, new, plugins, run, table, verify
 from truing.cli.console import out
 
 app = typer.Typer(
@@ -46,3 +46,4 @@ app.command("diagnose")(diagnose.diagnose)
 app.command("verify")(verify.verify)
 app.command("compare")(compare.compare)
 app.command("new")(new.new)
+app.command("completion")(completion.completion)

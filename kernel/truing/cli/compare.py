@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from truing.cli.candidates import runs
 from truing.cli.console import out, out_json, verb
 from truing.cli.words import AsJson
 
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
 @verb
 def compare(
     context: typer.Context,
-    first: Annotated[Path, typer.Argument(help="A run folder, or that of a diagnosis.")],
-    second: Annotated[Path, typer.Argument(help="Another one of the same kind.")],
+    first: Annotated[Path, typer.Argument(help="A run folder, or that of a diagnosis.", autocompletion=runs)],
+    second: Annotated[Path, typer.Argument(help="Another one of the same kind.", autocompletion=runs)],
     as_json: AsJson = False,
 ) -> int:
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from truing.cli import candidates
 from truing.cli.console import Settings, out, out_json, progress_bar, settings_of, verb
 from truing.cli.load import find_offer, read_or_example
 from truing.cli.words import AsJson, Changed
@@ -17,8 +18,15 @@ from truing.kernel import Offer
 @verb
 def explain(
     context: typer.Context,
-    what: Annotated[str, typer.Argument(help="PLUGIN.NAME; or a plugin or Python file, and the name behind it.")],
-    name: Annotated[str, typer.Argument(help="The name, where it does not stand in WHAT.")] = "",
+    what: Annotated[
+        str,
+        typer.Argument(
+            help="PLUGIN.NAME; or a plugin or Python file, and the name behind it.", autocompletion=candidates.names
+        ),
+    ],
+    name: Annotated[
+        str, typer.Argument(help="The name, where it does not stand in WHAT.", autocompletion=candidates.names_inside)
+    ] = "",
     inputs: Annotated[
         Path | None, typer.Option("--inputs", "-i", help="The inputs file; without it the shipped example.")
     ] = None,

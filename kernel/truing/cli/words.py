@@ -7,9 +7,19 @@ from typing import Annotated, TypeAlias
 
 import typer
 
-Plugin: TypeAlias = Annotated[str, typer.Argument(help="An installed plugin's name, or a Python file.")]
+from truing.cli import candidates
+
+Plugin: TypeAlias = Annotated[
+    str, typer.Argument(help="An installed plugin's name, or a Python file.", autocompletion=candidates.plugins)
+]
 Changed: TypeAlias = Annotated[
-    list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Replace one value of the inputs file.")
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="Replace one value of the inputs file.",
+        autocompletion=candidates.changes,
+    ),
 ]
 AsJson: TypeAlias = Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")]
 OutputFile: TypeAlias = Annotated[

@@ -93,11 +93,15 @@ class Kernel:
             self.add(Origin(name, "", "", getattr(module, "__file__", None) or name, ref), _giving(module))
 
     @classmethod
-    def installed(cls, *, strict: bool = False) -> Kernel:
-        """Return a kernel with every plugin that is installed under the entry-point group ``truing.plugins``."""
+    def installed(cls, *, strict: bool = False, only: str = "") -> Kernel:
+        """Return a kernel with every plugin that is installed under the entry-point group ``truing.plugins``.
+
+        With ``only`` no other plugin is loaded, so that guests of its models are missing.
+        """
         kernel = cls(strict=strict)
         for entry in entry_points():
-            kernel.add(_origin(entry), entry.load)
+            if only in {"", entry.name}:
+                kernel.add(_origin(entry), entry.load)
         return kernel
 
     def add_file(self, path: Path) -> Origin:
