@@ -136,14 +136,30 @@ def _records(rows: RowsFile) -> Iterator[list[int]]:
 def _alike(record: list[int], machine: Setup, columns: Mapping[str, Any], rows: RowsFile) -> Iterator[list[int]]:
     """Give the rows of a record that share their conditions."""
     conditions = [columns[name] for name in columns if name not in machine.model.input_fields]
+    conditions = [column for column in conditions if _varies(column, record)]
+    if not conditions:
+        yield record
+        return
     found: dict[tuple[float, ...], list[int]] = {}
     for place in record:
         found.setdefault(tuple(float(column[place]) for column in conditions), []).append(place)
     yield from found.values()
 
 
+def _varies(column: Any, places: Sequence[int]) -> bool:
+    """Whether an array has more than one value at these places; NaN is a value of its own."""
+    import numpy as np
+
+    values = np.asarray(column)[list(places)]
+    return bool(np.any(values != values[0]))
+
+
 def _one_value(name: str, column: Any, places: Sequence[int], rows: RowsFile) -> Any:
     """Return the one value that a column has within a record."""
+    import numpy as np
+
+    if isinstance(column, np.ndarray) and not _varies(column, places):
+        return float(column[places[0]])
     for place in places:
         if column[place] != column[places[0]]:
             line = rows.lines[place]
@@ -180,19 +196,20 @@ def _placed(name: str, found: Rows, machine: Setup, rows: RowsFile, places: Sequ
     along = _axis_of(name, machine)
     if not along:
         return values
-    wanted = rows.axes[along][list(places)]
+    wanted, axes = rows.axes[along][list(places)], found.results[along]
+    if len(values) == len(axes) == 1:
+        return _read_at(wanted, axes[0], values[0])
     shape = (len(wanted), values.shape[1])
-    curves = zip(wanted, np.broadcast_to(found.results[along], shape), np.broadcast_to(values, shape), strict=True)
-    return np.array([_read_at(place, axis, curve) for place, axis, curve in curves])
+    curves = zip(wanted, np.broadcast_to(axes, shape), np.broadcast_to(values, shape), strict=True)
+    return np.array([float(_read_at(place, axis, curve)) for place, axis, curve in curves])
 
 
-def _read_at(place: float, axis: NDArray[np.float64], curve: NDArray[np.float64]) -> float:
-    """Read a curve at one place of its axis; the ends may be missed by rounding."""
+def _read_at(places: Any, axis: NDArray[np.float64], curve: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Read a curve at places of its axis, NaN beyond its ends; these may be missed by rounding."""
     import numpy as np
 
     order = np.argsort(axis)
     low, high = axis[order[0]], axis[order[-1]]
     rounding = 1e-9 * max(abs(low), abs(high))
-    if not low - rounding <= place <= high + rounding:
-        return float("nan")
-    return float(np.interp(place, axis[order], curve[order]))
+    is_inside = (places >= low - rounding) & (places <= high + rounding)
+    return np.where(is_inside, np.interp(places, axis[order], curve[order]), np.nan)

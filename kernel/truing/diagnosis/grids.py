@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from itertools import product
+from typing import TYPE_CHECKING
 
 from truing.declare.sources import Unknown
 from truing.diagnosis.candidates import (
@@ -19,10 +20,16 @@ from truing.diagnosis.candidates import (
 )
 from truing.diagnosis.machine import Machine
 
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
 GRID = 9
 WIDEST_ANGLE = 0.97
 DENSEST = 17
 PLACES = 100
+BESIDE_STEP = 5
+"""So many rows must lie on either side of a step."""
 NARROWEST = 0.07
 """Angle between neighbouring curves of a grid, in radians."""
 
@@ -50,12 +57,23 @@ def grid_of(unknown: Unknown, machine: Machine, count: int = GRID) -> list[float
     if unknown.whole:
         return [float(value) for value in range(round(low), round(high) + 1)]
     if unknown.along:
-        values = machine.records.rows.columns[unknown.along]
-        places = np.quantile(np.asarray(values, dtype=float), np.linspace(0.01, 0.99, PLACES), method="lower")
-        return sorted({float(value) for value in places} - {float(np.min(np.asarray(values, dtype=float)))})
+        return _places(machine.records.rows.placed(unknown.along))
     if low > 0:
         return [float(value) for value in np.geomspace(low, high, count)]
     return [float(value) for value in np.linspace(low, high, count)]
+
+
+def _places(along: NDArray[np.float64] | None) -> list[float]:
+    """Return places of a step with rows enough on both sides: what stands off at an end of a record is an outlier."""
+    import numpy as np
+
+    if along is None:
+        return []
+    values = np.sort(along[np.isfinite(along)])
+    places = np.unique(np.quantile(values, np.linspace(0.01, 0.99, PLACES), method="lower")) if len(values) else values
+    before = np.searchsorted(values, places)
+    enough = (before >= BESIDE_STEP) & (len(values) - before >= BESIDE_STEP)
+    return [float(place) for place in places[enough]]
 
 
 def shapes_of(candidate: Candidate, machine: Machine) -> Iterator[dict[str, float]]:

@@ -60,8 +60,7 @@ def _seen(machine: Machine, reading: Reading) -> Any:
     seen = reading.seen
     if seen is None:
         return np.zeros(len(machine.records))
-    rows = machine.records.rows
-    measured = next((kind[seen.name] for kind in (rows.columns, rows.axes, rows.series) if seen.name in kind), None)
+    measured = machine.records.rows.placed(seen.name)
     held = machine.start.nominal(seen.name) if measured is None else measured
     values = np.broadcast_to(np.asarray(held, dtype=float), (len(machine.records),))
     return values - seen.zero if reading.kind.is_from_zero else values
