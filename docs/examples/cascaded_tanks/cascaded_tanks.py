@@ -30,8 +30,8 @@ FULL = 10.0
 """Level of a full tank on the scale of the gauge, V; the gauge reads no more."""
 CREST = 0.2
 """How far the water stands above a rim when all that is to run over does, V."""
-FILM = 1e-3
-"""Level below which an outlet runs in proportion to the level, V: so an empty tank stays empty."""
+FILM = 0.1
+"""Level below which an outlet draws air and runs in proportion to the level, V: so an empty tank stays empty."""
 LONGEST_STEP = 2.0
 """Longest step of the calculation, s."""
 MOST_ROUNDS = 60
