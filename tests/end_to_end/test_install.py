@@ -1,4 +1,4 @@
-"""Everything installed anew: our wheel and two strangers' projects in a fresh environment, by pip alone."""
+"""Everything installed anew: our wheel, two strangers' projects and one of ``calc new`` in a fresh environment."""
 
 import json
 import os
@@ -9,40 +9,61 @@ from pathlib import Path
 import pytest
 
 from shared import GUESTS, ROOT, Answer, copied_guest, process
+from truing.new_project import Plan, project, write_project
 
 pytestmark = pytest.mark.install
 OURS = {path.name for path in (ROOT / "plugins").iterdir() if (path / "__init__.py").is_file()}
+ARM = Plan("gantry_arm", 'Arm of a gantry, 5" wide: „Übung“ \\ 1')
+WHEELS = """
+import os, sys
+from hatchling.build import build_wheel
+for source in sys.argv[2:]:
+    os.chdir(source)
+    print(build_wheel(sys.argv[1]))
+"""
+COMPILED_ONCE = {"PYTHONDONTWRITEBYTECODE": ""}
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Build our wheel."""
-    folder = tmp_path_factory.mktemp("wheel")
-    command = [sys.executable, "-m", "build", "--wheel", "--no-isolation", "--outdir", str(folder), str(ROOT)]
-    done = process(command, folder)
-    assert done.code == 0, done.err + done.out
-    (built,) = folder.glob("*.whl")
-    return built
+def wheels(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """Build our wheel and, in the folders beside it, projects of strangers: two that are kept and one made anew."""
+    folder = tmp_path_factory.mktemp("wheels")
+    guests = [copied_guest(name, folder) for name in GUESTS]
+    write_project(folder / ARM.name, project(ARM))
+    sources = [ROOT, *guests, folder / ARM.name]
+    done = process([sys.executable, "-c", WHEELS, str(folder), *map(str, sources)], folder)
+    assert done.code == 0, done.err
+    return [folder / name for name in done.out.split()]
 
 
 @pytest.fixture(scope="module")
-def fresh(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a fresh environment with the wheel and both strangers in it; returns its folder of commands."""
+def wheel(wheels: list[Path]) -> Path:
+    """Our wheel."""
+    return wheels[0]
+
+
+@pytest.fixture(scope="module")
+def fresh(wheels: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a fresh environment with all of them, the new project with its tests; returns its folder of commands."""
     folder = tmp_path_factory.mktemp("fresh")
     environment = folder / "environment"
-    assert process([sys.executable, "-m", "venv", str(environment)], folder).code == 0
+    assert process([sys.executable, "-m", "venv", "--without-pip", str(environment)], folder).code == 0
     commands = environment / ("Scripts" if os.name == "nt" else "bin")
-    sources = [str(copied_guest(name, folder)) for name in GUESTS]
-    pip = [str(commands / "python"), "-m", "pip", "--disable-pip-version-check"]
-    done = process([*pip, "install", "--quiet", str(wheel), *sources], folder)
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--python", str(commands / "python")]
+    wanted = [str(wheel) + ("[test]" if wheel.name.startswith(ARM.name) else "") for wheel in wheels]
+    done = process([*pip, "install", "--quiet", "--no-compile", *wanted], folder)
     assert done.code == 0, done.err
     check = process([*pip, "check"], folder)
     assert check.code == 0, check.out
     return commands
 
 
+def command(commands: Path, folder: Path, *words: str) -> Answer:
+    return process([str(commands / words[0]), *words[1:]], folder, COMPILED_ONCE)
+
+
 def calc(commands: Path, folder: Path, *arguments: str) -> Answer:
-    return process([str(commands / "calc"), *arguments], folder)
+    return command(commands, folder, "calc", *arguments)
 
 
 def test_the_wheel_holds_our_packages_and_no_others(wheel: Path) -> None:
@@ -75,13 +96,16 @@ def test_the_wheel_names_its_commands_and_plugins(wheel: Path) -> None:
     assert any(name.endswith("licenses/LICENSE") for name in archive.namelist())
 
 
-def test_installed_anew_everything_runs(fresh: Path, tmp_path: Path) -> None:
+def test_installed_anew_everything_runs(fresh: Path, wheel: Path, tmp_path: Path) -> None:
     """One test for all that needs the fresh environment: making it takes longer than using it."""
     _comes_from_the_wheel(fresh, tmp_path)
     _lists_and_describes(fresh, tmp_path)
-    for name in ("screw_joint", "press_linkage"):
-        _runs(fresh, tmp_path, name)
+    _runs(fresh, tmp_path, "screw_joint")
+    _runs(fresh, tmp_path, "press_linkage", "--set", "studies.run=[]")
     _shares_the_work(fresh, tmp_path)
+    _passes_its_own_tests(fresh, wheel.parent / ARM.name)
+    _names_what_is_hidden(fresh, tmp_path, wheel.parent / ARM.name / "measured.csv")
+    _writes_a_project(fresh, tmp_path)
 
 
 def _comes_from_the_wheel(fresh: Path, folder: Path) -> None:
@@ -94,7 +118,7 @@ def _comes_from_the_wheel(fresh: Path, folder: Path) -> None:
 def _lists_and_describes(fresh: Path, folder: Path) -> None:
     listed = calc(fresh, folder, "plugins")
     assert listed.code == 0, listed.err
-    for name in ("press_linkage", "screw_joint", "frame_settling"):
+    for name in ("press_linkage", "screw_joint", "frame_settling", ARM.title):
         assert name in listed.out
     assert "tables.py:6: plugin 'broken_guest' 0.0.7: IndexError" in listed.err
     assert str(ROOT) not in listed.out + listed.err
@@ -102,12 +126,12 @@ def _lists_and_describes(fresh: Path, folder: Path) -> None:
     others = [[str(fresh / "truing")], [str(fresh / "python"), "-m", "truing"]]
     answers = [process([*command, "plugins", "--names"], folder) for command in others]
     ours = ["harmonic_fractal", "press_linkage", "roller_screw_shift", "rv_gearing", "rv_wear"]
-    assert [answer.out.split() for answer in answers] == [["broken_guest", *ours, "screw_joint"]] * 2
+    assert [answer.out.split() for answer in answers] == [["broken_guest", ARM.name, *ours, "screw_joint"]] * 2
 
 
-def _runs(fresh: Path, folder: Path, name: str) -> None:
+def _runs(fresh: Path, folder: Path, name: str, *settings: str) -> None:
     assert calc(fresh, folder, "init", name, "-o", f"{name}.toml").code == 0
-    done = calc(fresh, folder, "run", name, "--inputs", f"{name}.toml")
+    done = calc(fresh, folder, "run", name, "--inputs", f"{name}.toml", *settings)
     assert done.code == 0, done.err
     assert "<math" in (folder / "runs" / name / "sheet.html").read_text(encoding="utf-8")
     results = json.loads((folder / "runs" / name / "results.json").read_text(encoding="utf-8"))
@@ -122,3 +146,35 @@ def _shares_the_work(fresh: Path, folder: Path) -> None:
         assert done.code == 0, done.err
     one, two = ((folder / name / "results.json").read_bytes() for name in ("one", "two"))
     assert one == two
+
+
+def _passes_its_own_tests(fresh: Path, folder: Path) -> None:
+    """The project of ``calc new``, as written: conformance, hidden effect, command line."""
+    done = command(fresh, folder, "pytest", "-q")
+    assert done.code == 0, done.out
+    assert " passed" in done.out
+    assert not any(word in done.out for word in ("skipped", "warning", "xfailed"))
+
+
+def _names_what_is_hidden(fresh: Path, folder: Path, measured: Path) -> None:
+    """The rows that come with the project were made with 0.25 mrad/(N m)."""
+    done = calc(fresh, folder, "diagnose", ARM.name, "--data", str(measured), "--json")
+    assert done.code == 0, done.err
+    document = json.loads(done.out)
+    assert document["verdict"] == "named"
+    (cause,) = document["causes"]
+    assert cause["effect"] == "soft_clamp"
+    low, high = cause["unknowns"]["flexibility"]["interval95"]
+    assert low <= 0.25 <= high
+
+
+def _writes_a_project(fresh: Path, folder: Path) -> None:
+    """The templates in the wheel are those of the sources; a name that is installed is refused."""
+    assert calc(fresh, folder, "new", "belt_drive").code == 0
+    written = {path.relative_to(folder / "belt_drive").as_posix(): path for path in (folder / "belt_drive").rglob("*")}
+    files = {name: path.read_text(encoding="utf-8") for name, path in written.items() if path.is_file()}
+    assert files == project(Plan("belt_drive", "Belt drive"))
+    refused = calc(fresh, folder, "new", ARM.name)
+    assert (refused.code, refused.err) == (
+        2, "calc: 'gantry_arm' is a calculation of gantry-arm; choose another name\n"
+    )  # fmt: skip

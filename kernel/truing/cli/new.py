@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -48,7 +47,7 @@ def _project(plan: Plan, output: Path | None) -> list[str]:
     write_project(folder, files)
     return [
         f"wrote {folder}: {len(files)} files; now:",
-        f"  cd {shlex.quote(str(folder))}",
+        *([f"  cd {_typed(str(folder))}"] if folder.resolve() != Path.cwd() else []),
         '  pip install -e ".[test]"',
         f"  calc diagnose {plan.name} --data measured.csv",
     ]
@@ -61,11 +60,21 @@ def _file(plan: Plan, output: Path | None) -> list[str]:
     path = output if output is not None else Path(f"{plan.name}.py")
     if path.suffix != ".py":
         raise UsageError(f"--output: {path} is no name of a Python file; with --single-file it ends in .py")
-    write_single_file(path, single_file(plan, path.name))
-    word = shlex.quote(str(path) if path.is_absolute() else f"./{path.as_posix()}")
+    write_single_file(path, single_file(plan))
+    word = _typed(str(path) if path.is_absolute() else f"./{path.as_posix()}")
     return [
         f"wrote {path}; now:",
         f"  calc run {word}",
         f"  calc init {word} -o {plan.name}.toml",
         f"  python -m pytest {word}",
     ]
+
+
+def _typed(path: str) -> str:
+    """Write a path as one types it."""
+    import os
+    import shlex
+
+    if os.name != "nt":
+        return shlex.quote(path)
+    return f'"{path}"' if " " in path else path

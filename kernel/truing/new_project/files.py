@@ -66,9 +66,9 @@ def project(plan: Plan) -> dict[str, str]:
     }
 
 
-def single_file(plan: Plan, file: str) -> str:
-    """Return a plugin as one Python file that will be called ``file``: physics, model, hook and tests."""
-    return rendered("single/calculation.py.j2", {**plan.words, "file": file})
+def single_file(plan: Plan) -> str:
+    """Return a plugin as one Python file: physics, model, hook and tests."""
+    return rendered("single/calculation.py.j2", plan.words)
 
 
 def rendered(template: str, words: Mapping[str, str]) -> str:
@@ -104,12 +104,15 @@ def write_project(folder: Path, files: Mapping[str, str]) -> None:
 
 def write_single_file(path: Path, text: str) -> None:
     """Write one file that is not there yet. Raises OutputError where it is, or where it cannot be written."""
+    if path.is_dir():
+        raise OutputError(f"{path}: is a folder; name the file with --output")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        if not path.parent.is_dir():
+            path.parent.mkdir(parents=True)
         with path.open("x", encoding="utf-8", newline="\n") as stream:
             stream.write(text)
-    except FileExistsError:
-        what = "is a folder; name the file" if path.is_dir() else "is there already; name another file"
-        raise OutputError(f"{path}: {what} with --output") from None
+    except FileExistsError as error:
+        what = "is there already" if path.exists() else f"{error.filename} is a file and no folder"
+        raise OutputError(f"{path}: {what}; name another file with --output") from None
     except OSError as error:
         raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error

@@ -1,0 +1,151 @@
+"""``calc new`` from the command line: what it says, what it leaves, and that types and style are clean as written."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from shared import ROOT, Answer, Calc, process
+from truing.kernel.loading import load_file
+from truing.new_project import Plan, project, single_file, write_project, write_single_file
+from truing.new_project.names import LONGEST_NAME, WIDEST_TITLE
+
+PLANS = [
+    Plan("q", "Q"),
+    Plan("gantry_arm", 'Träger „Größe“ \\ 5" wide'),
+    Plan("a" + "_b" * 19 + "c", "'" * (WIDEST_TITLE // 2)),
+    Plan("w" * LONGEST_NAME, "梁" * (WIDEST_TITLE // 2)),
+]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Every plan as a project and, beside it, as a single file."""
+    folder = tmp_path_factory.mktemp("made")
+    for plan in PLANS:
+        write_project(folder / f"{plan.name}-project", project(plan))
+        write_single_file(folder / "single" / f"alone_{plan.name}.py", single_file(plan))
+    return folder
+
+
+def tool(folder: Path, *arguments: str) -> Answer:
+    return process([sys.executable, "-m", *arguments], folder)
+
+
+def test_style_is_clean_as_written(made: Path) -> None:
+    """Each project by its own settings, a single file by those that ruff has without any."""
+    for words in (["check"], ["format", "--check"]):
+        answer = tool(made, "ruff", *words, "--no-cache", ".")
+        assert answer.code == 0, answer.out
+    settings = tool(made / f"{PLANS[0].name}-project", "ruff", "check", "--show-settings", "q/__init__.py")
+    assert "undocumented-public-module (D100)" in settings.out
+
+
+def test_types_are_clean_as_written(made: Path) -> None:
+    """Strictly, by the settings of a project; the cache is that of the house."""
+    own = made / f"{PLANS[0].name}-project"
+    paths = [
+        *(str(made / f"{plan.name}-project" / part) for plan in PLANS for part in (plan.name, "tests")),
+        *map(str, sorted((made / "single").glob("*.py"))),
+    ]
+    answer = tool(own, "mypy", "--cache-dir", str(ROOT / ".mypy_cache"), *paths)
+    assert answer.code == 0, answer.out
+    assert f"{4 * len(PLANS)} source files" in answer.out
+
+
+def test_a_project_is_written_where_one_stands(calc: Calc, tmp_path: Path) -> None:
+    answer = calc("new", "gantry_arm")
+    assert (answer.code, answer.out) == (0, "")
+    assert answer.err.splitlines() == [
+        f"wrote gantry_arm: {len(project(PLANS[1]))} files; now:",
+        "  cd gantry_arm",
+        '  pip install -e ".[test]"',
+        "  calc diagnose gantry_arm --data measured.csv",
+        "the physics in it is a placeholder, a clamped bar: replace it by your own",
+    ]
+    again = calc("new", "gantry_arm")
+    assert again.code == 2
+    assert again.err == "calc: gantry_arm: the folder is there and not empty; name another place with --output\n"
+    (tmp_path / "here").mkdir()
+    here = calc("new", "gantry_arm", "--output", ".", cwd=tmp_path / "here")
+    assert here.code == 0
+    assert "  cd " not in here.err
+    assert (tmp_path / "here" / "gantry_arm" / "physics.py").is_file()
+    spaced = calc("new", "gantry_arm", "-q", "--output", tmp_path / "ä b" / "c", cwd=tmp_path)
+    assert (spaced.code, spaced.out + spaced.err) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["belt-drive"], "write belt_drive"),
+        (["class"], "'class' is a word of Python itself; choose another name"),
+        (["rv_wear", "--single-file"], "'rv_wear' is a calculation of truing; choose another name"),
+        (["belt", "--title", "two\nlines"], "--title: a title is one line of printable characters"),
+        (["belt", "--single-file", "--output", "belt.txt"], "belt.txt is no name of a Python file"),
+        (["belt", "--single-file", "--output", "there.py"], "there.py: is there already; name another file"),
+        (["belt", "--single-file", "--output", "folder.py"], "folder.py: is a folder; name the file"),
+        (["belt", "--output", "there.py"], "there.py: is there already and no folder; name another place"),
+        (["belt", "--output", "there.py/below"], "there.py/below: the project cannot be written: "),
+        (
+            ["belt", "--single-file", "--output", "there.py/b.py"],
+            "there.py/b.py: there.py is a file and no folder; name another file",
+        ),
+    ],
+)
+def test_what_is_refused_leaves_nothing(calc: Calc, tmp_path: Path, words: list[str], sentence: str) -> None:
+    (tmp_path / "there.py").write_text("mine\n", encoding="utf-8")
+    (tmp_path / "folder.py").mkdir()
+    answer = calc("new", *words)
+    assert answer.code == 2
+    assert answer.err.startswith("calc: ")
+    assert sentence in answer.err.replace("\\", "/")
+    assert answer.err.count("\n") == 1
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["folder.py", "there.py"]
+    assert (tmp_path / "there.py").read_text(encoding="utf-8") == "mine\n"
+
+
+@pytest.mark.parametrize("words", [["--output", "locked/belt"], ["--single-file", "--output", "locked/belt.py"]])
+def test_a_folder_that_may_not_be_written_to(calc: Calc, tmp_path: Path, words: list[str]) -> None:
+    folder = tmp_path / "locked"
+    folder.mkdir(mode=0o555)
+    if os.access(folder, os.W_OK):
+        pytest.skip("this user may write everywhere")
+    answer = calc("new", "belt", *words)
+    folder.chmod(0o755)
+    assert answer.code == 2
+    assert "cannot be written: Permission denied" in answer.err
+    assert list(folder.iterdir()) == []
+
+
+def test_a_single_file_runs_and_is_diagnosed(calc: Calc, tmp_path: Path) -> None:
+    """The title stands on the sheet; the made rows of a project name the clamp with its 0.25 mrad/(N m)."""
+    title = PLANS[1].title
+    answer = calc("new", "gantry_beam", "--single-file", "--title", title)
+    assert answer.code == 0
+    assert "  python -m pytest ./gantry_beam.py\n" in answer.err
+    ran = calc("run", "./gantry_beam.py")
+    assert ran.code == 0, ran.err
+    assert ran.out.startswith(f"gantry_beam: {title}\n")
+    measured = tmp_path / "measured.csv"
+    measured.write_text(project(PLANS[1])["measured.csv"], encoding="utf-8")
+    found = calc("diagnose", "./gantry_beam.py", "--data", "measured.csv", "--json")
+    assert found.code == 0, found.err
+    document = json.loads(found.out)
+    assert document["verdict"] == "named"
+    (cause,) = document["causes"]
+    assert cause["effect"] == "soft_clamp"
+    low, high = cause["unknowns"]["flexibility"]["interval95"]
+    assert low <= 0.25 <= high
+
+
+def test_a_single_file_passes_its_own_tests(made: Path) -> None:
+    module = load_file(made / "single" / f"alone_{PLANS[0].name}.py")
+    tests = [item for name, item in vars(module).items() if name.startswith("test_")]
+    assert len(tests) == 3
+    for test in tests:
+        test()

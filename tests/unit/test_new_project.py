@@ -1,0 +1,245 @@
+"""Names, titles and files of new plugins: what is refused, what is proposed, and that titles come through whole."""
+
+from __future__ import annotations
+
+import ast
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from truing.errors import OutputError, UsageError
+from truing.new_project import (
+    Plan,
+    check_name,
+    check_title,
+    project,
+    single_file,
+    spelled,
+    title_of,
+    write_project,
+    write_single_file,
+)
+from truing.new_project.names import LONGEST_NAME, WIDEST_TITLE
+
+LONG_NAME = "a" + "_b" * 19 + "c"
+TITLES = [
+    "Plain",
+    'Arm, 5" wide',
+    "Roark's arm, 5\" wide",
+    "Träger „Größe“ ΔL × 2",
+    "back\\slash\\",
+    "{{ 7 * 7 }} {% raw %} ${{ x }}",
+    '"""\\',
+    "<script>alert(1)</script> *b* | $x$",
+    "梁" * (WIDEST_TITLE // 2),
+    "x" * WIDEST_TITLE,
+]
+
+
+@pytest.mark.parametrize("name", ["a", "belt_drive", "belt2", "x_1", "match", LONG_NAME])
+def test_a_good_name_is_taken(name: str) -> None:
+    check_name(name)
+    assert len(LONG_NAME) == LONGEST_NAME
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("belt-drive", "write belt_drive"),
+        ("BeltDrive", "write belt_drive"),
+        ("2nd drive", "write nd_drive"),
+        ("Träger Größe", "write traeger_groesse"),
+        ("crème_brûlée", "write creme_brulee"),
+        ("größe", "write groesse"),
+        ("_private", "write private"),
+        ("belt__drive", "write belt_drive"),
+        ("belt_", "write belt"),
+        ("../../etc/passwd", "write etc_passwd"),
+        ("a/b", "write a_b"),
+        ("a\\b", "write a_b"),
+        ("belt.py", "write belt_py"),
+        ("a\nb", "write a_b"),
+        ("\x1b[31mred", "write mred"),
+        ("'; rm -rf /", "write rm_rf"),
+        ("", "such as belt_drive"),
+        ("123", "such as belt_drive"),
+        ("齿轮", "such as belt_drive"),
+        ("Class", "such as belt_drive"),
+        ("-", "such as belt_drive"),
+        ("a" * (LONGEST_NAME + 1), f"at most {LONGEST_NAME} characters"),
+        ("x" * 10_000 + "!", "such as belt_drive"),
+        ("class", "a word of Python itself"),
+        ("lambda", "a word of Python itself"),
+        ("con", "a device on Windows"),
+        ("com1", "a device on Windows"),
+        ("tests", "another meaning in a project"),
+        ("build", "another meaning in a project"),
+        ("json", "is a module already"),
+        ("sys", "is a module already (Python itself)"),
+        ("numpy", "is a module already"),
+        ("truing", "is a module already"),
+        ("gear_geometry", "is a module already"),
+        ("press_linkage", "is a calculation of truing"),
+        ("made_flank", "is a calculation of truing"),
+    ],
+)
+def test_a_bad_name_is_refused_in_one_sentence(name: str, words: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        check_name(name)
+    sentence = str(caught.value)
+    assert words in sentence
+    assert sentence.isprintable()
+    assert len(sentence) < 300
+
+
+@pytest.mark.parametrize("name", ["HTTPServer2", "ÄußereKraft", "  spaced  out  ", "Shaft Ø 5"])
+def test_what_is_proposed_is_taken(name: str) -> None:
+    check_name(spelled(name))
+
+
+@pytest.mark.parametrize("title", TITLES)
+def test_a_title_comes_through_whole(title: str) -> None:
+    check_title(title)
+    plan = Plan("belt_drive", title)
+    files = project(plan)
+    assert title_in(files["belt_drive/__init__.py"]) == title_in(single_file(plan)) == title
+    assert tomllib.loads(files["pyproject.toml"])["project"]["description"] == title
+    head = files["README.md"].splitlines()[0]
+    assert head.startswith("# ")
+    assert "<script" not in head
+
+
+def title_in(code: str) -> object:
+    """The title of the model that a file declares."""
+    keywords = [node for node in ast.walk(ast.parse(code)) if isinstance(node, ast.keyword)]
+    (title,) = [ast.literal_eval(keyword.value) for keyword in keywords if keyword.arg == "title"]
+    return title
+
+
+@pytest.mark.parametrize(
+    "title", ["", "   ", "two\nlines", "bell\a", "\u202eturned", "x" * (WIDEST_TITLE + 1), '"' * 36]
+)
+def test_a_title_that_is_no_line_is_refused(title: str) -> None:
+    with pytest.raises(UsageError, match="--title: "):
+        check_title(title)
+
+
+def test_without_a_title_the_name_is_it() -> None:
+    assert title_of("belt_drive_2") == "Belt drive 2"
+
+
+def test_the_distribution_has_dashes_and_the_package_underscores() -> None:
+    settings = tomllib.loads(project(Plan("belt_drive", "Belt"))["pyproject.toml"])
+    assert settings["project"]["name"] == "belt-drive"
+    assert settings["project"]["entry-points"] == {"truing.plugins": {"belt_drive": "belt_drive"}}
+    assert settings["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"] == ["belt_drive"]
+
+
+def test_it_needs_truing_and_pytest_only_and_has_no_licence() -> None:
+    files = project(Plan("belt_drive", "Belt"))
+    about = tomllib.loads(files["pyproject.toml"])["project"]
+    assert about["dependencies"] == ["truing>=0.1"]
+    assert about["optional-dependencies"] == {"test": ["truing[testing]"]}
+    assert not [key for key in about if "licen" in key]
+    assert not [name for name in files if "licen" in name.lower()]
+    imported = {
+        (node.module if isinstance(node, ast.ImportFrom) else node.names[0].name).split(".")[0]
+        for name, text in files.items()
+        if name.endswith(".py")
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, (ast.Import, ast.ImportFrom))
+    }
+    assert imported == {"truing", "pytest", "belt_drive", "dataclasses", "pathlib"}
+
+
+def test_the_made_rows_are_what_they_say() -> None:
+    """A cantilever after Roark, table 8.1, case 1a, with the moment turning its clamp, and a noise of 0.01 mm."""
+    said, header, *lines = project(Plan("belt_drive", "Belt"))["measured.csv"].splitlines()
+    assert said == "# Made, not measured: bar of 5.97 mm instead of 6 mm, clamp of 0.25 mrad/(N*m), noise of 0.01 mm."
+    assert header == "time [min],force [N],length [mm],deflection [mm]"
+    rows = [[float(cell) for cell in line.split(",")] for line in lines]
+    noise = [
+        read - (force * length**3 / (3 * 210e3 * 20 * 5.97**3 / 12) + 0.25e-6 * force * length**2)
+        for _, force, length, read in rows
+    ]
+    count = len(noise)
+    assert count == 40
+    assert abs(sum(noise) / count) < 3 * 0.01 / count**0.5
+    # 99 % of the chi-square distribution with 40 degrees of freedom lie between 20.7 and 66.8
+    assert 20.7 < sum(one**2 for one in noise) / 0.01**2 < 66.8
+
+
+def test_nothing_is_written_where_nothing_may_be(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def denied(*arguments: object, **more: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("tempfile.mkdtemp", denied)
+    monkeypatch.setattr(Path, "open", denied)
+    with pytest.raises(OutputError, match="new: the project cannot be written: Permission denied"):
+        write_project(tmp_path / "below" / "new", FILES)
+    with pytest.raises(OutputError, match=r"new\.py: cannot be written: Permission denied"):
+        write_single_file(tmp_path / "new.py", "")
+    assert list(tmp_path.iterdir()) == []
+
+
+FILES = {"a.txt": "1", "b/c/d.txt": "2", ".hidden/e.txt": "3"}
+
+
+def written(folder: Path) -> dict[str, str]:
+    """Every file below a folder."""
+    paths = [path for path in folder.rglob("*") if path.is_file()]
+    return {path.relative_to(folder).as_posix(): path.read_text(encoding="utf-8") for path in paths}
+
+
+@pytest.mark.parametrize("is_there", [False, True])
+def test_a_project_fills_a_folder_that_is_new_or_empty(tmp_path: Path, is_there: bool) -> None:
+    folder = tmp_path / "ä b" / "new"
+    if is_there:
+        folder.mkdir(parents=True)
+        before = folder.stat().st_ino
+    write_project(folder, FILES)
+    assert written(folder) == FILES
+    assert written(tmp_path) == {f"ä b/new/{name}": text for name, text in FILES.items()}
+    assert not is_there or folder.stat().st_ino == before
+
+
+@pytest.mark.parametrize("is_there", [False, True])
+@pytest.mark.parametrize("fails", ["write_bytes", "rename", "mkdir"])
+def test_a_project_is_complete_or_absent(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_there: bool, fails: str
+) -> None:
+    """Whatever fails half-way, nothing stays behind."""
+    folder = tmp_path / "new"
+    if is_there:
+        folder.mkdir()
+    true, calls = getattr(Path, fails), []
+
+    def fail(self: Path, *arguments: object, **more: object) -> object:
+        calls.append(self)
+        if self.name in {"d.txt", "c", "b"} or (fails == "rename" and self.suffix == ".part"):
+            raise PermissionError(13, "Permission denied")
+        return true(self, *arguments, **more)
+
+    monkeypatch.setattr(Path, fails, fail)
+    with pytest.raises(OutputError, match="new: the project cannot be written: Permission denied"):
+        write_project(folder, FILES)
+    assert calls
+    assert [path.name for path in tmp_path.rglob("*")] == (["new"] if is_there else [])
+
+
+def test_a_project_overwrites_nothing(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine", encoding="utf-8")
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / ".hidden").write_text("mine", encoding="utf-8")
+    (tmp_path / "broken").symlink_to(tmp_path / "nowhere")
+    before = written(tmp_path)
+    for name, words in [
+        ("file", "is there already and no folder"),
+        ("full", "is there and not empty"),
+        ("broken", "is there already and no folder"),
+        ("file/below", "cannot be written"),
+    ]:
+        with pytest.raises(OutputError, match=words):
+            write_project(tmp_path / name, FILES)
+    assert written(tmp_path) == before
