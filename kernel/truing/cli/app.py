@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from truing.cli import compare, completion, describe, diagnose, explain, init, new, plugins, run, table, verify
+from truing.cli import compare, completion, describe, diagnose, explain, init, new, plugins, run, table, verify, watch
 from truing.cli.console import out
 
 app = typer.Typer(
@@ -41,6 +41,7 @@ app.command("describe")(describe.describe)
 app.command("init")(init.init)
 app.command("explain")(explain.explain)
 app.command("run")(run.run)
+app.command("watch")(watch.watch)
 app.command("table")(table.table)
 app.command("diagnose")(diagnose.diagnose)
 app.command("verify")(verify.verify)

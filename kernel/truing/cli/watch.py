@@ -1,0 +1,187 @@
+"""calc watch: the sheet is made anew whenever the inputs, their data files or the plugin's code are saved."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from truing.cli.console import Settings, one_line, out, progress_bar, say, sentence_of, settings_of, verb
+from truing.cli.load import find_offer
+from truing.cli.words import Changed, Plugin
+
+if TYPE_CHECKING:
+    from truing.kernel import Offer
+    from truing.report.run import Done, RunOrder
+
+MOST = 4
+"""So many changed results are named."""
+LOOKS = 2
+
+
+@verb
+def watch(
+    context: typer.Context,
+    plugin: Plugin,
+    inputs: Annotated[Path, typer.Option("--inputs", "-i", help="The inputs file that is being edited.")],
+    changed: Changed = None,
+    cases: Annotated[Path | None, typer.Option("--cases", help="A CSV file: every row is a case.")] = None,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")] = None,
+    workers: Annotated[int, typer.Option("--workers", min=1, help="Processes that share the work.")] = 1,
+    every: Annotated[float, typer.Option("--every", min=0.02, help="Seconds between two looks at the files.")] = 0.5,
+) -> int:
+    """Run, and run again whenever the inputs file, its data files or the plugin's code change; Ctrl-C ends it."""
+    from truing.report.run import RunOrder
+    from truing.runs.folder import demand_place
+    from truing.watching import Watched
+
+    settings = settings_of(context)
+    sys.dont_write_bytecode = True  # two savings within one second would otherwise be one to Python
+    offer = find_offer(plugin, settings)
+    _demand_file(inputs)
+    order = RunOrder(output or Path("runs") / inputs.stem, cases, workers=workers)
+    demand_place(order.folder)
+    watcher = _Watcher(plugin, inputs, tuple(changed or ()), order, settings)
+    watched = Watched(every)
+    settings.say(f"watching {inputs} and the code of {offer.name}; Ctrl-C ends it")
+    try:
+        while True:
+            watched.add(watcher.files(offer))
+            watcher.run(offer)
+            watched.add(watcher.files(offer))
+            offer = watcher.loaded_anew(offer, watched.changed())
+    except KeyboardInterrupt:
+        if watcher.calculating:
+            raise KeyboardInterrupt(f"calc: interrupted in the middle of a run; {watcher.what_stays()}") from None
+        settings.say(f"calc: watched {watcher.runs} run{'s' * (watcher.runs != 1)}; {watcher.what_stays()}")
+        return 0
+
+
+def _demand_file(inputs: Path) -> None:
+    from truing.inputs_file.files import refuse_file
+
+    if not inputs.is_file():
+        refuse_file(inputs, largest=0, instead="", is_table=False)
+
+
+@dataclass
+class _Watcher:
+    """What is run again and again, and what the last run said."""
+
+    plugin: str
+    inputs: Path
+    overrides: Sequence[str]
+    order: RunOrder
+    settings: Settings
+    code: set[Path] = field(default_factory=set)
+    last: Mapping[str, Any] | None = None
+    made_at: str = ""
+    warned: set[str] = field(default_factory=set)
+    runs: int = 0
+    broken: bool = False
+    looks: int = LOOKS
+    calculating: bool = False
+
+    def files(self, offer: Offer) -> list[Path]:
+        """Return everything whose change asks for another run."""
+        from truing.watching import code_files, files_named_in
+
+        if self.looks:  # once as loaded, once after a run, which may import more
+            self.looks -= 1
+            self.code |= code_files(offer)
+        given = [self.inputs, *([self.order.cases] if self.order.cases else [])]
+        return [*given, *files_named_in(self.inputs, offer), *sorted(self.code)]
+
+    def loaded_anew(self, offer: Offer, files: Sequence[Path]) -> Offer:
+        """Return the calculation as its code is now; where that is broken say so and keep the last that was whole."""
+        from truing.watching import forget
+
+        self.settings.detail(f"changed: {', '.join(file.name for file in files)}")
+        if not self.broken and not self.code & {file.resolve() for file in files}:
+            return offer
+        forget(self.code)
+        try:
+            fresh = find_offer(self.plugin, self.settings)
+        except Exception as error:
+            self.broken = True
+            self._complain(error)
+            return offer
+        self.broken, self.looks = False, LOOKS
+        return fresh
+
+    def run(self, offer: Offer) -> None:
+        """Run once and say so in one line; what is wrong is said, and the last sheet stays."""
+        from truing.inputs_file import read_setup
+        from truing.inputs_file.culprit import told_by_line
+        from truing.report.run import perform
+
+        if self.broken:
+            return
+        started, self.calculating = time.monotonic(), True
+        try:
+            setup = read_setup(self.inputs, offer, overrides=self.overrides)
+            with progress_bar(self.settings) as progress, told_by_line(setup):
+                done = perform(setup, offer, self.order, progress)
+        except Exception as error:
+            self._complain(error)
+        else:
+            self._report(done, time.monotonic() - started)
+        self.calculating = False
+
+    def _report(self, done: Done, seconds: float) -> None:
+        self._warn(done)
+        self.runs += 1
+        what = _words(self.last, done.document, self.order.folder)
+        self.last, self.made_at = done.document, time.strftime("%H:%M:%S")
+        out(one_line(f"{self.made_at} {seconds:.1f} s {what}"))
+
+    def _warn(self, done: Done) -> None:
+        """Say the warnings that the last run did not have, and the cases that failed."""
+        warnings = [*done.calculation.warnings, *done.remarks]
+        cases = done.cases.cases if done.cases is not None else ()
+        failed = [str(case.fault) for case in cases if case.reason is not None]
+        for text in (*(f"warning: {one_line(one)}" for one in warnings), *failed):
+            if text not in self.warned:
+                self.settings.say(text)
+        self.warned = {*(f"warning: {one_line(one)}" for one in warnings), *failed}
+
+    def _complain(self, error: Exception) -> None:
+        if self.settings.traceback:
+            import traceback
+
+            traceback.print_exception(error)
+        say(sentence_of(error))
+        self.settings.say(f"{time.strftime('%H:%M:%S')} not calculated; {self.what_stays()}")
+
+    def what_stays(self) -> str:
+        """Say which sheet is there."""
+        return f"the sheet of {self.made_at} stays" if self.made_at else "there is no sheet yet"
+
+
+def _words(before: Mapping[str, Any] | None, after: Mapping[str, Any], folder: Path) -> str:
+    """Say in one line what a run changed and which checks fail."""
+    checks = [*after["checks"], *(check for case in after.get("cases", []) for check in case["checks"])]
+    broken = list(dict.fromkeys(check["name"] for check in checks if not check["passed"]))
+    state = f"FAILS: {', '.join(broken)}" if broken else "all checks pass" if checks else "no checks"
+    if before is None:
+        return f"{state}; sheet: {folder / 'sheet.html'}"
+    return f"{_changes(before, after)}; {state}"
+
+
+def _changes(before: Mapping[str, Any], after: Mapping[str, Any]) -> str:
+    """Say which checks flipped and which results moved most."""
+    from truing.cli.changes import amount_of
+    from truing.runs.comparison import changes, in_order
+
+    found = in_order(changes(before, after))
+    flips = [f"{change.name} {amount_of(change).partition(',')[0]}" for change in found if change.flipped]
+    moved = [change for change in found if change.kind == "results"]
+    moved.sort(key=lambda change: -abs(change.relative or 0.0))
+    said = [f"{change.name} {amount_of(change)}".strip() for change in moved[:MOST]]
+    more = [f"and {len(moved) - MOST} more"] if len(moved) > MOST else []
+    return ", ".join([*flips, *said, *more]) or ("results as before" if found else "nothing changed")

@@ -1,0 +1,194 @@
+"""Files that are watched while somebody edits them, and the code of a plugin that is to be read afresh."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import importlib
+import os
+import sys
+import sysconfig
+import time
+import tomllib
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache, lru_cache
+from pathlib import Path
+from typing import Any
+
+from truing.kernel import Offer
+
+PATIENCE = 1.0
+"""How long a file may be away or empty, in seconds: editors put a new one in its place, or empty it before writing."""
+
+Stamp = tuple[int, int, int] | None
+"""Time of change in nanoseconds, size, and the number of the file; None where there is none."""
+
+
+@dataclass
+class Watched:
+    """A set of files and what was in them; a file counts as changed when its content is another.
+
+    ``every`` is the time between two looks in seconds; ``sleep`` waits so long.
+    """
+
+    every: float
+    sleep: Callable[[float], None] = time.sleep
+    _stamps: dict[Path, Stamp] = field(default_factory=dict)
+    _contents: dict[Path, str] = field(default_factory=dict)
+
+    def add(self, files: Iterable[Path]) -> None:
+        """Watch these files besides, from what is in them now."""
+        for file in files:
+            path = Path(file).absolute()
+            if path not in self._stamps:
+                self._stamps[path] = stamp_of(path)
+                self._contents[path] = content_of(path)
+
+    def changed(self) -> list[Path]:
+        """Wait until a file has another content and all have been still for one look; return which, in order."""
+        while True:
+            self.sleep(self.every)
+            if self._looked() == self._stamps:
+                continue
+            self._stamps = self._stilled()
+            found = []
+            for path, before in self._contents.items():
+                self._contents[path] = now = content_of(path)
+                if now != before:
+                    found.append(path)
+            if found:
+                return found
+
+    def _looked(self) -> dict[Path, Stamp]:
+        return {path: stamp_of(path) for path in self._stamps}
+
+    def _stilled(self) -> dict[Path, Stamp]:
+        """Look until two looks are alike; what is away, or empty and was not, has some time to come back."""
+        waited, last = 0.0, self._looked()
+        while True:
+            self.sleep(self.every)
+            waited += self.every
+            now = self._looked()
+            if now == last and (waited >= PATIENCE or not any(self._is_half(path, now[path]) for path in now)):
+                return now
+            last = now
+
+    def _is_half(self, path: Path, stamp: Stamp) -> bool:
+        """Tell whether a file that had content has none at the moment."""
+        return bool(self._contents[path]) and (stamp is None or stamp[1] == 0)
+
+
+def stamp_of(path: Path) -> Stamp:
+    """Return what tells at a glance whether a file was written: nothing is read."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size, found.st_ino
+
+
+def content_of(path: Path) -> str:
+    """Return the SHA-256 of a file; nothing where it is empty, or cannot be read."""
+    try:
+        if not path.is_file() or not path.stat().st_size:
+            return ""
+        with path.open("rb") as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
+    except OSError:
+        return ""
+
+
+def files_named_in(inputs: Path, offer: Offer) -> Iterator[Path]:
+    """Yield the data files and the logo that an inputs file names, as far as that can be read now."""
+    try:
+        document = tomllib.loads(inputs.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError):
+        return
+    stated = document.get("inputs")
+    head = document.get("sheet")
+    names = [head.get("logo")] if isinstance(head, Mapping) else []
+    for name, item in offer.model.input_fields.items():
+        if item.kind == "file" and isinstance(stated, Mapping):
+            value: Any = stated.get(name)
+            names.append(value.get("file") if isinstance(value, Mapping) else value)
+    yield from (inputs.parent / name for name in names if isinstance(name, str) and name and "\0" not in name)
+
+
+def code_files(offer: Offer) -> set[Path]:
+    """Return the files whose code decides a calculation and may be edited: the plugin's own, and what these import.
+
+    Also those of guests that add effects to it. Left out is what nobody edits: the kernel, Python, what is installed.
+    """
+    model = offer.model
+    functions = [model.function, *(effect.function for effect in model.effects.values())]
+    found = set(_own_files(Path(offer.origin.file)))
+    found |= {path for function in functions if (path := _file_of(sys.modules.get(function.__module__))) is not None}
+    new = list(found)
+    while new:
+        for path in _imported_by(new.pop()):
+            if path not in found and not _is_settled(path):
+                found.add(path)
+                new.append(path)
+    return found
+
+
+def _imported_by(file: Path) -> Iterator[Path]:
+    """Yield the files of loaded modules that a file of code imports, and those of the packages around them."""
+    names = [name for name, module in list(sys.modules.items()) if _file_of(module) == file]
+    try:
+        tree = ast.parse(file.read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return
+    package = getattr(sys.modules[names[0]], "__package__", "") if names else ""
+    for name in {name for node in ast.walk(tree) for name in _names_in(node, package or "")}:
+        parts = name.split(".")
+        for length in range(1, len(parts) + 1):
+            path = _file_of(sys.modules.get(".".join(parts[:length])))
+            if path is not None and path.suffix == ".py":
+                yield path
+
+
+def _names_in(node: ast.AST, package: str) -> Iterator[str]:
+    """Yield what an import statement may name as a module."""
+    if isinstance(node, ast.Import):
+        yield from (alias.name for alias in node.names)
+    elif isinstance(node, ast.ImportFrom):
+        outer = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
+        base = ".".join([*outer, *([node.module] if node.module else [])])
+        yield from (base, *(f"{base}.{alias.name}" for alias in node.names))
+
+
+def _own_files(file: Path) -> Iterable[Path]:
+    path = file.resolve()
+    return path.parent.rglob("*.py") if path.name == "__init__.py" else [path]
+
+
+def _file_of(module: Any) -> Path | None:
+    name = getattr(module, "__file__", None)
+    return _resolved(name) if isinstance(name, str) else None
+
+
+@cache
+def _resolved(name: str) -> Path:
+    return Path(name).resolve()
+
+
+def _is_settled(path: Path) -> bool:
+    """Tell whether a file is part of what is installed or of the kernel itself."""
+    return str(path).startswith(_homes())
+
+
+@lru_cache(maxsize=1)
+def _homes() -> tuple[str, ...]:
+    paths = sysconfig.get_paths()
+    homes = {Path(paths[name]).resolve() for name in ("stdlib", "platstdlib", "purelib", "platlib", "scripts")}
+    return tuple(f"{home}{os.sep}" for home in (Path(__file__).resolve().parent, *homes))
+
+
+def forget(files: set[Path]) -> None:
+    """Take modules of these files out of memory, so that the next import reads them afresh."""
+    for name, module in list(sys.modules.items()):
+        if name != "__main__" and _file_of(module) in files:
+            del sys.modules[name]
+    importlib.invalidate_caches()

@@ -1,0 +1,280 @@
+"""calc watch: the sheet follows what is saved; what is wrong is said and the last sheet stays."""
+
+from __future__ import annotations
+
+import _thread
+import json
+import os
+import queue
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from test_interrupt import hearing_interrupts
+
+from shared import Calc
+from truing.watching import PATIENCE, Watched
+
+PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
+INPUTS = '[inputs]\nload = "120 N"\n[studies]\nrun = []\n'
+LONGEST = 120.0
+"""Seconds that anything may take before a test gives up; nothing waits for them where all is well."""
+
+
+def saved(file: Path, text: str, *, by_renaming: bool = False) -> None:
+    """Save a file as editors do: in its place, or beside it and then renamed."""
+    place = file.with_name(f".{file.name}.new") if by_renaming else file
+    place.write_text(text, encoding="utf-8")
+    if by_renaming:
+        os.replace(place, file)
+
+
+class Watching:
+    """A running ``calc watch`` whose lines arrive one by one."""
+
+    def __init__(self, folder: Path, *words: str) -> None:
+        command = [sys.executable, "-m", "truing", "watch", *words, "--every", "0.05"]
+        self.process = subprocess.Popen(
+            hearing_interrupts(command), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            encoding="utf-8", env={**os.environ, "PYTHONUTF8": "1", "PYTHONUNBUFFERED": "1"},
+        )  # fmt: skip
+        self.lines: queue.Queue[str] = queue.Queue()
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self.lines.put(line.rstrip("\n"))
+
+    def says(self, pattern: str) -> str:
+        """Wait for a line with this pattern and return it."""
+        seen = []
+        until = time.monotonic() + LONGEST
+        while time.monotonic() < until:
+            try:
+                seen.append(self.lines.get(timeout=1.0))
+            except queue.Empty:
+                assert self.process.poll() is None, seen
+                continue
+            if re.search(pattern, seen[-1]):
+                return seen[-1]
+        raise AssertionError(f"no line with {pattern!r} among {seen}")
+
+    def interrupted(self) -> int:
+        """Press Ctrl-C and return the exit code."""
+        self.process.send_signal(signal.SIGINT)
+        return self.process.wait(timeout=LONGEST)
+
+
+@contextmanager
+def watching(folder: Path, *words: str) -> Iterator[Watching]:
+    made = Watching(folder, *words)
+    try:
+        yield made
+    finally:
+        if made.process.poll() is None:
+            made.process.kill()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
+def test_the_sheet_follows_inputs_and_code_and_survives_mistakes(tmp_path: Path) -> None:
+    code = shutil.copy(PIN, tmp_path / "pin.py")
+    inputs = tmp_path / "pin.toml"
+    saved(inputs, INPUTS)
+    results = tmp_path / "runs" / "pin" / "results.json"
+    with watching(tmp_path, "./pin.py", "--inputs", "pin.toml") as watch:
+        assert watch.says(r"^\d\d:\d\d:\d\d \d+\.\d s .*; sheet: runs.pin.sheet\.html$")
+        saved(inputs, INPUTS.replace("120 N", "150 N"), by_renaming=True)
+        assert "pressure +25 %" in watch.says("pressure")
+        before = results.read_bytes()
+        saved(inputs, INPUTS.replace("120 N", "150 mm"))
+        assert watch.says("pin.toml:2: load: '150 mm' is a length")
+        assert watch.says("not calculated; the sheet of .* stays")
+        assert results.read_bytes() == before
+        text = PIN.read_text(encoding="utf-8")
+        saved(code, text.replace("pressure = pin.load / pin.area", "pressure = pin.load / (pin.area"))
+        assert watch.says(r"pin\.py:\d+: .*'\(' was never closed")
+        saved(inputs, INPUTS.replace("120 N", "150 N"))
+        saved(code, text.replace("pressure = pin.load / pin.area", "pressure = 2 * pin.load / pin.area"))
+        assert "pressure +100 %" in watch.says("pressure")
+        assert watch.interrupted() == 0
+        assert watch.says("calc: watched 3 runs; the sheet of .* stays")
+
+
+GRAIN = '''"""A grain on a table: the heaviest of a file."""
+from truing import Float, Model, found, hookimpl, inputs, loaded, results
+from {package}.reading import heaviest
+
+
+@inputs
+class Table:
+    """What was weighed."""
+
+    grains: float = loaded(heaviest)
+
+
+@results
+class Weight:
+    """What it weighs."""
+
+    weight: Float = found("N", note="weight")
+
+
+def weigh(table: Table) -> Weight:
+    """Mass by gravity."""
+    return Weight(weight=9.81 * table.grains)
+
+
+MODEL = Model(name="{package}", title="Grains", function=weigh)
+
+
+@hookimpl
+def truing_models() -> list[Model[Table, Weight]]:
+    """Offer one calculation."""
+    return [MODEL]
+'''
+READING = '''"""Reads grains."""
+from pathlib import Path
+
+
+def heaviest(path: Path) -> float:
+    """The largest mass in the file, kg."""
+    return FACTOR * max(map(float, path.read_text().split()))
+
+
+FACTOR = 1.0
+'''
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """An installed plugin that is a package, and a data file beside its inputs."""
+    name = "grains_on_a_table"
+    home, described = tmp_path / "site" / name, tmp_path / "site" / f"{name}-1.0.dist-info"
+    home.mkdir(parents=True)
+    described.mkdir()
+    saved(home / "__init__.py", GRAIN.replace("{package}", name))
+    saved(home / "reading.py", READING)
+    saved(described / "METADATA", f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+    saved(described / "entry_points.txt", f"[truing.plugins]\n{name} = {name}\n")
+    monkeypatch.syspath_prepend(str(tmp_path / "site"))
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    saved(tmp_path / "grains.txt", "1 2 3")
+    saved(tmp_path / "table.toml", '[inputs]\ngrains = "grains.txt"\n')
+    yield home
+    for module in [module for module in sys.modules if module.startswith(name)]:
+        del sys.modules[module]
+
+
+def test_data_files_and_the_files_of_a_package_are_watched(calc: Calc, package: Path, tmp_path: Path) -> None:
+    results, weights = tmp_path / "out" / "results.json", []
+
+    def weight_other_than(last: Any) -> Any:
+        until = time.monotonic() + LONGEST
+        while time.monotonic() < until:
+            try:
+                found = json.loads(results.read_text(encoding="utf-8"))["results"]["weight"]["value"]
+            except (OSError, ValueError):
+                found = None
+            if found not in {None, last}:
+                return found
+            time.sleep(0.02)
+        return None
+
+    def edit() -> None:
+        try:
+            weights.append(weight_other_than(None))
+            saved(tmp_path / "grains.txt", "1 2 4", by_renaming=True)
+            weights.append(weight_other_than(weights[-1]))
+            saved(package / "reading.py", READING.replace("1.0", "0.5"))
+            weights.append(weight_other_than(weights[-1]))
+            time.sleep(0.3)
+        finally:
+            _thread.interrupt_main()
+
+    threading.Thread(target=edit, daemon=True).start()
+    answer = calc("watch", package.name, "--inputs", "table.toml", "-o", "out", "--every", "0.02")
+    assert answer.code == 0, answer.err
+    assert weights == pytest.approx([3 * 9.81, 4 * 9.81, 2 * 9.81])
+    lines = answer.out.splitlines()
+    assert lines[0].endswith(f"no checks; sheet: {Path('out') / 'sheet.html'}")
+    assert "weight +33.3 %; no checks" in lines[1]
+    assert "weight -50 %; no checks" in lines[2]
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["no_such_plugin", "--inputs", "pin.toml"], "calc: no plugin offers 'no_such_plugin'."),
+        ([PIN, "--inputs", "pim.toml"], "pim.toml: no such file. Did you mean 'pin.toml'?"),
+        ([PIN, "--inputs", "pin.toml", "-o", "other"], "calc: other: is an existing folder but no run of ours"),
+    ],
+)
+def test_what_can_never_run_ends_at_once(calc: Calc, tmp_path: Path, words: list[Any], sentence: str) -> None:
+    saved(tmp_path / "pin.toml", INPUTS)
+    (tmp_path / "other").mkdir()
+    saved(tmp_path / "other" / "letter.txt", "mine")
+    answer = calc("watch", *words)
+    assert (answer.code, answer.out) == (2, "")
+    assert answer.err.startswith(sentence)
+    assert answer.err.count("\n") == 1
+
+
+class Clock:
+    """Time that passes only while somebody sleeps; what is to happen then happens in order."""
+
+    def __init__(self, *happenings: Callable[[], None]) -> None:
+        self.happenings = list(happenings)
+        self.slept = 0.0
+
+    def sleep(self, seconds: float) -> None:
+        self.slept += seconds
+        assert self.slept < 60, "nothing was found to have changed"
+        if self.happenings:
+            self.happenings.pop(0)()
+
+
+def nothing() -> None:
+    """Let time pass."""
+
+
+def test_a_half_written_file_is_waited_for(tmp_path: Path) -> None:
+    file = tmp_path / "pin.toml"
+    saved(file, "load = 1")
+    clock = Clock(lambda: saved(file, ""), nothing, lambda: saved(file, "lo"), lambda: saved(file, "load = 2"))
+    watched = Watched(0.1, clock.sleep)
+    watched.add([file])
+    assert watched.changed() == [file]
+    assert file.read_text() == "load = 2"
+    assert clock.happenings == []
+
+
+def test_a_file_that_is_taken_away_for_good_has_changed(tmp_path: Path) -> None:
+    file = tmp_path / "pin.toml"
+    saved(file, "load = 1")
+    clock = Clock(file.unlink)
+    watched = Watched(0.1, clock.sleep)
+    watched.add([file])
+    assert watched.changed() == [file]
+    assert clock.slept >= PATIENCE
+
+
+def test_the_same_content_is_no_change(tmp_path: Path) -> None:
+    file, other = tmp_path / "pin.toml", tmp_path / "new.csv"
+    saved(file, "load = 1")
+    clock = Clock(
+        lambda: os.utime(file), nothing, nothing, lambda: saved(file, "load = 1"), nothing, nothing,
+        lambda: saved(other, "1"),
+    )  # fmt: skip
+    watched = Watched(0.1, clock.sleep)
+    watched.add([file, other])
+    assert watched.changed() == [other]
