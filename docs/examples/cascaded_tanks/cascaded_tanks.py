@@ -35,7 +35,8 @@ FILM = 0.1
 LONGEST_STEP = 2.0
 """Longest step of the calculation, s."""
 MOST_ROUNDS = 60
-SETTLED = 1e-9
+SETTLED = 1e-6
+"""V; the error is then about its square."""
 
 
 @inputs
@@ -103,76 +104,85 @@ class Tank:
     spill: Float
     leak: Float
 
-    def through(self, level: Array) -> Array:
-        """What leaves through the outlet at a level, V/s."""
-        return np.asarray(
-            self.outflow * (np.maximum(level, FILM) / FULL) ** self.exponent * np.minimum(level / FILM, 1)
+    def outlet(self, level: Array) -> tuple[Array, Array]:
+        """What leaves through the outlet at a level, V/s, and how much more it is per volt of level, 1/s."""
+        deep = np.maximum(level, FILM)
+        per_volt = self.outflow * (deep / FULL) ** self.exponent / deep
+        return np.asarray(per_volt * np.minimum(level, deep)), np.asarray(
+            per_volt * np.where(level > FILM, self.exponent, 1)
         )
 
-    def over(self, level: Array, inflow: Array) -> Array:
-        """What leaves over the rim, V/s: a share of what comes in and does not leave otherwise."""
-        surplus = np.maximum(inflow - self.through(level) - self.leak * level, 0)
-        return np.asarray(self.spill * np.clip((level - self.rim) / CREST, 0, 1) * surplus)
+    def over(self, level: Array, left: Array, more: Array) -> tuple[Array, Array]:
+        """What leaves over the rim, V/s, and how much more it is per volt of level, 1/s.
 
-    def leaving(self, level: Array, inflow: Array) -> Array:
-        """All that leaves, V/s."""
-        return np.asarray(self.through(level) + self.over(level, inflow) + self.leak * level)
-
-    def steepness(self, level: Array, inflow: Array) -> Array:
-        """How much more leaves per volt of level, 1/s."""
-        deep = np.maximum(level, FILM)
-        outlet = self.outflow * (deep / FULL) ** self.exponent / deep * np.where(level > FILM, self.exponent, 1.0)
-        surplus = np.maximum(inflow - self.through(level) - self.leak * level, 0)
-        height = (level - self.rim) / CREST
-        growing = np.where((height > 0) & (height < 1), surplus / CREST, 0)
-        below = self.spill * np.clip(height, 0, 1) * (surplus > 0)
-        return np.asarray((outlet + self.leak) * (1 - below) + self.spill * growing)
+        It is a share of the surplus: of what is ``left`` of the inflow, which is ``more`` per volt of level (negative).
+        """
+        height, surplus = (level - self.rim) / CREST, np.maximum(left, 0)
+        risen = np.clip(height, 0, 1)
+        slope = risen * more * (left > 0) + surplus / CREST * ((height > 0) & (height < 1))
+        return np.asarray(self.spill * risen * surplus), np.asarray(self.spill * slope)
 
 
 @dataclass(frozen=True)
-class Filled:
-    """The course of a tank over m steps: level (n, m + 1) in V, and flows, the mean of each step, (n, m) in V/s."""
+class Flows:
+    """What leaves a tank at the beginning and at the end of each step, (n, m) in V/s, with its slopes in 1/s."""
 
-    level: Array
-    inflow: Array
     drained: Array
     spilt: Array
     seeped: Array
+    begin_slope: Array
+    end_slope: Array
+
+    @property
+    def leaving(self) -> Array:
+        """All that leaves, the mean of each step."""
+        return np.asarray(self.drained + self.spilt + self.seeped)
 
 
-def course_of(tank: Tank, level: Array, inflow: Array) -> Filled:
-    """Say where the water went that came into a tank at these levels."""
-    begin, end = level[:, :-1], level[:, 1:]
-    return Filled(
-        level=level,
-        inflow=inflow,
-        drained=(tank.through(begin) + tank.through(end)) / 2,
-        spilt=(tank.over(begin, inflow) + tank.over(end, inflow)) / 2,
-        seeped=np.asarray(tank.leak * (begin + end) / 2),
+def flows(tank: Tank, level: Array, inflow: Array) -> Flows:
+    """What leaves a tank that stands at these levels while so much comes in."""
+    out, slope = tank.outlet(level)
+    seeped = tank.leak * level
+    both, slopes = out + seeped, slope + tank.leak
+    spilt, more = np.zeros((2, *inflow.shape)), np.zeros((2, *inflow.shape))
+    if np.any(tank.spill):
+        for side, ends in enumerate((np.s_[:, :-1], np.s_[:, 1:])):
+            spilt[side], more[side] = tank.over(level[ends], inflow - both[ends], -slopes[ends])
+    return Flows(
+        drained=mean(out),
+        spilt=(spilt[0] + spilt[1]) / 2,
+        seeped=mean(np.asarray(seeped)),
+        begin_slope=slopes[:, :-1] + more[0],
+        end_slope=slopes[:, 1:] + more[1],
     )
 
 
-def filled(tank: Tank, start: Array, inflow: Array, step: Array) -> Filled:
-    """Follow the level of a tank from its start (n,); NaN in a row that comes to no end.
+def mean(values: Array) -> Array:
+    """Mean of each step, (n, m), of values at its two ends, (n, m + 1)."""
+    return np.asarray((values[:, :-1] + values[:, 1:]) / 2)
+
+
+def filled(tank: Tank, start: Array, inflow: Array, step: Array) -> tuple[Array, Flows]:
+    """Follow the level of a tank from its start (n,): levels (n, m + 1) in V, NaN in a row that comes to no end.
 
     ``inflow`` (n, m) is the mean over each of the m steps, ``step`` (m,) their lengths in s. The trapezoidal rule: all
     steps of all rows are one bidiagonal system of equations, solved by Newton's method.
     """
     level = np.repeat(start[:, None], len(step) + 1, axis=1)
-    half, change = step / 2, np.zeros(level.shape)
+    now, change = flows(tank, level, inflow), np.zeros(level.shape)
     own, before, left = np.ones(level.shape), np.zeros(level.shape), np.zeros(level.shape)
     for _ in range(MOST_ROUNDS):
-        begin, end = level[:, :-1], level[:, 1:]
-        left[:, 1:] = end - begin - step * inflow + half * (tank.leaving(begin, inflow) + tank.leaving(end, inflow))
-        own[:, 1:] = 1 + half * tank.steepness(end, inflow)
-        before[:, :-1] = half * tank.steepness(begin, inflow) - 1
+        left[:, 1:] = np.diff(level) + step * (now.leaving - inflow)
+        own[:, 1:] = 1 + step / 2 * now.end_slope
+        before[:, :-1] = step / 2 * now.begin_slope - 1
         solved = dgtsv(before.ravel()[:-1], own.ravel(), np.zeros(level.size - 1), left.ravel())
         change = solved[3].reshape(level.shape)
         level = level - change
+        now = flows(tank, level, inflow)
         if not np.max(np.abs(change)) > SETTLED:
             break
     settled = np.max(np.abs(change), axis=-1, keepdims=True) <= SETTLED
-    return course_of(tank, np.where(settled, level, np.nan), inflow)
+    return np.where(settled, level, np.nan), now
 
 
 def delivered(tanks: Tanks, voltage: Array) -> Array:
@@ -191,25 +201,24 @@ def cascaded_tanks(tanks: Tanks) -> Levels:
     feasible(len(times) == len(voltage) and len(times) > 1, "times and pump_voltage are not equally long series")
     feasible(np.all(np.diff(times) > 0), "the times of the record do not rise from row to row")
     parts = int(np.ceil(np.max(np.diff(times)) / LONGEST_STEP - 1e-9))
-    step, size = (
-        np.repeat(np.diff(times) / parts, parts),
-        np.broadcast(*(getattr(tanks, name) for name in NUMBERS)).shape,
-    )
+    step = np.repeat(np.diff(times) / parts, parts)
+    size = np.broadcast(*(getattr(tanks, name) for name in NUMBERS)).shape
     rows, ratio = size or (1,), column(tanks.section_ratio)
     pumped = np.broadcast_to(delivered(tanks, voltage), (*rows, len(times)))[:, :-1].repeat(parts, axis=1)
-    above = filled(uppermost(tanks), np.broadcast_to(tanks.upper_start, rows), pumped, step)
-    caught = column(tanks.caught_share) * above.spilt
-    below = filled(lowermost(tanks), np.broadcast_to(tanks.lower_start, rows), ratio * (above.drained + caught), step)
-    feasible(np.isfinite(below.level[:, -1]).reshape(size), "the levels cannot be calculated: a step comes to no end")
-    lost = above.spilt - caught + above.seeped + (below.spilt + below.seeped) / ratio
-    upper_level, level = above.level[:, ::parts], below.level[:, ::parts]
+    above, upper = filled(uppermost(tanks), np.broadcast_to(tanks.upper_start, rows), pumped, step)
+    caught = column(tanks.caught_share) * upper.spilt
+    below, lower = filled(
+        lowermost(tanks), np.broadcast_to(tanks.lower_start, rows), ratio * (upper.drained + caught), step
+    )
+    feasible(np.isfinite(below[:, -1]).reshape(size), "the levels cannot be calculated: a step comes to no end")
+    lost = upper.spilt - caught + upper.seeped + (lower.spilt + lower.seeped) / ratio
     return Levels(
         time=times,
-        upper_level=upper_level.reshape(*size, len(times)),
-        level=level.reshape(*size, len(times)),
-        highest=np.max(level, axis=-1).reshape(size),
+        upper_level=above[:, ::parts].reshape(*size, len(times)),
+        level=below[:, ::parts].reshape(*size, len(times)),
+        highest=np.max(below[:, ::parts], axis=-1).reshape(size),
         pumped=(pumped @ step).reshape(size),
-        drained=(below.drained / ratio @ step).reshape(size),
+        drained=(lower.drained / ratio @ step).reshape(size),
         lost=(lost @ step).reshape(size),
     )
 
