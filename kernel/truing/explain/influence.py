@@ -61,16 +61,14 @@ def influences(setup: Setup, results: Sequence[str], sources: Sequence[str]) -> 
         whole = sum(variance.values())
         size = _size(found.nominal[result])
         sd[result] = max(whole, 0.0) ** 0.5
+        share = {name: part / whole if whole > 0 else 0.0 for name, part in variance.items()}
         of[result] = tuple(
-            _influence(
-                setup, scatter, name, by_source[name], size, variance.get(name, 0.0) / whole if whole > 0 else 0.0
-            )
-            for name in columns
+            _influence(setup, scatter, name, by_source[name], size=size, share=share.get(name, 0.0)) for name in columns
         )
     return Influences(of, sd, found.warnings)
 
 
-def _influence(setup: Setup, scatter: Scatter, name: str, slope: Any, size: float, share: float) -> Influence:
+def _influence(setup: Setup, scatter: Scatter, name: str, slope: Any, *, size: float, share: float) -> Influence:
     from truing.units import unit_factor
 
     value = nominal_of(setup, name)
