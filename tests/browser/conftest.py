@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import shutil
+import sys
+import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from shared import ROOT
 from truing.calculation import calculate
 from truing.inputs_file import read_setup
 from truing.kernel import Kernel
@@ -23,6 +27,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Page
 
 DATA = Path(__file__).parents[1] / "data"
+sys.path.append(str(ROOT / "docs" / "site"))
 QUIET = [
     "--disable-gpu",
     "--disable-background-networking",
@@ -61,44 +66,29 @@ def browser(chromium: Path) -> Iterator[Browser]:
         running.close()
 
 
-SHIPPED: dict[str, tuple[str, list[str]]] = {
-    "press": ("press_linkage", []),
-    "reducer": (
-        "rv_wear",
-        [
-            "reliability.draws=2000", "reliability.points=4", "new_machines.draws=200", "surrogate.design=30",
-            "surrogate.held_out=10", "surrogate.restarts=0", "surrogate.compare=100", "least_costs.goals=[]",
-            "optimise.population=12", "optimise.generations=4", "optimise.draws=256", "optimise.verify=1000",
-        ],
-    ),
-    "gearing": ("rv_gearing", ["reliability.draws=2000", "load.points=9", "face_width.points=9"]),
-    "screw": ("roller_screw_shift", ["shift.points=2001", "optimise.population=16", "optimise.generations=4"]),
-    "flank": ("harmonic_fractal", ["reliability.draws=2000"]),
-}  # fmt: skip
-"""Sheets of shipped examples, with budgets that leave all figures and tables there and take a few seconds."""
-MEASURED = {"flank": DATA.parents[1] / "docs" / "examples" / "harmonic_matrix_y" / "inputs.toml"}
-"""Inputs files to look at instead of the plugin's example: this one has a measured surface."""
+GALLERY = tomllib.loads((ROOT / "docs" / "gallery" / "sheets.toml").read_text(encoding="utf-8"))
+SHIPPED = [name for name, item in GALLERY.items() if "data" not in item]
+"""Sheets of shipped examples: those of the gallery, with the budgets of its quick build."""
 
 
 @pytest.fixture(scope="session", params=["hostile", "hostile-full", *SHIPPED])
 def sheet(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A sheet on disk: one whose every text is hostile, at two levels of detail, and those of what is shipped."""
-    kernel = Kernel.installed()
-    kernel.add_file(DATA / "hostile_pin.py")
+    file = tmp_path_factory.mktemp("Größe ü") / f"{request.param} sheet.html"
     if request.param in SHIPPED:
-        plugin, options = SHIPPED[request.param]
-        offer = kernel.offer(plugin)
-        inputs = MEASURED.get(request.param) or offer.model.example
-        assert inputs is not None
-        setup = read_setup(inputs, offer, overrides=[f"studies.{option}" for option in options])
-    else:
-        offer = kernel.offer("hostile_pin")
-        setup = read_setup(DATA / "hostile_pin.toml", offer)
+        from manual.gallery import calculated, sheets
+
+        (shown,) = [one for one in sheets() if one.name == request.param]
+        shutil.copy(calculated(shown) / "sheet.html", file)
+        return file
+    kernel = Kernel()
+    kernel.add_file(DATA / "hostile_pin.py")
+    offer = kernel.offer("hostile_pin")
+    setup = read_setup(DATA / "hostile_pin.toml", offer)
     setup = replace(setup, detail="full") if request.param == "hostile-full" else setup
     calculation = calculate(setup)
     rows = compare_published(offer, known=calculation)
     text = html_of(make_sheet(calculation, provenance=provenance_of(setup, date="2026-11-21"), verified=rows))
-    file = tmp_path_factory.mktemp("Größe ü") / f"{request.param} sheet.html"
     file.write_text(text, encoding="utf-8")
     return file
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
 import pytest
-from built_site import site  # noqa: F401
 
+from built_site import site  # noqa: F401
 from shared import ROOT
 
 DOCS = ROOT / "docs"
@@ -26,3 +27,63 @@ def test_every_page_on_disk_is_a_page_of_the_site(site: Path) -> None:  # noqa: 
         place = page.relative_to(DOCS).with_suffix(".html")
         place = place.with_name("index.html") if place.name == "README.html" else place
         assert (site / place).is_file(), place
+
+
+LOADS = [
+    re.compile(r"""<(?!a\b)[^>]*\s(?:src|srcset|data|poster|action|background)\s*=\s*["']?([^"'\s>]+)"""),
+    re.compile(r"""<link[^>]*\shref\s*=\s*["']?([^"'\s>]+)"""),
+    re.compile(r"""url\(\s*["']?([^"')]+)|@import\s+["']?([^"';]+)"""),
+]
+"""What makes a browser fetch something: attributes, style sheets and icons, addresses in style sheets."""
+
+
+@pytest.mark.parametrize("ending", ["html", "css", "js"])
+def test_nothing_is_loaded_from_outside(site: Path, ending: str) -> None:  # noqa: F811
+    files = sorted(site.rglob(f"*.{ending}"))
+    assert files
+    for file in files:
+        if file.name == "index.js":  # the words of the search: data, no code
+            continue
+        text = file.read_text(encoding="utf-8")
+        loads = [next(filter(None, item.groups()), "") for rule in LOADS for item in rule.finditer(text)]
+        assert not [name for name in loads if re.match(r"(?:\w+:)?//", name)], file
+        if ending == "js":
+            assert not re.search(r"https?://|\bfetch\(|XMLHttpRequest|WebSocket|sendBeacon|\bimport\(", text), file
+        if ending == "html":
+            assert not re.search(r"@font-face|<base\b|http-equiv=.refresh", text), file
+
+
+def test_every_link_inside_the_site_arrives(site: Path) -> None:  # noqa: F811
+    from urllib.parse import unquote
+
+    for page in pages(site):
+        if page.parent.parent.name == "gallery":
+            continue  # a sheet: its own tests look at it
+        text = page.read_text(encoding="utf-8")
+        for link in re.findall(r"""<(?:a|link|script|img|iframe)\b[^>]*\s(?:href|src)=["']([^"'#]+)[^"']*["']""", text):
+            if not re.match(r"\w+:", link):
+                assert (page.parent / unquote(link)).resolve().is_file(), f"{page}: {link}"
+
+
+def test_no_formula_is_left_as_it_was_typed(site: Path) -> None:  # noqa: F811
+    for page in pages(site):
+        assert "arithmatex" not in page.read_text(encoding="utf-8"), page
+
+
+def test_every_model_has_a_page_with_all_that_it_declares(site: Path) -> None:  # noqa: F811
+    from truing.describe import description
+    from truing.kernel import Kernel
+
+    effects = (site / "reference" / "effects.html").read_text(encoding="utf-8")
+    for name, offer in Kernel.installed().offers.items():
+        text = (site / "reference" / "models" / f"{name}.html").read_text(encoding="utf-8")
+        said = description(offer)
+        parts = ("inputs", "results", "tolerances", "effects", "conditions")
+        missing = [item["name"] for part in parts for item in said[part] if f"<code>{item['name']}</code>" not in text]
+        assert not missing, name
+        for effect in said["effects"]:
+            assert f'href="models/{name}.html#{effect["name"]}"' in effects
+            assert f'id="{effect["name"]}"' in text
+        assert text.count("<math") >= sum(bool(item["formula"]) for item in said["results"])
+        schema = json.loads((site / "reference" / "models" / f"{name}.schema.json").read_text(encoding="utf-8"))
+        assert set(schema["$defs"]["Inputs"]["properties"]) == {item["name"] for item in said["inputs"]}

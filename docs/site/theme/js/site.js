@@ -33,7 +33,11 @@ for (const block of document.querySelectorAll(".highlight")) {
 
 const field = document.getElementById("search");
 const found = document.querySelector(".found");
-const plain = (text) => text.normalize("NFKD").replace(/\p{M}/gu, "").toLowerCase();
+// Without accents and capitals, letter for letter, so that a place in it is a place in the text.
+const plain = (text) => text.replace(/[^\x00-\x7f]/gu, (letter) => {
+  const bare = letter.normalize("NFKD").replace(/\p{M}/gu, "");
+  return bare.length === letter.length ? bare : letter;
+}).toLowerCase();
 let pages = null;
 
 function load() {

@@ -1,0 +1,132 @@
+"""The site of the manual in a browser that has no network: opened from disk, on a wide screen and on a phone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from test_sheet import BEYOND, CONTRASTS
+
+from built_site import site  # noqa: F401
+
+KINDS = {
+    "front page": "index.html",
+    "tutorial": "tutorial/first_calculation.html",
+    "how-to": "how-to/many_machines.html",
+    "reference": "reference/declaring.html",
+    "format": "reference/files/diagnosis.html",
+    "verb": "reference/verbs/run.html",
+    "hook": "reference/hooks/truing_models.html",
+    "model": "reference/models/press_linkage.html",
+    "effects": "reference/effects.html",
+    "theory": "explanation/gear_geometry.html",
+    "example": "examples/press_off_by_40_um/index.html",
+    "gallery": "gallery/index.html",
+    "project": "project/overview.html",
+}
+
+
+@pytest.fixture(scope="module")
+def window(browser: Any, site: Path) -> Iterator[Any]:  # noqa: F811
+    """A page without network; what it asks for and complains of is written down."""
+    context = browser.new_context(offline=True)
+    opened = context.new_page()
+    opened.requested, opened.said = [], []
+    opened.on("request", lambda request: opened.requested.append(request.url))
+    opened.on("console", lambda message: opened.said.append(f"{message.type}: {message.text}"))
+    opened.on("pageerror", lambda error: opened.said.append(f"error: {error}"))
+    opened.on("requestfailed", lambda request: opened.said.append(f"failed: {request.url}"))
+    yield opened
+    context.close()
+
+
+def visit(window: Any, file: Path, width: int) -> None:
+    window.requested.clear()
+    window.said.clear()
+    window.set_viewport_size({"width": width, "height": 900})
+    window.goto(file.as_uri())
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_page_asks_for_nothing_outside_and_fits_a_phone(window: Any, site: Path, kind: str) -> None:  # noqa: F811
+    visit(window, site / KINDS[kind], 390)
+    assert window.said == []
+    assert [url for url in window.requested if not url.startswith((site.as_uri() + "/", "data:"))] == []
+    assert window.evaluate("document.documentElement.scrollWidth") <= 390
+    loose = "[...document.querySelectorAll('article table')].filter(one => !one.closest('.scroll')).length"
+    assert window.evaluate(loose) == 0
+    window.set_viewport_size({"width": 1100, "height": 900})
+    assert window.evaluate("document.documentElement.scrollWidth") <= 1100
+    outside = window.evaluate(
+        BEYOND.replace("!node.closest('svg')", "!node.closest('svg, .scroll, .formula, pre')"), 1100
+    )
+    assert outside == []
+
+
+@pytest.mark.parametrize("kind", ["theory", "model"])
+def test_formulas_are_drawn(window: Any, site: Path, kind: str) -> None:  # noqa: F811
+    visit(window, site / KINDS[kind], 1100)
+    sizes = window.evaluate("""() => [...document.querySelectorAll('math')].map(node => {
+        const box = node.getBoundingClientRect();
+        return [box.width, box.height, Boolean(node.querySelector('mfrac')), node.textContent];
+    })""")
+    assert len(sizes) > 40
+    assert [size for size in sizes if size[0] < 3 or size[1] < 6] == []
+    assert [size for size in sizes if size[2] and size[1] < 16] == []
+    assert "\\" not in window.evaluate("document.querySelector('article').innerText")
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("kind", ["tutorial", "model"])
+def test_every_text_stands_out_from_its_ground(window: Any, site: Path, kind: str, theme: str) -> None:  # noqa: F811
+    visit(window, site / KINDS[kind], 1100)
+    window.evaluate(f"document.documentElement.dataset.theme = '{theme}'")
+    seen = window.evaluate(CONTRASTS)
+    assert len(seen) > 50
+    assert [pair for pair in seen if pair[0] < 4.5] == []
+
+
+def test_the_button_turns_the_page_dark_and_light(window: Any, site: Path) -> None:  # noqa: F811
+    visit(window, site / "index.html", 1100)
+    ground = "getComputedStyle(document.body).backgroundColor"
+    before = window.evaluate(ground)
+    window.click("button.theme")
+    dark = window.evaluate(ground)
+    window.click("button.theme")
+    assert window.evaluate(ground) == before != dark
+
+
+def test_search_works_from_disk(window: Any, site: Path) -> None:  # noqa: F811
+    visit(window, site / KINDS["verb"], 1100)
+    window.fill("#search", "stroke joint_clearance")
+    window.wait_for_selector(".found a")
+    shown = window.locator(".found a").all_inner_texts()
+    assert all("clearance" in text.lower() or "stroke" in text.lower() for text in shown)
+    window.fill("#search", "exit codes")
+    window.wait_for_function("document.querySelector('.found a')?.innerText.includes('Errors')")
+    window.press("#search", "Enter")
+    window.wait_for_url("**/reference/errors.html*")
+    assert window.said == []
+    window.fill("#search", "zzzz no such word")
+    window.wait_for_selector(".found .none")
+
+
+def test_the_menu_of_a_phone_opens(window: Any, site: Path) -> None:  # noqa: F811
+    visit(window, site / KINDS["how-to"], 390)
+    assert not window.is_visible("#sidebar")
+    window.click("button.menu")
+    window.click("#sidebar a[aria-current]")
+    assert window.url.endswith("many_machines.html")
+
+
+def test_a_page_prints_without_what_is_for_the_screen(window: Any, site: Path) -> None:  # noqa: F811
+    visit(window, site / KINDS["model"], 700)
+    window.emulate_media(media="print")
+    try:
+        for part in (".bar", "#sidebar", "main > footer"):
+            assert not window.is_visible(part)
+        assert window.evaluate("document.querySelector('article').getBoundingClientRect().width") > 600
+    finally:
+        window.emulate_media(media="screen")
