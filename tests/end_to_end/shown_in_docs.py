@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import ast
 import difflib
+import importlib
 import io
 import os
 import re
@@ -72,6 +73,7 @@ class Desk:
     site: Path
     faults: list[str] = field(default_factory=list)
     as_processes: bool = False
+    editable: list[str] = field(default_factory=list)
 
     def run(self, words: str) -> tuple[str, int]:
         """Run one command as the reader would; return what a terminal shows, and the exit code."""
@@ -79,13 +81,15 @@ class Desk:
         if parts[0] == "cd":
             self.folder = (self.folder / parts[1]).resolve()
             return "", 0
-        if parts[0] == "calc" and not self.as_processes and not self.site.exists() and not OF_ITS_OWN & set(parts):
+        if parts[0] == "calc" and not self.as_processes and not OF_ITS_OWN & set(parts):
             return self._here(parts[1:])
         ended = subprocess.run(
             self._spelled_out(parts), cwd=self.folder, env=self._environment(), stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, text=True, encoding="utf-8", timeout=300, check=False,
         )  # fmt: skip
         said = ended.stdout.replace("\\", "/") if os.name == "nt" else ended.stdout  # the pages show paths with /
+        if parts[:3] == ["pip", "install", "-e"]:
+            self.editable.append(str((self.folder / parts[3].partition("[")[0]).resolve()))
         return "" if parts[0] == "pip" and ended.returncode == 0 else said, ended.returncode
 
     def _here(self, words: list[str]) -> tuple[str, int]:
@@ -93,14 +97,20 @@ class Desk:
         from truing.cli import main
 
         said, before = io.StringIO(), list(sys.path)
+        sys.path[:0] = self._installed()
+        importlib.invalidate_caches()
         with chdir(self.folder), redirect_stdout(said), redirect_stderr(said), _terminal():
             code = main(words)
         sys.path[:] = before
-        home = str(self.folder.resolve())
+        home = str(self.site.parent.resolve())
         for name, module in list(sys.modules.items()):
             if str(getattr(module, "__file__", None) or "").startswith(home):
                 del sys.modules[name]
         return said.getvalue(), code
+
+    def _installed(self) -> list[str]:
+        """Return where Python finds what the reader installed; what is editable is read where it is edited."""
+        return [*self.editable, str(self.site)] if self.site.exists() else []
 
     def _spelled_out(self, parts: list[str]) -> list[str]:
         """Use this Python for ``calc``, ``python`` and ``pip``; what is installed goes to a folder of its own."""
@@ -115,7 +125,7 @@ class Desk:
         raise AssertionError(f"the pages run calc, python, pip install and cd; not {parts[0]}")
 
     def _environment(self) -> dict[str, str]:
-        own = {"PYTHONUNBUFFERED": "1", "PYTHONIOENCODING": "utf-8", "PYTHONPATH": str(self.site)}
+        own = {"PYTHONUNBUFFERED": "1", "PYTHONIOENCODING": "utf-8", "PYTHONPATH": os.pathsep.join(self._installed())}
         kept = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "COV"))}
         return {**kept, **own, **TERMINAL, "PYTHONDONTWRITEBYTECODE": "1"}
 
