@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from math import isnan
 from typing import Any
@@ -34,6 +34,10 @@ class SwitchedOn:
     def unknowns(self) -> tuple[Unknown, ...]:
         """The unknowns that are stated, in the order declared, which is that of the covariance; other parts are off."""
         return tuple(unknown for unknown in self.effect.unknowns if unknown.name in self.values)
+
+    def joined(self, other: SwitchedOn) -> SwitchedOn:
+        """Return the effect with the unknowns of both, those of the other where both state one."""
+        return SwitchedOn(self.effect, {**self.values, **other.values}, {**self.sds, **other.sds})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,6 +108,14 @@ class Setup:
         inputs = {fields[name].path: value for name, value in values.items() if name in fields}
         conditions = {name: value for name, value in values.items() if name not in fields}
         return replace(self, inputs=with_values(self.inputs, inputs), conditions={**self.conditions, **conditions})
+
+    def with_effects(self, more: Iterable[SwitchedOn]) -> Setup:
+        """Return the setup with further effects on; parts of one that is on join those that are stated."""
+        on = {item.effect.name: item for item in self.effects}
+        for item in more:
+            before = on.get(item.effect.name)
+            on[item.effect.name] = item if before is None else before.joined(item)
+        return replace(self, effects=tuple(on.values()))
 
     def nominal(self, name: str) -> Any:
         """Return the nominal value in SI of an input or condition."""

@@ -47,7 +47,7 @@ class Placed:
     def switched_on(self, machine: Machine) -> Machine:
         """Return a machine whose model has this cause on."""
         on = SwitchedOn(self.candidate.effect, {**self.shape, **self.amplitudes})
-        start = replace(machine.start, effects=(*machine.start.effects, on))
+        start = machine.start.with_effects([on])
         return replace(machine, start=start, base=predict(start, machine.records))
 
     def term(self, machine: Machine, scales: Mapping[str, float]) -> Term | None:

@@ -7,7 +7,7 @@ dimensionless: a column has root mean square 1 in units of the noise, and ``per`
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.sources import Effect, Unknown
@@ -79,14 +79,17 @@ def si_bounds(unknown: Unknown) -> tuple[float, float]:
 def candidates_of(machine: Machine) -> list[Candidate]:
     """Return everything that could be looked for: effects in the order of declaration, the kernel's last.
 
-    Effects that are on already are part of the model; an effect whose conditions nobody measured is left out.
+    Effects, and parts of effects, that are on already are part of the model; an effect whose conditions nobody measured
+    is left out.
     """
-    model, on = machine.start.model, {item.effect.name for item in machine.start.effects}
+    model, on = machine.start.model, {item.effect.name: item.values for item in machine.start.effects}
     found: list[Candidate] = []
     for order, effect in enumerate(model.known_effects.values()):
-        if effect.name in on or any(need.name in machine.records.absent for need in effect.needs):
+        if any(need.name in machine.records.absent for need in effect.needs):
             continue
         for part in effect.parts or (tuple(unknown.name for unknown in effect.unknowns),):
+            if set(part) & set(on.get(effect.name, ())):
+                continue
             unknowns = [unknown for unknown in effect.unknowns if unknown.name in part]
             amplitudes = tuple(unknown for unknown in unknowns if unknown.is_amplitude)
             shapes = tuple(unknown for unknown in unknowns if not unknown.is_amplitude)
@@ -99,10 +102,10 @@ def curve_at(
     machine: Machine, candidate: Candidate, amplitudes: Mapping[str, float], shape: Mapping[str, float]
 ) -> Curve:
     """Return the exact change of every measured result by an effect with these unknowns, SI, shape (n,)."""
-    values = {unknown.name: _rest(unknown) for unknown in candidate.effect.unknowns}
-    values |= {**shape, **amplitudes}
-    on = SwitchedOn(candidate.effect, values)
-    changed = predict(replace(machine.start, effects=(*machine.start.effects, on)), machine.records)
+    before = next((item.values for item in machine.start.effects if item.effect.name == candidate.name), {})
+    values = {unknown.name: _rest(unknown) for unknown in candidate.effect.unknowns if unknown.name not in before}
+    on = SwitchedOn(candidate.effect, {**values, **shape, **amplitudes})
+    changed = predict(machine.start.with_effects([on]), machine.records)
     return {name: changed[name] - machine.base[name] for name in machine.records.measured}
 
 

@@ -47,11 +47,6 @@ def _one_term(hypothesis: Hypothesis) -> bool:
     return hypothesis.kind in {"one", "shape", "input"}
 
 
-def best_alone(contest: Contest) -> int:
-    """Return the place of the best explanation with a single cause or shape, -1 where there is none."""
-    return contest.found.best(_one_term)
-
-
 def without_needless_inputs(contest: Contest) -> Contest:
     """Strike out inputs off their band unless nothing registered explains the data nearly as well.
 
@@ -159,10 +154,14 @@ def _is_close(contest: Contest, winner: int, rival: int) -> bool:
 
 
 def _contains(contest: Contest, larger: Hypothesis, smaller: Hypothesis) -> bool:
-    """Tell whether an explanation with more columns can draw every curve of the other: a vaguer word for it."""
+    """Tell whether an explanation can draw every curve of the other and is a vaguer word for it.
+
+    It has more columns; or as many, where a shape that nobody registered draws what is registered.
+    """
     import numpy as np
 
-    if len(larger.columns) <= len(smaller.columns):
+    is_vaguer = any(piece.kind == "shape" for piece in larger.pieces)
+    if len(larger.columns) < len(smaller.columns) + (0 if is_vaguer else 1):
         return False
     covered, total = np.zeros(len(smaller.columns)), np.zeros(len(smaller.columns))
     a, b = curve_space(contest, larger), curve_space(contest, smaller)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.beside import second_beside_first
 from truing.diagnosis.contest import Contest, contest
-from truing.diagnosis.decide import Decision, alternatives, best_alone, decide, without_needless_inputs
+from truing.diagnosis.decide import Decision, alternatives, decide, without_needless_inputs
 from truing.diagnosis.design import next_points
 from truing.diagnosis.findings import wrong_of
 from truing.diagnosis.fit import Fit, fit, input_values, may_be_zero
@@ -73,14 +73,27 @@ def _diagnose(setup: Setup, records: Records, step: _Steps) -> Diagnosis:
 
 
 def _certain(full: Contest, decision: Decision) -> tuple[Fit, Decision]:
-    """Fit the winner; of a pair in which one cause may as well be zero only the best single explanation is kept."""
+    """Fit the winner; a cause that may as well be zero is not named.
+
+    Of a pair with such a cause only the best single explanation is kept; in the place of a single one comes the next
+    best that explains as much as the search asks for, or nothing.
+    """
     best = fit(full, decision.winner)
-    pieces = best.hypothesis.pieces
-    doubtful = [place for place, piece in enumerate(pieces) if piece.kind == "term" and may_be_zero(best, place)]
-    alone = best_alone(full)
-    if len(pieces) < 2 or not doubtful or alone < 0:
+    if not _is_doubtful(best):
         return best, decision
-    return fit(full, alone), replace(decision, winner=alone)
+    found, limit = full.found, full.found.score[0] + decision.thresholds.first
+    singles = [place for place in found.ranked() if len(found.hypotheses[place].pieces) == 1]
+    for place in [each for each in singles if found.score[each] > limit][:FITTED]:
+        alone = fit(full, place)
+        if not _is_doubtful(alone):
+            return alone, replace(decision, winner=place)
+    return fit(full, 0), replace(decision, winner=0)
+
+
+def _is_doubtful(best: Fit) -> bool:
+    """Whether the intervals of all amplitudes of some cause contain zero."""
+    pieces = best.hypothesis.pieces
+    return any(may_be_zero(best, place) for place, piece in enumerate(pieces) if piece.kind == "term")
 
 
 class _Steps:

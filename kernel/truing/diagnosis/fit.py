@@ -96,13 +96,14 @@ class Fitter:
             candidate = problem.candidates[piece.owner]
             own = values.setdefault(candidate.name, {})
             own |= {unknown.name: 0.0 for unknown in candidate.amplitudes} | dict(term.shape)
-        known = start.model.known_effects
+        known, before = start.model.known_effects, {item.effect.name: item.values for item in start.effects}
         for name, own in values.items():
             if known[name].place != "reading" or name in start.model.effects:
-                missing = [unknown for unknown in known[name].unknowns if unknown.name not in own]
+                stated = {*own, *before.get(name, ())}
+                missing = [unknown for unknown in known[name].unknowns if unknown.name not in stated]
                 own |= {each.name: 0.0 if each.is_amplitude else si_bounds(each)[0] for each in missing}
         on = tuple(SwitchedOn(known[name], own) for name, own in values.items())
-        return replace(start, effects=(*start.effects, *on))
+        return start.with_effects(on)
 
     def columns(self, x: Matrix, u: Matrix) -> dict[str, Any]:
         """Return the columns that set every unknown and every input, SI: one value for all rows or one per row."""

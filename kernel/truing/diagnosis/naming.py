@@ -118,7 +118,8 @@ def _fixed(full: Contest, best: Fit, unknown: Unknown, pieces: list[int]) -> lis
 
 def switched_on(full: Contest, causes: tuple[Cause, ...]) -> tuple[SwitchedOn, ...]:
     """Return the named effects as they are switched on in the extended model; what was not excited is 0."""
-    known = full.problem.machine.start.model.known_effects
+    start = full.problem.machine.start
+    known, before = start.model.known_effects, {item.effect.name: item.values for item in start.effects}
     found = []
     for cause in causes:
         if cause.effect.startswith("input:"):
@@ -126,7 +127,11 @@ def switched_on(full: Contest, causes: tuple[Cause, ...]) -> tuple[SwitchedOn, .
         effect = known[cause.effect]
         values = {unknown.name: unknown.value for unknown in cause.unknowns}
         if not (effect.parts and effect.takes_any):
-            values = {each.name: values.get(each.name, 0.0) for each in effect.unknowns}
+            values = {
+                **dict.fromkeys((each.name for each in effect.unknowns), 0.0),
+                **before.get(cause.effect, {}),
+                **values,
+            }
         sds = {}
         if cause.covariance:
             names = [unknown.name for unknown in cause.unknowns]
@@ -147,8 +152,7 @@ def extended_setup(full: Contest, best: Fit, causes: tuple[Cause, ...]) -> Setup
         if name in conditions or name in needed:
             conditions[name] = float(np.nanmean(item.values))
     calibrated = {name: value for name, (value, _) in input_values(full, best).items()}
-    effects = (*machine.start.effects, *switched_on(full, causes))
-    setup = replace(machine.start, conditions=conditions, effects=effects)
+    setup = replace(machine.start, conditions=conditions).with_effects(switched_on(full, causes))
     inputs = machine.start.inputs
     return replace(setup, inputs=inputs, calibrated={**machine.start.calibrated, **calibrated})
 

@@ -189,7 +189,7 @@ def _few_rows(records: Records, names: Sequence[str]) -> Records:
 
 def _changes(there: Machine, explanation: Explanation) -> Mapping[str, Matrix]:
     """Return the change of every unmeasured result by an explanation, SI, shape (n,)."""
-    setup = replace(there.start, effects=(*there.start.effects, *explanation.on))
+    setup = there.start.with_effects(explanation.on)
     changed = predict(setup, there.records)
     return {name: changed[name] - there.base[name] for name in there.base}
 
