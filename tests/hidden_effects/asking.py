@@ -1,26 +1,22 @@
-"""A case as files, and what Truing says to it. Everything that calls the diagnosis stands here."""
+"""A press with something wrong as files, and what the kit says to it."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from math import pi
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hidden_effects.candidates import HOUR
 from hidden_effects.cases import Case
 from hidden_effects.press_machine import POSITION, TILT, Array, Rows
-
-if TYPE_CHECKING:
-    from truing.diagnosis.result import Diagnosis
-    from truing.kernel import Offer
-    from truing.setup import Setup
+from truing import Kernel
+from truing.kernel import Offer
+from truing.testing import recorded
 
 INPUTS = (
     'plugin = "press_linkage"\n\n[inputs]\nreading = "complete"\n'
@@ -46,18 +42,22 @@ def table(rows: Rows, readings: Mapping[str, Array], counters: tuple[float, floa
     return "\n".join(lines) + "\n"
 
 
+def tables(case: Case) -> tuple[str, str]:
+    """The record, and a second one to judge with."""
+    measured = table(case.record.rows, case.readings, case.counters)
+    return measured, table(case.held, case.held_readings, case.counters)
+
+
 def write_case(case: Case, folder: Path) -> None:
     """Write what a user would have: inputs, the record, and a second one to judge with."""
-    (folder / "inputs.toml").write_text(INPUTS, encoding="utf-8")
-    (folder / "measured.csv").write_text(table(case.record.rows, case.readings, case.counters), encoding="utf-8")
-    (folder / "held_out.csv").write_text(table(case.held, case.held_readings, case.counters), encoding="utf-8")
+    names = ("inputs.toml", "measured.csv", "held_out.csv")
+    for name, text in zip(names, (INPUTS, *tables(case)), strict=True):
+        (folder / name).write_text(text, encoding="utf-8")
 
 
 @cache
 def press_offer() -> Offer:
     """The press linkage as installed."""
-    from truing.kernel import Kernel
-
     return Kernel.installed().offer("press_linkage")
 
 
@@ -69,48 +69,14 @@ class Answer:
     after another, without the first row (that of the record).
     """
 
-    document: dict[str, Any]
+    document: Mapping[str, Any]
     predicted: Array
     seconds: float
 
 
 def diagnosed(case: Case) -> Answer:
     """Ask for a diagnosis of the record and predict the rows that were held out."""
-    from time import perf_counter
-
-    from truing.diagnosis.engine import diagnose
-    from truing.diagnosis.reading import read_records
-    from truing.inputs_file import read_setup
-    from truing.runs.diagnosis_document import diagnosis_document
-
-    offer = press_offer()
-    with TemporaryDirectory() as name:
-        folder = Path(name)
-        write_case(case, folder)
-        setup = read_setup(folder / "inputs.toml", offer)
-        start = perf_counter()
-        diagnosis = diagnose(setup, read_records([folder / "measured.csv"], offer, setup))
-        seconds = perf_counter() - start
-        document = json.loads(json.dumps(diagnosis_document(diagnosis)))
-        return Answer(document, _predicted(case, diagnosis, setup, folder / "held_out.csv"), seconds)
-
-
-def _predicted(case: Case, diagnosis: Diagnosis, setup: Setup, file: Path) -> Array:
-    """Predict the rows held out, one result after another, the first row (that of the record) left out."""
-    from dataclasses import replace
-
-    from truing.diagnosis.reading import read_records
-    from truing.gauge import one_machine, read_by_gauge
-
-    calibrated = {item.name: item.value for item in diagnosis.calibrated}
-    machine = diagnosis.extended or replace(setup, calibrated={**setup.calibrated, **calibrated})
-    records = read_records([file], press_offer(), setup)
-    shown = read_by_gauge(one_machine(machine), records.rows, case.results).results
-    known: dict[str, Any] = {name: one.values for name, one in records.covariates.items()}
-    parts = []
-    for result in case.results:
-        values = shown[result]
-        for term in diagnosis.remainder.terms.get(result, ()) if diagnosis.remainder else ():
-            values = values + term.coefficient * np.asarray(eval(term.expression, {"np": np}, known))
-        parts.append(values[1:])
-    return np.concatenate(parts)
+    measured, held = tables(case)
+    said = recorded(press_offer().model, inputs=INPUTS, measured=measured, held_out=held).answered
+    predicted = np.concatenate([said.predicted[result][1:] for result in case.results])
+    return Answer(said.document, predicted, said.seconds)

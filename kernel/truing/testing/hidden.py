@@ -9,8 +9,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
+from truing.declare.model import Model
 from truing.kernel import Offer, Origin
 from truing.setup import Setup
+from truing.testing.subject import Subject
 
 if TYPE_CHECKING:
     import numpy as np
@@ -79,7 +81,7 @@ class Hidden:
 
 
 def recorded(
-    offer: Offer,
+    model: Model[Any, Any],
     *,
     inputs: str,
     measured: str,
@@ -94,7 +96,7 @@ def recorded(
     """
     from truing.inputs_file import setup_from_text
 
-    setup = setup_from_text(inputs, offer, file=INPUTS, folder=Path())
+    setup = setup_from_text(inputs, Subject(model).offer, file=INPUTS, folder=Path())
     return Hidden(setup=setup, measured=measured, held_out=held_out, effect=effect, truth=truth or {})
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 from typing import Any
@@ -143,31 +143,27 @@ def order_matters(subject: Subject) -> list[str]:
     setup = _off_reference(subject.setup)
     base = _answers(setup)
     found: list[str] = []
+    backwards = replace(setup, model=replace(setup.model, errors=list(setup.model.errors)[::-1]))
+    switched = {effect.name: _switched(setup, effect) for effect in subject.model.effects.values()}
     for first, second in combinations(subject.model.effects.values(), 2):
-        if first.place != second.place:
+        one, other = switched[first.name], switched[second.name]
+        if first.place != second.place or one is None or other is None:
             continue
-        pair = [_switched(setup, effect) for effect in (first, second)]
-        if pair[0] is None or pair[1] is None:
-            continue
-        on = (*pair[0].effects, *pair[1].effects)
-        share = _difference_by_order(setup, on, base)
+        both = (*one.effects, *other.effects)
+        share = _difference_by_order([replace(order, effects=both) for order in (setup, backwards)], base)
         if share > COMMUTES:
             found.append(f"'{first.name}' and '{second.name}' do not commute: their order changes {share:.0%} of it")
     return found
 
 
-def _difference_by_order(setup: Setup, on: tuple[SwitchedOn, ...], base: Values) -> float:
-    """Return the largest difference that the order makes, as a share of what both do together."""
+def _difference_by_order(orders: Sequence[Setup], base: Values) -> float:
+    """Return the largest difference between two orders, as a share of what both effects do together."""
     import numpy as np
 
-    answers = []
-    for order in (on, on[::-1]):
-        errors = [source for source in setup.model.errors if source not in [item.effect for item in on]]
-        model = replace(setup.model, errors=[*errors, *(item.effect for item in order)])
-        try:
-            answers.append(_answers(replace(setup, model=model, effects=order)))
-        except InfeasibleError:
-            return 0.0
+    try:
+        answers = [_answers(setup) for setup in orders]
+    except InfeasibleError:
+        return 0.0
     share = 0.0
     for name, value in base.items():
         one, other = (np.asarray(answer[name], dtype=float) - value for answer in answers)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -12,7 +13,7 @@ from truing.declare.model import Model
 from truing.declare.specs import Given
 from truing.errors import InfeasibleError, TruingError, UsageError
 from truing.evaluate import evaluate
-from truing.kernel import Offer, Origin
+from truing.kernel import Kernel, Offer, Origin
 from truing.setup import Setup, default_setup
 
 if TYPE_CHECKING:
@@ -38,8 +39,24 @@ class Subject:
     def offer(self) -> Offer:
         """The model as the command line would offer it."""
         name = self.model.name
-        origin = self.origin or Origin(name, "", "", "", f"entry:{name}")
+        origin = self.home or Origin(name, "", "", "", f"entry:{name}")
         return Offer(name if origin.name == name else f"{origin.name}.{name}", self.model, origin)
+
+    @cached_property
+    def home(self) -> Origin | None:
+        """The plugin that offers the model, as another process finds it; None where none does."""
+        if self.origin is not None:
+            return self.origin
+        parts = self.model.function.__module__.split(".")
+        names = [".".join(parts[:count]) for count in range(len(parts), 0, -1)]
+        modules = [module for name in names if (module := sys.modules.get(name)) and getattr(module, "__spec__", None)]
+        for module in modules:
+            if not hasattr(module, "truing_models"):
+                continue
+            for offer in Kernel([module]).offers.values():
+                if offer.model.function is self.model.function and offer.model.name == self.model.name:
+                    return offer.origin
+        return None
 
     @cached_property
     def setup(self) -> Setup:
@@ -79,6 +96,16 @@ class Subject:
         Every input moves by up to a tenth of its value, or by three standard deviations or a tenth of its unit where
         it is 0; by less where the model finds that impossible.
         """
+        if count not in self._found:
+            self._found[count] = self._new_points(count)
+        return [dict(point) for point in self._found[count]]
+
+    @cached_property
+    def _found(self) -> dict[int, list[dict[str, float]]]:
+        """The points that were found already, by their number: they serve many checks."""
+        return {}
+
+    def _new_points(self, count: int) -> list[dict[str, float]]:
         import numpy as np
 
         rng = np.random.default_rng(20)
