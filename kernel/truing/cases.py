@@ -16,7 +16,7 @@ from truing.measurements import Case
 from truing.packed import Packed, pack, travels, unpack
 from truing.prices import price_answers
 from truing.setup import Setup
-from truing.studies.bench import Check, Progress, silent
+from truing.studies.bench import FINE, Check, Progress, silent, within
 from truing.studies.checks import plain_checks
 
 BLOCK = 2**10
@@ -135,12 +135,15 @@ def _one_by_one(setup: Setup, cases: Sequence[Case], executor: Executor, progres
     if apart:
         answers = in_order(executor, _packed_case, (pack(case_setup(setup, case), studies=True) for case in cases))
     else:
-        answers = (_case_answer(case_setup(setup, case), executor) for case in cases)
+        answers = (
+            _case_answer(case_setup(setup, case), executor, _of_case(setup, place, len(cases), progress))
+            for place, case in enumerate(cases)
+        )
     done = []
-    progress("cases", 0, len(cases))
+    progress("cases", 0, FINE)
     for case, (found, checks, reason) in zip(cases, answers, strict=True):
         done.append(CaseResult(case, found, checks, reason))
-        progress("cases", len(done), len(cases))
+        progress("cases", round(FINE * len(done) / len(cases)), FINE)
     return done
 
 
@@ -153,10 +156,15 @@ def _packed_case(packed: Packed) -> Answer:
         return _case_answer(unpack(packed), alone)
 
 
-def _case_answer(setup: Setup, executor: Executor) -> Answer:
+def _of_case(setup: Setup, place: int, count: int, progress: Progress) -> Progress:
+    """Return what reports the studies of one case as its part of all cases."""
+    return within(progress, "cases", place / count, (place + 1) / count, [study.name for study in setup.studies])
+
+
+def _case_answer(setup: Setup, executor: Executor, progress: Progress = silent) -> Answer:
     """Return what a case answers and its checks, or why it failed."""
     try:
-        found = calculate(setup, executor=executor)
+        found = calculate(setup, executor=executor, progress=progress)
     except UsageError as error:  # impossible, or a tolerance that its size outgrows
         return {}, (), str(error)
     return found.answers, found.checks, None

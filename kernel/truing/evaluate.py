@@ -5,7 +5,7 @@ Columns of a batch are named by input, by condition, or by ``effects.NAME.UNKNOW
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -64,11 +64,13 @@ def evaluate_rows(
     *,
     reading: bool = False,
     wanted: Collection[str] | None = None,
+    done: Callable[[int, int], None] = lambda count, rows: None,
 ) -> Rows:
     """Run ``rows`` calculations, as one array call wherever the declaration allows it.
 
     A column holds (rows,) values or one value for all. Only ``wanted`` results are returned (all by default). Failed
     rows are NaN in every result and keep their reason; a table shorter than the longest is filled up with NaN.
+    ``done`` hears of rows that are done where they take several calls.
     Raises UsageError for a column that nobody knows or that has another length.
     """
     import numpy as np
@@ -79,6 +81,7 @@ def evaluate_rows(
     failed = np.zeros(rows, dtype=bool)
     reasons: dict[int, str] = {}
     order: list[NDArray[np.intp]] = []
+    finished = 0
     for index, part in _uniform_parts(setup, fixed, arrays, rows):
         if len(index) == rows > 0:
             return Rows(*_one_call(setup, part, rows, names, reading=reading))
@@ -88,6 +91,8 @@ def evaluate_rows(
         order.append(index)
         for name, values in answers.items():
             gathered[name].append(values)
+        finished += len(index)
+        done(finished, rows)
     results = {name: _joined(pieces, order, rows) for name, pieces in gathered.items()}
     return Rows(results, failed, dict(sorted(reasons.items())))
 

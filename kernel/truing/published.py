@@ -10,11 +10,14 @@ from typing import TYPE_CHECKING, Any
 from truing.declare.published import Published
 from truing.errors import DeclarationError
 from truing.kernel import Offer
-from truing.studies.bench import Progress, silent
+from truing.studies.bench import FINE, Progress, silent, within
 
 if TYPE_CHECKING:
     from truing.calculation import Calculation
     from truing.setup import Setup
+
+TASK = "published numbers"
+"""What the comparison is called while it is made."""
 
 
 @dataclass(frozen=True)
@@ -64,11 +67,17 @@ def _compared(offer: Offer, progress: Progress, known: Calculation | None) -> li
     from truing.calculation import calculate
     from truing.inputs_file import setup_from_settings
 
+    count, made = len({frozenset(item.settings.items()) for item in offer.model.published}), 0
+
     def calculation_for(settings: Mapping[str, str]) -> Calculation:
+        nonlocal made
+        begin, made = made / count, made + 1
         wanted = setup_from_settings(offer, settings)
         if known is not None and _covers(known.setup, wanted) and same_run(known.setup, wanted):
             return known
-        return calculate(wanted, progress=progress)
+        names = [study.name for study in wanted.studies]
+        progress(TASK, round(FINE * begin), FINE)
+        return calculate(wanted, progress=within(progress, TASK, begin, made / count, names))
 
     return compare(calculation_for, offer.model.published)
 

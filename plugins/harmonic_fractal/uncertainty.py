@@ -21,6 +21,7 @@ OF = ("stiffness", "clearance", "mesh_stiffness", "torsion")
 PAIR = ("dimension_deviation", "roughness_deviation")
 CAUSE = "estimate"  # the tolerance that draws the pairs
 MOST = 100_000
+TOGETHER = 1024
 NOTHING = (
     "No flank was measured, so how sure D and G are is not known, and nothing is propagated. The tolerances of the "
     "study 'reliability' hold for what was stated."
@@ -59,14 +60,26 @@ class Uncertainty:
         apart = np.random.default_rng(bench.setup.seed).permutation(pairs[:, 1])
         nominal = [float(bench.setup.nominal(name)) for name in PAIR]
 
-        def answered(logarithm: "Array") -> Mapping[str, Any]:
+        def answered(logarithm: "Array", begin: float) -> Mapping[str, Any]:
             columns = dict(zip(PAIR, (nominal[0] + pairs[:, 0], nominal[1] + logarithm), strict=True))
-            return bench.rows(columns, self.draws, *self.of)
+            return self._answered(bench, columns, bench.part(self.name, begin, begin + 0.5))
 
         return Propagated(
-            name=self.name, inputs=bench.inputs, units=units, pairs=pairs, together=answered(pairs[:, 1]),
-            apart=answered(apart), nominal={name: float(bench.answers[name]) for name in self.of},
+            name=self.name, inputs=bench.inputs, units=units, pairs=pairs, together=answered(pairs[:, 1], 0.0),
+            apart=answered(apart, 0.5), nominal={name: float(bench.answers[name]) for name in self.of},
         )  # fmt: skip
+
+    def _answered(self, bench: "Bench", columns: Mapping[str, Any], done: Callable[[int, int], None]) -> dict[str, Any]:
+        """Calculate all pairs, so many in one call that nobody waits long for the next word."""
+        import numpy as np
+
+        parts = []
+        for start in range(0, self.draws, TOGETHER):
+            done(start, self.draws)
+            rows = {name: values[start : start + TOGETHER] for name, values in columns.items()}
+            parts.append(bench.rows(rows, min(TOGETHER, self.draws - start), *self.of))
+        done(self.draws, self.draws)
+        return {name: np.concatenate([part[name] for part in parts]) for name in self.of}
 
     def _pairs(self, bench: "Bench") -> "Array | None":
         """Draw the pairs as deviations (draws, 2), or nothing where no flank was measured."""

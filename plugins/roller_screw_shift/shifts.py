@@ -1,6 +1,6 @@
 """A study of our own: the shift that the paper's weighed objectives prefer among those that keep every limit."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from truing import Block, Check
 
 FOUND = "found"
+BEFORE = 2  # steps before the variants: the field, and Box's search with the grid beside it
 SCREWS = 8192  # drawn to tell what scatter leaves of the margins
 COMPARED = (
     "roller_shift", "ring_shift", "tip_radius_roller", "tip_radius_ring", "contact_ratio", "tip_land",
@@ -65,15 +66,17 @@ class Shifting:
         """Find where every limit is kept, the ranges of the objectives there, the weights, and the optimum."""
         pair: Pair = bench.inputs
         span = (float(self.span[0]), float(self.span[1]))
+        ratios = sorted({*self.ratios, float(pair.least_contact_ratio)})
+        bench.progress(self.name, 0, len(ratios) + BEFORE)
         field = field_of(pair, span, self.points)
         equal = equal_sliding(pair, span, self.points)
         if field is None:
             return Chosen(pair, span, equal, status=self._nothing(pair, span))
+        bench.progress(self.name, 1, len(ratios) + BEFORE)
         weights = weights_of(pair.weights, field.ranges)
         grid = grid_optimum(field, weights)
         box, remarks = self._box(bench, field, weights, span)
         best = grid if box is None else float(box.point[0])
-        ratios = sorted({*self.ratios, float(pair.least_contact_ratio)})
         return Chosen(
             pair, span, equal,
             status=FOUND,
@@ -81,7 +84,7 @@ class Shifting:
             weights=weights,
             box=box,
             grid=grid,
-            variants=variants(pair, ratios, span, self.points),
+            variants=tuple(self._variants(bench, ratios, span)),
             factor=stress_factor(field, weights, grid),
             compared=_compared(bench, field, best),
             kept=(_kept(bench, float(pair.roller_shift)), _kept(bench, best)),
@@ -97,6 +100,13 @@ class Shifting:
         except TruingError as error:
             return None, (f"Box's method found nothing: {error}; the grid's optimum stands",)
         return found, () if found.settled else ("Box's method ended before its vertices met",)
+
+    def _variants(self, bench: Bench, ratios: Sequence[float], span: tuple[float, float]) -> Iterator[Variant]:
+        """Give the optimum under one least contact ratio after the other."""
+        for place, ratio in enumerate(ratios, start=BEFORE):
+            bench.progress(self.name, place, len(ratios) + BEFORE)
+            yield from variants(bench.inputs, (ratio,), span, self.points)
+        bench.progress(self.name, len(ratios) + BEFORE, len(ratios) + BEFORE)
 
     def _nothing(self, pair: Pair, span: tuple[float, float]) -> str:
         """Say that no shift keeps every limit, and what the nearest one misses."""

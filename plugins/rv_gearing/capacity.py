@@ -64,8 +64,8 @@ class Capacity:
             inputs=stage,
             safeties=np.array([float(bench.answers[name]) for name in SAFETIES]),
             required=_required(stage),
-            torque=torque * _used_up(bench, column, start),
-            life=life * _used_up(bench, "working_life", life),
+            torque=torque * _used_up(bench, column, start, bench.part(self.name, 0.0, 0.5)),
+            life=life * _used_up(bench, "working_life", life, bench.part(self.name, 0.5, 1.0)),
             power_per_torque=power * speed / float(bench.answers["output_torque"] or nan),
         )
 
@@ -75,7 +75,7 @@ def _required(stage: Gearing) -> "Values":
     return np.array([bending, bending, contact, contact])
 
 
-def _used_up(bench: "Bench", column: str, start: float) -> "Values":
+def _used_up(bench: "Bench", column: str, start: float, done: Callable[[int, int], None]) -> "Values":
     """By what factor on the column each safety falls to what is asked; infinite where never, 0 where always below."""
     required = _required(bench.inputs)
     low, high = np.full(len(SAFETIES), -np.log(SPAN)), np.full(len(SAFETIES), np.log(SPAN))
@@ -85,7 +85,8 @@ def _used_up(bench: "Bench", column: str, start: float) -> "Values":
         return np.array([found[name][place] for place, name in enumerate(SAFETIES)]) >= required
 
     never, always = enough(high), np.logical_not(enough(low))
-    for _ in range(HALVINGS):
+    for halving in range(HALVINGS):
+        done(halving, HALVINGS)
         middle = 0.5 * (low + high)
         holds = enough(middle)
         low, high = np.where(holds, middle, low), np.where(holds, high, middle)

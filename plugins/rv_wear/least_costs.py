@@ -54,14 +54,15 @@ class LeastCosts:
         goals = sorted({*self.goals, own} if own < 1 else {*self.goals})
         fronts = []
         for place, goal in enumerate(goals):
-            bench.progress(self.name, place, len(goals))
-            fronts.append(self._front(bench, goal))
+            fronts.append(self._front(bench, goal, bench.part(self.name, place / len(goals), (place + 1) / len(goals))))
         return Fronts(tuple(fronts), bench.inputs)
 
-    def _front(self, bench: Bench, goal: float) -> "Front":
+    def _front(self, bench: Bench, goal: float, done: Callable[[int, int], None]) -> "Front":
         designs: list[Design] = []
         modification = self._first(bench, goal)
+        steps = 1 if modification is None else ceil((modification - self.span[0]) / STEP) + 1
         while modification is not None and modification >= self.span[0]:
+            done(len(designs), steps)
             design = self._design(bench, modification, goal)
             if design is None or (designs and design.cost > (1 - ALL_WIDEST) * designs[-1].cost):
                 break

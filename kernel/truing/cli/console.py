@@ -139,22 +139,14 @@ def close_output() -> None:
 
 @contextmanager
 def progress_bar(settings: Settings) -> Iterator[Progress]:
-    """Show a progress bar on a terminal and nothing elsewhere."""
-    if settings.quiet or not sys.stderr.isatty():
+    """Show a progress bar where the errors go to a terminal, once the work takes its time, and nothing elsewhere."""
+    from truing.cli.progress import has_terminal, shown_progress
+
+    if settings.quiet or not has_terminal():
         yield lambda task, done, total: None
         return
-    from rich.console import Console
-    from rich.progress import Progress as Bar
-
-    with Bar(console=Console(stderr=True), transient=True) as bar:
-        tasks: dict[str, Any] = {}
-
-        def show(task: str, done: int, total: int) -> None:
-            if task not in tasks:
-                tasks[task] = bar.add_task(task, total=total)
-            bar.update(tasks[task], completed=done, total=total)
-
-        yield show
+    with shown_progress() as report:
+        yield report
 
 
 def columns(rows: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> str:

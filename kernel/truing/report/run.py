@@ -88,9 +88,12 @@ def _perform(setup: Setup, offer: Offer, order: RunOrder, *, progress: Progress,
         place.settle()
         computed = _computed(executor)
     verified = compare_published(offer, progress=progress, known=calculation)
+    progress("sheet", 0, 0)
     provenance = provenance_of(calculation.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
     sheet = make_sheet(calculation, provenance=provenance, verified=verified, cases=cases)
     sheets: dict[str, str | bytes] = {"sheet.html": html_of(sheet), "sheet.md": markdown_of(sheet)}
+    if order.pdf:
+        progress("printing", 0, 0)
     note = add_pdf(sheets, order.folder) if order.pdf else ""
     document = write_run(
         order.folder,

@@ -13,8 +13,35 @@ from truing.setup import Setup
 Progress = Callable[[str, int, int], None]
 
 
+Done = Callable[[int, int], None]
+FINE = 1000
+"""How many steps a task has of which only parts can be counted."""
+
+
 def silent(task: str, done: int, total: int) -> None:
     """Report no progress."""
+
+
+def part_of(progress: Progress, task: str, begin: float, end: float) -> Done:
+    """Return what reports the steps of one part of a task, which runs from one share of the whole to another."""
+
+    def done(step: int, steps: int) -> None:
+        share = begin + (end - begin) * (step / steps if steps > 0 else 0.0)
+        progress(task, round(FINE * share), FINE)
+
+    return done
+
+
+def within(progress: Progress, task: str, begin: float, end: float, stages: Sequence[str]) -> Progress:
+    """Return what reports a whole calculation as one part of a task; ``stages`` are its studies in order."""
+
+    def told(stage: str, step: int, steps: int) -> None:
+        if stage in stages:
+            each = (end - begin) / len(stages)
+            start = begin + each * list(stages).index(stage)
+            part_of(progress, task, start, start + each)(step, steps)
+
+    return told
 
 
 @dataclass(frozen=True)
@@ -55,6 +82,10 @@ class Bench:
         from truing.evaluate import acting_inputs
 
         return acting_inputs(self.setup)
+
+    def part(self, task: str, begin: float, end: float) -> Done:
+        """Return what reports the steps of one part of a task, from one share (0 to 1) of the whole to another."""
+        return part_of(self.progress, task, begin, end)
 
     def changed(self, values: Mapping[str, Any], widths: Mapping[str, float] | None = None) -> Bench:
         """Return the workbench of another design: inputs, conditions and full widths of tolerances by name, SI.

@@ -5,10 +5,11 @@ Estimator of A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259, as scipy 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from truing.studies.bench import Done
 from truing.studies.sampling import Machines, standard_rows
 
 if TYPE_CHECKING:
@@ -36,8 +37,10 @@ class _Sampled:
 
     machines: Machines
     results: Sequence[str]
+    done: Callable[[int], None]
     failed: int = 0
     reason: str = ""
+    run: int = 0
 
     def __call__(self, standard: NDArray[np.float64]) -> NDArray[np.float64]:
         import numpy as np
@@ -52,11 +55,13 @@ class _Sampled:
                 answers[place, start : start + ROWS] = rows.results[result]
             self.failed += int(rows.failed.sum())
             self.reason = self.reason or next(iter(rows.reasons.values()), "")
+            self.run += part.shape[1]
+            self.done(self.run)
         return answers
 
 
 def sobol_indices(
-    machines: Machines, results: Sequence[str], samples: int
+    machines: Machines, results: Sequence[str], samples: int, progress: Done = lambda step, steps: None
 ) -> tuple[dict[str, dict[str, float]], dict[str, dict[str, float]], list[str]]:
     """Return first-order and total indices by result and source, and what is to be said of them.
 
@@ -70,9 +75,10 @@ def sobol_indices(
     if joint:
         return {}, {}, [f"no Sobol indices: they need independent sources, and those of {' and '.join(joint)} are not"]
     sources = [column for cause in causes for column in cause.columns]
-    model = _Sampled(machines, results)
+    dimensions = max(len(sources), 2)  # scipy wants two; one that nothing depends on does no harm
+    model = _Sampled(machines, results, lambda run: progress(run, samples * (dimensions + 2)))
     rng = np.random.default_rng(np.random.SeedSequence(machines.setup.seed, spawn_key=(0x50B01,)))
-    dists = [_Standard()] * max(len(sources), 2)  # scipy wants two; one that nothing depends on does no harm
+    dists = [_Standard()] * dimensions
     found = stats.sobol_indices(func=model, n=samples, dists=dists, rng=rng)
     if model.failed:
         return {}, {}, [f"no Sobol indices: {model.failed} machines failed, the first because {model.reason}"]

@@ -86,10 +86,7 @@ class Sensitivity:
             return {}, {}, []
         from truing.studies.indices import sobol_indices
 
-        bench.progress(self.name, 0, 1)
-        answer = sobol_indices(Machines(bench.setup, scatter), results, self.sobol)
-        bench.progress(self.name, 1, 1)
-        return answer
+        return sobol_indices(Machines(bench.setup, scatter), results, self.sobol, bench.part(self.name, 0.0, 1.0))
 
 
 _Indices = dict[str, dict[str, float]]

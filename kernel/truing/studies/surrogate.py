@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import count, pairwise
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -16,12 +17,12 @@ from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
 from truing.evaluate import acting_inputs, evaluate_rows
 from truing.setup import Setup
-from truing.studies.bench import Bench, Check
+from truing.studies.bench import Bench, Check, Done
 from truing.studies.reading import result_names, scalar_results
 from truing.studies.surrogate_answers import Course, Judged, StandIn
 from truing.studies.surrogate_box import Box, open_box
 from truing.studies.surrogate_fit import Emulator, fitted, taken, usable
-from truing.studies.surrogate_runs import Ran, Speed, clocked, designed, ran
+from truing.studies.surrogate_runs import Ran, Speed, Work, clocked, designed, ran
 
 if TYPE_CHECKING:
     from truing.studies.surrogate_answers import Values
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 PROMISED = 0.95
 FINE, COARSE = 61, 5
 LARGEST = 3000
+SHARES = (0.0, 0.2, 0.3, 0.6, 1.0)
+"""Where the sample, the held-out points, the learning and the clock begin and end, for whoever waits."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,20 +78,16 @@ class Surrogate:
         names = self._results(setup)
         box = open_box(setup, self.over, self.logarithmic, self.name)
         along = self._along(box)
-        bench.progress(self.name, 0, 4)
+        sampling, judging, learning, timing = (bench.part(self.name, *ends) for ends in pairwise(SHARES))
         learnt, judge = (
-            ran(setup, designed(setup, box, stage, points, self.name), names, self.batch, bench.executor)
-            for stage, points in enumerate((self.design, self.held_out))
+            ran(setup, designed(setup, box, stage, points, self.name), names, Work(self.batch, bench.executor, done))
+            for stage, (points, done) in enumerate(((self.design, sampling), (self.held_out, judging)))
         )
-        bench.progress(self.name, 1, 4)
-        emulators, seconds = self._learnt(setup, box, learnt, names)
-        bench.progress(self.name, 2, 4)
+        emulators, seconds = self._learnt(setup, box, learnt, names, learning)
         stand_in = StandIn(box, emulators)
         judged = self._judged(stand_in, judge)
         course = self._course(setup, stand_in, along)
-        bench.progress(self.name, 3, 4)
-        speed = self._speed(setup, stand_in, learnt.seconds, seconds)
-        bench.progress(self.name, 4, 4)
+        speed = self._speed(setup, stand_in, learnt.seconds, seconds, timing)
         return Emulated(
             name=self.name,
             of=names,
@@ -119,7 +118,9 @@ class Surrogate:
             )
         return self.along or next(iter(plain), "")
 
-    def _learnt(self, setup: Setup, box: Box, learnt: Ran, names: tuple[str, ...]) -> tuple[dict[str, Emulator], float]:
+    def _learnt(
+        self, setup: Setup, box: Box, learnt: Ran, names: tuple[str, ...], done: Done
+    ) -> tuple[dict[str, Emulator], float]:
         """Fit every result; the clock does not count the import of scikit-learn."""
         import sklearn.gaussian_process  # noqa: F401
 
@@ -132,6 +133,7 @@ class Surrogate:
             )
         start = perf_counter()
         places = box.places(taken(learnt.columns, kept))
+        fits = count(1)
         emulators = {
             name: fitted(
                 places,
@@ -139,6 +141,7 @@ class Surrogate:
                 logarithmic=self.log_result,
                 restarts=self.restarts,
                 seed=setup.seed,
+                done=lambda: done(next(fits), len(names) * (self.restarts + 1)),
             )
             for name in names
         }
@@ -167,12 +170,12 @@ class Surrogate:
         rows = evaluate_rows(setup, {along: coarse}, len(coarse), wanted=tuple(stand_in.emulators))
         return Course(along, axis, coarse, rows.results, stand_in.bands({along: axis}), COARSE)
 
-    def _speed(self, setup: Setup, stand_in: StandIn, sample: float, fit: float) -> Speed | None:
+    def _speed(self, setup: Setup, stand_in: StandIn, sample: float, fit: float, done: Done) -> Speed | None:
         if not self.compare:
             return None
         columns = designed(setup, stand_in.box, 2, self.compare, self.name)
         names = tuple(stand_in.emulators)
-        predictions, model, measured = clocked(setup, columns, stand_in.predict, names, self.batch)
+        predictions, model, measured = clocked(setup, columns, stand_in.predict, names, self.batch, done)
         return Speed(self.compare, sample, fit, predictions, model, measured)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -77,22 +77,40 @@ def _in_parts(predict: Any, places: NDArray[np.float64], answers: int = 1) -> ND
 
 
 def fitted(
-    places: NDArray[np.float64], values: NDArray[np.float64], *, logarithmic: bool, restarts: int, seed: int
+    places: NDArray[np.float64],
+    values: NDArray[np.float64],
+    *,
+    logarithmic: bool,
+    restarts: int,
+    seed: int,
+    done: Callable[[], None] = lambda: None,
 ) -> Emulator:
-    """Learn a result (n,) at places (n, d): the lengths, amplitude and noise that make the sample most likely."""
+    """Learn a result (n,) at places (n, d): the lengths, amplitude and noise that make the sample most likely.
+
+    ``done`` hears of every search for them that ends: the first, and each of the restarts.
+    """
     import numpy as np
+    from scipy.optimize import minimize
     from sklearn.exceptions import ConvergenceWarning
     from sklearn.gaussian_process import GaussianProcessRegressor
     from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
 
     shape = RBF(np.ones(places.shape[1]), LENGTHS)
     kernel = ConstantKernel(10.0, AMPLITUDES) * shape + WhiteKernel(1e-6, NOISES)
+
+    def searched(likelihood: Any, start: Any, bounds: Any) -> tuple[Any, float]:
+        found: Any = minimize(likelihood, start, method="L-BFGS-B", jac=True, bounds=bounds)  # as scikit-learn does
+        done()
+        return found.x, found.fun
+
     process = GaussianProcessRegressor(
-        kernel, alpha=JITTER, normalize_y=True, n_restarts_optimizer=restarts, random_state=seed % 2**32
-    )
+        kernel, alpha=JITTER, normalize_y=True, n_restarts_optimizer=restarts, random_state=seed % 2**32,
+        optimizer=searched,
+    )  # fmt: skip
     with one_thread(), warnings.catch_warnings():
         warnings.simplefilter("ignore", ConvergenceWarning)
         process.fit(places, np.log(values) if logarithmic else values)
+    process.set_params(optimizer=None)  # it is fitted, and travels to workers
     return Emulator(process, logarithmic)
 
 

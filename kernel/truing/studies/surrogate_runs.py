@@ -13,6 +13,7 @@ from truing.evaluate import Rows, evaluate_rows
 from truing.executors import SerialExecutor, in_order
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup
+from truing.studies.bench import Done
 from truing.studies.scatter import generator
 from truing.studies.surrogate_box import Box
 
@@ -68,16 +69,28 @@ def _unpacked(packed: Packed) -> Setup:
     return unpack(packed)
 
 
-def ran(setup: Setup, columns: Mapping[str, Any], wanted: tuple[str, ...], batch: int, executor: Executor) -> Ran:
-    """Run the model at all points, ``batch`` of them in one call."""
+@dataclass(frozen=True)
+class Work:
+    """How points are run: so many in one call, where, and who hears how far it has come."""
+
+    batch: int
+    executor: Executor
+    done: Done
+
+
+def ran(setup: Setup, columns: Mapping[str, Any], wanted: tuple[str, ...], work: Work) -> Ran:
+    """Run the model at all points."""
     import numpy as np
 
-    carried: Setup | Packed = setup if isinstance(executor, SerialExecutor) else pack(setup)
+    carried: Setup | Packed = setup if isinstance(work.executor, SerialExecutor) else pack(setup)
     points = len(next(iter(columns.values())))
-    jobs = (Job(carried, part, rows, wanted) for part, rows in _parts(columns, points, batch))
-    answers = list(in_order(executor, run_points, jobs))
+    jobs = (Job(carried, part, rows, wanted) for part, rows in _parts(columns, points, work.batch))
+    answers = []
+    for answer in in_order(work.executor, run_points, jobs):
+        answers.append(answer)
+        work.done(min(len(answers) * work.batch, points), points)
     parts = [rows for rows, _ in answers]
-    reasons = {place * batch + row: text for place, rows in enumerate(parts) for row, text in rows.reasons.items()}
+    reasons = {place * work.batch + row: text for place, rows in enumerate(parts) for row, text in rows.reasons.items()}
     results = {name: np.concatenate([rows.results[name] for rows in parts]) for name in wanted}
     joined = Rows(results, np.concatenate([rows.failed for rows in parts]), reasons)
     return Ran(columns, joined, sum(seconds for _, seconds in answers))
@@ -126,6 +139,7 @@ def clocked(
     predict: Callable[[Mapping[str, Any]], Any],
     wanted: tuple[str, ...],
     batch: int,
+    done: Done = lambda step, steps: None,
 ) -> tuple[float, float, int]:
     """Return the seconds for all predictions, those for all runs of the model, and how many were really run."""
     points = len(next(iter(columns.values())))
@@ -133,10 +147,11 @@ def clocked(
     for part, _ in _parts(columns, points, batch):
         predict(part)
     predictions = perf_counter() - start
-    spent, done = 0.0, 0
+    spent, run = 0.0, 0
     for part, rows in _parts(columns, points, batch):
         spent += run_points(Job(setup, part, rows, wanted))[1]
-        done += rows
+        run += rows
+        done(max(run, round(points * spent / LONGEST)), points)
         if spent > LONGEST:
             break
-    return predictions, spent * points / done, done
+    return predictions, spent * points / run, run

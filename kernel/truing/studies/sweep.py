@@ -43,9 +43,8 @@ class Sweep:
         setup = bench.setup
         over = scattering_name(setup, self.over, self.name)
         axis = _points(setup, over, self.at, self.points)
-        bench.progress(self.name, 0, len(axis))
-        rows = evaluate_rows(setup, {over: _values(setup, over, axis)}, len(axis))
-        bench.progress(self.name, len(axis), len(axis))
+        done = bench.part(self.name, 0.0, 1.0)
+        rows = evaluate_rows(setup, {over: _values(setup, over, axis)}, len(axis), done=done)
         fields = setup.model.own_result_fields
         return Swept(
             name=self.name,

@@ -1,0 +1,131 @@
+"""A progress bar for work that takes its time: on a terminal, after two seconds, with the time that is left."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from truing.studies.bench import Progress
+
+PATIENCE = 2.0
+"""Seconds that pass before anything is shown: short work shows nothing."""
+SETTLED = 0.02
+"""The share of a task that must be done before its time left is guessed."""
+
+
+def has_terminal() -> bool:
+    """Whether errors go to a terminal that can redraw a line, and nobody has asked it to be plain."""
+    return sys.stderr.isatty() and os.environ.get("TERM") != "dumb" and not os.environ.get("NO_COLOR")
+
+
+@dataclass
+class Task:
+    """The work under way: what it is called, how much of it is done, and when it began."""
+
+    name: str
+    began: float
+    done: int = 0
+    total: int = 0
+
+    @property
+    def share(self) -> float:
+        """The share that is done, 0 to 1; 0 where nobody knows."""
+        return min(max(self.done / self.total, 0.0), 1.0) if self.total > 0 else 0.0
+
+    def left(self, now: float) -> float | None:
+        """Return the seconds left at the pace so far, or None where that would be a guess in the dark.
+
+        The pace is that of the whole task up to now, so that a long step lengthens what is left while it lasts.
+        """
+        if self.share < SETTLED or now - self.began < PATIENCE / 2:
+            return None
+        return (now - self.began) * (1 - self.share) / self.share
+
+
+def spoken(seconds: float) -> str:
+    """Return a duration as one says it: no more exact than it is known."""
+    if seconds < 10:
+        return f"{max(seconds, 1):.0f} s"
+    if seconds < 60:
+        return f"{round(seconds / 5) * 5} s"
+    if seconds < 3600:
+        return f"{round(seconds / 60)} min"
+    return f"{int(seconds // 3600)} h {round(seconds % 3600 / 600) * 10} min"
+
+
+@dataclass
+class Watched:
+    """The tasks of a command as they are reported, from whichever thread, and the line that shows the present one."""
+
+    task: Task = field(default_factory=lambda: Task("working", time.monotonic()))
+    _line: Any = None
+    _timer: threading.Timer | None = None
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _over: bool = False
+
+    def report(self, task: str, done: int, total: int) -> None:
+        """Take note of how far a task has come; one that begins again is another one."""
+        now = time.monotonic()
+        with self._lock:
+            if task != self.task.name or done < self.task.done or total != self.task.total:
+                self.task = Task(task, now)
+            self.task.done, self.task.total = done, total
+
+    def begin(self) -> None:
+        """Show the line once the patience is over."""
+        self._timer = threading.Timer(PATIENCE, self._show)
+        self._timer.daemon = True
+        self._timer.start()
+
+    def end(self) -> None:
+        """Take the line away."""
+        if self._timer is not None:
+            self._timer.cancel()
+        with self._lock:
+            self._over = True
+            line, self._line = self._line, None
+        if line is not None:
+            line.stop()
+
+    def _show(self) -> None:
+        from rich.console import Console
+        from rich.live import Live
+
+        with self._lock:
+            if self._over:
+                return
+            console = Console(stderr=True)
+            self._line = Live(console=console, transient=True, refresh_per_second=5, get_renderable=self._drawn)
+            self._line.start(refresh=True)
+
+    def _drawn(self) -> Any:
+        """Draw the present task: its name, a bar, how much is done, and how long it will take."""
+        from rich.progress_bar import ProgressBar
+        from rich.table import Table
+
+        task, now = self.task, time.monotonic()
+        known = task.share > 0
+        bar = ProgressBar(total=1.0, completed=task.share, width=30, pulse=not known, animation_time=now)
+        left = task.left(now)
+        time_words = f"{spoken(left)} left" if left is not None else f"{now - task.began:.0f} s so far"
+        table = Table.grid(padding=(0, 1))
+        table.add_row(task.name, bar, f"{100 * task.share:.0f} %" if known else "", time_words)
+        return table
+
+
+@contextmanager
+def shown_progress() -> Iterator[Progress]:
+    """Give what takes reports of progress, and show them on a terminal until the work is over."""
+    watched = Watched()
+    watched.begin()
+    try:
+        yield watched.report
+    finally:
+        watched.end()

@@ -1,0 +1,41 @@
+"""Every study of every shipped calculation that takes its time says how far it has come.
+
+pytest tests/benchmarks/bench_progress.py -s
+"""
+
+from pathlib import Path
+
+import pytest
+
+from progress_seen import watched
+from truing import Kernel
+from truing.calculation import calculate
+from truing.example_file import example_text
+from truing.inputs_file import setup_from_text
+
+OFFERS = Kernel.installed().offers
+MORE = {
+    "harmonic_fractal": ["studies.reliability.draws=20000"],
+    "press_linkage": ["studies.reliability.draws=2000000", "studies.sensitivity.sobol=65536"],
+    "roller_screw_shift": ["studies.shift.points=200001", "studies.optimise.generations=120"],
+    "rv_gearing": ["studies.reliability.draws=400000"],
+    "rv_wear": ["studies.reliability.draws=300000", "studies.surrogate.design=300"],
+}
+
+
+@pytest.mark.parametrize("asked", ["shipped", "more"])
+@pytest.mark.parametrize("name", list(OFFERS))
+def test_long_studies_speak(name: str, asked: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    offer = OFFERS[name]
+    if asked == "more" and name not in MORE:
+        pytest.skip("nothing to ask more of")
+    example = offer.model.example
+    file, folder = (str(example), example.parent) if example is not None else ("example.toml", Path.cwd())
+    overrides = MORE[name] if asked == "more" else []
+    setup = setup_from_text(example_text(offer), offer, file=file, folder=folder, overrides=overrides)
+    with watched(monkeypatch, {type(study) for study in setup.studies}) as seen:
+        calculate(setup)
+    for one in seen:
+        print(f"{name:26} {one.name:16} {one.seconds:7.2f} s {len(one.words):6} words")
+    assert len(seen) == len(setup.studies)
+    assert not [fault for one in seen for fault in one.faults]
