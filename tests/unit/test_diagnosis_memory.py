@@ -268,7 +268,7 @@ def test_a_slow_model_is_called_twice_per_unknown_however_many_pairs_there_are(
     calls = [calls_of(tmp_path, extra) for extra in (0, 5, 10)]
     assert calls[1] - calls[0] == calls[2] - calls[1] == 2 * 5
     assert calls[0] < 60
-    monkeypatch.setattr(contest_module, "pairs", lambda terms: [])
+    monkeypatch.setattr(contest_module, "pairs", lambda terms, beside: [])
     assert [calls_of(tmp_path, extra) for extra in (0, 10)] == [calls[0], calls[2]]
 
 

@@ -70,7 +70,10 @@ def _places(along: NDArray[np.float64] | None) -> list[float]:
     if along is None:
         return []
     values = np.sort(along[np.isfinite(along)])
-    places = np.unique(np.quantile(values, np.linspace(0.01, 0.99, PLACES), method="lower")) if len(values) else values
+    if len(values) < 2 * BESIDE_STEP:
+        return []
+    end = max(0.01, BESIDE_STEP / len(values))
+    places = np.unique(np.quantile(values, np.linspace(end, 1 - end, PLACES), method="lower"))
     before = np.searchsorted(values, places)
     enough = (before >= BESIDE_STEP) & (len(values) - before >= BESIDE_STEP)
     return [float(place) for place in places[enough]]
