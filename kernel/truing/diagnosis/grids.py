@@ -72,8 +72,9 @@ def _places(along: NDArray[np.float64] | None) -> list[float]:
     values = np.sort(along[np.isfinite(along)])
     if len(values) < 2 * BESIDE_STEP:
         return []
-    end = max(0.01, BESIDE_STEP / len(values))
-    places = np.unique(np.quantile(values, np.linspace(end, 1 - end, PLACES), method="lower"))
+    first = max(0.01 * (len(values) - 1), BESIDE_STEP)
+    last = min(0.99 * (len(values) - 1), len(values) - BESIDE_STEP)
+    places = np.unique(values[np.linspace(first, last, PLACES).astype(int)])
     before = np.searchsorted(values, places)
     enough = (before >= BESIDE_STEP) & (len(values) - before >= BESIDE_STEP)
     return [float(place) for place in places[enough]]
