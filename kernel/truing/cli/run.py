@@ -12,7 +12,7 @@ import typer
 from truing.cli.console import Settings, one_line, out, out_json, progress_bar, say, settings_of, verb
 from truing.cli.load import find_offer, read_or_example
 from truing.cli.run_printed import lines_of
-from truing.cli.words import AsJson, Changed, Plugin
+from truing.cli.words import AsJson, Changed, Excel, Plugin
 from truing.errors import UsageError
 
 if TYPE_CHECKING:
@@ -37,9 +37,7 @@ def run(
         bool, typer.Option("--resume", help="Keep finished batches, and take up those of an interrupted run.")
     ] = False,
     pdf: Annotated[bool, typer.Option("--pdf", help="Print the sheet to PDF with an installed browser.")] = False,
-    excel: Annotated[
-        bool, typer.Option("--excel", help="Add results.csv for a spreadsheet with a decimal comma.")
-    ] = False,
+    excel: Excel = False,
     as_json: AsJson = False,
 ) -> int:
     """Run the calculation and its studies and write the calculation sheet."""

@@ -10,7 +10,7 @@ import typer
 
 from truing.cli.console import Settings, out, say, settings_of, verb
 from truing.cli.load import find_offer
-from truing.cli.words import Changed, OutputFile, Plugin
+from truing.cli.words import Changed, Excel, OutputFile, Plugin
 from truing.errors import OutputError, UsageError
 
 if TYPE_CHECKING:
@@ -26,9 +26,7 @@ def table(
     rows: Annotated[Path, typer.Option("--rows", help="A CSV file; columns replace inputs and conditions row by row.")],
     output: OutputFile = None,
     changed: Changed = None,
-    excel: Annotated[
-        bool, typer.Option("--excel", help="Write the file for a spreadsheet with a decimal comma (needs -o).")
-    ] = False,
+    excel: Excel = False,
 ) -> int:
     """Print what the gauge would show at every row: the file's columns, then the results, units in the header."""
     from truing.gauge import shown_by_gauge

@@ -25,3 +25,6 @@ AsJson: TypeAlias = Annotated[bool, typer.Option("--json", help="One JSON docume
 OutputFile: TypeAlias = Annotated[
     Path | None, typer.Option("-o", "--output", help="The file to write (stdout without it).")
 ]
+Excel: TypeAlias = Annotated[
+    bool, typer.Option("--excel", help="Write CSV that a spreadsheet with a decimal comma opens.")
+]

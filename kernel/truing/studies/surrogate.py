@@ -83,11 +83,11 @@ class Surrogate:
             ran(setup, designed(setup, box, stage, points, self.name), names, Work(self.batch, bench.executor, done))
             for stage, (points, done) in enumerate(((self.design, sampling), (self.held_out, judging)))
         )
-        emulators, seconds = self._learnt(setup, box, learnt, names, learning)
+        emulators, seconds = self._learnt(setup, box, learnt, names=names, done=learning)
         stand_in = StandIn(box, emulators)
         judged = self._judged(stand_in, judge)
         course = self._course(setup, stand_in, along)
-        speed = self._speed(setup, stand_in, learnt.seconds, seconds, timing)
+        speed = self._speed(setup, stand_in, learnt.seconds, seconds, done=timing)
         return Emulated(
             name=self.name,
             of=names,
@@ -119,7 +119,7 @@ class Surrogate:
         return self.along or next(iter(plain), "")
 
     def _learnt(
-        self, setup: Setup, box: Box, learnt: Ran, names: tuple[str, ...], done: Done
+        self, setup: Setup, box: Box, learnt: Ran, *, names: tuple[str, ...], done: Done
     ) -> tuple[dict[str, Emulator], float]:
         """Fit every result; the clock does not count the import of scikit-learn."""
         import sklearn.gaussian_process  # noqa: F401
@@ -170,12 +170,12 @@ class Surrogate:
         rows = evaluate_rows(setup, {along: coarse}, len(coarse), wanted=tuple(stand_in.emulators))
         return Course(along, axis, coarse, rows.results, stand_in.bands({along: axis}), COARSE)
 
-    def _speed(self, setup: Setup, stand_in: StandIn, sample: float, fit: float, done: Done) -> Speed | None:
+    def _speed(self, setup: Setup, stand_in: StandIn, sample: float, fit: float, *, done: Done) -> Speed | None:
         if not self.compare:
             return None
         columns = designed(setup, stand_in.box, 2, self.compare, self.name)
         names = tuple(stand_in.emulators)
-        predictions, model, measured = clocked(setup, columns, stand_in.predict, names, self.batch, done)
+        predictions, model, measured = clocked(setup, columns, stand_in.predict, names, batch=self.batch, done=done)
         return Speed(self.compare, sample, fit, predictions, model, measured)
 
 

@@ -138,6 +138,7 @@ def clocked(
     columns: Mapping[str, Any],
     predict: Callable[[Mapping[str, Any]], Any],
     wanted: tuple[str, ...],
+    *,
     batch: int,
     done: Done = lambda step, steps: None,
 ) -> tuple[float, float, int]:
