@@ -5,7 +5,9 @@ Marks stand in an HTML comment right above a fenced block:
 - ``<!-- file: NAME -->``: the block is this file, whole.
 - ``<!-- changes: NAME -->``: its definitions replace those of the same name in NAME; new ones go above the last.
 - ``<!-- exit: 2 -->``: the last command of the block ends with this code (0 without the mark).
-- ``<!-- not run -->``: the block is not run.
+- ``<!-- not run: WHY -->``: the block is not run.
+
+What is no command and no file is executed or read as ``read_in_docs.py`` says.
 
 A page with ``<!-- needs data: NAME as FILE -->`` is about measurements that are not shipped. Where the environment
 variable TRUING_MEASURED names a folder with NAME/data.csv, that file is copied to FILE; else the page is skipped.
@@ -33,6 +35,9 @@ from collections.abc import Iterator
 from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
+
+from read_in_docs import read
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "docs" / "examples"
@@ -74,6 +79,7 @@ class Desk:
     faults: list[str] = field(default_factory=list)
     as_processes: bool = False
     editable: list[str] = field(default_factory=list)
+    namespace: dict[str, Any] = field(default_factory=dict)
 
     def run(self, words: str) -> tuple[str, int]:
         """Run one command as the reader would; return what a terminal shows, and the exit code."""
@@ -205,16 +211,16 @@ def check_page(page: Path, desk: Desk) -> list[str]:
 
         pytest.skip(why)
     for block in blocks(page):
-        if block.mark == "not run":
+        if block.mark.startswith("not run"):
             continue
         try:
-            _do(block, desk)
+            _do(block, page, desk)
         except AssertionError as fault:
             desk.faults.append(f"{page.name}:{block.line}: {fault}")
     return desk.faults
 
 
-def _do(block: Block, desk: Desk) -> None:
+def _do(block: Block, page: Path, desk: Desk) -> None:
     if block.kind == "console":
         for place, (command, end) in enumerate(_with_ends(block), start=1):
             said, code = desk.run(command.words)
@@ -229,6 +235,8 @@ def _do(block: Block, desk: Desk) -> None:
     elif block.marked("changes"):
         file = desk.folder / block.marked("changes")
         file.write_text(grown(file.read_text(encoding="utf-8"), block.text), encoding="utf-8")
+    else:
+        read(block, page, desk)
 
 
 def _with_ends(block: Block) -> list[tuple[Command, int]]:
@@ -338,9 +346,9 @@ def rewrite(page: Path, desk: Desk) -> int:
         return 0
     text, changed, moved = page.read_text(encoding="utf-8"), 0, 0
     for block in blocks(page):
-        if block.mark == "not run" or block.kind != "console":
-            if block.mark != "not run":
-                _do(block, desk)
+        if block.mark.startswith("not run") or block.kind != "console":
+            if not block.mark.startswith("not run"):
+                _do(block, page, desk)
             continue
         shown = ""
         for command, end in _with_ends(block):

@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
+from read_in_docs import why_not
 from shown_in_docs import EXAMPLES, ROOT, blocks, check_page, commands, desk_in, grown, matches, refreshed
 
 TUTORIAL = ROOT / "docs" / "tutorial" / "first_calculation.md"
-PAGES = sorted(page for page in (ROOT / "docs").rglob("*.md") if any(block.kind == "console" for block in blocks(page)))
+EVERY = sorted([*(ROOT / "docs").rglob("*.md"), *ROOT.glob("*.md")])
+PAGES = [page for page in EVERY if ROOT / "docs" in page.parents and any(True for _ in blocks(page))]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT / "docs")))
 def test_a_page_does_what_it_shows(page: Path, tmp_path: Path) -> None:
     faults = check_page(page, desk_in(tmp_path))
     assert not faults, "\n".join(faults)
+
+
+@pytest.mark.parametrize("page", EVERY, ids=lambda page: str(page.relative_to(ROOT)))
+def test_nothing_on_a_page_is_left_unread(page: Path) -> None:
+    unread = [f"{page.name}:{block.line}: {why}" for block in blocks(page) if (why := why_not(block))]
+    assert not unread, "\n".join(unread)
+    text = page.read_text(encoding="utf-8")
+    fences = sum(line.lstrip().startswith(("```", "~~~")) for line in text.splitlines())
+    assert fences == 2 * sum(1 for _ in blocks(page)), "a fence that is indented, or that no other one closes"
 
 
 def test_the_tutorial_is_among_the_pages_and_runs_every_verb_it_teaches() -> None:
@@ -98,3 +110,48 @@ def test_a_page_that_hides_an_exit_code_is_found(tmp_path: Path) -> None:
     page.write_text("```console\n$ calc init no_such_plugin\n...\n```\n", encoding="utf-8")
     (fault,) = check_page(page, desk_in(tmp_path))
     assert "ended with 2, not 0" in fault
+
+
+@pytest.mark.parametrize(
+    ("block", "fault"),
+    [
+        ("```python\nassert normal(sd='3 %') and 1 / 0\n```\n", "ZeroDivisionError"),
+        (
+            "<!-- inputs: coil_spring.py -->\n```toml\n[inputs]\nwire_diametre = '1 mm'\n```\n",
+            "no input 'wire_diametre'",
+        ),
+        ("<!-- cases: coil_spring.py -->\n```csv\ncase,colour\none,red\n```\n", "colour"),
+        ('```json\n{"equal": True}\n```\n', "Expecting value"),
+        ("```text\ncalc run PLUGIN [--colour]\n```\n", "calc run has no --colour"),
+        ("```text\ncalc walk PLUGIN\n```\n", "there is no verb 'walk'"),
+    ],
+)
+def test_a_block_that_its_reader_refuses_is_found(block: str, fault: str, tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text(block, encoding="utf-8")
+    assert [fault in found for found in check_page(page, desk_in(tmp_path))] == [True]
+
+
+@pytest.mark.parametrize(
+    "block",
+    [
+        "<!-- not run -->\n```console\n$ calc plugins\n```\n",
+        "```text\nwords\n```\n",
+        "```toml\n[inputs]\n```\n",
+        "```csv\na,b\n```\n",
+        "```yaml\na: b\n```\n",
+        "```\nwords\n```\n",
+    ],
+)
+def test_a_block_that_nothing_reads_is_found(block: str, tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text(block, encoding="utf-8")
+    assert all(why_not(one) for one in blocks(page))
+    assert list(blocks(page))
+
+
+def test_a_reason_that_names_a_test_names_one_that_is_there() -> None:
+    for page in EVERY:
+        for block in blocks(page):
+            for name in re.findall(r"tests/[\w/]+\.py", block.marked("not run")):
+                assert (ROOT / name).is_file(), f"{page.name}:{block.line}: {name}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 _MARKED = re.compile(r"^<!-- (?P<word>[\w ]+?)(?:: (?P<value>[^\n]*?))? -->\n```(?P<kind>\w*)$", re.MULTILINE)
+_GIVEN = re.compile(r"^<!-- given:\n.*?^-->\n+", re.MULTILINE | re.DOTALL)
 _TITLES = {"file": "{}", "changes": "changes in {}"}
 
 
@@ -16,4 +17,4 @@ def with_titles(text: str) -> str:
         language = item["kind"] or "text"
         return f'```{language} title="{title}"' if title else f"```{language}"
 
-    return _MARKED.sub(written, text)
+    return _MARKED.sub(written, _GIVEN.sub("", text))
