@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from truing.declare.model import Model
 from truing.errors import UsageError
+from truing.testing.advice import advice_on, difference_text, hidden_words, quantity_text
 from truing.testing.hidden import Hidden
 from truing.testing.hiding import hide
 from truing.testing.subject import fail
 
 if TYPE_CHECKING:
-    from truing.declare.sources import Effect
-    from truing.diagnosis.result import Cause, Diagnosis, Seen
+    from truing.diagnosis.result import Cause, Diagnosis
 
 WITHIN = 1.2
 
@@ -44,7 +44,7 @@ def assert_finds_nothing(hidden: Hidden) -> Diagnosis:
     Raises AssertionError with what was found, and UsageError where something was hidden.
     """
     if hidden.effect is not None or hidden.is_strange:
-        raise UsageError(f"{_hidden_words(hidden)} was hidden; assert_finds(hidden) is for that")
+        raise UsageError(f"{hidden_words(hidden)} was hidden; assert_finds(hidden) is for that")
     diagnosis = hidden.answered.diagnosis
     if diagnosis.verdict != "none":
         fail(
@@ -100,10 +100,10 @@ def _demand_name(hidden: Hidden, diagnosis: Diagnosis) -> Cause:
     name = hidden.effect
     named = [cause for cause in diagnosis.causes if _carries(cause, hidden)]
     if not named:
-        fail(f"{_model(hidden)}: {_hidden_words(hidden)} was hidden, but {_found(diagnosis)}; {_advice(hidden)}")
+        fail(f"{_model(hidden)}: {hidden_words(hidden)} was hidden, but {_found(diagnosis)}; {advice_on(hidden)}")
     if len(diagnosis.causes) > 1 or diagnosis.remainder is not None:
         fail(
-            f"{_model(hidden)}: {_hidden_words(hidden)} was hidden and '{name}' is named, but something beside it too: "
+            f"{_model(hidden)}: {hidden_words(hidden)} was hidden and '{name}' is named, but something beside it too: "
             f"{_found(diagnosis)}; try another seed; if it stays, the curve of '{name}' is not what was hidden"
         )
     return named[0]
@@ -130,8 +130,8 @@ def _demand_sizes(hidden: Hidden, cause: Cause) -> None:
             continue
         fail(
             f"{_model(hidden)}: '{cause.effect}' is named, but its size is wrong: {fitted_text(unknown)}, hidden was "
-            f"{_quantity(true, unknown.unit)}; one interval in twenty misses: try another seed; if that misses too, "
-            "another effect or a tolerance takes a part of it, or the curve is not what was hidden"
+            f"{quantity_text(true, unknown.unit)}; one interval in twenty misses: try another seed; if that misses "
+            "too, another effect or a tolerance takes a part of it, or the curve is not what was hidden"
         )
 
 
@@ -154,10 +154,11 @@ def _demand_gain(hidden: Hidden, within: float) -> None:
         error = hidden.answered.error_of(result)
         if not error <= within * noise:
             unit = hidden.setup.print_unit(result)
+            sizes = difference_text(error, unit), difference_text(noise, unit)
             fail(
-                f"{_model(hidden)}: on rows that were not fitted the error of '{result}' is "
-                f"{_difference(error, unit)}, {error / noise:.2f} times its noise ({_difference(noise, unit)}); "
-                f"{within:g} times was demanded: fit more rows, or the curve is not what was hidden"
+                f"{_model(hidden)}: on rows that were not fitted the error of '{result}' is {sizes[0]}, "
+                f"{error / noise:.2f} times its noise ({sizes[1]}); {within:g} times was demanded: fit more "
+                "rows, or the curve is not what was hidden"
             )
 
 
@@ -175,103 +176,6 @@ def _found(diagnosis: Diagnosis) -> str:
         over = listed([f"'{name}'" for name in remainder.depends_on])
         parts.append(f"something unregistered over {over} was found ({remainder.shape})")
     return listed(parts) if parts else "nothing was found"
-
-
-def _advice(hidden: Hidden) -> str:
-    """Say what to change so that the effect is found."""
-    name, diagnosis = hidden.effect or "", hidden.answered.diagnosis
-    missing = diagnosis.not_measured.get(name)
-    if missing:
-        return f"not measured: add {', '.join(missing)} to over"
-    seen = _seen(hidden)
-    if seen is not None and seen.smallest is None:
-        return f"not excited: {_vary(hidden)}"
-    rivals = [item for item in diagnosis.alternatives if name in item.causes]
-    if rivals and diagnosis.causes:
-        return f"cannot be told apart from '{diagnosis.causes[0].effect}': {_next(diagnosis)}"
-    if seen is None:
-        return f"too small for this noise, or what was hidden is not its curve: hide more, or {_vary(hidden)}"
-    return _too_small(hidden, seen)
-
-
-def _seen(hidden: Hidden) -> Seen | None:
-    """Return what the diagnosis says of how small the effect may be."""
-    known = {item.name: item for item in hidden.answered.diagnosis.seen}
-    names = [hidden.effect, *(f"{hidden.effect}.{unknown}" for unknown in hidden.truth)]
-    return next((known[name] for name in names if name in known), None)
-
-
-def _too_small(hidden: Hidden, seen: Seen) -> str:
-    """Compare what was hidden with what can be seen."""
-    assert seen.smallest is not None
-    smallest = _quantity(seen.smallest.value, seen.smallest.unit)
-    if seen.sight == "hidden in the tolerances":
-        return (
-            f"hidden in the tolerances: what is left of it beside them is seen from {smallest} on; hide more, measure "
-            "a result that they do not move, or vary more (over)"
-        )
-    unknown = _main_unknown(hidden)
-    true = abs(hidden.truth.get(unknown, 0.0))
-    if true < seen.smallest.value:
-        return f"too small: it is seen from {smallest} on; hide more, measure more rows, or with less noise"
-    return (
-        f"it should be seen from {smallest} on: try another seed; if it is never found, the curve that was hidden is "
-        f"not that of '{hidden.effect}' (a sign, a unit), or {_vary(hidden)}"
-    )
-
-
-def _main_unknown(hidden: Hidden) -> str:
-    """Return the first amplitude that was hidden."""
-    effect = _effect(hidden)
-    return next((one.name for one in effect.unknowns if one.is_amplitude and hidden.truth.get(one.name)), "")
-
-
-def _effect(hidden: Hidden) -> Effect[Any, Any]:
-    return hidden.setup.model.known_effects[hidden.effect or ""]
-
-
-def _vary(hidden: Hidden) -> str:
-    """Say what to vary: the conditions of the effect, else the inputs."""
-    effect = _effect(hidden)
-    names = [*(need.made_from or need.name for need in effect.needs), *effect.reads]
-    records = hidden.answered.diagnosis.records.covariates
-    steady = [name for name in names if name not in records or records[name].is_constant]
-    if steady:
-        return f"vary {', '.join(steady)} (over)"
-    return f"vary {', '.join(names)} further, or an input that brings it out (over)" if names else (
-        "vary an input that brings it out (over), or measure a result that it changes (measure)"
-    )  # fmt: skip
-
-
-def _next(diagnosis: Diagnosis) -> str:
-    """Say what the diagnosis asks for to tell two causes apart."""
-    from truing.report.diagnosis_words import settings_text
-
-    if not diagnosis.next:
-        return "nothing that can be measured here tells them apart; measure another result"
-    point = diagnosis.next[0]
-    return f"measure {settings_text(point)}" if point.measure else f"measure at {settings_text(point)}"
-
-
-def _hidden_words(hidden: Hidden) -> str:
-    if hidden.effect is None:
-        return "something unregistered"
-    units = {one.name: one.unit for one in _effect(hidden).unknowns}
-    sizes = ", ".join(f"{name} {_quantity(value, units[name])}" for name, value in hidden.truth.items())
-    return f"'{hidden.effect}' ({sizes})"
-
-
-def _quantity(value: float, unit: str) -> str:
-    from truing.units import from_si
-
-    return f"{float(from_si(value, unit)):.4g} {unit}".strip()
-
-
-def _difference(value: float, unit: str) -> str:
-    from truing.units import difference_unit, unit_factor
-
-    own = difference_unit(unit)
-    return f"{value / unit_factor(own):.3g} {own}".strip()
 
 
 def _model(hidden: Hidden) -> str:

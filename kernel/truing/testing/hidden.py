@@ -114,18 +114,18 @@ def _answered(hidden: Hidden) -> Answered:
     from truing.diagnosis.engine import diagnose
     from truing.runs.diagnosis_document import diagnosis_document
 
-    records = _records(hidden.setup, hidden.measured, MEASURED)
+    records = records_of(hidden.setup, hidden.measured, MEASURED)
     start = perf_counter()
     diagnosis = diagnose(hidden.setup, records)
     seconds = perf_counter() - start
     document = json.loads(json.dumps(diagnosis_document(diagnosis)))
     if not hidden.held_out:
         return Answered(diagnosis, document, {}, {}, seconds)
-    judged = _records(hidden.setup, hidden.held_out, HELD_OUT)
+    judged = records_of(hidden.setup, hidden.held_out, HELD_OUT)
     return Answered(diagnosis, document, judged.measured, predicted(diagnosis, hidden.setup, judged), seconds)
 
 
-def _records(setup: Setup, text: str, name: str) -> Records:
+def records_of(setup: Setup, text: str, name: str) -> Records:
     """Read a record as the command line does."""
     from truing.diagnosis.reading import read_records
 

@@ -54,6 +54,9 @@ def noise_of(setup: Setup, said: Any, measure: str | Sequence[str] | None, fault
             found[name] = _read(text, gauged[name])
         except TruingError as error:
             faults.append(f"noise of '{name}': {error}")
+            continue
+        if not (found[name].sd > 0 or found[name].share > 0):
+            faults.append(f"noise of '{name}': {text} is no scatter; every gauge has some, by which it is judged")
     missing = [name for name in named if name not in texts]
     if missing:
         faults.append(f"noise says nothing of {', '.join(missing)}, which is to be measured")
@@ -98,13 +101,10 @@ def _fits(said: Any, unit: str) -> bool:
 
 def _read(said: Any, unit: str) -> Noise:
     """Read a standard deviation, a difference in the unit of the result, or a share of its span."""
-    from truing.errors import UsageError
     from truing.units import difference_unit, read_quantity
 
     if _is_share(said):
         noise = Noise(share=read_quantity(said, ""))
     else:
         noise = Noise(sd=read_quantity(said if isinstance(said, str) else repr(said), difference_unit(unit)))
-    if not (noise.sd > 0 or noise.share > 0):
-        raise UsageError(f"{said} is no scatter; every gauge has some, and without it nothing can be judged")
     return noise
