@@ -24,6 +24,7 @@ from truing import (
 )
 
 PI = 3.141592653589793
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 
 @inputs
@@ -80,10 +81,9 @@ def fall_from_rest(time: Float, pull: Float, linear: Float, square: Float) -> tu
         grown = np.where(slow, after, np.tanh(root * after) / np.where(slow, 1.0, root))
         return pull * grown / (1 + linear / 2 * grown)
 
-    nodes, weights = np.polynomial.legendre.leggauss(20)
-    within = np.expand_dims(time, -1) * (nodes + 1) / 2
+    within = np.expand_dims(time, -1) * (NODES + 1) / 2
     inner = speed(within, *(np.expand_dims(one, -1) for one in (root, pull, linear)))
-    return speed(time, root, pull, linear), time * np.sum(inner * weights, axis=-1) / 2
+    return speed(time, root, pull, linear), time * np.sum(inner * WEIGHTS, axis=-1) / 2
 
 
 def air_drag(drop: Drop, *, drag_coefficient: Float) -> Drop:
