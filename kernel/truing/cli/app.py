@@ -4,7 +4,21 @@ from __future__ import annotations
 
 import typer
 
-from truing.cli import compare, completion, describe, diagnose, explain, init, new, plugins, run, table, verify, watch
+from truing.cli import (
+    compare,
+    completion,
+    describe,
+    diagnose,
+    explain,
+    index,
+    init,
+    new,
+    plugins,
+    run,
+    table,
+    verify,
+    watch,
+)
 from truing.cli.console import out
 
 app = typer.Typer(
@@ -46,5 +60,6 @@ app.command("table")(table.table)
 app.command("diagnose")(diagnose.diagnose)
 app.command("verify")(verify.verify)
 app.command("compare")(compare.compare)
+app.command("index")(index.index)
 app.command("new")(new.new)
 app.command("completion")(completion.completion)

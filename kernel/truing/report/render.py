@@ -105,6 +105,7 @@ def _html() -> Environment:
         unit=_unit,
         breakable=_breakable,
         unbroken=_unbroken,
+        own=_markup,
     )
     made.tests.update(narrow=_is_narrow, wide=_is_wide)
     return made

@@ -1,0 +1,175 @@
+"""One page over a folder of runs and diagnoses: a table that sorts and filters in the browser, offline."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import os
+import tempfile
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from truing.errors import OutputError
+from truing.measurements.writing import umask
+from truing.numbers import ABSENT, format_number, pretty, with_unit
+from truing.report.context import Head
+from truing.report.render import page
+from truing.report.templates import template_folder
+from truing.runs.index import Entry, Finding, Listing, Other
+
+MARK = '<meta name="generator" content="calc index">'
+"""What an index of ours holds, and no other page."""
+SHOWN = 3
+
+
+@dataclass(frozen=True)
+class FindingView:
+    """A finding as printed: its name, its number, its limit where it has one, and whether that holds."""
+
+    name: str
+    value: str
+    limit: str
+    passed: bool | None
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row of the table: the entry, where its sheet is, and what is printed of its numbers."""
+
+    entry: Entry
+    link: str
+    state: str
+    margin: str
+    shown: tuple[FindingView, ...]
+    more: int
+
+
+@dataclass(frozen=True)
+class IndexView:
+    """Everything on the page."""
+
+    head: Head
+    summary: str
+    rows: tuple[Row, ...]
+    others: tuple[Other, ...]
+
+
+def index_html(listing: Listing, place: Path) -> str:
+    """Write the page that will stand at ``place``; its links lead to the sheets from there."""
+    script = (template_folder() / "index.js").read_text(encoding="utf-8")
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    return page("index.html.j2", _view(listing, place), styles=("sheet.css", "index.css"), script=script, digest=digest)
+
+
+def _view(listing: Listing, place: Path) -> IndexView:
+    title = f"Runs and diagnoses in {Path(listing.folder).name or Path(listing.folder).absolute().name}"
+    head = Head(title=title, model="", fields=(), signatures=(), footer=title)
+    rows = tuple(_row(entry, Path(listing.folder), place) for entry in listing.entries)
+    return IndexView(head, summary_of(listing), rows, listing.others)
+
+
+def summary_of(listing: Listing) -> str:
+    """Say how many runs and diagnoses there are, how many fail, and how much else."""
+    runs = [entry for entry in listing.entries if entry.kind == "run"]
+    broken = sum(entry.passed is False for entry in runs)
+    parts = [_counted(len(runs), "run", "runs") + (f" ({_counted(broken, 'fails', 'fail')})" if broken else "")]
+    parts.append(_counted(len(listing.entries) - len(runs), "diagnosis", "diagnoses"))
+    if listing.others:
+        parts.append(_counted(len(listing.others), "other folder", "other folders"))
+    return ", ".join(parts)
+
+
+def _counted(count: int, one: str, many: str) -> str:
+    return f"{count} {one if count == 1 else many}"
+
+
+def _row(entry: Entry, folder: Path, place: Path) -> Row:
+    state = {None: "none", True: "pass", False: "fail"}[entry.passed]
+    return Row(
+        entry=entry,
+        link=_link(folder.absolute() / entry.sheet, place) if entry.sheet else "",
+        state="found" if entry.kind == "diagnosis" else state,
+        margin=_margin(entry),
+        shown=tuple(_findings(entry)),
+        more=max(len(entry.findings) - SHOWN, 0) if entry.kind == "diagnosis" or entry.checks else 0,
+    )
+
+
+def _link(sheet: Path, place: Path) -> str:
+    """Return the address of a sheet as seen from the page; from another drive the whole of it."""
+    try:
+        return quote(os.path.relpath(sheet, place.absolute().parent).replace(os.sep, "/"))
+    except ValueError:
+        return sheet.as_uri()
+
+
+def _margin(entry: Entry) -> str:
+    if entry.margin is None:
+        return ABSENT
+    least = next(one for one in entry.findings if one.margin is not None)
+    share = 100 * entry.margin if least.limit else entry.margin
+    return f"{pretty(format_number(share, 3))}{chr(0x202F) + '%' if least.limit else ''}"
+
+
+def _findings(entry: Entry) -> Iterator[FindingView]:
+    for one in entry.findings[:SHOWN]:
+        limit = _number(one, one.limit) if one.limit is not None else ""
+        yield FindingView(one.name, _number(one, one.value), f"{_relation(one)} {limit}" if limit else "", one.passed)
+
+
+def _number(one: Finding, value: float | None) -> str:
+    from truing.errors import UnitError
+    from truing.units import unit_text
+
+    try:
+        unit = unit_text(one.unit) if one.unit else ""
+    except UnitError:
+        unit = one.unit
+    return with_unit(pretty(format_number(value, 4)), unit)
+
+
+def _relation(one: Finding) -> str:
+    """Return which side of the limit is safe: the sign of the margin tells."""
+    if one.value is None or one.limit is None or one.margin is None:
+        return "/"
+    distance = (one.limit - one.value) * one.margin
+    return "≤" if distance > 0 else "≥" if distance < 0 else "="
+
+
+def listing_document(listing: Listing) -> dict[str, Any]:
+    """Return the listing as JSON-ready data."""
+    entries = [{**asdict(entry), "margin": entry.margin} for entry in listing.entries]
+    return {"folder": listing.folder, "entries": entries, "others": [asdict(other) for other in listing.others]}
+
+
+def write_index(place: Path, listing: Listing) -> None:
+    """Write the page, whole or not at all; one of ours is replaced. Raises OutputError where another file is there."""
+    _demand_ours(place)
+    text = index_html(listing, place)
+    try:
+        handle, name = tempfile.mkstemp(dir=place.absolute().parent, prefix=f".{place.name[:40]}.", suffix=".part")
+    except OSError as error:
+        raise OutputError(f"{place}: cannot be written: {error.strerror or error}") from error
+    part = Path(name)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as stream:
+            stream.write(text)
+        part.chmod(0o666 & ~umask())
+        part.replace(place)
+    except OSError as error:
+        raise OutputError(f"{place}: cannot be written: {error.strerror or error}") from error
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _demand_ours(place: Path) -> None:
+    try:
+        if place.is_dir():
+            raise OutputError(f"{place}: is a folder; name a file, such as {place / 'index.html'}")
+        if place.exists() and MARK not in place.read_text(encoding="utf-8", errors="replace")[:4000]:
+            raise OutputError(f"{place}: is a file that calc index has not written, so it is left alone; name another")
+    except OSError as error:
+        raise OutputError(f"{place}: cannot be read: {error.strerror or error}") from error

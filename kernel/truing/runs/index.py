@@ -1,0 +1,251 @@
+"""What lies in a folder of runs and diagnoses: one entry for each, read from its documents, and a word on the rest."""
+
+from __future__ import annotations
+
+import json
+import os
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from truing.errors import UnknownPluginError
+from truing.runs.folder import DOCUMENTS, Kind
+from truing.runs.partial import HEADER
+
+DEEPEST = 20
+LARGEST = 100_000_000
+"""A larger document is not read."""
+HEAD = ("project", "drawing", "revision")
+VERDICTS = {"none": "nothing found", "unknown": "cause unknown", "named": "cause named"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """One number of an entry: a check with its limit and margin, a result, or the size of a cause."""
+
+    name: str
+    value: float | None
+    unit: str = ""
+    limit: float | None = None
+    margin: float | None = None
+    passed: bool | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Entry:
+    """A run or a diagnosis; ``name`` is its path below the folder, ``sheet`` that of its sheet, or nothing.
+
+    ``date`` is when it was made, as in run.json, ``stamp`` the same as seconds since 1970. ``findings`` hold the checks
+    of a run, least margin first (without checks its first results), or the sizes of the causes of a diagnosis.
+    """
+
+    name: str
+    kind: Kind
+    model: str
+    plugin: str
+    version: str
+    date: str = ""
+    stamp: float | None = None
+    head: Mapping[str, str]
+    verdict: str
+    passed: bool | None = None
+    checks: int = 0
+    failed: int = 0
+    cases: int = 0
+    findings: tuple[Finding, ...] = ()
+    warnings: int = 0
+    sheet: str = ""
+
+    @property
+    def margin(self) -> float | None:
+        """The smallest margin of all checks, as a share of the limit."""
+        return next((one.margin for one in self.findings if one.margin is not None), None)
+
+
+@dataclass(frozen=True)
+class Other:
+    """A folder that is neither run nor diagnosis, or cannot be read: its path below the folder, and a sentence."""
+
+    name: str
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Listing:
+    """Everything that was found, newest first, and what was left out."""
+
+    folder: str
+    entries: tuple[Entry, ...]
+    others: tuple[Other, ...]
+
+
+class _DamagedError(Exception):
+    """A document that is not as it was written."""
+
+
+def list_folder(folder: Path) -> Listing:
+    """Read every run and diagnosis in a folder, however deep; links are not followed, hidden folders not opened.
+
+    Raises UnknownPluginError where there is no such folder.
+    """
+    if not folder.is_dir():
+        what = "is a file; name the folder that holds the runs" if folder.exists() else "no such folder"
+        raise UnknownPluginError(f"{folder}: {what}")
+    entries: list[Entry] = []
+    others: list[Other] = []
+    for found in _walk(folder, folder, 0):
+        if isinstance(found, Entry):
+            entries.append(found)
+        else:
+            others.append(found)
+    entries.sort(key=lambda entry: entry.name)
+    entries.sort(key=lambda entry: -(entry.stamp or 0.0))
+    return Listing(str(folder), tuple(entries), tuple(sorted(others, key=lambda other: other.name)))
+
+
+def _walk(root: Path, place: Path, depth: int) -> Iterator[Entry | Other]:
+    """Yield what a folder is or holds; one with neither run nor diagnosis in it is said to be foreign."""
+    name = place.relative_to(root).as_posix()
+    kind = next((kind for kind, (document, _) in DOCUMENTS.items() if (place / document).exists()), None)
+    if kind is not None:
+        try:
+            yield _entry(place, name if name != "." else root.absolute().name, kind)
+        except (_DamagedError, RecursionError) as fault:
+            yield Other(name, str(fault) or "its documents are nested too deeply")
+        return
+    try:
+        inside = sorted(os.scandir(place), key=lambda item: item.name)
+    except OSError as error:
+        yield Other(name, f"cannot be read: {error.strerror or error}")
+        return
+    if (place / HEADER).exists():
+        yield Other(name, "finished batches of an interrupted run; calc run --resume takes them up")
+        return
+    yield from _below(root, place, depth, inside=inside)
+
+
+def _below(root: Path, place: Path, depth: int, *, inside: Sequence[os.DirEntry[str]]) -> Iterator[Entry | Other]:
+    name = place.relative_to(root).as_posix()
+    folders = [item for item in inside if item.is_dir() and not item.name.startswith(".")]
+    if depth >= DEEPEST and folders:
+        yield Other(name, f"lies {DEEPEST} folders deep; what is below it was not looked at")
+        return
+    for item in folders:
+        if item.is_symlink():
+            yield Other((place / item.name).relative_to(root).as_posix(), "is a link and was not followed")
+        else:
+            yield from _walk(root, place / item.name, depth + 1)
+    if depth and not folders:
+        yield Other(name, "holds no run and no diagnosis" if inside else "is empty")
+
+
+def _entry(place: Path, name: str, kind: Kind) -> Entry:
+    document_name, schema = DOCUMENTS[kind]
+    document = _json(place / document_name)
+    if document.get("schema") != schema:
+        raise _DamagedError(f"its {document_name} is no {schema} document")
+    try:
+        entry = _of_run(document, name) if kind == "run" else _of_diagnosis(document, name)
+    except (KeyError, TypeError, ValueError, AttributeError):
+        verb = "run" if kind == "run" else "diagnose"
+        raise _DamagedError(f"its {document_name} is not as calc {verb} writes it") from None
+    date, stamp = _date(place / "run.json")
+    sheet = f"{name}/sheet.html" if (place / "sheet.html").is_file() else ""
+    return replace(entry, date=date, stamp=stamp, head=_head(place / "inputs.toml"), sheet=sheet)
+
+
+def _json(path: Path) -> dict[str, Any]:
+    try:
+        if not path.is_file() or path.stat().st_size > LARGEST:
+            raise _DamagedError(f"its {path.name} is {'too large' if path.is_file() else 'no ordinary file'}")
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise _DamagedError(f"its {path.name} cannot be read: {error.strerror or error}") from None
+    except ValueError:
+        raise _DamagedError(f"its {path.name} is damaged: no JSON") from None
+    if not isinstance(document, dict):
+        raise _DamagedError(f"its {path.name} is damaged: no JSON object")
+    return document
+
+
+def _of_run(document: Mapping[str, Any], name: str) -> Entry:
+    cases = list(document.get("cases") or [])
+    checks = [_check(item) for each in (cases or [document]) for item in each["checks"]]
+    impossible = [case for case in cases if case.get("failed") is not None]
+    failed = [check for check in checks if not check.passed]
+    names = list(dict.fromkeys(check.name for check in failed))
+    passed = None if not checks and not impossible else not failed and not impossible
+    words = "no limits" if passed is None else "passes" if passed else f"fails: {', '.join(names) or 'a case'}"
+    ranked = sorted(checks, key=lambda one: float("-inf") if one.margin is None else one.margin)
+    return Entry(
+        **_made_by(document, name, "run"), verdict=words, passed=passed, checks=len(checks), failed=len(failed),
+        cases=len(cases), findings=tuple(ranked) or tuple(_first_results(document)),
+    )  # fmt: skip
+
+
+def _made_by(document: Mapping[str, Any], name: str, kind: Kind) -> dict[str, Any]:
+    plugin = document["plugin"]
+    named = {"model": plugin["model"], "plugin": plugin["name"], "version": plugin["version"]}
+    warnings = len(document.get("warnings") or [])
+    return {"name": name, "kind": kind, "warnings": warnings, "head": {}} | {key: str(v) for key, v in named.items()}
+
+
+def _check(item: Mapping[str, Any]) -> Finding:
+    return Finding(
+        name=str(item["name"]), value=_number(item["value"]), unit=str(item["unit"]), limit=_number(item["limit"]),
+        margin=_number(item["margin"]), passed=bool(item["passed"]),
+    )  # fmt: skip
+
+
+def _number(value: Any) -> float | None:
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise TypeError
+    return float(value)
+
+
+def _first_results(document: Mapping[str, Any]) -> Iterator[Finding]:
+    for name, item in document["results"].items():
+        if isinstance(item["value"], (int, float)) and not isinstance(item["value"], bool):
+            yield Finding(name=str(name), value=float(item["value"]), unit=str(item["unit"]))
+
+
+def _of_diagnosis(document: Mapping[str, Any], name: str) -> Entry:
+    causes = document["causes"]
+    words = VERDICTS[document["verdict"]]
+    if causes:
+        words = f"{words}: {' and '.join(str(cause['effect']) for cause in causes)}"
+        words += "" if document["unique"] else "; others possible"
+    if document.get("remainder") and document["verdict"] == "named":
+        words += "; a remainder left"
+    sizes = [
+        Finding(name=f"{cause['effect']} {unknown}", value=_number(item["value"]), unit=str(item["unit"]))
+        for cause in causes
+        for unknown, item in cause["unknowns"].items()
+    ]
+    return Entry(**_made_by(document, name, "diagnosis"), verdict=words, findings=tuple(sizes))
+
+
+def _date(path: Path) -> tuple[str, float | None]:
+    """Return when it was made, in words and in seconds since 1970; nothing where run.json does not say."""
+    try:
+        made = datetime.fromisoformat(str(_json(path).get("date")))
+        stamp = (made if made.tzinfo else made.replace(tzinfo=UTC)).timestamp()
+    except (_DamagedError, ValueError, OverflowError, OSError):
+        return "", None
+    return made.strftime("%Y-%m-%d %H:%M"), stamp
+
+
+def _head(path: Path) -> dict[str, str]:
+    """Return project, drawing and revision of the inputs file beside the documents."""
+    try:
+        stated = tomllib.loads(path.read_text(encoding="utf-8")).get("sheet")
+    except (OSError, ValueError, RecursionError):
+        return {}
+    if not isinstance(stated, Mapping):
+        return {}
+    return {name: str(stated[name]) for name in HEAD if str(stated.get(name) or "").strip()}
