@@ -35,7 +35,7 @@ def why_not(block: Block) -> str:
         return "" if block.marked("not run") else "says not run and no reason; write <!-- not run: WHY -->"
     known = (
         block.kind in {"console", "python", "json"}
-        or any(block.marked(word) for word in ("file", "changes"))
+        or any(block.marked(word) for word in ("file", "excel", "changes"))
         or (block.kind == "toml" and block.marked("inputs"))
         or (block.kind == "csv" and block.marked("cases"))
         or (block.kind == "text" and block.text.startswith("calc "))

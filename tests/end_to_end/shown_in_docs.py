@@ -3,6 +3,7 @@
 Marks stand in an HTML comment right above a fenced block:
 
 - ``<!-- file: NAME -->``: the block is this file, whole.
+- ``<!-- excel: NAME -->``: the block is this file as a spreadsheet saves it: byte order mark, Windows line ends.
 - ``<!-- changes: NAME -->``: its definitions replace those of the same name in NAME; new ones go above the last.
 - ``<!-- exit: 2 -->``: the last command of the block ends with this code (0 without the mark).
 - ``<!-- not run: WHY -->``: the block is not run.
@@ -232,6 +233,8 @@ def _do(block: Block, page: Path, desk: Desk) -> None:
         file = desk.folder / block.marked("file")
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(block.text, encoding="utf-8")
+    elif block.marked("excel"):
+        (desk.folder / block.marked("excel")).write_text(block.text, encoding="utf-8-sig", newline="\r\n")
     elif block.marked("changes"):
         file = desk.folder / block.marked("changes")
         file.write_text(grown(file.read_text(encoding="utf-8"), block.text), encoding="utf-8")

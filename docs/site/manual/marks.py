@@ -6,7 +6,7 @@ import re
 
 _MARKED = re.compile(r"^<!-- (?P<word>[\w ]+?)(?:: (?P<value>[^\n]*?))? -->\n```(?P<kind>\w*)$", re.MULTILINE)
 _GIVEN = re.compile(r"^<!-- given:\n.*?^-->\n+", re.MULTILINE | re.DOTALL)
-_TITLES = {"file": "{}", "changes": "changes in {}"}
+_TITLES = {"file": "{}", "excel": "{}", "changes": "changes in {}"}
 
 
 def with_titles(text: str) -> str:
