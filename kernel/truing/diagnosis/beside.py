@@ -87,7 +87,8 @@ class Tried:
 
 def second_beside_first(full: Contest, winner: int, best: Fit, rows: NDArray[np.bool_]) -> Contest | None:
     """Return the contest with pairs that are better than the answer when they are fitted; None where there are none."""
-    if full.evidence.rows > MOST_ROWS or full.problem.machine.start.diagnose.per_file:
+    is_split = any(file >= 0 for term in full.problem.terms for file in term.files)
+    if full.evidence.rows > MOST_ROWS or is_split:
         return None
     plain = replace(full, noise=replace(full.noise, residuals=residuals_of(full.problem.machine)))
     tried = [pair for first in _firsts(plain, winner) for pair in _fitted_beside(plain, first, rows)]

@@ -56,17 +56,27 @@ class Nested:
 
 
 def blocks_of(full: Contest, setting: tuple[int, ...]) -> NDArray[np.intp]:
-    """Number blocks of consecutive rows inside each run: a twentieth of the rows, six, or three correlation times."""
+    """Number blocks of consecutive rows inside each run: a twentieth of the rows, six, or three correlation times.
+
+    Rows held out on request are in no block (-1). Where something is fitted file by file, a run has two blocks at
+    least: no fold may leave out all that is known of a file.
+    """
     import numpy as np
 
-    runs = full.problem.machine.records.run_of
-    reach = max(_correlation_rows(SETTINGS[place]) for place in setting)
-    length = int(max(SHORTEST_BLOCK, len(runs) // BLOCKS, min(3 * reach, len(runs) // (2 * FOLDS))))
+    records = full.problem.machine.records
+    usable = np.flatnonzero(~records.held_out)
+    runs = records.run_of[usable]
     first = np.flatnonzero(np.append(True, runs[1:] != runs[:-1]))
     sizes = np.diff(np.append(first, len(runs)))
+    reach = max(_correlation_rows(SETTINGS[place]) for place in setting)
+    length = int(max(SHORTEST_BLOCK, len(runs) // BLOCKS, min(3 * reach, len(runs) // (2 * FOLDS))))
+    if full.problem.machine.start.diagnose.per_file:
+        length = min(length, max(int(sizes.min()) // 2, 1))
     blocks = -(-sizes // length)
     within = (np.arange(len(runs)) - np.repeat(first, sizes)) // length
-    return np.asarray(np.repeat(np.cumsum(blocks) - blocks, sizes) + within, dtype=np.intp)
+    block_of = np.full(len(records), -1, dtype=np.intp)
+    block_of[usable] = np.repeat(np.cumsum(blocks) - blocks, sizes) + within
+    return block_of
 
 
 def _correlation_rows(setting: Setting) -> float:
@@ -86,7 +96,7 @@ def nested(full: Contest, winner: int, thresholds: Thresholds, raw: NoiseModel) 
     same = 0
     folds = min(FOLDS, int(block_of.max()) + 1)
     for fold in range(folds):
-        test = usable & (block_of % folds == fold)
+        test = (block_of >= 0) & (block_of % folds == fold)
         again = contest(full.problem, raw, usable & ~test, rounds=ROUNDS, settings=full.settings, sharpen=False)
         again = without_needless_inputs(again)
         place = decide_again(again, thresholds) if winner else 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import exp
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,10 @@ if TYPE_CHECKING:
 
 LEVEL = 0.95
 STEPS = 12
+MOST_STEPS = 2
+SHORTER = (1.0, 0.4, 0.1)
+CLOSE = 0.05
+"""A step that keeps its promise to this share of the noise variance is the last one."""
 
 
 def shape_interval(full: Contest, best: Fit, number: int) -> tuple[float | None, float | None]:
@@ -27,8 +32,7 @@ def shape_interval(full: Contest, best: Fit, number: int) -> tuple[float | None,
     profile = _Profile(full, best, number)
     lowest = profile.cost(float(best.values[number]))
     clipped = max(full.noise.tails[channel.name].clipped for channel in full.evidence.channels)
-    allowed = limit * lowest / max(best.freedom, 1.0) / (1 - clipped) ** 2 if best.freedom > 0 else limit
-    allowed = max(allowed, limit * profile.variance / (1 - clipped) ** 2)
+    allowed = limit * profile.variance / (1 - clipped) ** 2
     ends = [_end(profile, float(best.values[number]), bound, lowest + allowed) for bound in (item.low, item.high)]
     low, high = (None if end is None else exp(end) if item.is_log else end for end in ends)
     return low, high
@@ -47,8 +51,21 @@ def _end(profile: _Profile, start: float, bound: float, level: float) -> float |
     return None
 
 
+@dataclass(frozen=True)
+class _Point:
+    """Parameters and directions with a shape held, what is left there (whitened), and its penalised sum of squares."""
+
+    x: Matrix
+    u: Matrix
+    left: Matrix
+
+    @property
+    def cost(self) -> float:
+        return float(self.left @ self.left + self.u @ self.u)
+
+
 class _Profile:
-    """The least sum of squares with one shape held, everything else refitted linearly about the best fit."""
+    """The least sum of squares with one shape held, everything else refitted from the nearest point that is known."""
 
     def __init__(self, full: Contest, best: Fit, number: int) -> None:
         import numpy as np
@@ -59,39 +76,63 @@ class _Profile:
         rows = len(self.inputs)
         left = np.concatenate(best.innovations)
         self.variance = float(left @ left) / max(rows - len(best.values) - len(best.directions), 1)
-        self.known: dict[float, float] = {}
+        start = float(best.values[number])
+        self.known = {start: self._point(np.array(best.values), np.array(best.directions))}
 
     def cost(self, value: float) -> float:
-        """Return the least penalised sum of squares with the shape at ``value``."""
+        """Return the least penalised sum of squares with the shape at ``value``: linear steps on the exact model."""
+        if value not in self.known:
+            near = self.known[min(self.known, key=lambda other: abs(other - value))]
+            x = near.x.copy()
+            x[self.number] = value
+            self.known[value] = self._refitted(self._point(x, near.u))
+        return self.known[value].cost
+
+    def _point(self, x: Matrix, u: Matrix) -> _Point:
+        return _Point(x, u, white_residual(self.full, self.fitter, self.best.setting, x, u))
+
+    def _refitted(self, point: _Point) -> _Point:
+        """Return the best point that a few linear steps lead to, each shortened where it leads up."""
+        for _ in range(MOST_STEPS):
+            moved, hoped = self._step(point)
+            for share in SHORTER:
+                x, u = self._within(point.x + share * moved[: len(point.x)]), point.u + share * moved[len(point.x) :]
+                tried = self._point(x, u)
+                if tried.cost < point.cost:
+                    break
+            if tried.cost >= point.cost:
+                return point
+            point = tried
+            if point.cost - hoped < CLOSE * self.variance:
+                return point
+        return point
+
+    def _within(self, x: Matrix) -> Matrix:
         import numpy as np
 
-        if value in self.known:
-            return self.known[value]
-        x = np.array(self.best.values)
-        x[self.number] = value
-        u = self.best.directions
-        left = white_residual(self.full, self.fitter, self.best.setting, x, u)
-        columns = [-white_column(self, x, place) for place in range(len(x)) if place != self.number]
-        k = len(u)
-        design = np.column_stack([*columns, self.inputs]) if columns or k else np.zeros((len(left), 0))
-        prior = np.concatenate([np.zeros((k, len(columns))), np.eye(k)], axis=1)
+        items = self.fitter.parameters
+        return np.clip(x, [item.low for item in items], [item.high for item in items])
+
+    def _step(self, point: _Point) -> tuple[Matrix, float]:
+        """Return where a linear step leads, parameters and directions one after the other, and the cost it promises."""
+        import numpy as np
+
+        k, free = len(point.u), [place for place in range(len(point.x)) if place != self.number]
+        design = np.column_stack([*(-self._slope(point, place) for place in free), self.inputs])
+        prior = np.concatenate([np.zeros((k, len(free))), np.eye(k)], axis=1)
         full = np.concatenate([design, prior])
-        target = np.concatenate([left, -u])
-        moved = np.linalg.lstsq(full, target, rcond=None)[0]
-        rest = target - full @ moved
-        self.known[value] = float(rest @ rest)
-        return self.known[value]
+        target = np.concatenate([point.left, -point.u])
+        found = np.linalg.lstsq(full, target, rcond=None)[0]
+        rest = target - full @ found
+        moved = np.zeros(len(point.x) + k)
+        moved[[*free, *range(len(point.x), len(moved))]] = found
+        return moved, float(rest @ rest)
 
-
-def white_column(profile: _Profile, x: Matrix, place: int) -> Matrix:
-    """Return minus the derivative of the prediction by a coefficient, whitened: effects are linear in it."""
-    import numpy as np
-
-    step = 1e-3 * max(abs(float(x[place])), 1e-2)
-    up = x.copy()
-    up[place] += step
-    u = profile.best.directions
-    setting = profile.best.setting
-    a = white_residual(profile.full, profile.fitter, setting, up, u)
-    b = white_residual(profile.full, profile.fitter, setting, x, u)
-    return np.asarray((a - b) / step)
+    def _slope(self, point: _Point, place: int) -> Matrix:
+        """Return the derivative of what is left by a parameter."""
+        item = self.fitter.parameters[place]
+        step = 1e-3 * max(abs(float(point.x[place])), 1e-2)
+        step = -step if point.x[place] + step > item.high else step
+        up = point.x.copy()
+        up[place] += step
+        return (self._point(up, point.u).left - point.left) / step
