@@ -22,14 +22,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from truing.testing.finding import assert_finds, assert_finds_nothing, finds_every_effect
-    from truing.testing.fixtures import Answer, Calc
+    from truing.testing.fixtures import Answer, Calc, CalcProcess
     from truing.testing.hidden import Answered, Hidden, recorded
     from truing.testing.hiding import hide
     from truing.testing.kit import CHECKS, ConformanceCheck, conformance, failures
 
 _HOMES = {
     "truing.testing.finding": ("assert_finds", "assert_finds_nothing", "finds_every_effect"),
-    "truing.testing.fixtures": ("Answer", "Calc"),
+    "truing.testing.fixtures": ("Answer", "Calc", "CalcProcess"),
     "truing.testing.hidden": ("Answered", "Hidden", "recorded"),
     "truing.testing.hiding": ("hide",),
     "truing.testing.kit": ("CHECKS", "ConformanceCheck", "conformance", "failures"),
@@ -39,7 +39,7 @@ _HOME = {name: module for module, names in _HOMES.items() for name in names}
 __all__ = [  # noqa: RUF022  # in the order of the page
     "conformance", "failures", "CHECKS", "ConformanceCheck",
     "hide", "Hidden", "assert_finds", "assert_finds_nothing", "finds_every_effect", "recorded", "Answered",
-    "Answer", "Calc",
+    "Answer", "Calc", "CalcProcess",
 ]  # fmt: skip
 
 
