@@ -1,0 +1,103 @@
+"""Two tanks by another hand than the example's: Runge-Kutta, a hard rim, and what the measured record says of them.
+
+Run as a script it fits the benchmark's estimation record and prints what the tests cite.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+STEP = 4.0
+PARTS = 4
+EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "cascaded_tanks"
+
+
+@dataclass(frozen=True)
+class Rig:
+    """Constants of the literature, levels in V: numbers or arrays (n,). No rim where ``rim`` is infinite."""
+
+    k1: Any = 0.05
+    k3: Any = 0.05
+    k4: Any = 0.04
+    upper: Any = 5.2
+    lower: Any = 5.2
+    rim: Any = np.inf
+    caught: Any = 0.5
+
+
+def levels(rig: Rig, voltage: Array) -> Array:
+    """Levels of the lower tank (k, n) by Runge-Kutta of fourth order; water above the rim is gone after each step."""
+    x1, x2 = np.asarray(rig.upper, dtype=float), np.asarray(rig.lower, dtype=float)
+    found, h = [x2], STEP / PARTS
+    for u in voltage[:-1]:
+        for _ in range(PARTS):
+            x1, x2 = _stepped(rig, (x1, x2), rig.k4 * u, h)
+            over = np.maximum(x1 - rig.rim, 0.0)
+            x1, x2 = x1 - over, x2 + rig.caught * over
+        found.append(x2)
+    return np.array(found)
+
+
+def _stepped(rig: Rig, at: tuple[Array, Array], inflow: Any, h: float) -> tuple[Array, Array]:
+    def rate(x1: Array, x2: Array) -> tuple[Array, Array]:
+        out = rig.k1 * np.sqrt(np.maximum(x1, 0.0))
+        return inflow - out, out - rig.k3 * np.sqrt(np.maximum(x2, 0.0))
+
+    a = rate(*at)
+    b = rate(at[0] + h / 2 * a[0], at[1] + h / 2 * a[1])
+    c = rate(at[0] + h / 2 * b[0], at[1] + h / 2 * b[1])
+    d = rate(at[0] + h * c[0], at[1] + h * c[1])
+    up, low = (at[i] + h / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]) for i in (0, 1))
+    return np.maximum(up, 0.0), np.maximum(low, 0.0)
+
+
+def record(name: str) -> tuple[Array, Array]:
+    """Pump voltage and measured level of a record of the example."""
+    rows = np.genfromtxt(EXAMPLE / f"{name}.csv", delimiter=",", skip_header=1, usecols=(2, 3))
+    return rows[:, 0], rows[:, 1]
+
+
+def fitted(names: Sequence[str], start: Sequence[float], high: Sequence[float]) -> dict[str, float]:
+    """Fit some constants to the estimation record, nothing known beforehand."""
+    from scipy.optimize import least_squares
+
+    voltage, measured = record("estimation")
+    start_at = np.array(start)
+
+    def residual(values: Array) -> Array:
+        return np.asarray(levels(Rig(**dict(zip(names, values, strict=True))), voltage) - measured)
+
+    def slopes(values: Array) -> Array:
+        step = 1e-5 * np.maximum(np.abs(values), 1e-2)
+        batch = values[:, None] + np.column_stack([np.diag(step), -np.diag(step)])
+        made = levels(Rig(**dict(zip(names, batch, strict=True))), voltage)
+        return np.asarray((made[:, : len(values)] - made[:, len(values) :]) / (2 * step))
+
+    found = least_squares(residual, start_at, jac=slopes, bounds=(1e-3, high), x_scale=np.abs(start_at))
+    return dict(zip(names, found.x.tolist(), strict=True))
+
+
+def errors(rig: Rig) -> dict[str, float]:
+    """Root mean square errors on both records, V."""
+    found = {}
+    for name in ("estimation", "validation"):
+        voltage, measured = record(name)
+        found[name] = float(np.sqrt(np.mean((levels(rig, voltage) - measured) ** 2)))
+    return found
+
+
+if __name__ == "__main__":
+    BASE = ["k1", "k3", "k4", "upper", "lower"]
+    for chosen, begin, most in (
+        (BASE, [0.05, 0.05, 0.04, 5.0, 5.0], [1.0, 1.0, 1.0, 30.0, 12.0]),
+        ([*BASE, "rim", "caught"], [0.05, 0.05, 0.04, 5.0, 5.0, 9.0, 0.5], [1.0, 1.0, 1.0, 30.0, 12.0, 30.0, 1.0]),
+    ):
+        best = fitted(chosen, begin, most)
+        print(best, errors(Rig(**best)))
