@@ -14,6 +14,7 @@ from truing.errors import UsageError
 
 if TYPE_CHECKING:
     from truing.report.diagnosis_run import Diagnosed
+    from truing.studies.bench import Progress
 
 Data = Annotated[list[Path] | None, typer.Option("--data", "-d", help="A CSV file of measured rows; may be repeated.")]
 
@@ -48,13 +49,18 @@ def diagnose(
     folder = output or Path("runs") / measured[0].stem
     with progress_bar(settings) as progress, told_by_line(setup):
         order = DiagnosisOrder(measured, folder, pdf)
-        done = perform_diagnosis(setup, offer, order, lambda _, step, steps: progress("diagnosis", step, steps))
+        done = perform_diagnosis(setup, offer, order, _as_one(progress))
     _say_beside(done, settings)
     if as_json:
         out_json(done.document)
     else:
         out("\n".join(report(done.diagnosis, folder)))
     return 0
+
+
+def _as_one(progress: Progress) -> Progress:
+    """Return what shows the stages of a diagnosis as one task, and what comes after it as another."""
+    return lambda stage, step, steps: progress("diagnosis" if steps else stage, step, steps)
 
 
 def _say_beside(done: Diagnosed, settings: Settings) -> None:

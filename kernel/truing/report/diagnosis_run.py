@@ -47,6 +47,7 @@ def perform_diagnosis(setup: Setup, offer: Offer, order: DiagnosisOrder, progres
 
     started = time.time()
     diagnosis = diagnose(setup, read_records(order.data, offer, setup), progress=progress)
+    progress("sheet and PDF" if order.pdf else "sheet", 0, 0)
     document, note = write_all(diagnosis, order, started)
     return Diagnosed(diagnosis, document, note)
 

@@ -1,4 +1,4 @@
-"""How do the results run along one input? All points in one batch."""
+"""How do the results run along one input? Many points in one batch."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.errors import UsageError
-from truing.evaluate import acting_inputs, evaluate_rows
+from truing.evaluate import acting_inputs, evaluate_in_parts
 from truing.setup import Setup
 from truing.studies.bench import Bench, Check
 from truing.studies.reading import printed, read_range, scattering_name, spoken
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 LARGEST = 1_000_000
 ROUNDING = 1e-12
+TOGETHER = 2**14
+"""How many points one call of the model calculates."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,12 +41,12 @@ class Sweep:
             raise UsageError(f"points = {self.points}, but a sweep has 2 to {LARGEST} points")
 
     def run(self, bench: Bench) -> Swept:
-        """Evaluate all points in one batch; an infeasible one keeps its reason. Raises UsageError for a bad range."""
+        """Evaluate all points, many at once; an infeasible one keeps its reason. Raises UsageError for a bad range."""
         setup = bench.setup
         over = scattering_name(setup, self.over, self.name)
         axis = _points(setup, over, self.at, self.points)
         done = bench.part(self.name, 0.0, 1.0)
-        rows = evaluate_rows(setup, {over: _values(setup, over, axis)}, len(axis), done=done)
+        rows = evaluate_in_parts(setup, {over: _values(setup, over, axis)}, len(axis), size=TOGETHER, done=done)
         fields = setup.model.own_result_fields
         return Swept(
             name=self.name,
