@@ -15,6 +15,7 @@ from pymdownx.slugs import slugify
 from manual import links, made, marks, mathematics, navigation
 from manual.places import PROJECT, ROOT
 
+_PATH = re.compile(r"(?<=<td><code>)[\w\[\]]+(?:\.[\w\[\]]+)+(?=</code>)")
 _HEADING = re.compile(r"^# (.+)$|^## (\S.*)$", re.MULTILINE)
 
 
@@ -44,8 +45,9 @@ def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: 
 
 
 def on_page_content(html: str, *, page: Page, config: MkDocsConfig, files: Files) -> str:
-    """Set formulas, and let wide tables scroll by themselves."""
+    """Set formulas, let wide tables scroll by themselves and long paths of fields break at their points."""
     text = mathematics.with_mathml(html, page.file.src_uri)
+    text = _PATH.sub(lambda item: item[0].replace(".", ".<wbr>"), text)
     return re.sub(r"<table.*?</table>", r'<div class="scroll" tabindex="0">\g<0></div>', text, flags=re.DOTALL)
 
 

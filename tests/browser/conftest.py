@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import shutil
-import sys
 import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from built_site import site  # noqa: F401
 from shared import ROOT
 from truing.calculation import calculate
 from truing.inputs_file import read_setup
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Page
 
 DATA = Path(__file__).parents[1] / "data"
-sys.path.append(str(ROOT / "docs" / "site"))
 QUIET = [
     "--disable-gpu",
     "--disable-background-networking",
@@ -76,10 +75,7 @@ def sheet(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     """A sheet on disk: one whose every text is hostile, at two levels of detail, and those of what is shipped."""
     file = tmp_path_factory.mktemp("Größe ü") / f"{request.param} sheet.html"
     if request.param in SHIPPED:
-        from manual.gallery import calculated, sheets
-
-        (shown,) = [one for one in sheets() if one.name == request.param]
-        shutil.copy(calculated(shown) / "sheet.html", file)
+        shutil.copy(request.getfixturevalue("site") / "gallery" / request.param / "sheet.html", file)
         return file
     kernel = Kernel()
     kernel.add_file(DATA / "hostile_pin.py")

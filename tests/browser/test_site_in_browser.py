@@ -9,8 +9,6 @@ from typing import Any
 import pytest
 from test_sheet import BEYOND, CONTRASTS
 
-from built_site import site  # noqa: F401
-
 KINDS = {
     "front page": "index.html",
     "tutorial": "tutorial/first_calculation.html",
@@ -29,7 +27,7 @@ KINDS = {
 
 
 @pytest.fixture(scope="module")
-def window(browser: Any, site: Path) -> Iterator[Any]:  # noqa: F811
+def window(browser: Any, site: Path) -> Iterator[Any]:
     """A page without network; what it asks for and complains of is written down."""
     context = browser.new_context(offline=True)
     opened = context.new_page()
@@ -50,7 +48,7 @@ def visit(window: Any, file: Path, width: int) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_page_asks_for_nothing_outside_and_fits_a_phone(window: Any, site: Path, kind: str) -> None:  # noqa: F811
+def test_a_page_asks_for_nothing_outside_and_fits_a_phone(window: Any, site: Path, kind: str) -> None:
     visit(window, site / KINDS[kind], 390)
     assert window.said == []
     assert [url for url in window.requested if not url.startswith((site.as_uri() + "/", "data:"))] == []
@@ -66,7 +64,7 @@ def test_a_page_asks_for_nothing_outside_and_fits_a_phone(window: Any, site: Pat
 
 
 @pytest.mark.parametrize("kind", ["theory", "model"])
-def test_formulas_are_drawn(window: Any, site: Path, kind: str) -> None:  # noqa: F811
+def test_formulas_are_drawn(window: Any, site: Path, kind: str) -> None:
     visit(window, site / KINDS[kind], 1100)
     sizes = window.evaluate("""() => [...document.querySelectorAll('math')].map(node => {
         const box = node.getBoundingClientRect();
@@ -80,7 +78,7 @@ def test_formulas_are_drawn(window: Any, site: Path, kind: str) -> None:  # noqa
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
 @pytest.mark.parametrize("kind", ["tutorial", "model"])
-def test_every_text_stands_out_from_its_ground(window: Any, site: Path, kind: str, theme: str) -> None:  # noqa: F811
+def test_every_text_stands_out_from_its_ground(window: Any, site: Path, kind: str, theme: str) -> None:
     visit(window, site / KINDS[kind], 1100)
     window.evaluate(f"document.documentElement.dataset.theme = '{theme}'")
     seen = window.evaluate(CONTRASTS)
@@ -88,7 +86,7 @@ def test_every_text_stands_out_from_its_ground(window: Any, site: Path, kind: st
     assert [pair for pair in seen if pair[0] < 4.5] == []
 
 
-def test_the_button_turns_the_page_dark_and_light(window: Any, site: Path) -> None:  # noqa: F811
+def test_the_button_turns_the_page_dark_and_light(window: Any, site: Path) -> None:
     visit(window, site / "index.html", 1100)
     ground = "getComputedStyle(document.body).backgroundColor"
     before = window.evaluate(ground)
@@ -98,7 +96,7 @@ def test_the_button_turns_the_page_dark_and_light(window: Any, site: Path) -> No
     assert window.evaluate(ground) == before != dark
 
 
-def test_search_works_from_disk(window: Any, site: Path) -> None:  # noqa: F811
+def test_search_works_from_disk(window: Any, site: Path) -> None:
     visit(window, site / KINDS["verb"], 1100)
     window.fill("#search", "stroke joint_clearance")
     window.wait_for_selector(".found a")
@@ -113,7 +111,7 @@ def test_search_works_from_disk(window: Any, site: Path) -> None:  # noqa: F811
     window.wait_for_selector(".found .none")
 
 
-def test_the_menu_of_a_phone_opens(window: Any, site: Path) -> None:  # noqa: F811
+def test_the_menu_of_a_phone_opens(window: Any, site: Path) -> None:
     visit(window, site / KINDS["how-to"], 390)
     assert not window.is_visible("#sidebar")
     window.click("button.menu")
@@ -121,7 +119,7 @@ def test_the_menu_of_a_phone_opens(window: Any, site: Path) -> None:  # noqa: F8
     assert window.url.endswith("many_machines.html")
 
 
-def test_a_page_prints_without_what_is_for_the_screen(window: Any, site: Path) -> None:  # noqa: F811
+def test_a_page_prints_without_what_is_for_the_screen(window: Any, site: Path) -> None:
     visit(window, site / KINDS["model"], 700)
     window.emulate_media(media="print")
     try:
