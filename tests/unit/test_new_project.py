@@ -150,7 +150,7 @@ def test_it_needs_truing_and_pytest_only_and_has_no_licence() -> None:
         for node in ast.walk(ast.parse(text))
         if isinstance(node, (ast.Import, ast.ImportFrom))
     }
-    assert imported == {"truing", "pytest", "belt_drive", "dataclasses", "pathlib"}
+    assert imported == {"truing", "pytest", "belt_drive", "dataclasses", "json", "pathlib"}
 
 
 def test_the_made_rows_are_what_they_say() -> None:
