@@ -1,6 +1,7 @@
 """Two tanks, one above the other: a pump fills the upper one, which empties into the lower one, which drains."""
 
 from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from truing import (
     Effect,
     Float,
     Model,
+    Record,
     Section,
     Tolerance,
     Unknown,
@@ -23,6 +25,9 @@ from truing import (
     normal,
     results,
 )
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 FULL = 10.0
@@ -275,7 +280,7 @@ def sensor_ceiling(tanks: Tanks, base: Levels, *, missed: Float) -> Levels:
 EFFECTS = [
     Effect(
         "overflow", on_inputs=overflow,
-        looks_like="high levels come too low and too late, after the pump has run fast",
+        looks_like="while the pump runs fast the lower level leaps ahead, and lacks the water afterwards",
         unknowns=[
             Unknown("spill", 0, 1, note="share of the surplus that runs over"),
             Unknown("rim", 4, 16, "V", note="level of the rim"),
@@ -323,6 +328,24 @@ TOLERANCES = [
     Tolerance("lower_start", normal(sd="0.1 V"), why="from the first readings"),
 ]
 
+
+def draw_levels(record: Record[Tanks, Levels]) -> "Figure":
+    """Both levels over time, and the voltage of the pump."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.0, 3.6), layout="constrained")
+    above, below = figure.subplots(2, sharex=True, height_ratios=(2, 1))
+    above.plot(record.results.time, record.results.upper_level, label="upper tank")
+    above.plot(record.results.time, record.results.level, label="lower tank")
+    above.axhline(FULL, color="0.6", linewidth=0.8)
+    above.set_ylabel("level, V")
+    above.legend(frameon=False)
+    below.step(record.inputs.times, np.asarray(record.inputs.pump_voltage), where="post", color="0.3")
+    below.set_ylabel("pump, V")
+    below.set_xlabel("time, s")
+    return figure
+
+
 CITES = [
     "M. Schoukens, P. Mattsson, T. Wigren, J.-P. Noel, Cascaded tanks benchmark combining soft and hard "
     "nonlinearities, Workshop on Nonlinear System Identification Benchmarks, Brussels 2016",
@@ -336,7 +359,7 @@ CASCADED_TANKS = Model(
     cites=CITES,
     errors=[*TOLERANCES, *EFFECTS],
     sheet=[
-        Section("Levels", "upper_level", "level", "highest"),
+        Section("Levels", "upper_level", "level", "highest", figure=draw_levels, caption="The line is a full tank."),
         Section("Balance of the water", "pumped", "drained", "lost"),
     ],
 )
