@@ -67,17 +67,22 @@ def _compared(offer: Offer, progress: Progress, known: Calculation | None) -> li
     from truing.calculation import calculate
     from truing.inputs_file import setup_from_settings
 
-    count, made = len({frozenset(item.settings.items()) for item in offer.model.published}), 0
+    asked = {frozenset(item.settings.items()): item.settings for item in offer.model.published}
+    wanted = {key: setup_from_settings(offer, settings) for key, settings in asked.items()}
+    missing = [
+        key
+        for key, setup in wanted.items()
+        if known is None or not (_covers(known.setup, setup) and same_run(known.setup, setup))
+    ]
 
     def calculation_for(settings: Mapping[str, str]) -> Calculation:
-        nonlocal made
-        begin, made = made / count, made + 1
-        wanted = setup_from_settings(offer, settings)
-        if known is not None and _covers(known.setup, wanted) and same_run(known.setup, wanted):
+        key = frozenset(settings.items())
+        if known is not None and key not in missing:
             return known
-        names = [study.name for study in wanted.studies]
+        names = [study.name for study in wanted[key].studies]
+        begin, end = (place / len(missing) for place in (missing.index(key), missing.index(key) + 1))
         progress(TASK, round(FINE * begin), FINE)
-        return calculate(wanted, progress=within(progress, TASK, begin, made / count, names))
+        return calculate(wanted[key], progress=within(progress, TASK, begin, end, names))
 
     return compare(calculation_for, offer.model.published)
 

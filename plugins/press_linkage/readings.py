@@ -29,11 +29,20 @@ class Readings:
         """Allocate under each reading; whatever the inputs file says of tolerances holds for both."""
         study = Allocation(of="slider_position", finest=self.finest, draws=1, name=self.name)
         found = {}
-        for reading in READINGS:
+        for place, reading in enumerate(READINGS):
             press = replace(bench.setup.inputs, reading=reading)
             answers = {**bench.answers, "permitted_tilt": permitted_tilt(press)}
-            found[reading] = study.run(replace(bench, setup=replace(bench.setup, inputs=press), answers=answers))
+            setup = replace(bench.setup, inputs=press)
+            told = _part(bench, self.name, place)
+            own = replace(bench, setup=setup, answers=answers, progress=told)
+            found[reading] = study.run(own)
         return Compared(found, self.finest)
+
+
+def _part(bench: "Bench", name: str, place: int) -> Callable[[str, int, int], None]:
+    """Return what reports the study of one reading as its part of this one."""
+    done = bench.part(name, place / len(READINGS), (place + 1) / len(READINGS))
+    return lambda task, step, steps: done(step, steps)
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """The shift that the weighed sum of the objectives prefers: by Box's complex method, and on a dense grid as a check."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -80,19 +80,18 @@ class Variant:
     limits: tuple[str, ...]
 
 
-def variants(pair: Pair, ratios: Sequence[float], span: tuple[float, float], points: int) -> tuple[Variant, ...]:
-    """Return the optimum on the grid for every least contact ratio and every reading of the weights."""
-    found = []
+def variants(pair: Pair, ratios: Sequence[float], span: tuple[float, float], points: int) -> Iterator[Variant | None]:
+    """Give the optimum on the grid for every least contact ratio and every reading of the weights; None without one."""
     for ratio in ratios:
         field = field_of(replace(pair, least_contact_ratio=ratio), span, points)
-        if field is None:
-            continue
         for reading in READINGS:
+            if field is None:
+                yield None
+                continue
             weights = weights_of(reading, field.ranges)
             shift = grid_optimum(field, weights)
             margin = course_of(field.pair, np.array([shift])).margins["margin_contact_ratio"][0]
-            found.append(Variant(ratio, reading, weights, shift, ratio + float(margin), limits_at(field, shift)))
-    return tuple(found)
+            yield Variant(ratio, reading, weights, shift, ratio + float(margin), limits_at(field, shift))
 
 
 def stress_factor(field: Field, weights: Three, shift: float) -> float | None:

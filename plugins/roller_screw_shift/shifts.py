@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roller_screw_shift.best_shifts import (
+    READINGS,
     Field,
     Variant,
     box_optimum,
@@ -67,12 +68,12 @@ class Shifting:
         pair: Pair = bench.inputs
         span = (float(self.span[0]), float(self.span[1]))
         ratios = sorted({*self.ratios, float(pair.least_contact_ratio)})
-        bench.progress(self.name, 0, len(ratios) + BEFORE)
+        bench.progress(self.name, 0, _steps(ratios))
         field = field_of(pair, span, self.points)
         equal = equal_sliding(pair, span, self.points)
         if field is None:
             return Chosen(pair, span, equal, status=self._nothing(pair, span))
-        bench.progress(self.name, 1, len(ratios) + BEFORE)
+        bench.progress(self.name, 1, _steps(ratios))
         weights = weights_of(pair.weights, field.ranges)
         grid = grid_optimum(field, weights)
         box, remarks = self._box(bench, field, weights, span)
@@ -102,11 +103,12 @@ class Shifting:
         return found, () if found.settled else ("Box's method ended before its vertices met",)
 
     def _variants(self, bench: Bench, ratios: Sequence[float], span: tuple[float, float]) -> Iterator[Variant]:
-        """Give the optimum under one least contact ratio after the other."""
-        for place, ratio in enumerate(ratios, start=BEFORE):
-            bench.progress(self.name, place, len(ratios) + BEFORE)
-            yield from variants(bench.inputs, (ratio,), span, self.points)
-        bench.progress(self.name, len(ratios) + BEFORE, len(ratios) + BEFORE)
+        """Give the optimum under one least contact ratio after the other, by every reading of the weights."""
+        steps = _steps(ratios)
+        for place, variant in enumerate(variants(bench.inputs, ratios, span, self.points), start=BEFORE):
+            bench.progress(self.name, place + 1, steps)
+            if variant is not None:
+                yield variant
 
     def _nothing(self, pair: Pair, span: tuple[float, float]) -> str:
         """Say that no shift keeps every limit, and what the nearest one misses."""
@@ -119,6 +121,10 @@ class Shifting:
             f"no shift of the roller from {span[0]:g} to {span[1]:g} keeps every limit; the nearest, "
             f"{course.shifts[place]:.4g}, misses {misses}"
         )
+
+
+def _steps(ratios: Sequence[float]) -> int:
+    return BEFORE + len(ratios) * len(READINGS)
 
 
 def _compared(bench: Bench, field: Field, best: float) -> Mapping[str, Any]:

@@ -103,6 +103,12 @@ def test_time_left_is_that_of_the_pace_so_far(elapsed: float, done: int, total: 
     assert found == (None if left is None else pytest.approx(left))
 
 
+def test_the_pace_counts_from_where_one_first_heard_of_the_task() -> None:
+    """Half was done at once, a quarter took ten seconds: so will the last quarter."""
+    assert Task("work", 0.0, 3, 4, first=2).left(10.0) == pytest.approx(10.0)
+    assert Task("work", 0.0, 3, 4, first=3).left(10.0) is None
+
+
 def test_a_step_that_takes_long_lengthens_what_is_left() -> None:
     task = Task("work", 0.0, 1, 2)
     assert [task.left(now) for now in (10.0, 20.0, 40.0)] == [10.0, 20.0, 40.0]
@@ -233,7 +239,14 @@ def test_parts_of_a_task_lie_one_behind_the_other() -> None:
     inner("sweep", 1, 2)
     inner("reliability", 2, 2)
     inner("nobody", 1, 2)
-    assert said == [("surrogate", 250, 1000), ("surrogate", 200, 1000), ("cases", 562, 1000), ("cases", 750, 1000)]
+    inner("reliability", 1, 2)  # begins anew: it does not go back
+    assert said == [
+        ("surrogate", 250, 1000),
+        ("surrogate", 200, 1000),
+        ("cases", 562, 1000),
+        ("cases", 750, 1000),
+        ("cases", 750, 1000),
+    ]
 
 
 # What the benchmark asks of every shipped study

@@ -27,26 +27,32 @@ def has_terminal() -> bool:
 
 @dataclass
 class Task:
-    """The work under way: what it is called, how much of it is done, and when it began."""
+    """The work under way: what it is called, how much of it is done, and when one first heard how much."""
 
     name: str
     began: float
     done: int = 0
     total: int = 0
+    first: int = 0
 
     @property
     def share(self) -> float:
         """The share that is done, 0 to 1; 0 where nobody knows."""
-        return min(max(self.done / self.total, 0.0), 1.0) if self.total > 0 else 0.0
+        return self._share_of(self.done)
+
+    def _share_of(self, steps: int) -> float:
+        return min(max(steps / self.total, 0.0), 1.0) if self.total > 0 else 0.0
 
     def left(self, now: float) -> float | None:
         """Return the seconds left at the pace so far, or None where that would be a guess in the dark.
 
-        The pace is that of the whole task up to now, so that a long step lengthens what is left while it lasts.
+        The pace is that since one first heard of the task, which may have come some way before; it is that up to now,
+        so that a long step lengthens what is left while it lasts.
         """
-        if self.share < SETTLED or now - self.began < PATIENCE / 2:
+        gone = self.share - self._share_of(self.first)
+        if gone < SETTLED or now - self.began < PATIENCE / 2:
             return None
-        return (now - self.began) * (1 - self.share) / self.share
+        return (now - self.began) * (1 - self.share) / gone
 
 
 def spoken(seconds: float) -> str:
@@ -75,7 +81,7 @@ class Watched:
         now = time.monotonic()
         with self._lock:
             if task != self.task.name or done < self.task.done or total != self.task.total:
-                self.task = Task(task, now)
+                self.task = Task(task, now, first=done)
             self.task.done, self.task.total = done, total
 
     def begin(self) -> None:

@@ -33,13 +33,19 @@ def part_of(progress: Progress, task: str, begin: float, end: float) -> Done:
 
 
 def within(progress: Progress, task: str, begin: float, end: float, stages: Sequence[str]) -> Progress:
-    """Return what reports a whole calculation as one part of a task; ``stages`` are its studies in order."""
+    """Return what reports a whole calculation as one part of a task; ``stages`` are its studies in order.
+
+    It never goes back: a study that begins anew is heard of again where it passes the place that it had reached.
+    """
+    reached = begin
 
     def told(stage: str, step: int, steps: int) -> None:
-        if stage in stages:
-            each = (end - begin) / len(stages)
-            start = begin + each * list(stages).index(stage)
-            part_of(progress, task, start, start + each)(step, steps)
+        nonlocal reached
+        if stage not in stages or steps <= 0:
+            return
+        each = (end - begin) / len(stages)
+        reached = max(reached, begin + each * (list(stages).index(stage) + min(step / steps, 1.0)))
+        progress(task, round(FINE * reached), FINE)
 
     return told
 
