@@ -26,7 +26,7 @@ def tanks() -> Any:
     return load_file(EXAMPLE / "cascaded_tanks.py")
 
 
-def record_of(tanks: Any, rows: slice = HIGH, **more: Any) -> Any:
+def record_of(tanks: Any, rows: Any = HIGH, **more: Any) -> Any:
     voltage = hand.record("estimation")[0][rows]
     return tanks.Tanks(times=4.0 * np.arange(len(voltage)), pump_voltage=voltage, **more)
 
@@ -35,7 +35,8 @@ def exact(tanks: Any, given: Any) -> Array:
     """Both levels at every row, (k, 2): the same laws, written anew and solved by an adaptive method."""
 
     def spilt(level: float, rim: float, share: float, surplus: float) -> float:
-        return share * min(max((level - rim) / tanks.CREST, 0.0), 1.0) * max(surplus, 0.0)
+        height = min(max((level - rim) / float(tanks.CREST), 0.0), 1.0)
+        return share * height * max(surplus, 0.0)
 
     def rates(_: float, at: Array, voltage: float) -> list[float]:
         x1, x2 = float(at[0]), float(at[1])
