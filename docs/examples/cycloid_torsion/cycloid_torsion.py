@@ -73,24 +73,16 @@ TURNED_AT = Condition("turned_at", "N*m", derived="last_reversal of torque_comma
 LIMIT = 25.0  # N*m, where the current of the motor is cut off
 
 
-def kept(torque: Float, turned_at: Float, loading: Float, *, friction: Float, share: Float) -> Float:
-    """Return what friction keeps from the spring: all it can in slip; after a turn it lets go before it pulls back."""
+def friction(reducer: Reducer, *, torque: Float, doubled_at: Float, loading: Float, turned_at: Float) -> Reducer:
+    """Dry friction of bearings and seals, and of lobes on pins in proportion to what they carry.
+
+    In slip it keeps from the spring all it can. After a turn it lets go of what it kept before it pulls back.
+    """
     turned = np.clip(turned_at, -LIMIT, LIMIT)
-    before = np.where(turned_at == 0, 0.0, friction + share * np.abs(turned))
-    now = friction + share * np.abs(torque)
-    return loading * np.clip(loading * (torque - turned) - before, -before, now)
-
-
-def friction(reducer: Reducer, *, torque: Float, loading: Float, turned_at: Float) -> Reducer:
-    """Dry friction of bearings and seals, the same at any load."""
-    more = kept(reducer.torque, turned_at, loading, friction=torque, share=0.0)
-    return replace(reducer, held_back=reducer.held_back + more)
-
-
-def mesh_friction(reducer: Reducer, *, share: Float, loading: Float, turned_at: Float) -> Reducer:
-    """Friction of the lobes on the pins: a share of the torque that they carry."""
-    more = kept(reducer.torque, turned_at, loading, friction=0.0, share=share)
-    return replace(reducer, held_back=reducer.held_back + more)
+    before = np.minimum(torque * (1 + np.abs(turned) / doubled_at), np.abs(turned))
+    now = torque * (1 + np.abs(reducer.torque) / doubled_at)
+    kept = loading * np.clip(loading * (reducer.torque - turned) - before, -before, now)
+    return replace(reducer, held_back=reducer.held_back + kept)
 
 
 def lost_motion(reducer: Reducer, *, play: Float, play_torque: Float) -> Reducer:
@@ -128,15 +120,11 @@ CYCLOID_TORSION = Model(
             "friction",
             on_inputs=friction,
             needs=[LOADING, TURNED_AT],
-            looks_like="a loop of the same width at any torque",
-            unknowns=[Unknown("torque", 0, 15, "N*m", note="half the width of the loop")],
-        ),
-        Effect(
-            "mesh_friction",
-            on_inputs=mesh_friction,
-            needs=[LOADING, TURNED_AT],
-            looks_like="a loop that grows with the torque",
-            unknowns=[Unknown("share", 0, 0.6, "", note="share of the torque")],
+            looks_like="a loop; the angle stands still after a turn",
+            unknowns=[
+                Unknown("torque", 0, 15, "N*m", note="half the width of the loop without load"),
+                Unknown("doubled_at", 0.5, 500, "N*m", note="torque at which the friction has doubled"),
+            ],
         ),
         Effect(
             "stiffening",

@@ -1,29 +1,56 @@
-"""Make measured.csv of the published record: every eighth row, with loops 3, 4 and 7 set aside to judge.
+"""Make measured.csv of the published record: means of eight rows, with loops 3, 4 and 7 set aside to judge.
 
 python prepare.py data.csv
 """
 
 import csv
 import sys
+from itertools import groupby
 from pathlib import Path
 
-COLUMNS = ["time [s]", "ramp [-]", "ramp_kind [-]", "torque_command [N*m]", "torque [N*m]", "angle [rad]"]
+MEANS = ["time [s]", "torque_command [N*m]", "torque [N*m]", "angle [rad]"]
+LABELS = ["ramp [-]", "ramp_kind [-]"]
 JUDGE = {"3", "4", "7"}
+TOGETHER = 8
+
+Row = dict[str, str]
 
 
 def prepared(path: Path) -> list[list[str]]:
     """Return the header and the rows to write. Raises ValueError with one sentence where the file is another one."""
     with path.open(encoding="utf-8-sig", newline="") as lines:
         table = csv.DictReader(lines)
-        missing = [name for name in COLUMNS if name not in (table.fieldnames or [])]
+        missing = [name for name in (*MEANS, *LABELS) if name not in (table.fieldnames or [])]
         if missing:
             raise ValueError(f"{path}:1: no column '{missing[0]}'; README.md says which file is meant")
-        rows = list(table)[::8]
-    loops = {row["ramp [-]"] for row in rows}
-    if not loops > JUDGE:
+        rows = [{**row, "line": str(table.line_num)} for row in table]
+    if not {row["ramp [-]"] for row in rows} > JUDGE:
         raise ValueError(f"{path}: the column 'ramp [-]' lacks the loops 3, 4 and 7, or holds nothing else")
-    told = [[*(row[name] for name in COLUMNS), "validation" if row["ramp [-]"] in JUDGE else "fit"] for row in rows]
-    return [[*COLUMNS, "record"], *told]
+    made = [[*MEANS, *LABELS, "record"]]
+    for _, loop in groupby(rows, key=lambda row: row["ramp [-]"]):
+        every = list(loop)
+        blocks = [every[at : at + TOGETHER] for at in range(0, len(every) - TOGETHER + 1, TOGETHER)]
+        made += [[*means(path, block), *(block[0][name] for name in LABELS), role(block[0])] for block in blocks]
+    return made
+
+
+def role(row: Row) -> str:
+    """Return what the rows of a loop are for."""
+    return "validation" if row["ramp [-]"] in JUDGE else "fit"
+
+
+def means(path: Path, block: list[Row]) -> list[str]:
+    """Return the mean of every measured column. Raises ValueError with file and line at a cell that is no number."""
+    found = []
+    for name in MEANS:
+        total = 0.0
+        for row in block:
+            try:
+                total += float(row[name])
+            except (TypeError, ValueError):
+                raise ValueError(f"{path}:{row['line']}: {name.split()[0]} '{row[name]}' is no number") from None
+        found.append(f"{total / len(block):.7g}")
+    return found
 
 
 def main(arguments: list[str]) -> int:
