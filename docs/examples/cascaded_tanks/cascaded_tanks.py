@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 FULL = 10.0
 """Level of a full tank on the scale of the gauge, V; the gauge reads no more."""
 CREST = 0.2
-"""How far the water stands above a rim when all that is to run over does, V."""
+"""How far below its rim a tank begins to spill, V: the water is not still. At the rim all that is to run over does."""
 FILM = 0.1
 """Level below which an outlet draws air and runs in proportion to the level, V: so an empty tank stays empty."""
 LONGEST_STEP = 4.0
@@ -64,7 +64,7 @@ class Tanks:
     lower_start: Float = given(5.2, "V", symbol="x_20", note="level of the lower tank at the start", at_least=0)
     upper_exponent: Float = given(0.5, "", symbol="e_1", note="of the upper outlet; 1/2 after Torricelli", above=0)
     lower_exponent: Float = given(0.5, "", symbol="e_3", note="of the lower outlet; 1/2 after Torricelli", above=0)
-    upper_rim: Float = given(FULL, "V", symbol="r_1", note="level at which the upper tank runs over", above=0)
+    upper_rim: Float = given(FULL, "V", symbol="r_1", note="level that a full upper tank does not pass", above=0)
     upper_spill: Float = given(
         0.0, "", symbol="s_1", note="share of the surplus that runs over it", at_least=0, at_most=1
     )
@@ -124,7 +124,7 @@ class Tank:
 
         It is a share of the surplus: of what is ``left`` of the inflow, which is ``more`` per volt of level (negative).
         """
-        height, surplus = (level - self.rim) / CREST, np.maximum(left, 0)
+        height, surplus = 1 + (level - self.rim) / CREST, np.maximum(left, 0)
         risen = np.clip(height, 0, 1)
         slope = risen * more * (left > 0) + surplus / CREST * ((height > 0) & (height < 1))
         return np.asarray(self.spill * risen * surplus), np.asarray(self.spill * slope)
