@@ -69,21 +69,22 @@ def ramps(peaks: Sequence[float], rows: int) -> Values:
     return np.asarray(np.interp(np.linspace(0, length[-1], rows), length, corners))
 
 
-def behind_a_slider(torque: Values, friction: float) -> Values:
-    """The torque of a spring behind a slider that is dragged as soon as more than the friction pulls on it."""
+def behind_a_slider(torque: Values, friction: float, doubled_at: float) -> Values:
+    """The torque of a spring behind a slider that is dragged as soon as more than its friction pulls on it."""
     spring, moved = 0.0, []
     for pull in torque.tolist():
-        spring = max(min(spring, pull + friction), pull - friction)
+        most = friction + friction / doubled_at * abs(pull)
+        spring = max(min(spring, pull + most), pull - most)
         moved.append(spring)
     return np.array(moved)
 
 
 def test_friction_that_drags_a_slider_is_found() -> None:
     torque = ramps([20, -20, 20, -20, 0], 90)
-    angle = 1000 * behind_a_slider(torque, 3.0) / 430 + np.random.default_rng(1).normal(0, 0.4, 90)
+    angle = 1000 * behind_a_slider(torque, 3.0, 40.0) / 430 + np.random.default_rng(1).normal(0, 0.4, 90)
     columns = {"time [s]": np.arange(90.0), "torque_command [N*m]": torque, "torque [N*m]": torque}
     columns["angle [mrad]"] = angle
-    assert_finds(record("cycloid_torsion", columns, effect="friction", truth={"torque": 3.0}))
+    assert_finds(record("cycloid_torsion", columns, effect="friction", truth={"torque": 3.0, "doubled_at": 40.0}))
 
 
 def test_a_wave_of_the_eccentric_shaft_is_found() -> None:
@@ -171,7 +172,8 @@ def prepare(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, s
 def test_loops_3_4_and_7_of_the_torsion_judge(prepare: Callable[[str, str], int], tmp_path: Path) -> None:
     assert prepare("cycloid_torsion", torsion_record(range(8))) == 0
     rows = made(tmp_path)
-    assert [row["time [s]"] for row in rows] == ["0", "8"] * 8  # every eighth
+    assert [float(row["time [s]"]) for row in rows] == [3.5, 11.5] * 8  # means of 0 to 7 and of 8 to 15
+    assert [float(row["torque [N*m]"]) for row in rows] == pytest.approx([0.36, 1.16] * 8)
     assert {row["ramp [-]"] for row in rows if row["record"] == "validation"} == {"3", "4", "7"}
     assert {row["ramp [-]"] for row in rows if row["record"] == "fit"} == {"0", "1", "2", "5", "6"}
 
@@ -199,6 +201,7 @@ REFUSED = [
     ("cycloid_torsion", NO_FILE, r"data.csv:1: no column 'time \[s\]'; README.md says which file is meant"),
     ("cycloid_torsion", torsion_record(range(3)), r"data.csv: .* lacks the loops 3, 4 and 7, or holds nothing else"),
     ("cycloid_torsion", torsion_record([3, 4, 7]), r"data.csv: .* lacks the loops 3, 4 and 7, or holds nothing else"),
+    ("cycloid_torsion", torsion_record(range(8)).replace("0.007", "slip"), r"data.csv:9: angle 'slip' is no number"),
     ("cycloid_ripple", NO_FILE, r"data.csv:1: no column 'time \[s\]'; README.md says which file is meant"),
     ("cycloid_ripple", ripple_record(12), r"data.csv: fewer than 20 turns, so that no row is left to judge"),
     ("cycloid_ripple", ripple_record(1) + "\n0,far,3,7,38\n" * 2, r"data.csv:\d+: angle 'far' is no number"),
