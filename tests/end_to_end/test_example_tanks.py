@@ -61,9 +61,9 @@ def exact(tanks: Any, given: Any) -> Array:
     ("changed", "within"),
     [
         ({}, 2e-3),
-        ({"upper_spill": 1.0, "upper_rim": 9.0, "caught_share": 0.3}, 0.02),
+        ({"upper_spill": 1.0, "upper_rim": 9.0, "caught_share": 0.3}, 0.01),
         ({"upper_exponent": 0.42, "lower_exponent": 0.61, "upper_leak": 2e-3, "lower_leak": 1e-3}, 2e-3),
-        ({"lower_spill": 1.0, "dead_voltage": 0.5, "section_ratio": 1.2}, 0.02),
+        ({"lower_spill": 1.0, "dead_voltage": 0.5, "section_ratio": 1.2}, 0.01),
     ],
 )
 def test_the_levels_are_those_of_an_adaptive_solver(tanks: Any, changed: dict[str, float], within: float) -> None:
@@ -71,8 +71,8 @@ def test_the_levels_are_those_of_an_adaptive_solver(tanks: Any, changed: dict[st
     found, solved = tanks.cascaded_tanks(given), exact(tanks, given)
     assert found.upper_level.max() > given.upper_rim - tanks.CREST or not given.upper_spill
     assert found.level.max() > 10 - tanks.CREST or not given.lower_spill
-    assert np.abs(found.upper_level - solved[:, 0]).max() < within
     assert np.abs(found.level - solved[:, 1]).max() < within
+    assert np.abs(found.upper_level - solved[:, 0]).max() < 3 * within
 
 
 def test_under_a_steady_voltage_each_outlet_lets_out_what_comes_in(tanks: Any) -> None:
