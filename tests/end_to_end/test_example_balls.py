@@ -1,0 +1,240 @@
+"""The worked example of falling balls: drag in closed form, light balls, the dense control, what frames can show."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from measured import calc_here, names, read_document
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from scipy.optimize import least_squares
+from shown_in_docs import EXAMPLES
+
+from truing.kernel.loading import load_file
+from truing.testing import failures
+
+EXAMPLE = EXAMPLES / "falling_balls"
+PAGE = (EXAMPLE / "README.md").read_text(encoding="utf-8")
+GRAVITY, AIR = 9.81, 1.2
+WITH_HOLES = ("whiffle_ball_1", "whiffle_ball_2", "yellow_whiffle_ball", "orange_whiffle_ball")
+Row = NDArray[np.float64]
+
+
+@pytest.fixture(scope="module")
+def ball() -> Any:
+    return load_file(EXAMPLE / "falling_ball.py")
+
+
+@dataclass(frozen=True)
+class Drop:
+    """One record, read without Truing."""
+
+    time: Row
+    height: Row
+    mass: float
+    diameter: float
+
+    @property
+    def lightness(self) -> float:
+        """The drag of the ball per drag coefficient and mass, 1/m."""
+        return AIR * np.pi * self.diameter**2 / 8 / self.mass
+
+
+def drop_of(name: str) -> Drop:
+    file = EXAMPLE / "drops" / f"{name}.csv"
+    time, mass, diameter, height = np.genfromtxt(file, delimiter=",", skip_header=2, usecols=range(4)).T
+    return Drop(time, height, float(mass[0]), float(diameter[0]))
+
+
+def fallen(time: Row, drag: float) -> Row:
+    """How far a ball falls from rest: ln cosh, or free where there is no drag (1/m)."""
+    if drag < 1e-9:
+        return GRAVITY * time**2 / 2
+    return np.logaddexp(time * np.sqrt(GRAVITY * drag), -time * np.sqrt(GRAVITY * drag)) / drag - np.log(2) / drag
+
+
+def fallen_by_viscosity(time: Row, rate: float) -> Row:
+    """How far it falls against a force in proportion to speed (1/s)."""
+    return GRAVITY * (rate * time + np.expm1(-rate * time)) / rate**2
+
+
+def fit(drops: list[tuple[Row, Row, float]], law: Any = fallen) -> tuple[float, float]:
+    """Fit height and moment of release of each drop and one coefficient; return that, and the root mean square left."""
+
+    def left(unknowns: Row) -> Row:
+        each = zip(drops, unknowns[1::2], unknowns[2::2], strict=True)
+        return np.concatenate(
+            [
+                start - law(np.maximum(time - begin, 0), unknowns[0] * per) - height
+                for (time, height, per), start, begin in each
+            ]
+        )
+
+    start = np.r_[0.4, np.tile([47.0, 0.1], len(drops))]
+    lower, upper = np.r_[1e-6, np.tile([30.0, -1.0], len(drops))], np.r_[3.0, np.tile([60.0, 1.5], len(drops))]
+    found = least_squares(left, start, bounds=(lower, upper))
+    return float(found.x[0]), float(np.sqrt(np.mean(found.fun**2)))
+
+
+def diagnosed(folder: Path, ball: str) -> dict[str, Any]:
+    shutil.copytree(EXAMPLE, folder / "desk", ignore=shutil.ignore_patterns("__pycache__", "runs"))
+    drops = (f"drops/{ball}_1.csv", f"drops/{ball}_2.csv")
+    answer = calc_here(folder / "desk", "diagnose", "./falling_ball.py", "--inputs", "inputs.toml", "--data", *drops)
+    assert answer.code == 0, answer.err
+    return read_document(folder / "desk" / "runs" / f"{ball}_1")
+
+
+# The physics
+
+
+@pytest.mark.parametrize(("drag", "viscosity"), [(0.5, 0.0), (1.3, 0.0), (0.0, 2e-2), (0.7, 1e-3), (0.0, 0.0)])
+def test_a_ball_falls_as_its_differential_equation_says(ball: Any, drag: float, viscosity: float) -> None:
+    model = ball.FALLING_BALL
+    given = model.inputs(drag_coefficient=drag, viscosity=viscosity, release_time=0.25, lift_of_air=1.0)
+    linear = 3 * np.pi * viscosity * given.diameter / given.mass
+    square = AIR * np.pi * given.diameter**2 / 8 / given.mass * drag
+    pull = GRAVITY * (1 - AIR * np.pi * given.diameter**3 / 6 / given.mass)
+
+    def motion(_: float, state: Row) -> list[float]:
+        return [state[1], pull - linear * state[1] - square * state[1] ** 2]
+
+    frames = np.array([0.5, 1.0, 2.0, 3.0])
+    by_steps = solve_ivp(motion, (0, 3), [0, 0], t_eval=frames - 0.25, rtol=1e-11, atol=1e-12)
+    answer = model.function(model.inputs(
+        drag_coefficient=drag, viscosity=viscosity, release_time=0.25, lift_of_air=1.0, frames=frames
+    ))  # fmt: skip
+    assert np.ravel(answer.height) == pytest.approx(47 - by_steps.y[0], abs=1e-7)
+    assert np.ravel(answer.speed) == pytest.approx(by_steps.y[1], abs=1e-7)
+
+
+def test_drag_alone_is_the_logarithm_of_a_hyperbolic_cosine(ball: Any) -> None:
+    model, frames = ball.FALLING_BALL, np.linspace(0, 4, 9)
+    given = model.inputs(drag_coefficient=0.5, release_time=0.0, frames=frames)
+    expected = 47 - fallen(frames, 0.5 * AIR * np.pi * given.diameter**2 / 8 / given.mass)
+    assert np.ravel(model.function(given).height) == pytest.approx(expected, abs=1e-8)
+
+
+def test_the_plugin_passes_the_kit(ball: Any) -> None:
+    assert failures(ball.FALLING_BALL) == {}
+
+
+def test_the_licence_of_the_data_is_kept() -> None:
+    licence = (EXAMPLE / "LICENSE").read_text(encoding="utf-8")
+    assert licence.startswith("MIT License\n\nCopyright (c) 2020 Brian de S")
+    assert "The above copyright notice and this permission notice shall be included" in licence
+    files = sorted((EXAMPLE / "drops").glob("*.csv"))
+    assert len(files) == 20
+    assert all(
+        "Copyright (c) 2020 Brian de Silva" in file.read_text(encoding="utf-8").splitlines()[0] for file in files
+    )
+
+
+# What the page says of each ball, computed apart from any diagnosis
+
+
+@dataclass(frozen=True)
+class Said:
+    """One line of the table: lengths in m."""
+
+    ball: str
+    coefficient: float
+    late: float
+    left: float
+    noise: float
+    visible: float
+    found: str
+
+
+def table() -> list[Said]:
+    lines = re.findall(
+        r"^\| ([a-z][\w ]+) \| ([\d.]+) \| (\S+) m \| (\S+) m \| (\S+) m \| (\S+) \| (.+) \|$", PAGE, re.MULTILINE
+    )
+    return [Said(name.replace(" ", "_"), *map(float, numbers), found) for name, *numbers, found in lines]
+
+
+def test_the_table_is_whole() -> None:
+    assert len(table()) == 10
+
+
+@pytest.mark.parametrize("said", table(), ids=lambda said: said.ball)
+def test_what_drag_would_do_to_each_ball(said: Said) -> None:
+    drop = drop_of(f"{said.ball}_1")
+    drag = said.coefficient * drop.lightness
+    falling = np.maximum(drop.time - 0.1, 0)
+    with_drag = fallen(falling, drag)
+    assert said.late == pytest.approx((GRAVITY * falling**2 / 2 - with_drag)[-1], abs=6e-3)
+    _, left = fit([(drop.time, 47 - with_drag, 0.0)])
+    assert said.left == pytest.approx(left, abs=6e-3)
+    if said.found == "nothing" and said.coefficient < said.visible:
+        assert said.left < said.noise
+
+
+@pytest.mark.parametrize("said", [said for said in table() if "air drag" in said.found], ids=lambda said: said.ball)
+def test_the_coefficient_that_is_named_is_that_of_least_squares(said: Said) -> None:
+    drops = [drop_of(f"{said.ball}_{number}") for number in (1, 2)]
+    value, _ = fit([(drop.time, drop.height, drop.lightness) for drop in drops])
+    (named,) = re.findall(r"air drag, ([\d.]+) \(", said.found)
+    assert float(named) == pytest.approx(value, rel=0.08)
+
+
+def test_intervals_are_narrower_than_the_drops_of_a_ball_differ() -> None:
+    (said,) = [said for said in table() if said.ball == "yellow_whiffle_ball"]
+    low, high = map(float, re.findall(r"\(([\d.]+) … ([\d.]+)\)", said.found)[0])
+    first, second = (
+        fit([(each.time, each.height, each.lightness)])[0]
+        for each in map(drop_of, (f"{said.ball}_1", f"{said.ball}_2"))
+    )
+    assert low < second < high < first
+
+
+def test_two_drops_of_the_golf_ball_contradict_each_other() -> None:
+    first, second = (drop_of(f"golf_ball_{number}") for number in (1, 2))
+    assert fit([(first.time, first.height, first.lightness)])[0] < 0.01
+    assert fit([(second.time, second.height, second.lightness)])[0] == pytest.approx(0.21, abs=0.01)
+
+
+def test_balls_with_holes_seem_to_be_held_back_in_proportion_to_speed() -> None:
+    drops = [drop_of(f"{ball}_{number}") for ball in WITH_HOLES for number in (1, 2)]
+    by_square = [fit([(drop.time, drop.height, drop.lightness)]) for drop in drops]
+    by_speed = [fit([(drop.time, drop.height, 1.0)], fallen_by_viscosity)[1] for drop in drops]
+    assert (min(by_speed), max(by_speed)) == pytest.approx((0.06, 0.18), abs=0.006)
+    lefts = [left for _, left in by_square]
+    assert (min(lefts), max(lefts)) == pytest.approx((0.17, 0.35), abs=0.006)
+    coefficients = [value for value, _ in by_square]
+    assert (min(coefficients), max(coefficients)) == pytest.approx((0.46, 0.68), abs=0.006)
+
+
+# What the diagnosis says
+
+
+@pytest.mark.parametrize("dense", ["golf_ball", "baseball"])
+def test_nothing_is_named_that_the_rows_of_a_dense_ball_do_not_hold(dense: str, tmp_path: Path) -> None:
+    found = diagnosed(tmp_path, dense)
+    (said,) = [said for said in table() if said.ball == dense]
+    assert (found["verdict"], names(found), found["remainder"], said.found) == ("none", [], None, "nothing")
+    assert found["smallest_visible"]["air_drag"]["value"] == pytest.approx(said.visible, abs=0.006)
+    assert found["wrong"]["height"]["noise_floor"]["value"] == pytest.approx(1e3 * said.noise, abs=6)
+
+
+def test_a_basketball_is_not_explained_by_a_constant_coefficient(tmp_path: Path) -> None:
+    found = diagnosed(tmp_path, "green_basketball")
+    assert (found["verdict"], names(found)) == ("unknown", [])
+    assert found["remainder"]["depends_on"] == ["time"]
+
+
+def test_the_page_shows_drag_the_control_and_a_ball_never_fitted() -> None:
+    """The page is run elsewhere; what it prints is compared with what is known."""
+    named = re.findall(r"air drag, drag coefficient ([\d.]+) \(95 %: ([\d.]+) … ([\d.]+)\)\.", PAGE)
+    assert len(named) == 2
+    assert all(0.46 < float(value) < 0.69 and float(low) < 0.5 < float(high) for value, low, high in named)
+    assert PAGE.count("Nothing found.") == 1
+    held_out = re.findall(r"On the rows held out the error of height falls from ([\d.]+) mm to ([\d.]+) mm", PAGE)
+    (before, after), (before_other, after_other) = [map(float, pair) for pair in held_out]
+    assert before > 15 * after
+    assert before_other > 8 * after_other
