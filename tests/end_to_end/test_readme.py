@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 from pathlib import Path
+from typing import Any
 
 import pytest
 from shown_in_docs import ROOT, blocks, check_page, commands, desk_in
@@ -74,6 +75,24 @@ def test_the_tour_visits_what_it_promises() -> None:
     assert {words.split()[1] for words in typed} >= {"init", "run", "compare", "verify", "describe"}
     assert any("--set" in words for words in typed)
     assert any("./bolt.py" in words for words in typed)
+
+
+NUMBERS = {11: "eleven", 16: "sixteen", 17: "seventeen", 18: "eighteen"}
+
+
+def test_it_lists_every_verb_and_every_plugin_with_its_effects() -> None:
+    import typer.main
+
+    from truing.cli.app import app
+    from truing.kernel import Kernel
+
+    text = re.sub(r"\s+", " ", README.read_text(encoding="utf-8"))
+    (listed,) = re.findall(r"and the verbs `([a-z ]+)`", text)
+    group: Any = typer.main.get_command(app)
+    assert sorted(listed.split()) == sorted(group.commands)
+    said = dict(re.findall(r"`(\w+)` \([^()]*?(\w+) effects\)", text))
+    offers = Kernel.installed().offers
+    assert said == {name: NUMBERS[len(offer.model.effects)] for name, offer in offers.items() if "." not in name}
 
 
 def test_the_picture_is_there_and_not_heavy() -> None:
