@@ -36,7 +36,7 @@ CREST = 0.2
 """How far below its rim a tank begins to spill, V: the water is not still. At the rim all that is to run over does."""
 FILM = 0.1
 """Level below which an outlet draws air and runs in proportion to the level, V: so an empty tank stays empty."""
-LONGEST_STEP = 4.0
+LONGEST_STEP = 2.0
 """Longest step of the calculation, s."""
 RAMP = (*(0.12 * step for step in range(51)), *(6.0 - 0.12 * step for step in range(51)))
 """A pump that is turned up to 6 V and down again, V."""
