@@ -68,7 +68,7 @@ def test_a_result_names_its_limits_effects_and_what_follows(calc: Calc) -> None:
     assert {(item["name"], item["acts_on"]) for item in depth["effects"]} == {
         ("running_in", "inputs"), ("warm_probe", "reading"),
     }  # fmt: skip
-    assert "at most 80 MPa, with reliability 0.99 calc run decides it" in shown(calc, str(PIN), "pressure")
+    assert "at most 80 MPa, with reliability 0.99: calc run decides it" in shown(calc, str(PIN), "pressure")
 
 
 def test_a_result_of_a_study_is_calculated_by_it(calc: Calc) -> None:

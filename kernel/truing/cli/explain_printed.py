@@ -139,7 +139,9 @@ def _slopes(told: Told, width: int) -> Iterator[str]:
 def _limits(told: Told, width: int) -> Iterator[str]:
     if told["limits"]:
         yield from _title("Limits that rest on it")
-        yield from table([(item["says"], _check_words(item)) for item in told["limits"]], width)
+        for item in told["limits"]:
+            words = _check_words(item)
+            yield from _wrapped(f"{item['says']}: {words}" if words else item["says"], width, INDENT, INDENT * 2)
 
 
 def _check_words(limit: Told) -> str:
@@ -151,7 +153,7 @@ def _check_words(limit: Told) -> str:
         return "calc run decides it" if limit["chance"] else ""
     value = f"{format_number(check['value'], 5)} {unit_text(check['unit'])}".strip()
     verdict = "passes" if check["passed"] else "FAILS"
-    return f"{verdict}: {value}, margin {format_number(check['margin'], 3)}"
+    return f"{value} {verdict}, margin {format_number(check['margin'], 3)}"
 
 
 def _published(told: Told, width: int) -> Iterator[str]:

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from truing.errors import TruingError
 from truing.setup import Setup
+from truing.studies.bench import Progress, silent
 from truing.studies.differences import exact_slopes, nominal_of, slopes
 from truing.studies.scatter import Scatter, scatter_of
 from truing.units.names import LEVELS
 
+PATIENCE = 20.0
+"""So many seconds derivatives may take; what is not reached then is said."""
 NOTHING = 1e-10
 """A source that moves a result by less than this share of it, when it changes by its own size, does not move it."""
 
@@ -47,25 +52,51 @@ def differentiable(setup: Setup) -> list[str]:
     return [name for name in (*numbers, *setup.conditions) if (value := nominal_of(setup, name)) == value]
 
 
-def influences(setup: Setup, results: Sequence[str], sources: Sequence[str]) -> Influences:
-    """Differentiate results of the function by sources and by all that scatters, in one batch of the model."""
+def influences(
+    setup: Setup, answers: Mapping[str, Any], sources: Sequence[str], *, progress: Progress = silent
+) -> Influences:
+    """Differentiate results of the function (by name, with their values) by sources and by all that scatters."""
     scatter = scatter_of(setup)
-    columns = tuple(dict.fromkeys([*sources, *scatter.columns]))
-    found = slopes(setup, results, columns, scatter)
+    columns = tuple(dict.fromkeys([*scatter.columns, *sources]))
+    slopes_of, remarks = _slopes(setup, tuple(answers), columns, scatter=scatter, progress=progress)
     exact = exact_slopes(setup)
     of: dict[str, tuple[Influence, ...]] = {}
     sd: dict[str, float] = {}
-    for result in results:
-        by_source = {**found.of[result], **{key: v for key, v in exact.get(result, {}).items() if key in columns}}
+    for result, answer in answers.items():
+        by_source = {**slopes_of[result], **{key: v for key, v in exact.get(result, {}).items() if key in columns}}
         variance = {name: _mean(value) for name, value in scatter.variances(by_source).items()}
         whole = sum(variance.values())
-        size = _size(found.nominal[result])
+        size = _size(answer)
         sd[result] = max(whole, 0.0) ** 0.5
         share = {name: part / whole if whole > 0 else 0.0 for name, part in variance.items()}
         of[result] = tuple(
             _influence(setup, scatter, name, by_source[name], size=size, share=share.get(name, 0.0)) for name in columns
         )
-    return Influences(of, sd, found.warnings)
+    return Influences(of, sd, tuple(remarks))
+
+
+def _slopes(
+    setup: Setup, results: Sequence[str], columns: Sequence[str], *, scatter: Scatter, progress: Progress
+) -> tuple[dict[str, dict[str, Any]], list[str]]:
+    """Differentiate by one column after the other, as long as there is patience; NaN stands for what was not found."""
+    of: dict[str, dict[str, Any]] = {result: dict.fromkeys(columns, math.nan) for result in results}
+    remarks: list[str] = []
+    ends = time.monotonic() + PATIENCE
+    for place, column in enumerate(columns):
+        progress("differentiating", place, len(columns))
+        if time.monotonic() > ends:
+            left = ", ".join(columns[place:])
+            remarks.append(f"one calculation takes so long that these were not differentiated by: {left}")
+            break
+        try:
+            found = slopes(setup, results, [column], scatter)
+        except TruingError as error:
+            remarks.append(f"no derivative by '{column}': {error}")
+            continue
+        remarks += found.warnings
+        for result in results:
+            of[result][column] = found.of[result][column]
+    return of, remarks
 
 
 def _influence(setup: Setup, scatter: Scatter, name: str, slope: Any, *, size: float, share: float) -> Influence:
@@ -99,7 +130,9 @@ def _size(value: Any) -> float:
 
 
 def _mean(value: Any) -> float:
-    return float(value.mean()) if getattr(value, "ndim", 0) else float(value)
+    if not getattr(value, "ndim", 0):
+        return float(value)
+    return float(value.mean()) if value.size else math.nan
 
 
 def by_share(found: Sequence[Influence]) -> list[Influence]:

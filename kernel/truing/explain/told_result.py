@@ -40,7 +40,7 @@ def of_result(setup: Setup, offer: Offer, name: str, progress: Progress) -> dict
         ],
         "followed_by": list(direct),
         "then": list(further),
-        **_moved_by(setup, item, study),
+        **_moved_by(setup, item, answers.get(name), progress),
         "limits": list(_limits(setup, name, calculation)),
         "published": list(_published(setup, offer, name, calculation)),
         "effects": _effects(setup, name, study, links),
@@ -97,12 +97,12 @@ def formula_of(setup: Setup, answers: Mapping[str, Any], item: ResultField) -> d
     }
 
 
-def _moved_by(setup: Setup, item: ResultField, study: str) -> dict[str, Any]:
+def _moved_by(setup: Setup, item: ResultField, answer: Any, progress: Progress) -> dict[str, Any]:
     """Say what moves the result: its scatter by source, and the change per one per cent of each input."""
     name = item.name
-    if study or name not in setup.model.own_result_fields:
+    if name not in setup.model.own_result_fields:
         return {"scatter": None, "slopes": [], "remarks": []}
-    found = influences(setup, [name], differentiable(setup))
+    found = influences(setup, {name: answer}, differentiable(setup), progress=progress)
     of = found.of[name]
     scatter = None
     if found.sd[name] > 0:
@@ -113,7 +113,7 @@ def _moved_by(setup: Setup, item: ResultField, study: str) -> dict[str, Any]:
     return {
         "scatter": scatter,
         "slopes": [slope_row(setup, name, one) for one in by_slope(of)],
-        "remarks": [text for text in found.warnings if f"of '{name}'" in text],
+        "remarks": list(found.warnings),
     }
 
 

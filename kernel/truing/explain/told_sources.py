@@ -7,6 +7,7 @@ from typing import Any
 
 from truing.declare.goals import Require, Vary, prices_in
 from truing.declare.sources import Effect, Tolerance
+from truing.evaluate import evaluate
 from truing.explain.amounts import amount, step_text, text_of
 from truing.explain.influence import Influences, influences
 from truing.explain.links import following, made_from
@@ -63,8 +64,9 @@ def _vary_words(item: Vary) -> str:
 
 def _moves(setup: Setup, sources: Sequence[str]) -> list[dict[str, Any]]:
     """Say of each result of the function what one per cent of the sources, and their scatter, do to it."""
+    answers = setup.model.read_results(evaluate(setup))
     results = [name for name, item in setup.model.own_result_fields.items() if not _is_table(item)]
-    found = influences(setup, results, sources)
+    found = influences(setup, {name: answers[name] for name in results}, sources)
     rows = [row for result in results if (row := _row(setup, found, result, sources)) is not None]
     return sorted(rows, key=lambda row: (-row["share"], -abs(row["percent"] or 0.0)))
 
