@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from pin_wear import PIN_WEAR, Pin, Wear
 
-from truing import Condition, Effect, Float, Model, Unknown, Vary, axis, column, found, given, inputs, results
+from truing import Condition, Effect, Float, Model, Sweep, Unknown, Vary, axis, column, found, given, inputs, results
 from truing.errors import InputError
 from truing.testing import Calc, Hidden, hide
 
@@ -179,6 +179,16 @@ def test_a_result_along_an_axis_is_measured_along_it_a_record_per_run() -> None:
     assert np.all((columns["room"] >= 10) & (columns["room"] <= 30))
 
 
+def test_what_a_study_sweeps_over_varies_in_use() -> None:
+    swept = replace(PIN_WEAR, sheet=[], studies=[Sweep(over="time", at="1..400 h")])
+    names = list(read(hide("sensor_offset", "5 um", NOISE, model=swept).measured))
+    assert names == ["time", "depth"]
+    chosen = replace(PIN_WEAR, sheet=[], studies=[], errors=PIN_WEAR.errors[2:])
+    columns = read(hide("sensor_offset", "5 um", NOISE, model=chosen).measured)
+    assert list(columns) == ["load", "depth"]
+    assert np.all((columns["load"] >= 50) & (columns["load"] <= 200))
+
+
 def test_inputs_may_take_levels_and_words() -> None:
     over = {"load": "5, 10, 20 N", "grease": ["thin", "thick"], "room": "12..28 degC"}
     columns = read(hide(None, noise="0.01 um", model=CREEP, over=over, rows=2, runs=24).measured)
@@ -252,10 +262,10 @@ REFUSED: list[tuple[Mapping[str, Any], str]] = [
     ),
     (
         {"over": {"load": "50..200 N"}},
-        "effect 'warm_probe' needs the condition 'probe_temperature', and over does not vary it: add "
+        "effect 'warm_probe' needs 'probe_temperature', and over does not vary it: add "
         '"probe_temperature": "LOW..HIGH degC" to over',
     ),
-    ({"over": None}, "no range is declared for it (low, high)"),
+    ({"over": None}, "needs 'probe_temperature', and no range is declared for it: add"),
     ({**NOTHING, "over": {}}, "nothing varies: say what is set from row to row"),
     ({"rows": 0}, "rows is 0; at least one"),
     ({"correlation": 1.0}, "correlation is 1; it lies between -1 and 1"),

@@ -96,8 +96,8 @@ class Model(Generic[I, R]):
     """A calculation: ``function`` takes SI floats or arrays (n,) and returns the same, no I/O, no globals.
 
     ``derivatives(inputs)`` may give exact ones, ``{result: {input: value}}`` in SI. ``example`` is the commented inputs
-    file that ``calc init`` writes. ``exceptions`` names checks of the conformance kit that the model does not pass, each
-    with the reason. Everything is checked when the model is made; a fault raises DeclarationError.
+    file that ``calc init`` writes. ``exceptions`` names checks of the conformance kit that the model does not pass,
+    each with the reason. Everything is checked when the model is made; a fault raises DeclarationError.
     """
 
     name: str

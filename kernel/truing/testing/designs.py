@@ -14,6 +14,7 @@ from truing.declare.sources import SINCE_START, Condition, Effect, Tolerance
 from truing.errors import TruingError
 from truing.measurements.overriding import WORDS
 from truing.setup import Setup
+from truing.studies.sweep import Sweep
 
 if TYPE_CHECKING:
     import numpy as np
@@ -107,29 +108,39 @@ def columns_of(
             columns.append(_column(setup, name, said, measured))
         except TruingError as error:
             faults.append(f"over, '{name}': {error}")
-    faults += _not_varied(effect, set(asked), is_stated=over is not None)
+    faults += _not_varied(setup, effect, set(asked), is_stated=over is not None)
     if not columns and not faults:
         faults.append('nothing varies: say what is set from row to row, over={"load": "10..90 N"}')
     return columns, faults
 
 
 def _by_default(setup: Setup, effect: Effect[Any, Any] | None) -> Iterator[tuple[str, str]]:
-    """Give what is declared to vary and is not made once (it has no tolerance), and what the effect needs."""
-    model = setup.model
-    made = {name for source in model.errors if isinstance(source, Tolerance) for name in source.on}
-    for goal in model.objectives:
-        if isinstance(goal, Vary) and not goal.by and goal.input not in made:
-            item = model.input_fields[goal.input]
-            if item.varies and item.kind != "whole":
-                yield goal.input, _joined(goal.low, goal.high)
+    """Give what is declared to vary, and what the effect needs.
+
+    What a study sweeps over varies in use; only where none does it is what may be chosen (``Vary``), unless that is
+    made once, which its tolerance says.
+    """
+    yield from dict(_swept(setup) or _chosen(setup)).items()
     for condition in effect.needs if effect is not None else ():
         said = usual_range(condition)
         if said and condition.made_from in {"", condition.name}:
             yield condition.name, said
 
 
-def _joined(low: Any, high: Any) -> str:
-    return f"{low} .. {high}"
+def _swept(setup: Setup) -> list[tuple[str, str]]:
+    """Return the ranges over which the model's studies sweep."""
+    known = {*setup.model.input_fields, *setup.model.known_conditions}
+    sweeps = [study for study in setup.model.studies if isinstance(study, Sweep)]
+    return [(study.over, study.at) for study in sweeps if study.over in known and study.at]
+
+
+def _chosen(setup: Setup) -> list[tuple[str, str]]:
+    """Return the ranges of what may be chosen and has no tolerance."""
+    model = setup.model
+    made = {name for source in model.errors if isinstance(source, Tolerance) for name in source.on}
+    goals = [goal for goal in model.objectives if isinstance(goal, Vary) and not goal.by and goal.input not in made]
+    fields = model.input_fields
+    return [(goal.input, f"{goal.low}..{goal.high}") for goal in goals if fields[goal.input].kind == "float"]
 
 
 def usual_range(condition: Condition) -> str:
@@ -257,16 +268,19 @@ def _is_counted(setup: Setup, name: str) -> bool:
     return condition is not None and condition.history == SINCE_START
 
 
-def _not_varied(effect: Effect[Any, Any] | None, asked: set[str], *, is_stated: bool) -> Iterator[str]:
-    """Say which conditions an effect needs and nobody varies: without them it cannot be found."""
+def _not_varied(setup: Setup, effect: Effect[Any, Any] | None, asked: set[str], *, is_stated: bool) -> Iterator[str]:
+    """Say which columns an effect needs and nobody varies, one sentence each: without them it cannot be found."""
+    missing: dict[str, list[Condition]] = {}
     for condition in effect.needs if effect is not None else ():
-        if condition.name in asked or condition.made_from in asked:
-            continue
-        source = condition.made_from or condition.name
-        made = f" (it is the {condition.derived})" if source != condition.name else ""
-        like = usual_range(condition) or f"LOW..HIGH {condition.unit}".strip()
-        why = "over does not vary it" if is_stated else "no range is declared for it (low, high)"
+        if condition.name not in asked and condition.made_from not in asked:
+            missing.setdefault(condition.made_from or condition.name, []).append(condition)
+    for source, conditions in missing.items():
+        names = " and ".join(f"'{condition.name}'" for condition in conditions)
+        made = f" (made from '{source}')" if source != conditions[0].name else ""
+        unit = _unit_of(setup, source, ()) or ""
+        usual = usual_range(conditions[0]) if not made else ""
+        why = "over does not vary it" if is_stated else "no range is declared for it"
         yield (
-            f"effect '{effect.name if effect else ''}' needs the condition '{condition.name}'{made}, and {why}: "
-            f'add "{source}": "{like}" to over'
+            f"effect '{effect.name if effect else ''}' needs {names}{made}, and {why}: "
+            f'add "{source}": "{usual or f"LOW..HIGH {unit}".strip()}" to over'
         )

@@ -39,7 +39,7 @@ def hide(
     allow, shapes in the middle. ``noise`` is the standard deviation of the gauge, in the unit of the measured result or
     in "%" of the span of its readings, or by result. ``measure`` names the results, by default those that ``noise``
     names or fits. ``over`` says what is set from row to row, ``{"load": "10..90 N", "oil": "20, 40, 60 degC"}``, by
-    default what the effect needs and what is declared to vary without a tolerance. ``rows`` are those of one run; a
+    default what the effect needs and what a study sweeps over, or what may be chosen. ``rows`` are those of one run; a
     result along an axis is measured along it. ``settings`` are as with ``--set``. The machine is that of the drawing,
     or one drawn from the tolerances (``machine=7``). ``correlation`` is that of the noise of neighbouring rows. One
     ``seed`` is one record.
