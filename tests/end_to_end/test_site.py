@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -68,6 +69,50 @@ def test_every_link_inside_the_site_arrives(site: Path) -> None:  # noqa: F811
 def test_no_formula_is_left_as_it_was_typed(site: Path) -> None:  # noqa: F811
     for page in pages(site):
         assert "arithmatex" not in page.read_text(encoding="utf-8"), page
+
+
+def test_every_page_is_in_the_navigation(site: Path) -> None:  # noqa: F811
+    from html.parser import HTMLParser
+
+    class Sidebar(HTMLParser):
+        found: set[Path] = set()  # noqa: RUF012
+
+        def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+            if tag == "a":
+                self.found.add((site / str(dict(attributes).get("href")).partition("#")[0]).resolve())
+
+    text = (site / "index.html").read_text(encoding="utf-8")
+    reader = Sidebar()
+    reader.feed(text[text.index('<nav id="sidebar"') : text.index("</nav>")])
+    listed = {page for page in pages(site) if page.parent.parent.name != "gallery"}
+    assert listed <= reader.found
+
+
+STUDIES = {"Sweep": "press", "Allocation": "press", "Surrogate": "reducer", "Optimise": "reducer"}
+"""Where the gallery has an outcome of each kind; the others stand in every one."""
+
+
+def keys(document: Any) -> set[str]:
+    """Every key of a document, at any depth."""
+    if isinstance(document, dict):
+        return set(document) | {key for item in document.values() for key in keys(item)}
+    return {key for item in document for key in keys(item)} if isinstance(document, list) else set()
+
+
+def test_the_json_of_a_study_has_the_keys_that_its_chapter_shows(site: Path) -> None:  # noqa: F811
+    text = (DOCS / "reference" / "studies.md").read_text(encoding="utf-8")
+    shown = re.findall(r"^## (\w+)\n.*?```json\n(.*?)```", text, re.DOTALL | re.MULTILINE)
+    assert len(shown) == 6
+    written = {name: site / "gallery" / name / "results.json" for name in ("press", "reducer")}
+    known = {name: keys(json.loads(file.read_text(encoding="utf-8"))) for name, file in written.items()}
+    named = set(
+        ["compression", "force", "rate", "stress", "wire_diameter", "coil_diameter", "shear_modulus", "active_coils"]
+    )
+    named |= {"sobol_first", "sobol_total"}  # with an option that costs too much for a gallery
+    for title, block in shown:
+        places = [STUDIES[title]] if title in STUDIES else list(known)
+        unknown = keys(json.loads(block)) - set.union(*(known[place] for place in places)) - named
+        assert not unknown, title
 
 
 def test_every_model_has_a_page_with_all_that_it_declares(site: Path) -> None:  # noqa: F811

@@ -6,6 +6,7 @@ import hashlib
 import io
 import json
 import os
+import shutil
 import tomllib
 from collections.abc import Iterator
 from contextlib import chdir, redirect_stderr, redirect_stdout
@@ -21,6 +22,8 @@ from truing.kernel.source import code_hash
 
 KEPT = ROOT / "build" / "gallery"
 """Where calculated sheets stay until the code, the templates or the example change; with TRUING_GALLERY=kept longer."""
+MOST_KEPT = 3
+"""So many older versions of a sheet stay beside it."""
 SHOWN = ("sheet.html", "inputs.toml", "extended.toml", "results.json", "diagnosis.json")
 
 
@@ -91,6 +94,8 @@ def calculated(sheet: Sheet) -> Path:
     said = io.StringIO()
     with chdir(KEPT), redirect_stdout(said), redirect_stderr(said):
         code = main([*sheet.words(), "--output", str(target), "-q"])
+    for folder in older[:-MOST_KEPT]:
+        shutil.rmtree(folder, ignore_errors=True)
     if code not in (0, 1):
         raise RuntimeError(f"the sheet '{sheet.name}' of the gallery ended with exit code {code}:\n{said.getvalue()}")
     return target
