@@ -53,7 +53,7 @@ def run(
     order = RunOrder(folder, cases, workers=workers or 1, cluster=cluster, resume=resume, pdf=pdf, excel=excel)
     with progress_bar(settings) as progress, told_by_line(setup), _told_what_is_kept(order, settings):
         done = perform(setup, offer, order, progress)
-    _say_beside(done, settings)
+    _say_beside(done, order, settings)
     if as_json:
         out_json(done.document)
     else:
@@ -79,8 +79,8 @@ def _told_what_is_kept(order: RunOrder, settings: Settings) -> Iterator[None]:
         raise
 
 
-def _say_beside(done: Done, settings: Settings) -> None:
-    """Say what is no result: warnings, cases that failed, how the printing went."""
+def _say_beside(done: Done, order: RunOrder, settings: Settings) -> None:
+    """Say what is no result: warnings, cases that failed, how the printing went, which tables were added."""
     for warning in (*done.calculation.warnings, *done.remarks):
         settings.say(f"warning: {one_line(warning)}")
     if done.cases is not None:
@@ -89,6 +89,9 @@ def _say_beside(done: Done, settings: Settings) -> None:
                 say(str(case.fault))
     if done.note:
         settings.say(done.note)
+    if order.excel:
+        tables = ["results.csv", *(["cases.csv"] if done.cases is not None else [])]
+        settings.say(f"for a spreadsheet: {' and '.join(str(order.folder / name) for name in tables)}")
     if done.resumed:
         settings.say(f"{done.resumed} finished batches of an interrupted run were taken up")
     setup = done.calculation.setup

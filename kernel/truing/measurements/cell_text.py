@@ -10,7 +10,7 @@ MARK = "\ufeff"
 
 NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
 MISSING_WORDS = {"nan", "na", "n/a", "#n/a", "null", "none", "-"}
-_FORMULA = re.compile(r"'*(?P<words>\s*[=+\-@].+)", re.DOTALL)
+_FORMULA = re.compile(r"'*(?P<words>\s*[=+\-@＝＋－＠].+)", re.DOTALL)
 
 
 def guarded(cell: str) -> str:
