@@ -76,15 +76,15 @@ def python_of(text: str, names: dict[str, str]) -> str:
 
 @traps()
 @given(expressions())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=15, deadline=None)
 def test_a_line_of_symbols_reads_back_exactly(text: str) -> None:
     line = symbolic(TextWriter(), parse(text), SYMBOLS)
     assert exact(python_of(line, {**SEEN, "outer_radius": "outer_radius"})) == exact(text), line
 
 
-@traps([("-12.5", "mm")] * 10, [("-2.5", "")] * 10, [("1.2e-05", "N/mm")] * 10, [("360", "")] * 10)
+@traps([("-12.5", "mm")] * 10, [("1.2e-05", "")] * 10)
 @given(expressions(), st.lists(st.tuples(st.sampled_from(SHOWN), st.sampled_from(["", *UNITS])), min_size=len(NAMES)))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=15, deadline=None)
 def test_a_line_of_numbers_reads_back_exactly(text: str, shown: list[tuple[str, str]]) -> None:
     numbers = dict(zip(NAMES, shown, strict=False))
     values: dict[str, Any] = {name: number(shown) for name, (shown, _) in numbers.items()}

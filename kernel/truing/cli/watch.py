@@ -128,10 +128,11 @@ class _Watcher:
             with progress_bar(self.settings) as progress, told_by_line(setup):
                 done = perform(setup, offer, self.order, progress)
         except Exception as error:
+            self.calculating = False
             self._complain(error)
-        else:
-            self._report(done, time.monotonic() - started)
+            return
         self.calculating = False
+        self._report(done, time.monotonic() - started)
 
     def _report(self, done: Done, seconds: float) -> None:
         self._warn(done)
