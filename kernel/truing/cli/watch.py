@@ -13,7 +13,7 @@ import typer
 
 from truing.cli.console import Settings, one_line, out, progress_bar, say, sentence_of, settings_of, verb
 from truing.cli.load import find_offer
-from truing.cli.words import Changed, Plugin
+from truing.cli.words import Changed, Excel, Plugin
 
 if TYPE_CHECKING:
     from truing.kernel import Offer
@@ -32,6 +32,7 @@ def watch(
     changed: Changed = None,
     cases: Annotated[Path | None, typer.Option("--cases", help="A CSV file: every row is a case.")] = None,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")] = None,
+    excel: Excel = False,
     workers: Annotated[int, typer.Option("--workers", min=1, help="Processes that share the work.")] = 1,
     every: Annotated[float, typer.Option("--every", min=0.02, help="Seconds between two looks at the files.")] = 0.5,
 ) -> int:
@@ -44,7 +45,7 @@ def watch(
     sys.dont_write_bytecode = True  # two savings within one second would otherwise be one to Python
     offer = find_offer(plugin, settings)
     _demand_file(inputs)
-    order = RunOrder(output or Path("runs") / inputs.stem, cases, workers=workers)
+    order = RunOrder(output or Path("runs") / inputs.stem, cases, workers=workers, excel=excel)
     demand_place(order.folder)
     watcher = _Watcher(plugin, inputs, tuple(changed or ()), order, settings)
     watched = Watched(every)
