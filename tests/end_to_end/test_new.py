@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import os
+import re
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -77,6 +80,26 @@ def test_a_project_is_written_where_one_stands(calc: Calc, tmp_path: Path) -> No
     assert (tmp_path / "here" / "gantry_arm" / "physics.py").is_file()
     spaced = calc("new", "gantry_arm", "-q", "--output", tmp_path / "ä b" / "c", cwd=tmp_path)
     assert (spaced.code, spaced.out + spaced.err) == (0, "")
+
+
+def test_the_readme_names_verbs_and_files_that_are_there() -> None:
+    import typer.main
+
+    from truing.cli.app import app
+
+    files = project(PLANS[1])
+    group: Any = typer.main.get_command(app)
+    named = set(re.findall(r"calc (\w+)", files["README.md"]))
+    assert {"run", "init", "diagnose", "describe", "new"} <= named <= set(group.commands)
+    assert set(re.findall(r"`([\w./]+/[\w./]+\.\w+)`", files["README.md"])) - set(files) == {
+        "runs/gantry_arm/sheet.html",
+        "runs/measured/extended.toml",
+    }
+    assert {word for word in ("Bar", "Bending", "bend", "soft_clamp") if f"`{word}`" in files["README.md"]} == {
+        node.name
+        for node in ast.parse(files["gantry_arm/physics.py"]).body
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef))
+    }
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,8 @@ from truing.kernel import Kernel
 LONGEST_NAME = 40
 WIDEST_TITLE = 70
 SPELLING = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
-OF_THE_PROJECT = frozenset({"build", "conftest", "dist", "runs", "tests", "venv"})
-"""Names that a project uses for something else."""
+OF_THE_PROJECT = frozenset({"build", "conftest", "dist", "mypy", "pytest", "ruff", "runs", "tests", "venv"})
+"""Names that a project uses for something else, whether that is installed here or not."""
 OF_WINDOWS = frozenset(
     {"aux", "con", "nul", "prn", *(f"{port}{digit}" for port in ("com", "lpt") for digit in "123456789")}
 )
