@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from shared import Calc
-from truing.cli.changes import amount_of
+from truing.cli.changes import amount_of, styles_of, words_of
 from truing.runs.comparison import Change, changes, differing
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
@@ -145,6 +145,27 @@ def test_tolerances_effects_and_studies_in_words(calc: Calc, tmp_path: Path) -> 
 )
 def test_by_how_much(before: Any, after: Any, words: str) -> None:
     assert amount_of(Change("inputs", "x", before, after)) == words
+
+
+@pytest.mark.parametrize("passed", [True, False])
+def test_a_check_that_one_run_lacks_did_not_flip(passed: bool) -> None:
+    check = {"value": 5.0, "limit": 8.0, "unit": "mm", "margin": 0.375, "passed": passed}
+    gone, new = Change("checks", "depth", check, None), Change("checks", "depth", None, check)
+    assert (gone.flipped, amount_of(gone)) == (False, "gone")
+    assert (new.flipped, amount_of(new)) == (False, "new")
+    assert styles_of(gone) == styles_of(new) == ("", "", "dim", "bold", "")
+
+
+def test_what_is_long_or_nested_stays_short() -> None:
+    plugin = {"name": "pin", "version": "1.2", "model": "pin_wear"}
+    assert words_of(Change("settings", "plugin", plugin, {**plugin, "version": "1.3"}))[2:4] == (
+        "pin_wear 1.2", "pin_wear 1.3",
+    )  # fmt: skip
+    assert words_of(Change("studies", "reliability", {"p": {"value": 1.0}}, None)) == (
+        "studies", "reliability", "there", "-", "gone",
+    )  # fmt: skip
+    effect = {f"unknown_{place}": {"value": 1.0, "unit": "um"} for place in range(20)}
+    assert words_of(Change("effects", "many", None, effect))[3] == "(see results.json)"
 
 
 def test_a_limit_that_moved_is_said() -> None:

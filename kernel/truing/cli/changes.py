@@ -19,10 +19,17 @@ LEAST = 1e-9
 
 def words_of(change: Change) -> tuple[str, str, str, str, str]:
     """Say what changed: kind, name, before, after, and by how much."""
-    before, after = _value(change.before), _value(change.after)
-    if _is_study(change):
-        before = after = ""
+    before, after = map(_value, pieces_of(change))
+    if change.kind == "studies":
+        before, after = (
+            "" if _is_study(change) else ABSENT if piece is None else "there" for piece in pieces_of(change)
+        )
     return change.kind, one_line(change.name), before, after, amount_of(change)
+
+
+def pieces_of(change: Change) -> tuple[Any, Any]:
+    """Return what stood before and after."""
+    return change.before, change.after
 
 
 def styles_of(change: Change) -> tuple[str, str, str, str, str]:
@@ -160,11 +167,13 @@ def _value(value: Any) -> str:
         is_number = isinstance(number, (int, float)) and not isinstance(number, bool)
         said = f"{format_number(number, 8) if is_number else number} {value.get('unit') or ''}".strip()
         return _short(said if value.get("passed", True) else said + " (fails)")
+    if isinstance(value, dict) and {"name", "version", "model"} <= value.keys():
+        return _short(f"{value['model']} {value['version']}")
     if isinstance(value, dict) and all(isinstance(item, dict) for item in value.values()):
-        return ", ".join(f"{one_line(name)} = {_value(item)}" for name, item in value.items())
+        return _short(", ".join(f"{name} = {_value(item)}" for name, item in value.items()), 2 * LONGEST)
     return _short(str(value))
 
 
-def _short(text: str) -> str:
+def _short(text: str, longest: int = LONGEST) -> str:
     plain = one_line(text)
-    return plain if len(plain) <= LONGEST else "(see results.json)"
+    return plain if len(plain) <= longest else "(see results.json)"

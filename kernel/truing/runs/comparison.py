@@ -24,7 +24,8 @@ class Change:
     @property
     def flipped(self) -> bool:
         """Whether this is a check that fails in one run and passes in the other."""
-        return _passed(self.before) is not None and _passed(self.before) is (not _passed(self.after))
+        before, after = _passed(self.before), _passed(self.after)
+        return before is not None and after is not None and before != after
 
     @property
     def relative(self) -> float | None:
