@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from functools import cache
 from pathlib import Path
@@ -45,6 +46,23 @@ def test_the_page_shows_the_fields_of_the_schema(name: str) -> None:
     words = "docs/reference/files: run python docs/site/manual/formats.py"
     assert with_table(page) == page.read_text(encoding="utf-8"), words
     assert f"({name}.schema.json)" in page.read_text(encoding="utf-8")
+
+
+def test_every_format_is_in_the_list_of_files() -> None:
+    listed = (FORMATS / "README.md").read_text(encoding="utf-8")
+    assert not [name for name in NAMES if f"({name}.md)" not in listed]
+    assert {page.stem for page in FORMATS.glob("*.md")} == {*NAMES, "README"}
+
+
+def test_every_section_of_an_inputs_file_is_explained() -> None:
+    from truing.inputs_file import json_schema
+    from truing.kernel import Kernel
+
+    kernel = Kernel()
+    kernel.add_file(SPRING)
+    text = (FORMATS.parent / "inputs_file.md").read_text(encoding="utf-8")
+    sections = json_schema(kernel.offer("coil_spring"))["properties"]
+    assert set(re.findall(r"^## (\w+)$", text, re.MULTILINE)) == set(sections)
 
 
 def objects(schema: Any) -> Any:

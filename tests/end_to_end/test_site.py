@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from built_site import site  # noqa: F401
-from shared import ROOT
+from shared import ROOT, process
 
 DOCS = ROOT / "docs"
 
@@ -28,6 +29,11 @@ def test_every_page_on_disk_is_a_page_of_the_site(site: Path) -> None:  # noqa: 
         place = page.relative_to(DOCS).with_suffix(".html")
         place = place.with_name("index.html") if place.name == "README.html" else place
         assert (site / place).is_file(), place
+
+
+def test_what_builds_the_site_is_typed() -> None:
+    answer = process([sys.executable, "-m", "mypy", "--strict", "docs/site/hooks.py", "docs/site/manual"], ROOT)
+    assert answer.code == 0, answer.out
 
 
 LOADS = [

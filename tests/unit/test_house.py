@@ -38,12 +38,12 @@ def test_types() -> None:
 
 
 def test_style() -> None:
-    answer = tool("ruff", "check", "kernel", "plugins", "tests")
+    answer = tool("ruff", "check", "kernel", "plugins", "tests", "docs/site")
     assert answer.code == 0, answer.out
 
 
 def test_format() -> None:
-    answer = tool("ruff", "format", "--check", "kernel", "plugins", "tests")
+    answer = tool("ruff", "format", "--check", "kernel", "plugins", "tests", "docs/site")
     assert answer.code == 0, answer.out
 
 
