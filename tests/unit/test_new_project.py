@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import ast
+import io
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -181,6 +183,30 @@ def test_nothing_is_written_where_nothing_may_be(tmp_path: Path, monkeypatch: py
     with pytest.raises(OutputError, match=r"new\.py: cannot be written: Permission denied"):
         write_single_file(tmp_path / "new.py", "")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_single_file_that_cannot_be_finished_is_taken_away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A full disk: the file can be made and not be written."""
+    true = Path.open
+
+    def full(self: Path, *arguments: Any, **more: Any) -> Any:
+        true(self, *arguments, **more).close()
+        return io.TextIOWrapper(_Full(), write_through=True)
+
+    monkeypatch.setattr(Path, "open", full)
+    with pytest.raises(OutputError, match=r"new\.py: cannot be written: No space left on device"):
+        write_single_file(tmp_path / "new.py", "text")
+    assert list(tmp_path.iterdir()) == []
+
+
+class _Full(io.RawIOBase):
+    """A disk without room."""
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, text: Any) -> int:
+        raise OSError(28, "No space left on device")
 
 
 FILES = {"a.txt": "1", "b/c/d.txt": "2", ".hidden/e.txt": "3"}
