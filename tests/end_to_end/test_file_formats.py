@@ -21,7 +21,7 @@ from manual.formats import FORMATS, with_table
 
 NAMES = sorted(file.name.removesuffix(".schema.json") for file in FORMATS.glob("*.schema.json"))
 SPRING = ROOT / "docs" / "examples" / "coil_spring.py"
-PRINTED = {"run": "results", "diagnose": "diagnosis", "explain": ""}
+PRINTED = {"run": "results", "diagnose": "diagnosis", "index": "listing", "explain": ""}
 """Verbs whose --json has another name than the verb, or a form for each kind of thing, which its own page shows."""
 
 
@@ -103,6 +103,8 @@ def test_a_run_writes_what_is_described(calc: Calc, tmp_path: Path) -> None:
         assert calc("run", SPRING, "-q", "--output", place, *more).code in (0, 1)
         for name in ("results", "run"):
             demand(name, json.loads((tmp_path / place / f"{name}.json").read_text(encoding="utf-8")))
+    (tmp_path / "foreign").mkdir()
+    demand("listing", json.loads(calc("index", ".", "--json").out))
     answer = calc("compare", "plain", "soft", "--json")
     assert answer.code == 1
     demand("compare", json.loads(answer.out))
