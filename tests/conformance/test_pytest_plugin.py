@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from truing.testing import Answer, Calc, CalcProcess
+from truing.testing import Answer, Calc
 from truing.testing.fixtures import process
 
 LIGHT = """
@@ -48,14 +48,6 @@ def test_calc_runs_the_command_line_in_an_empty_folder(calc: Calc, tmp_path: Pat
     refused = calc("run", "press_linkage", "--inputs", "press.toml", cwd=tmp_path / "other")
     assert (refused.code, refused.out) == (2, "")
     assert "press.toml" in refused.err
-
-
-def test_calc_may_be_a_process_of_its_own(calc_process: CalcProcess, tmp_path: Path) -> None:
-    (tmp_path / "packages").mkdir()
-    (tmp_path / "packages" / "sitecustomize.py").write_text("print('found')\n", encoding="utf-8")
-    answer = calc_process("plugins", "--names", path=tmp_path / "packages")
-    assert (answer.code, answer.out.splitlines()[0]) == (0, "found")
-    assert "press_linkage" in answer.out
 
 
 def pytest_on(folder: Path, text: str, *words: str) -> Answer:

@@ -4,11 +4,15 @@ The record is that of docs/examples/harmonic_catalogue: the torsion that catalog
 three straight pieces, with 10 urad of scatter.
 """
 
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from hidden_effects.plugin_asking import model_of
+from truing.testing import recorded
 
 EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "harmonic_catalogue"
 STIFF = 16e3, 25e3, 29e3  # N m/rad
@@ -16,16 +20,9 @@ CHANGES = 7.0, 25.0  # N m
 
 
 @cache
-def _document() -> dict[str, Any]:
-    from truing.diagnosis.engine import diagnose
-    from truing.diagnosis.reading import read_records
-    from truing.inputs_file import read_setup
-    from truing.kernel import Kernel
-    from truing.runs.diagnosis_document import diagnosis_document
-
-    offer = Kernel.installed().offer("harmonic_fractal")
-    setup = read_setup(EXAMPLE / "inputs.toml", offer)
-    return diagnosis_document(diagnose(setup, read_records([EXAMPLE / "measured.csv"], offer, setup)))
+def _document() -> Mapping[str, Any]:
+    inputs, record = ((EXAMPLE / name).read_text(encoding="utf-8") for name in ("inputs.toml", "measured.csv"))
+    return recorded(model_of("harmonic_fractal"), inputs=inputs, measured=record).answered.document
 
 
 def measured() -> Any:
