@@ -141,7 +141,7 @@ def effect(function: Callable[..., Bar], *unknowns: Unknown, looks_like: str, so
     """Declare an effect on the inputs under the name of its function."""
     return Effect(
         function.__name__, on_inputs=function, unknowns=list(unknowns), looks_like=looks_like, source=source,
-        why=str(function.__doc__).splitlines()[0],
+        why=str(function.__doc__).splitlines()[0].rstrip("."),
     )  # fmt: skip
 
 
