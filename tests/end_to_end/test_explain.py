@@ -84,6 +84,8 @@ def test_an_input_says_what_depends_on_it(calc: Calc) -> None:
     assert moves["pressure"] == pytest.approx((1.0, 1.0), rel=1e-6)
     assert moves["depth"] == pytest.approx((1.0, LOAD_SHARE), rel=1e-3)
     assert "distance" not in moves
+    assert load["limits"] == ["pressure at most 80 MPa, with reliability 0.99"]
+    assert told(calc, "speed")["limits"] == []
     lines = shown(calc, str(PIN), "load")
     assert "stated by the inputs file; above 0 N" in lines
     assert "may be chosen from 50 N to 200 N" in lines

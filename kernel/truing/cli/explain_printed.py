@@ -201,9 +201,13 @@ def _input(told: Told, width: int) -> Iterator[str]:
     if told["namesake"]:
         place = f"{told['model']}.tolerances.{told['name']}"
         yield from _wrapped(f"the tolerance of this name scatters {', '.join(told['namesake'])}: see {place}", width)
-    for words in (*told["varied"], *(f"is the limit of {one}" for one in told["limits"])):
+    for words in (*told["varied"], *(f"is the limit of {one}" for one in told["limit_of"])):
         yield from _wrapped(words, width)
     yield from _moves(told, width)
+    if told["limits"]:
+        yield from _title("Limits that rest on it")
+        for words in told["limits"]:
+            yield from _wrapped(words, width, INDENT, INDENT * 2)
     yield from _followed(told, width)
     yield from _effects("Effects that change it", told["effects"], width)
 

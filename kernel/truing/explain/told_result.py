@@ -41,7 +41,7 @@ def of_result(setup: Setup, offer: Offer, name: str, progress: Progress) -> dict
         "followed_by": list(direct),
         "then": list(further),
         **_moved_by(setup, item, answers.get(name), progress),
-        "limits": list(_limits(setup, name, calculation)),
+        "limits": list(_limits(setup, name, calculation, {*direct, *further})),
         "published": list(_published(setup, offer, name, calculation)),
         "effects": _effects(setup, name, study, links),
         "sections": [section.title for section in model.sheet if name in section.names],
@@ -132,20 +132,20 @@ def slope_row(setup: Setup, result: str, one: Influence) -> dict[str, Any]:
     }
 
 
-def _limits(setup: Setup, name: str, calculation: Calculation) -> Iterator[dict[str, Any]]:
-    """Say the limits and goals on a result, and those that it sets for others, with what is left of them."""
+def _limits(setup: Setup, name: str, calculation: Calculation, below: set[str]) -> Iterator[dict[str, Any]]:
+    """Say the limits and goals on a result and on those ``below`` it, and those that it sets for others."""
     from truing.studies.checks import check_name
 
     requires = [item for item in setup.model.objectives if isinstance(item, Require)]
     checks = {check.name: check for check in calculation.checks}
-    for item in setup.model.objectives:
+    for item in sorted(setup.model.objectives, key=lambda item: getattr(item, "result", "") != name):
         if isinstance(item, (Minimise, Maximise)) and item.result == name:
             yield {
                 "says": "should be small" if isinstance(item, Minimise) else "should be large",
                 "check": None,
                 "chance": False,
             }
-        if isinstance(item, Require) and name in {item.result, item.limit, item.reliability}:
+        if isinstance(item, Require) and (name in {item.result, item.limit, item.reliability} or item.result in below):
             check = checks.get(check_name(item, requires))
             data = None if check is None else check_data(check)
             yield {"says": require_words(item, name), "check": data, "chance": item.reliability is not None}

@@ -26,6 +26,8 @@ def of_input(setup: Setup, name: str) -> dict[str, Any]:
     direct, further = following(made_from(model), name)
     scattering = [tolerance for tolerance in model.tolerances.values() if name in tolerance.on]
     changed = [effect for effect, one in all_touched(setup).items() if name in one.inputs]
+    moves = _moves(setup, [name]) if item.kind == "float" and _is_given(setup, name) else None
+    moved = {*direct, *further, *(row["name"] for row in moves or ())}
     return {
         "symbol": symbol_text(item.symbol) if item.symbol else "",
         "note": item.spec.note,
@@ -36,10 +38,11 @@ def of_input(setup: Setup, name: str) -> dict[str, Any]:
         "bounds": bounds_in_words(item),
         "followed_by": list(direct),
         "then": list(further),
-        "moves": _moves(setup, [name]) if item.kind == "float" and _is_given(setup, name) else None,
+        "moves": moves,
+        "limits": [require_words(one, "") for one in _requires(setup) if one.result in moved],
         "tolerances": [_tolerance(setup, tolerance) for tolerance in scattering],
         "namesake": list(model.tolerances[name].on) if name in model.tolerances and not _is_on(setup, name) else [],
-        "limits": [require_words(one, "") for one in _requires(setup) if name in {one.limit, one.reliability}],
+        "limit_of": [require_words(one, "") for one in _requires(setup) if name in {one.limit, one.reliability}],
         "varied": [_vary_words(one) for one in model.objectives if isinstance(one, Vary) and one.input == name],
         "effects": [_effect_row(setup, model.effects[effect]) for effect in changed],
     }
