@@ -175,6 +175,16 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         del sys.modules[module]
 
 
+@contextmanager
+def hearing() -> Iterator[None]:
+    """Hear Ctrl-C, also where the tests themselves were started deaf to it (``&``)."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 def test_data_files_and_the_files_of_a_package_are_watched(calc: Calc, package: Path, tmp_path: Path) -> None:
     results, weights = tmp_path / "out" / "results.json", []
 
@@ -199,10 +209,15 @@ def test_data_files_and_the_files_of_a_package_are_watched(calc: Calc, package: 
             weights.append(weight_other_than(weights[-1]))
             time.sleep(0.3)
         finally:
-            _thread.interrupt_main()
+            if not ended.is_set():
+                _thread.interrupt_main()
 
-    threading.Thread(target=edit, daemon=True).start()
-    answer = calc("watch", package.name, "--inputs", "table.toml", "-o", "out", "--every", "0.02")
+    ended, editor = threading.Event(), threading.Thread(target=edit, daemon=True)
+    with hearing():
+        editor.start()
+        answer = calc("watch", package.name, "--inputs", "table.toml", "-o", "out", "--every", "0.02")
+        ended.set()
+        editor.join(LONGEST)
     assert answer.code == 0, answer.err
     assert weights == pytest.approx([3 * 9.81, 4 * 9.81, 2 * 9.81])
     lines = answer.out.splitlines()
