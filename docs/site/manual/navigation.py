@@ -46,8 +46,8 @@ def navigation(pages: Titles) -> list[dict[str, Any]]:
 
 
 def _title(linked: str | None, own: str) -> str:
-    """The page's own heading, or the shorter words of the index where that is long."""
-    if linked and (len(own) > LONGEST or len(linked) < len(own)) and len(linked) <= LONGEST:
+    """The page's own heading, or the words of the index where that is long."""
+    if linked and len(own) > LONGEST >= len(linked):
         return linked
     return own.partition(": ")[0] if len(own) > LONGEST else own
 

@@ -55,7 +55,7 @@ function load() {
   });
 }
 
-// All words must occur; a word in the heading counts most, at the beginning of a word more than within one.
+// All words must occur; a word in the heading counts most, at the beginning of a word more than within one, often more than once.
 function worth(item, words) {
   let sum = 0;
   for (const word of words) {
@@ -63,7 +63,7 @@ function worth(item, words) {
     if (title < 0 && text < 0) return 0;
     const begins = new RegExp(`(^|[^\\p{L}\\p{N}])${word.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")}`, "u");
     if (title >= 0) sum += 20 + (begins.test(item.inTitle) ? 20 : 0) + (item.inTitle === word ? 40 : 0);
-    if (text >= 0) sum += 1 + (begins.test(item.inText) ? 4 : 0);
+    if (text >= 0) sum += Math.min(item.inText.split(word).length - 1, 8) + (begins.test(item.inText) ? 4 : 0);
   }
   return sum + (item.place.includes("#") ? 0 : 3);
 }
