@@ -27,6 +27,7 @@ def assert_finds(hidden: Hidden, *, within: float = WITHIN) -> Diagnosis:
     Raises AssertionError with one sentence on what was found instead and what to change, and UsageError where nothing
     was hidden.
     """
+    __tracebackhide__ = True
     if hidden.effect is None and not hidden.is_strange:
         raise UsageError("nothing was hidden, so nothing can be found; assert_finds_nothing(hidden) is for that")
     diagnosis = hidden.answered.diagnosis
@@ -43,6 +44,7 @@ def assert_finds_nothing(hidden: Hidden) -> Diagnosis:
 
     Raises AssertionError with what was found, and UsageError where something was hidden.
     """
+    __tracebackhide__ = True
     if hidden.effect is not None or hidden.is_strange:
         raise UsageError(f"{hidden_words(hidden)} was hidden; assert_finds(hidden) is for that")
     diagnosis = hidden.answered.diagnosis
@@ -97,6 +99,7 @@ def finds_every_effect(
 
 def _demand_name(hidden: Hidden, diagnosis: Diagnosis) -> Cause:
     """Return the cause that carries the name of what was hidden, and demand that it is the only one."""
+    __tracebackhide__ = True
     name = hidden.effect
     named = [cause for cause in diagnosis.causes if _carries(cause, hidden)]
     if not named:
@@ -118,6 +121,7 @@ def _carries(cause: Cause, hidden: Hidden) -> bool:
 
 def _demand_sizes(hidden: Hidden, cause: Cause) -> None:
     """Demand that every interval holds the truth; a cause with another name has other unknowns."""
+    __tracebackhide__ = True
     from truing.report.diagnosis_words import fitted_text
 
     if cause.effect != hidden.effect:
@@ -137,6 +141,7 @@ def _demand_sizes(hidden: Hidden, cause: Cause) -> None:
 
 def _demand_unknown(hidden: Hidden, diagnosis: Diagnosis) -> None:
     """Demand that what nobody registered is called unknown."""
+    __tracebackhide__ = True
     if diagnosis.verdict == "unknown":
         return
     if diagnosis.verdict == "named":
@@ -148,6 +153,7 @@ def _demand_unknown(hidden: Hidden, diagnosis: Diagnosis) -> None:
 
 def _demand_gain(hidden: Hidden, within: float) -> None:
     """Demand that rows that were never fitted are predicted about as well as their noise allows."""
+    __tracebackhide__ = True
     for result, noise in hidden.noise.items():
         if result not in hidden.answered.predicted:
             fail(f"{_model(hidden)}: '{result}' was measured and is not used; {_notes(hidden)}")

@@ -24,7 +24,8 @@ NARROWER = (0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-6)
 
 
 def fail(sentence: str) -> NoReturn:
-    """End a check with the sentence that its reader needs."""
+    """End a check with the sentence that its reader needs; pytest points at the test that asked for it."""
+    __tracebackhide__ = True
     raise AssertionError(sentence)
 
 
