@@ -58,6 +58,12 @@ def ask(calc: Calc, monkeypatch: pytest.MonkeyPatch) -> Ask:
         ("calc table harmonic_fractal.", ["harmonic_fractal.made_flank"]),
         ("calc run press_linkage --set reading=", ["reading=complete", "reading=printed"]),
         ("calc run -q press_linkage -v --set tolerances.kn", ["tolerances.knee_drive_length="]),
+        ("calc run harmonic_fractal.made_flank --set studies.flank_file.f", ["studies.flank_file.file="]),
+        ("calc run harmonic_fractal --set mating_surface", ["mating_surface.", "mating_surface="]),
+        (
+            "calc run harmonic_fractal --set mating_surface.spacing_",
+            ["mating_surface.spacing_x=", "mating_surface.spacing_y="],
+        ),
         ("calc explain pr", ["press_linkage."]),
         ("calc explain press_linkage.slider_t", ["press_linkage.slider_tilt"]),
         ("calc explain press_linkage slider_t", ["slider_tilt"]),
@@ -83,6 +89,7 @@ def test_everything_that_can_be_set(ask: Ask) -> None:
     assert list(ask(begin + "effects.running_in.")) == ["effects.running_in.extra=", "effects.running_in.length="]
     assert "studies.reliability.draws=" in ask(begin + "area=1 --set studies.reliability.d")
     assert "units.depth=" in ask(begin + "units.")
+    assert "studies.diagnose.hold_out=" in ask(begin + "studies.diagnose.")
 
 
 def test_whatever_is_offered_is_taken(ask: Ask, calc: Calc, monkeypatch: pytest.MonkeyPatch) -> None:

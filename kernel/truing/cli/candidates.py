@@ -184,6 +184,8 @@ def _inputs(model: Model[Any, Any]) -> Iterator[Named]:
     """Give inputs and conditions; options of its reader stand behind one that is read from a file."""
     for name, item in model.input_fields.items():
         yield f"{name}=", _with_unit(item.spec.note, " or ".join(item.choices) or item.unit)
+        if item.kind == "file":
+            yield f"{name}.", "how the data file is read"
     for name, condition in model.known_conditions.items():
         if name not in model.input_fields:
             yield f"{name}=", _with_unit(condition.note or "a condition", condition.unit)
@@ -227,12 +229,18 @@ def _effects(model: Model[Any, Any], wanted: str, *, is_inside: bool) -> Iterato
 
 
 def _studies(model: Model[Any, Any], wanted: str, *, is_inside: bool) -> Iterator[Named]:
+    from truing.inputs_file.diagnose_options import diagnose_schema
     from truing.inputs_file.study_options import options_of
 
     if not is_inside:
         for study in model.studies:
             yield f"studies.{study.name}.", (type(study).__doc__ or "").strip().partition("\n")[0]
+        yield "studies.diagnose.", "what is asked of calc diagnose"
         yield from (("studies.run=", "which studies run, in this order"), ("studies.seed=", ""))
+        return
+    if wanted == "diagnose":
+        options = diagnose_schema(model)["properties"].items()
+        yield from ((f"studies.diagnose.{name}=", str(words.get("description", ""))) for name, words in options)
         return
     study = next(one for one in model.studies if one.name == wanted)
     for name in options_of(study):
