@@ -34,8 +34,8 @@ class Watched:
 
     every: float
     sleep: Callable[[float], None] = time.sleep
-    _stamps: dict[Path, Stamp] = field(default_factory=dict)
-    _contents: dict[Path, str] = field(default_factory=dict)
+    _stamps: dict[Path, Stamp] = field(default_factory=dict, init=False)
+    _contents: dict[Path, str] = field(default_factory=dict, init=False)
 
     def add(self, files: Iterable[Path]) -> None:
         """Watch these files besides, from what is in them now."""

@@ -56,11 +56,6 @@ def step_text(setup: Setup, name: str, step: float | None, digits: int = 3) -> s
     return with_unit(pretty(number), unit)
 
 
-def signed(text: str) -> str:
-    """Put a plus in front of a number that has no minus."""
-    return text if text.startswith(("−", "-", "0", "–")) and not text.startswith("0.") else f"+{text}"
-
-
 def item_of(setup: Setup, name: str, value: Any) -> dict[str, Any]:
     """Return a row about an input, a condition or a result: what it is called, its symbol, its value, its note."""
     from truing.formulas import symbol_text
