@@ -216,6 +216,21 @@ def test_balls_with_holes_seem_to_be_held_back_in_proportion_to_speed() -> None:
     assert (min(coefficients), max(coefficients)) == pytest.approx((0.46, 0.68), abs=0.006)
 
 
+def test_stokes_law_would_need_air_a_thousand_times_as_viscous() -> None:
+    for drop in [drop_of(f"{ball}_{number}") for ball in WITH_HOLES for number in (1, 2)]:
+        rate, _ = fit([(drop.time, drop.height, 1.0)], fallen_by_viscosity)
+        assert rate * drop.mass / (3 * np.pi * drop.diameter) > 1000 * 1.8e-5
+
+
+def test_basketballs_are_slowed_by_a_nearly_steady_force() -> None:
+    drops = [drop_of(f"{colour}_basketball_{number}") for colour in ("blue", "green") for number in (1, 2)]
+    steady = [fit([(drop.time, drop.height, 1.0)], lambda time, by: (GRAVITY - by) * time**2 / 2) for drop in drops]
+    assert (min(by for by, _ in steady), max(by for by, _ in steady)) == pytest.approx((1.3, 1.8), abs=0.05)
+    assert all(
+        left < 0.6 * fit([(d.time, d.height, d.lightness)])[1] for (_, left), d in zip(steady, drops, strict=True)
+    )
+
+
 def test_what_is_left_of_a_ball_with_holes_is_the_same_curve_in_both_drops() -> None:
     alike = []
     for ball in WITH_HOLES:

@@ -141,6 +141,13 @@ def test_with_both_causes_on_nothing_is_left_to_name(tmp_path: Path) -> None:
     assert calc_here(desk, *command, "runs/hahn1/extended.toml", "--output", "runs/again").code == 0
     again = read_document(desk / "runs" / "again")
     assert (again["verdict"], again["remainder"]) == ("none", None)
+    visible = {name: item["value"] for name, item in again["smallest_visible"].items()}
+    assert 0.3 < visible["thermocouple_offset"] < 0.8
+    electrons = (
+        1.45e-10 / 16.5e-6
+    )  # Carr, McCammon and White, below 10 K, in parts of the coefficient at room temperature
+    assert electrons == pytest.approx(9e-6, rel=0.05)
+    assert 0.7 < visible["free_electrons"] / electrons < 1.4
 
 
 # J. W. Ekin, Experimental Techniques for Low-Temperature Measurements, appendix A6.4
