@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -195,6 +196,9 @@ def _gain(diagnosis: Diagnosis) -> Iterator[str]:
             f"reducible error removed; log score {score_text(item.log_score_gain)} per row, "
             f"{p_text(item.p_value)}; 90 % intervals cover {percent(item.coverage90)}"
         )
+        if item.held_out is not None:
+            before, after = (amount_text(replace(item.rmse_before, value=one)) for one in item.held_out)
+            yield f"{spoken(item.result)}: RMS error {before} → {after} on the rows held out on request"
     if diagnosis.causes:
         yield f"the same causes in {percent(diagnosis.stability)} of the folds"
 

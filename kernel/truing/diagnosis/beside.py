@@ -72,10 +72,9 @@ class Placed:
 
 @dataclass(frozen=True)
 class Tried:
-    """A pair fitted with the exact model: the contest and the place it stands in, what it is worth, and its twins."""
+    """A pair fitted with the exact model, the contest in which it stands alone, and the twins of all causes there."""
 
     contest: Contest
-    place: int
     found: Fit
     twins: Mapping[int, tuple[Twin, ...]]
 
@@ -102,7 +101,7 @@ def second_beside_first(full: Contest, winner: int, best: Fit, rows: NDArray[np.
             owner = causes[1].owner
             twins = {**problem.twins, owner: pair.twins.get(owner, ())}
             problem = replace(_competing(problem, causes), twins=twins)
-    return contest(problem, noise_after(top.contest, top.place, top.found, full.noise), rows, rounds=1)
+    return contest(problem, noise_after(top.contest, 0, top.found, full.noise), rows, rounds=1)
 
 
 def _firsts(plain: Contest, winner: int) -> Iterator[Placed]:
@@ -162,7 +161,8 @@ def _fitted_beside(plain: Contest, first: Placed, rows: NDArray[np.bool_]) -> It
     for place in wide.found.ranked()[:MOST_FITTED]:
         near = _only_pairs(plain, _competing(bare, placed(wide, fit(wide, place))), rows)
         if near is not None:
-            yield Tried(near, 0, fit(near, 0), twins)
+            near, found = _fitted(near)
+            yield Tried(near, found, twins)
 
 
 def _only_pairs(plain: Contest, problem: Problem, rows: NDArray[np.bool_]) -> Contest | None:
@@ -172,6 +172,16 @@ def _only_pairs(plain: Contest, problem: Problem, rows: NDArray[np.bool_]) -> Co
     evidence = evidence_of(problem, plain.noise, rows)
     found = search(evidence, pairs((), problem.beside), plain.settings)
     return Contest(problem, plain.noise, evidence, found, plain.settings)
+
+
+def _fitted(near: Contest) -> tuple[Contest, Fit]:
+    """Fit the one pair of a contest; again where another noise filter goes better with what the exact fit leaves."""
+    found = fit(near, 0)
+    best = max(near.settings, key=lambda setting: worth(near, replace(found, setting=setting)))
+    if best != found.setting:
+        near = replace(near, found=replace(near.found, setting=(best,)))
+        found = fit(near, 0)
+    return near, found
 
 
 def _name(candidate: Candidate) -> tuple[str, ...]:

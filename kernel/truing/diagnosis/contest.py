@@ -20,6 +20,7 @@ from truing.diagnosis.search import (
     search,
     solve,
 )
+from truing.studies.bench import Done, unheard
 
 if TYPE_CHECKING:
     import numpy as np
@@ -61,13 +62,16 @@ def contest(
     rounds: int = ROUNDS,
     settings: Sequence[tuple[int, ...]] = (),
     sharpen: bool = True,
+    done: Done = unheard,
 ) -> Contest:
     """Search and learn the noise in turn, ``rounds`` times; ``settings`` are the noise filters to try, if known.
 
-    With ``sharpen`` the grids of shapes become finer about the best explanations from round to round.
+    With ``sharpen`` the grids of shapes become finer about the best explanations from round to round. ``done`` hears of
+    the rounds.
     """
     raw = dict(noise.residuals)
     for left in range(rounds - 1, -1, -1):
+        done(rounds - 1 - left, rounds)
         evidence = evidence_of(problem, noise, rows)
         found, tried = _all_scored(problem, evidence, settings)
         if left:

@@ -82,10 +82,14 @@ class _Duel:
 def next_points(full: Contest, winner: int, rivals: Sequence[int]) -> list[NextPoint]:
     """Return up to four settings that separate the winner and its rivals, with the reason for each.
 
-    Shapes that nobody registered say nothing beyond the rows they were fitted to, so they are no rivals here.
+    Shapes that nobody registered say nothing beyond the rows they were fitted to, so they are no rivals here. Of
+    results along an axis nothing is proposed: what could be set there is a whole record.
     """
     import numpy as np
 
+    fields = full.problem.machine.start.model.own_result_fields
+    if any(fields[name].along for name in full.problem.machine.records.measured):
+        return []
     places = [place for place in (winner, *rivals) if is_physical(full.found.hypotheses[place])][: RIVALS + 1]
     chosen = full.found.hypotheses[winner]
     twins = twins_of(full, chosen, full.solution(winner).coefficients.tolist()) if is_physical(chosen) else []

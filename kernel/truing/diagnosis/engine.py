@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import inf
 from typing import TYPE_CHECKING
 
 from truing.declare.near_miss import near_miss
@@ -12,7 +13,7 @@ from truing.diagnosis.contest import Contest, contest
 from truing.diagnosis.decide import Decision, alternatives, decide, without_needless_inputs
 from truing.diagnosis.design import next_points
 from truing.diagnosis.findings import wrong_of
-from truing.diagnosis.fit import Fit, fit, input_values, may_be_zero
+from truing.diagnosis.fit import Fit, fit, input_values, may_be_zero, shape_part
 from truing.diagnosis.gain import Nested, nested, sign_flip_p
 from truing.diagnosis.machine import machine_of
 from truing.diagnosis.naming import alternative_of, causes_of, extended_setup, remainder_of
@@ -26,6 +27,7 @@ from truing.diagnosis.unmeasured import with_results
 from truing.diagnosis.visibility import inseparable, smallest_visible
 from truing.errors import UsageError
 from truing.setup import Setup
+from truing.studies.bench import FINE, Done, part_of, unheard
 from truing.studies.threads import one_thread
 
 if TYPE_CHECKING:
@@ -33,9 +35,12 @@ if TYPE_CHECKING:
 
 RANKED = 8
 FITTED = 4
+SURELY = 30.0
+"""Twice the log-likelihood by which a cause must be better than none where its interval holds zero."""
 LEAST_REDUCIBLE = 0.03
 """Less than this share of the noise is not told from it, so there is nothing to remove."""
-STAGES = 5
+SHARES = (0.0, 0.05, 0.35, 0.45, 0.5, 1.0)
+"""What share of the time has passed when each stage ends, for whoever waits."""
 
 
 def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None) -> Diagnosis:
@@ -53,7 +58,7 @@ def _diagnose(setup: Setup, records: Records, step: _Steps) -> Diagnosis:
     raw = first_noise(machine)
     problem = problem_of(machine, raw.scales)
     step.done("columns")
-    full = without_needless_inputs(contest(problem, raw, ~records.held_out))
+    full = without_needless_inputs(contest(problem, raw, ~records.held_out, done=step.within()))
     step.done("search")
     decision = decide(full, seed=setup.seed)
     step.done("significance")
@@ -65,8 +70,7 @@ def _diagnose(setup: Setup, records: Records, step: _Steps) -> Diagnosis:
             decision = decide(full, seed=setup.seed)
             best, decision = _certain(full, decision)
     step.done("fit")
-    problem = full.problem
-    answer = _answer(problem, full, decision, best, raw)
+    answer = _answer(full, decision, best, raw, done=step.within())
     step.done("gain")
     extended = None if answer.extended is None else replace(answer.extended, inputs=setup.inputs)
     return replace(answer, setup=setup, extended=extended)
@@ -79,21 +83,40 @@ def _certain(full: Contest, decision: Decision) -> tuple[Fit, Decision]:
     best that explains as much as the search asks for, or nothing.
     """
     best = fit(full, decision.winner)
-    if not _is_doubtful(best):
+    if not _is_doubtful(full, decision.winner, best):
         return best, decision
     found, limit = full.found, full.found.score[0] + decision.thresholds.first
     singles = [place for place in found.ranked() if len(found.hypotheses[place].pieces) == 1]
     for place in [each for each in singles if found.score[each] > limit][:FITTED]:
         alone = fit(full, place)
-        if not _is_doubtful(alone):
+        if not _is_doubtful(full, place, alone):
             return alone, replace(decision, winner=place)
     return fit(full, 0), replace(decision, winner=0)
 
 
-def _is_doubtful(best: Fit) -> bool:
-    """Whether the intervals of all amplitudes of some cause contain zero."""
-    pieces = best.hypothesis.pieces
-    return any(may_be_zero(best, place) for place, piece in enumerate(pieces) if piece.kind == "term")
+def _is_doubtful(full: Contest, place: int, best: Fit) -> bool:
+    """Whether some cause may as well be zero: by its intervals, and by what the explanation is worth without it.
+
+    The interval of an amplitude that saturates may hold zero although nothing else will do.
+    """
+    found, pieces = full.found, best.hypothesis.pieces
+    for number, piece in enumerate(pieces):
+        if piece.kind == "term" and may_be_zero(best, number):
+            left = tuple(each.tag for each in pieces if each is not piece)
+            others = [found.likelihood[at] for at, item in enumerate(found.hypotheses) if item.key == left]
+            if found.likelihood[place] - max(others, default=-inf) < SURELY:
+                return True
+    return False
+
+
+def _adds_nothing(full: Contest, winner: int, rival: int) -> bool:
+    """Whether a rival is the winner itself with something that may as well be zero."""
+    chosen, other = full.found.hypotheses[winner], full.found.hypotheses[rival]
+    if not set(chosen.key) < set(other.key):
+        return False
+    found = fit(full, rival)
+    more = [place for place, piece in enumerate(other.pieces) if piece.tag not in chosen.key and piece.kind == "term"]
+    return bool(more) and all(may_be_zero(found, place) for place in more)
 
 
 class _Steps:
@@ -106,7 +129,13 @@ class _Steps:
         """Count one stage."""
         self.count += 1
         if self.progress is not None:
-            self.progress(what, self.count, STAGES)
+            self.progress(what, round(FINE * SHARES[self.count]), FINE)
+
+    def within(self) -> Done:
+        """Return what reports the steps of the present stage."""
+        if self.progress is None:
+            return unheard
+        return part_of(self.progress, "diagnosis", SHARES[self.count], SHARES[self.count + 1])
 
 
 def _check_options(setup: Setup) -> None:
@@ -118,13 +147,14 @@ def _check_options(setup: Setup) -> None:
             raise UsageError(f"[studies.diagnose] per_file: '{name}' is no effect, unknown or input.{near}")
 
 
-def _answer(problem: Problem, full: Contest, decision: Decision, best: Fit, raw: NoiseModel) -> Diagnosis:
+def _answer(full: Contest, decision: Decision, best: Fit, raw: NoiseModel, *, done: Done) -> Diagnosis:
+    problem = full.problem
     machine, records, setting = problem.machine, problem.machine.records, best.setting
     units = units_of(full)
     causes = by_share(full, best, causes_of(full, best))
     remainder = remainder_of(full, best, decision, units)
-    rivals = alternatives(full, decision.winner)
-    judged = nested(full, decision.winner, decision.thresholds, raw)
+    rivals = [place for place in alternatives(full, decision.winner) if not _adds_nothing(full, decision.winner, place)]
+    judged = nested(full, decision.winner, decision.thresholds, raw, done=done)
     wrong = wrong_of(full, best, decision.null, units)
     verdict: Verdict = "named" if causes else "unknown" if remainder else "none"
     return Diagnosis(
@@ -231,7 +261,10 @@ def _gains(full: Contest, best: Fit, judged: Nested, units: Mapping[str, str], *
 
 
 def _held_out(full: Contest, best: Fit, name: str) -> tuple[float, float] | None:
-    """Return root mean squares before and after on rows that were held out on request."""
+    """Return root mean squares before and after on rows that were held out on request.
+
+    An unregistered shape was fitted to its own record and says nothing of another one.
+    """
     import numpy as np
 
     machine = full.problem.machine
@@ -239,6 +272,9 @@ def _held_out(full: Contest, best: Fit, name: str) -> tuple[float, float] | None
     if not rows.any():
         return None
     curve = next(item for item in _curves(full, best) if item.result == name)
-    errors = [(curve.measured - values)[rows] for values in (curve.before, curve.after)]
+    fitted_runs = np.unique(machine.records.run_of[~machine.records.held_out])
+    is_other = ~np.isin(machine.records.run_of, fitted_runs)
+    extended = curve.after - np.where(is_other, shape_part(full, best, name), 0.0)
+    errors = [(curve.measured - values)[rows] for values in (curve.before, extended)]
     before, after = (float(np.sqrt(np.mean(error**2))) for error in errors)
     return before, after

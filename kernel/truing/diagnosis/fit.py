@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     Matrix = NDArray[np.float64]
 
 STEP = 1e-4
+MOVED = 0.02
+"""Step of a direction of the inputs, in standard deviations."""
+OFF = 1.0
+"""Sum of squares, in units of the noise, that linear columns of the inputs may miss."""
 LEVEL = 0.975
 LARGEST_LEVERAGE = 0.95
 STEEPEST = 1e-12
@@ -131,13 +135,18 @@ class Fitter:
         """Return the extended model at every row, SI, by result."""
         records = self.machine.records
         rows = replace(records.rows, columns={**records.rows.columns, **self.columns(x, u)})
-        made = dict(predict(self.setup, replace(records, rows=rows)))
+        made = predict(self.setup, replace(records, rows=rows))
+        return {name: values + self.shape_part(x, name) for name, values in made.items()}
+
+    def shape_part(self, x: Matrix, name: str) -> Any:
+        """Return what unregistered shapes add to a result, SI: an array (n,), or 0 where there are none."""
+        added: Any = 0.0
         for item, value in zip(self.parameters, x, strict=True):
             if self.hypothesis.pieces[item.piece].kind == "shape":
                 column = self.contest.problem.columns[item.column]
-                for name, part in column.parts.items():
-                    made[name] = made[name] + part * (column.per * value)
-        return made
+                if name in column.parts:
+                    added = added + column.parts[name] * (column.per * value)
+        return added
 
 
 def _in_file(held: Any, file: int, files: Any, value: float) -> Any:
@@ -160,6 +169,7 @@ def _parameters(contest: Contest, hypothesis: Hypothesis) -> list[Parameter]:
             if piece.kind == "term":
                 term = contest.problem.terms[piece.place]
                 name, file = term.unknowns[place_in], term.files[place_in]
+                low, high = term.low[place_in], term.high[place_in]
                 if term.at:  # a chord stands for sizes near its own; the exact model is not bound to them
                     low, high = (end / per for end in one_side(contest.problem.candidates[piece.owner], term.at))
             found.append(Parameter(place, name, column, per, low, high, file))
@@ -195,16 +205,22 @@ def fit(contest: Contest, place: int) -> Fit:
     residual = _residual(contest, fitter, setting, p)
     low = np.array([item.low for item in fitter.parameters] + [-np.inf] * (len(start) - p))
     high = np.array([item.high for item in fitter.parameters] + [np.inf] * (len(start) - p))
-    inside = np.clip(start, low, high)
+    way: Mapping[str, Any] = {"bounds": (low, high), "x_scale": "jac", "xtol": 1e-10, "ftol": 1e-12}
+    way = {**way, **(SPARING if contest.evidence.rows > MANY else {})}
     jacobian = _Jacobian(contest, fitter, setting, residual)
-    way = SPARING if contest.evidence.rows > MANY else {}
-    found = least_squares(
-        residual, inside, jac=jacobian, bounds=(low, high), x_scale="jac", xtol=1e-10, ftol=1e-12, **way
-    )
+    found = least_squares(residual, np.clip(start, low, high), jac=jacobian, **way)
+    if jacobian.is_off(found.x):
+        jacobian.is_exact = True
+        found = least_squares(residual, found.x, jac=jacobian, **way)
     covariance, freedom = _covariance(contest, found.fun, np.asarray(found.jac), setting)
     left = _split(contest, found.fun)
     predicted = fitter.predicted(found.x[:p], found.x[p:])
     return Fit(hypothesis, setting, fitter.parameters, found.x[:p], found.x[p:], covariance, freedom, predicted, left)
+
+
+def shape_part(contest: Contest, found: Fit, name: str) -> Any:
+    """Return what the unregistered shapes of a fit add to a result, SI: an array (n,), or 0 where there are none."""
+    return Fitter(contest, found.hypothesis).shape_part(found.values, name)
 
 
 def _start(fitter: Fitter, coefficients: Matrix) -> Matrix:
@@ -249,11 +265,26 @@ def white_residual(contest: Contest, fitter: Fitter, setting: tuple[int, ...], x
 
 
 class _Jacobian:
-    """Derivatives of the residual: of the unknowns by differences, of the inputs from their linear columns."""
+    """Derivatives of the residual: of the unknowns by differences, of the inputs from their linear columns.
+
+    Where the model is not linear in the inputs as far as they have moved, ``is_exact`` takes differences there, too.
+    """
 
     def __init__(self, contest: Contest, fitter: Fitter, setting: tuple[int, ...], residual: _residual) -> None:
         self.contest, self.fitter, self.residual = contest, fitter, residual
         self.inputs = white_directions(contest, setting)
+        self.is_exact = False
+
+    def is_off(self, x: Matrix) -> bool:
+        """Whether the linear columns of the inputs miss more than chance of what the inputs do at a solution."""
+        import numpy as np
+
+        p, rows = self.residual.p, len(self.inputs)
+        if len(x) == p:
+            return False
+        nominal = np.concatenate([x[:p], np.zeros(len(x) - p)])
+        missed = (self.residual(x) - self.residual(nominal))[:rows] + self.inputs @ x[p:]
+        return bool(missed @ missed > OFF)
 
     def __call__(self, x: Matrix) -> Matrix:
         import numpy as np
@@ -262,6 +293,10 @@ class _Jacobian:
         made = np.zeros((len(self.inputs) + len(x) - p, len(x)))
         made[: len(self.inputs), p:] = -self.inputs
         made[len(self.inputs) :, p:] = np.eye(len(x) - p)
+        for place in range(p, len(x)) if self.is_exact else ():
+            move = np.zeros(len(x))
+            move[place] = MOVED
+            made[:, place] = (self.residual(x + move) - self.residual(x - move)) / (2 * MOVED)
         for place, item in enumerate(self.fitter.parameters):
             step = STEP * max(abs(float(x[place])), 1.0 if item.is_log else 1e-2)
             up, down = x.copy(), x.copy()

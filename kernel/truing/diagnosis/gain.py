@@ -15,6 +15,7 @@ from truing.diagnosis.contest import Contest, contest
 from truing.diagnosis.decide import Thresholds, decide_again, without_needless_inputs
 from truing.diagnosis.noise import SETTINGS, Setting
 from truing.diagnosis.search import NoiseModel, Solution
+from truing.studies.bench import Done, unheard
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,8 +25,13 @@ if TYPE_CHECKING:
 
 FOLDS = 5
 SHORTEST_BLOCK = 6
+FEWEST_BLOCKS = 8
+"""A short record has shorter blocks rather than fewer: of four that all gain the best significance is 1/16."""
 BLOCKS = 20
 FLIPS = 999
+MOST_EXACT = 12
+"""Of so many blocks all signs are tried, of more some that are drawn."""
+ROUNDING = 1e-9
 COVERED = 0.9
 SMALLEST_GAIN = 1e-6
 """Less than this per row is rounding, not gain."""
@@ -58,8 +64,8 @@ class Nested:
 def blocks_of(full: Contest, setting: tuple[int, ...]) -> NDArray[np.intp]:
     """Number blocks of consecutive rows inside each run: a twentieth of the rows, six, or three correlation times.
 
-    Rows held out on request are in no block (-1). Where something is fitted file by file, a run has two blocks at
-    least: no fold may leave out all that is known of a file.
+    A record of fewer than 48 rows has blocks of an eighth of it. Rows held out on request are in no block (-1). Where
+    something is fitted file by file, a run has two blocks at least: no fold may leave out all that is known of a file.
     """
     import numpy as np
 
@@ -69,7 +75,8 @@ def blocks_of(full: Contest, setting: tuple[int, ...]) -> NDArray[np.intp]:
     first = np.flatnonzero(np.append(True, runs[1:] != runs[:-1]))
     sizes = np.diff(np.append(first, len(runs)))
     reach = max(_correlation_rows(SETTINGS[place]) for place in setting)
-    length = int(max(SHORTEST_BLOCK, len(runs) // BLOCKS, min(3 * reach, len(runs) // (2 * FOLDS))))
+    shortest = min(SHORTEST_BLOCK, max(2, len(runs) // FEWEST_BLOCKS))
+    length = int(max(shortest, len(runs) // BLOCKS, min(3 * reach, len(runs) // (2 * FOLDS))))
     if full.problem.machine.start.diagnose.per_file:
         length = min(length, max(int(sizes.min()) // 2, 1))
     blocks = -(-sizes // length)
@@ -83,7 +90,7 @@ def _correlation_rows(setting: Setting) -> float:
     return 0.0 if setting.rho <= 0 else -1.0 / log(setting.rho)
 
 
-def nested(full: Contest, winner: int, thresholds: Thresholds, raw: NoiseModel) -> Nested:
+def nested(full: Contest, winner: int, thresholds: Thresholds, raw: NoiseModel, *, done: Done = unheard) -> Nested:
     """Repeat the search in every fold and judge it on the rows left out; ``raw`` is the first idea of the noise."""
     import numpy as np
 
@@ -96,6 +103,7 @@ def nested(full: Contest, winner: int, thresholds: Thresholds, raw: NoiseModel) 
     same = 0
     folds = min(FOLDS, int(block_of.max()) + 1)
     for fold in range(folds):
+        done(fold, folds)
         test = (block_of >= 0) & (block_of % folds == fold)
         again = contest(full.problem, raw, usable & ~test, rounds=ROUNDS, settings=full.settings, sharpen=False)
         again = without_needless_inputs(again)
@@ -114,23 +122,27 @@ def _judge(
     """Fill in the rows of one fold for one result."""
     import numpy as np
 
-    machine, item = again.problem.machine, again.evidence.channels[channel]
+    item = again.evidence.channels[channel]
     weights = again.noise.weights[item.name][test]
-    truth = _residual(again, item.name)[test]
+    left_over = _residual(again, item.name)
+    truth = left_over[test]
     logs = []
     for solution, errors in zip(solutions, (judged.before, judged.after), strict=True):
         error = truth - linear_prediction(again, solution, item.name)[test]
         errors[test] = error
         left = solution.innovations[channel]
-        sd = float(np.sqrt(np.mean(left**2) * SETTINGS[solution.setting[channel]].variance_ratio)) * item.scale
+        setting = SETTINGS[solution.setting[channel]]
+        sd = float(np.sqrt(np.mean(left**2) * setting.variance_ratio)) * item.scale
+        if setting.rho > 0:  # a misfit may remember longer than any filter
+            fitted = (left_over - linear_prediction(again, solution, item.name))[item.rows] * item.weights
+            sd = max(sd, float(np.sqrt(np.mean(fitted**2))))
         logs.append(_log_density(error * weights / sd, again.noise.tails[item.name].freedom) + np.log(weights / sd))
     judged.gain[test] = logs[1] - logs[0]
-    trained = _residual(again, item.name)[item.rows] - linear_prediction(again, solutions[1], item.name)[item.rows]
+    trained = (left_over - linear_prediction(again, solutions[1], item.name))[item.rows]
     limit = float(np.quantile(np.abs(trained * item.weights), COVERED))
     limit *= sqrt(len(trained) / max(len(trained) - len(solutions[1].coefficients) - len(solutions[1].directions), 1))
     outside = np.abs(judged.after[test] * weights) > limit
     judged.inside[test] = np.where(np.isfinite(judged.after[test]), ~outside, np.nan)
-    del machine
 
 
 def _residual(again: Contest, name: str) -> Matrix:
@@ -176,6 +188,10 @@ def sign_flip_p(gain: Matrix, block_of: NDArray[np.intp], *, seed: int) -> float
     total = float(sums.sum())
     if total <= SMALLEST_GAIN * len(gain) or len(sums) < 2:
         return 1.0
+    least = total * (1 - ROUNDING)
+    if len(sums) <= MOST_EXACT:
+        signs = 1.0 - 2.0 * (np.arange(2 ** len(sums))[:, None] >> np.arange(len(sums)) & 1)
+        return float((signs @ sums >= least).mean())
     generator = np.random.Generator(np.random.SFC64(seed))
     flipped = generator.choice([-1.0, 1.0], size=(FLIPS, len(sums))) @ sums
-    return float((1 + (flipped >= total).sum()) / (1 + FLIPS))
+    return float((1 + (flipped >= least).sum()) / (1 + FLIPS))

@@ -331,14 +331,22 @@ def of_their_own(problem: Problem, pieces: Sequence[Piece]) -> Problem:
 
 
 def with_pairs(problem: Problem, terms: Sequence[tuple[Term, Term]]) -> Problem:
-    """Return the problem with further pairs: a first term, and a second as it is beside that one."""
+    """Return the problem with further pairs: a first term, and a second as it is beside that one.
+
+    Their bounds are left to the exact fit: what a linear size oversteps the true one may keep.
+    """
     made, count = _Columns(problem.columns), len(problem.terms)
     every = list({id(term): term for pair in terms for term in pair}.values())
-    pieces = {id(term): made.term(count + place, term) for place, term in enumerate(every)}
+    pieces = {id(term): _unbounded(made.term(count + place, term)) for place, term in enumerate(every)}
     added = tuple((pieces[id(first)], pieces[id(second)]) for first, second in terms)
     return replace(
         problem, terms=(*problem.terms, *every), columns=tuple(made.columns), beside=(*problem.beside, *added)
     )
+
+
+def _unbounded(piece: Piece) -> Piece:
+    low, high = unbounded(piece.columns)
+    return replace(piece, low=low, high=high)
 
 
 def without_pieces(problem: Problem) -> Problem:

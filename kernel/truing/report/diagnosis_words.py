@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from truing.numbers import ABSENT, format_number, format_value, pretty, with_unit
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from truing.diagnosis.result import Alternative, Amount, Cause, Diagnosis, FittedUnknown, Gain, NextPoint
 
 CERTAIN, LIKELY = 0.005, 0.05
+MUCH, FEW_BLOCKS = 0.5, 0.25
 TO = " … "
 UNKNOWN = "unknown"
 MICRO = re.compile(r"(?<=\d )u(?=(?:m|rad|s|N|g|l)\b)")
@@ -186,6 +188,11 @@ def is_gain(item: Gain) -> bool:
     return item.p_value <= LIKELY and item.rmse_after.value < item.rmse_before.value
 
 
+def is_perhaps_gain(item: Gain) -> bool:
+    """Tell whether an error falls by much, but in too few independent blocks to be more than chance."""
+    return not is_gain(item) and item.reducible_removed >= MUCH and item.p_value < FEW_BLOCKS
+
+
 def _cause_sentences(diagnosis: Diagnosis) -> Iterator[str]:
     results = listed([spoken(name) for name in wrong_results(diagnosis)])
     if diagnosis.causes:
@@ -208,14 +215,35 @@ def _cause_sentences(diagnosis: Diagnosis) -> Iterator[str]:
 
 def _gain_sentences(diagnosis: Diagnosis) -> Iterator[str]:
     gains = [item for item in diagnosis.gain if is_gain(item)]
+    perhaps = [item for item in diagnosis.gain if is_perhaps_gain(item)]
     for item in gains:
         yield (
-            f"on rows that were not fitted the error of {spoken(item.result)} falls from "
-            f"{amount_text(item.rmse_before)} to {amount_text(item.rmse_after)} (noise floor "
+            f"on rows that were not fitted {_falls(item)} (noise floor "
             f"{amount_text(item.noise_floor)}): {percent(item.reducible_removed)} of what can be removed is gone."
         )
-    if diagnosis.gain and not gains:
+    for item in perhaps:
+        yield (
+            f"on rows that were not fitted {_falls(item)}; "
+            f"in so few independent blocks that may be chance ({p_text(item.p_value)})."
+        )
+    if diagnosis.gain and not gains and not perhaps:
         yield "on rows that were not fitted this is worth nothing that could not be chance."
+    yield from _held_out_sentences(diagnosis)
+
+
+def _falls(item: Gain) -> str:
+    before, after = amount_text(item.rmse_before), amount_text(item.rmse_after)
+    return f"the error of {spoken(item.result)} falls from {before} to {after}"
+
+
+def _held_out_sentences(diagnosis: Diagnosis) -> Iterator[str]:
+    """Say what became of the error on rows that were held out on request: the strongest test there is."""
+    for item in diagnosis.gain if diagnosis.verdict != "none" else ():
+        if item.held_out is not None:
+            before, after = (amount_text(replace(item.rmse_before, value=one)) for one in item.held_out)
+            how = "falls" if item.held_out[1] < item.held_out[0] else "GROWS"
+            end = "." if how == "falls" else ": the extension does not carry over to them."
+            yield f"on the rows held out the error of {spoken(item.result)} {how} from {before} to {after}{end}"
 
 
 def _next_sentences(diagnosis: Diagnosis) -> Iterator[str]:

@@ -22,6 +22,10 @@ def silent(task: str, done: int, total: int) -> None:
     """Report no progress."""
 
 
+def unheard(step: int, steps: int) -> None:
+    """Report no steps."""
+
+
 def part_of(progress: Progress, task: str, begin: float, end: float) -> Done:
     """Return what reports the steps of one part of a task, which runs from one share of the whole to another."""
 

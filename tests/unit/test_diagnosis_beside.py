@@ -1,0 +1,112 @@
+"""A second cause that shows what it is only beside the first: play in a joint, and friction that shifts its jump."""
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, hookimpl, inputs, normal, results
+from truing.diagnosis.engine import diagnose
+from truing.diagnosis.reading import read_records
+from truing.diagnosis.result import Diagnosis
+from truing.inputs_file import read_setup
+from truing.kernel import Kernel
+
+
+@inputs
+class Joint:
+    """A shaft under torque; ``kept`` is what friction keeps from it."""
+
+    torque: Float = given(0.0, "N*m")
+    rigidity: Float = given(400.0, "N*m/rad", above=0)
+    kept: Float = given(0.0, "N*m")
+    play: Float = given(0.0, "mrad")
+    width: Float = given(1.0, "N*m", above=0)
+
+
+@results
+class Twist:
+    """How far it turns."""
+
+    angle: Float = found("mrad")
+
+
+def shaft(joint: Joint) -> Twist:
+    """A spring, and a joint that jumps where its load changes sign."""
+    load = joint.torque - joint.kept
+    return Twist(angle=load / joint.rigidity + joint.play / 2 * np.tanh(load / joint.width))
+
+
+def lost_motion(joint: Joint, *, play: Float, width: Float) -> Joint:
+    return replace(joint, play=joint.play + play, width=width)
+
+
+def friction(joint: Joint, *, torque: Float, direction: Float) -> Joint:
+    return replace(joint, kept=joint.kept + torque * direction)
+
+
+def softening(joint: Joint, *, share: Float) -> Joint:
+    return replace(joint, rigidity=joint.rigidity / (1 + share))
+
+
+SHAFT: Model[Any, Any] = Model(
+    name="shaft", title="A shaft", function=shaft,
+    errors=[
+        Tolerance("rigidity", normal(sd="2 %")),
+        Effect("lost_motion", on_inputs=lost_motion,
+               unknowns=[Unknown("play", 0, 200, "mrad"), Unknown("width", 0.3, 10, "N*m")]),
+        Effect("friction", on_inputs=friction, unknowns=[Unknown("torque", 0, 10, "N*m")],
+               needs=[Condition("direction", "", reference=0)]),
+        Effect("softening", on_inputs=softening, unknowns=[Unknown("share", -0.5, 2, "")]),
+    ],
+)  # fmt: skip
+
+
+@hookimpl
+def truing_models() -> list[Model[Any, Any]]:
+    return [SHAFT]
+
+
+def loops(noise: float, *, play: float, held: float) -> str:
+    """Four loops of torque between -20 and 20 N m, read with noise (mrad); written out without the model's code."""
+    phase = np.linspace(0, 8 * np.pi, 320)
+    torque, direction = 20 * np.sin(phase), np.sign(np.cos(phase))
+    load = torque - held * direction
+    angle = 1e3 * load / 405.0 + play / 2 * np.tanh(load / 1.5)
+    read = angle + noise * np.random.default_rng(5).standard_normal(320)
+    rows = "".join(
+        f"{a!r},{b!r},{c!r}\n" for a, b, c in zip(*map(np.ndarray.tolist, (torque, direction, read)), strict=True)
+    )
+    return "torque [N*m],direction [-],angle [mrad]\n" + rows
+
+
+def diagnosed(folder: Path, text: str) -> Diagnosis:
+    offer = Kernel([sys.modules[__name__]], strict=True).offer("shaft")
+    (folder / "measured.csv").write_text(text, encoding="utf-8")
+    (folder / "inputs.toml").write_text('plugin = "shaft"\n', encoding="utf-8")
+    setup = read_setup(folder / "inputs.toml", offer)
+    return diagnose(setup, read_records([folder / "measured.csv"], offer, setup))
+
+
+@pytest.mark.parametrize("held", [3.0, 5.0])
+def test_friction_that_shifts_the_jump_of_a_joint_is_found_beside_its_play(tmp_path: Path, held: float) -> None:
+    found = diagnosed(tmp_path, loops(1.0, play=90.0, held=held))
+    assert {cause.effect for cause in found.causes} == {"lost_motion", "friction"}
+    assert found.remainder is None
+    truth = {"play": 0.090, "width": 1.5, "torque": held}
+    for cause in found.causes:
+        for unknown in cause.unknowns:
+            assert unknown.low is not None
+            assert unknown.high is not None
+            assert unknown.low <= truth[unknown.name] <= unknown.high
+    (gain,) = found.gain
+    assert gain.rmse_after.value == pytest.approx(1e-3, rel=0.15)
+
+
+def test_play_alone_is_named_alone(tmp_path: Path) -> None:
+    found = diagnosed(tmp_path, loops(1.0, play=90.0, held=0.0))
+    assert [cause.effect for cause in found.causes] == ["lost_motion"]
+    assert found.unique
