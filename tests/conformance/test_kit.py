@@ -422,8 +422,9 @@ def test_conformance_is_a_parametrised_test() -> None:
     assert mark.name == "parametrize"
     assert mark.args[1] == CHECKS
     broken = conformance(WRONG["finite at defaults"][0]())
-    by_name = {check.name: check for check in CHECKS}
     with pytest.raises(AssertionError, match="the defaults cannot be calculated"):
-        broken(by_name["finite at defaults"])
+        broken(BY_NAME["finite at defaults"])
     with pytest.raises(pytest.skip.Exception, match="the defaults cannot be calculated"):
-        broken(by_name["batch equals loop"])
+        broken(BY_NAME["batch equals loop"])
+    with pytest.raises(pytest.skip.Exception, match="no other process could find the model"):
+        conformance(good())(BY_NAME["serial equals parallel"])

@@ -11,7 +11,6 @@ from typing import Any
 from truing.declare.specs import Given
 from truing.errors import InfeasibleError, TruingError
 from truing.evaluate import Rows, evaluate, evaluate_rows
-from truing.kernel import Kernel, Origin
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup
 from truing.testing.subject import Subject, fail
@@ -99,10 +98,8 @@ def serial_equals_parallel(subject: Subject) -> None:
 
     from truing.executors import in_order, open_executor
 
-    origin = _origin_of(subject)
-    if origin is None:
-        return
-    setup = replace(subject.setup, origin=origin)
+    assert subject.home is not None
+    setup = replace(subject.setup, origin=subject.home)
     jobs = [(pack(setup), batch) for batch in range(2)]
     with open_executor("processes:1") as executor:
         far = list(in_order(executor, _drawn_rows, jobs))
@@ -118,22 +115,6 @@ def _drawn_rows(job: tuple[Packed, int]) -> Rows:
     packed, batch = job
     setup = unpack(packed)
     return evaluate_rows(setup, scatter_of(setup).draw(setup.seed, batch, 32), 32)
-
-
-def _origin_of(subject: Subject) -> Origin | None:
-    """Return an origin by which another process finds this very model, or None."""
-    if subject.origin is not None:
-        return subject.origin
-    parts = subject.model.function.__module__.split(".")
-    names = [".".join(parts[:count]) for count in range(len(parts), 0, -1)]
-    modules = [module for name in names if (module := sys.modules.get(name)) and getattr(module, "__spec__", None)]
-    for module in modules:
-        if not hasattr(module, "truing_models"):
-            continue
-        for offer in Kernel([module]).offers.values():
-            if offer.model.function is subject.model.function and offer.model.name == subject.model.name:
-                return offer.origin
-    return None
 
 
 def derivatives_are_exact(subject: Subject) -> None:
