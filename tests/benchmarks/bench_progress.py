@@ -10,11 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from progress_seen import watched
+from progress_seen import Seen, watched
+from shared import ROOT
 from truing import Kernel
 from truing.calculation import calculate
 from truing.example_file import example_text
-from truing.inputs_file import setup_from_text
+from truing.inputs_file import read_setup, setup_from_text
 
 OFFERS = Kernel.installed().offers
 MORE = {
@@ -46,3 +47,26 @@ def test_long_studies_speak(name: str, asked: str, monkeypatch: pytest.MonkeyPat
         print(f"{name:26} {one.name:16} {one.seconds:7.2f} s {len(one.words):6} words")
     assert len(seen) == len(setup.studies)
     assert not [fault for one in seen for fault in one.faults]
+
+
+@pytest.mark.parametrize(
+    ("name", "files"),
+    [
+        ("press_linkage", ["press_off_by_40_um/measured.csv"]),
+        ("press_linkage", ["press_warm_links/monday.csv", "press_warm_links/tuesday.csv"]),
+        ("roller_screw_shift", ["roller_screw_rubs/measured.csv"]),
+    ],
+)
+def test_a_diagnosis_speaks(name: str, files: list[str]) -> None:
+    from truing.diagnosis.engine import diagnose
+    from truing.diagnosis.reading import read_records
+
+    offer, places = OFFERS[name], [ROOT / "docs" / "examples" / file for file in files]
+    setup = read_setup(places[0].parent / "inputs.toml", offer)
+    records = read_records(places, offer, setup)
+    words: list[tuple[float, float]] = []
+    begin = time.process_time()
+    diagnose(setup, records, progress=lambda _, done, total: words.append((time.process_time() - begin, done / total)))
+    seen = Seen("diagnosis", time.process_time() - begin, tuple(words))
+    print(f"{name:26} {seen.name:16} {seen.seconds:7.2f} s {len(words):6} words")
+    assert not seen.faults
