@@ -14,6 +14,7 @@ from truing.diagnosis.contest import Contest
 from truing.diagnosis.hypotheses import Hypothesis, Piece
 from truing.diagnosis.machine import Predicted, predict
 from truing.diagnosis.noise import SETTINGS, whiten
+from truing.diagnosis.slopes import Jacobian, white_directions
 from truing.evaluate import effect_column
 from truing.setup import Setup, SwitchedOn
 
@@ -23,11 +24,6 @@ if TYPE_CHECKING:
 
     Matrix = NDArray[np.float64]
 
-STEP = 1e-4
-MOVED = 0.02
-"""Step of a direction of the inputs, in standard deviations."""
-OFF = 1.0
-"""Sum of squares, in units of the noise, that linear columns of the inputs may miss."""
 LEVEL = 0.975
 LARGEST_LEVERAGE = 0.95
 STEEPEST = 1e-12
@@ -207,7 +203,7 @@ def fit(contest: Contest, place: int) -> Fit:
     high = np.array([item.high for item in fitter.parameters] + [np.inf] * (len(start) - p))
     way: Mapping[str, Any] = {"bounds": (low, high), "x_scale": "jac", "xtol": 1e-10, "ftol": 1e-12}
     way = {**way, **(SPARING if contest.evidence.rows > MANY else {})}
-    jacobian = _Jacobian(contest, fitter, setting, residual)
+    jacobian = Jacobian(fitter.parameters, residual, white_directions(contest, setting))
     found = least_squares(residual, np.clip(start, low, high), jac=jacobian, **way)
     if jacobian.is_off(found.x):
         jacobian.is_exact = True
@@ -261,59 +257,6 @@ def white_residual(contest: Contest, fitter: Fitter, setting: tuple[int, ...], x
         target = contest.noise.residuals[channel.name] + machine.base[channel.name] + machine.shifts[channel.name]
         left = (target - made[channel.name])[channel.rows] / channel.scale
         parts.append(whiten(left * channel.weights, channel.starts, SETTINGS[place]))
-    return np.concatenate(parts)
-
-
-class _Jacobian:
-    """Derivatives of the residual: of the unknowns by differences, of the inputs from their linear columns.
-
-    Where the model is not linear in the inputs as far as they have moved, ``is_exact`` takes differences there, too.
-    """
-
-    def __init__(self, contest: Contest, fitter: Fitter, setting: tuple[int, ...], residual: _residual) -> None:
-        self.contest, self.fitter, self.residual = contest, fitter, residual
-        self.inputs = white_directions(contest, setting)
-        self.is_exact = False
-
-    def is_off(self, x: Matrix) -> bool:
-        """Whether the linear columns of the inputs miss more than chance of what the inputs do at a solution."""
-        import numpy as np
-
-        p, rows = self.residual.p, len(self.inputs)
-        if len(x) == p:
-            return False
-        nominal = np.concatenate([x[:p], np.zeros(len(x) - p)])
-        missed = (self.residual(x) - self.residual(nominal))[:rows] + self.inputs @ x[p:]
-        return bool(missed @ missed > OFF)
-
-    def __call__(self, x: Matrix) -> Matrix:
-        import numpy as np
-
-        p = self.residual.p
-        made = np.zeros((len(self.inputs) + len(x) - p, len(x)))
-        made[: len(self.inputs), p:] = -self.inputs
-        made[len(self.inputs) :, p:] = np.eye(len(x) - p)
-        for place in range(p, len(x)) if self.is_exact else ():
-            move = np.zeros(len(x))
-            move[place] = MOVED
-            made[:, place] = (self.residual(x + move) - self.residual(x - move)) / (2 * MOVED)
-        for place, item in enumerate(self.fitter.parameters):
-            step = STEP * max(abs(float(x[place])), 1.0 if item.is_log else 1e-2)
-            up, down = x.copy(), x.copy()
-            up[place] = min(x[place] + step, item.high)
-            down[place] = max(x[place] - step, item.low)
-            made[:, place] = (self.residual(up) - self.residual(down)) / (up[place] - down[place])
-        return made
-
-
-def white_directions(contest: Contest, setting: tuple[int, ...]) -> Matrix:
-    """Return the directions of the tolerated inputs, whitened, channel below channel."""
-    import numpy as np
-
-    parts = [
-        whiten(channel.directions * channel.weights[:, None], channel.starts, SETTINGS[place])
-        for channel, place in zip(contest.evidence.channels, setting, strict=True)
-    ]
     return np.concatenate(parts)
 
 

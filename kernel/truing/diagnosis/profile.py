@@ -7,7 +7,8 @@ from math import exp
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.contest import Contest
-from truing.diagnosis.fit import Fit, Fitter, white_directions, white_residual
+from truing.diagnosis.fit import Fit, Fitter, white_residual
+from truing.diagnosis.slopes import white_directions
 
 if TYPE_CHECKING:
     import numpy as np

@@ -1,0 +1,76 @@
+"""Derivatives for the exact fit: of unknowns by differences, of inputs from their columns while these will do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from truing.diagnosis.contest import Contest
+from truing.diagnosis.noise import SETTINGS, whiten
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from truing.diagnosis.fit import Parameter
+
+    Matrix = NDArray[np.float64]
+
+STEP = 1e-4
+MOVED = 0.02
+"""Step of a direction of the inputs, in standard deviations."""
+OFF = 1.0
+"""Sum of squares, in units of the noise, that linear columns of the inputs may miss."""
+
+
+class Jacobian:
+    """Derivatives of the residual: of the unknowns by differences, of the inputs from their linear columns.
+
+    Where the model is not linear in the inputs as far as they have moved, ``is_exact`` takes differences there, too.
+    """
+
+    def __init__(self, unknowns: Sequence[Parameter], residual: Callable[[Matrix], Matrix], inputs: Matrix) -> None:
+        self.unknowns, self.residual, self.inputs = unknowns, residual, inputs
+        self.is_exact = False
+
+    def is_off(self, x: Matrix) -> bool:
+        """Whether the linear columns of the inputs miss more than chance of what the inputs do at a solution."""
+        import numpy as np
+
+        p, rows = len(self.unknowns), len(self.inputs)
+        if len(x) == p:
+            return False
+        nominal = np.concatenate([x[:p], np.zeros(len(x) - p)])
+        missed = (self.residual(x) - self.residual(nominal))[:rows] + self.inputs @ x[p:]
+        return bool(missed @ missed > OFF)
+
+    def __call__(self, x: Matrix) -> Matrix:
+        """Return the derivatives of the residual by unknowns and directions, (residuals, parameters)."""
+        import numpy as np
+
+        p = len(self.unknowns)
+        made = np.zeros((len(self.inputs) + len(x) - p, len(x)))
+        made[: len(self.inputs), p:] = -self.inputs
+        made[len(self.inputs) :, p:] = np.eye(len(x) - p)
+        for place in range(p, len(x)) if self.is_exact else ():
+            move = np.zeros(len(x))
+            move[place] = MOVED
+            made[:, place] = (self.residual(x + move) - self.residual(x - move)) / (2 * MOVED)
+        for place, item in enumerate(self.unknowns):
+            step = STEP * max(abs(float(x[place])), 1.0 if item.is_log else 1e-2)
+            up, down = x.copy(), x.copy()
+            up[place] = min(x[place] + step, item.high)
+            down[place] = max(x[place] - step, item.low)
+            made[:, place] = (self.residual(up) - self.residual(down)) / (up[place] - down[place])
+        return made
+
+
+def white_directions(contest: Contest, setting: tuple[int, ...]) -> Matrix:
+    """Return the directions of the tolerated inputs, whitened, channel below channel."""
+    import numpy as np
+
+    parts = [
+        whiten(channel.directions * channel.weights[:, None], channel.starts, SETTINGS[place])
+        for channel, place in zip(contest.evidence.channels, setting, strict=True)
+    ]
+    return np.concatenate(parts)
