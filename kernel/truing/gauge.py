@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.fields import Axis
@@ -111,7 +113,7 @@ def _by_records(machine: Setup, rows: RowsFile, columns: Mapping[str, Any], name
     values = {name: np.full(len(rows), np.nan) for name in names}
     asked = _asked(names, machine)
     reasons: dict[int, str] = {}
-    for record in _records(rows):
+    for record in _records(rows.runs, len(rows)):
         for places in _alike(record, machine, columns, rows):
             one = {name: _one_value(name, column, places, rows) for name, column in columns.items()}
             one |= {name: column[record] for name, column in rows.series.items()}
@@ -127,10 +129,16 @@ def _by_records(machine: Setup, rows: RowsFile, columns: Mapping[str, Any], name
 
 def _records(rows: RowsFile) -> Iterator[list[int]]:
     """Give the rows of each run; without a column "run" the file is one."""
+    yield from _places_by_run(rows.runs or ("",) * len(rows))
+
+
+@lru_cache(maxsize=8)
+def _places_by_run(runs: tuple[str, ...]) -> tuple[list[int], ...]:
+    """Return the places of the rows of each run; a fit asks for the same ones again and again."""
     found: dict[str, list[int]] = {}
-    for place, name in enumerate(rows.runs or ("",) * len(rows)):
+    for place, name in enumerate(runs):
         found.setdefault(name, []).append(place)
-    yield from found.values()
+    return tuple(found.values())
 
 
 def _alike(record: list[int], machine: Setup, columns: Mapping[str, Any], rows: RowsFile) -> Iterator[list[int]]:
@@ -150,7 +158,8 @@ def _varies(column: Any, places: Sequence[int]) -> bool:
     """Whether an array has more than one value at these places; NaN is a value of its own."""
     import numpy as np
 
-    values = np.asarray(column)[list(places)]
+    is_broadcast = isinstance(column, np.ndarray) and column.strides == (0,)
+    values = np.asarray(column)[[places[0]] if is_broadcast else list(places)]
     return bool(np.any(values != values[0]))
 
 
