@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from measured import calc_here, names, read_document
+from measured import calc_here, read_document
 from numpy.typing import NDArray
 from scipy.integrate import quad
 from scipy.optimize import least_squares
@@ -135,11 +135,16 @@ def test_up_to_600_k_the_second_cause_has_three_names_and_a_hotter_row_is_asked_
 def test_with_both_causes_on_nothing_is_left_to_name(tmp_path: Path) -> None:
     desk = tmp_path / "desk"
     shutil.copytree(EXAMPLE, desk, ignore=shutil.ignore_patterns("__pycache__", "runs"))
-    command = ["diagnose", "./copper_expansion.py", "--data", "hahn1.csv", "--inputs"]
-    assert calc_here(desk, *command, "inputs.toml").code == 0
-    assert names(read_document(desk / "runs" / "hahn1")) == ["lattice_freezing", "anharmonic_rise"]
-    assert calc_here(desk, *command, "runs/hahn1/extended.toml", "--output", "runs/again").code == 0
-    again = read_document(desk / "runs" / "again")
+    (desk / "both.toml").write_text(
+        f"[effects.lattice_freezing]\nshare = {found('lattice freezing, share').value}\n"
+        f"debye = '{found('debye').value} K'\n"
+        f"[effects.anharmonic_rise]\nsoftening = '{found('softening').value} 1/K'\n"
+        f"[calibrated]\ncoefficient = '{16.5 * (1 + 0.01 * 0.43)} um/(m*K)'\n"
+        "[studies.diagnose]\nhold_out = 'third = judge'\n"
+    )
+    answer = calc_here(desk, "diagnose", "./copper_expansion.py", "--inputs", "both.toml", "--data", "hahn1.csv")
+    assert answer.code == 0, answer.err
+    again = read_document(desk / "runs" / "hahn1")
     assert (again["verdict"], again["remainder"]) == ("none", None)
     visible = {name: item["value"] for name, item in again["smallest_visible"].items()}
     assert 0.3 < visible["thermocouple_offset"] < 0.8
