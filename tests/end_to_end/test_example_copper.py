@@ -112,6 +112,11 @@ def test_both_published_causes_are_found_and_no_other_comes_near() -> None:
     assert 315 < debye.low < 325 < debye.high < 343  # Nix and MacNair: 325 K by the same theory
 
 
+def test_the_words_of_the_page_are_what_it_prints() -> None:
+    debye = found("debye")
+    assert f"| {debye.value:.0f} K (95 %: {debye.low:.0f} … {debye.high:.0f}) | 325 K" in PAGE
+
+
 def test_rows_held_out_are_predicted_to_nearly_what_nist_certifies() -> None:
     said = re.search(
         r"On the rows held out the error of expansion coefficient falls from ([\d.]+) .* to ([\d.]+) ", PAGE
