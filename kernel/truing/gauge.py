@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.fields import Axis
@@ -113,7 +112,7 @@ def _by_records(machine: Setup, rows: RowsFile, columns: Mapping[str, Any], name
     values = {name: np.full(len(rows), np.nan) for name in names}
     asked = _asked(names, machine)
     reasons: dict[int, str] = {}
-    for record in _records(rows.runs, len(rows)):
+    for record in _records(rows):
         for places in _alike(record, machine, columns, rows):
             one = {name: _one_value(name, column, places, rows) for name, column in columns.items()}
             one |= {name: column[record] for name, column in rows.series.items()}

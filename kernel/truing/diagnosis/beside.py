@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING
 from truing.diagnosis.candidates import Candidate, Term, variants_of
 from truing.diagnosis.chords import REACH, chord, may_bend
 from truing.diagnosis.contest import Contest, contest
-from truing.diagnosis.fit import Fit, fit
+from truing.diagnosis.fit import Fit, fit, input_values, is_off
 from truing.diagnosis.hypotheses import pairs
-from truing.diagnosis.machine import Machine, predict
+from truing.diagnosis.machine import Machine, machine_of, predict
 from truing.diagnosis.problem import Problem, problem_of, with_pairs, without_pieces
-from truing.diagnosis.search import evidence_of, residuals_of, search
+from truing.diagnosis.search import evidence_of, moved_to, residuals_of, search
 from truing.diagnosis.second_look import BETTER, MOST_ROWS, noise_after, worth
 from truing.diagnosis.twins import Twin
 from truing.setup import SwitchedOn
@@ -92,16 +92,29 @@ def second_beside_first(full: Contest, winner: int, best: Fit, rows: NDArray[np.
     plain = replace(full, noise=replace(full.noise, residuals=residuals_of(full.problem.machine)))
     tried = [pair for first in _firsts(plain, winner) for pair in _fitted_beside(plain, first, rows)]
     top = max(tried, key=lambda pair: pair.worth, default=None)
-    if top is None or top.worth < worth(plain, best) + BETTER:
+    is_shape = full.found.hypotheses[winner].kind != "two"
+    if top is None or top.worth < worth(plain, best) + (-NEARLY if is_shape else BETTER):
         return None
+    noise = noise_after(top.contest, 0, top.found, full.noise)
     problem = full.problem
+    if is_off(top.contest, top.found):
+        problem = _about(problem, input_values(top.contest, top.found))
+        noise = moved_to(noise, full.problem.machine, problem.machine)
     for pair in tried:
         if pair.worth > top.worth - NEARLY:
             causes = placed(pair.contest, pair.found)
             owner = causes[1].owner
             twins = {**problem.twins, owner: pair.twins.get(owner, ())}
             problem = replace(_competing(problem, causes), twins=twins)
-    return contest(problem, noise_after(top.contest, 0, top.found, full.noise), rows, rounds=1)
+    return contest(problem, noise, rows, rounds=1)
+
+
+def _about(problem: Problem, inputs: Mapping[str, tuple[float, float]]) -> Problem:
+    """Lay the search out anew about a machine that is calibrated, where the inputs have moved too far to be linear."""
+    design = problem.machine.design
+    values = {name: value for name, (value, _) in inputs.items()}
+    design = replace(design, calibrated={**design.calibrated, **values})
+    return problem_of(machine_of(design, problem.machine.records), problem.scales)
 
 
 def _firsts(plain: Contest, winner: int) -> Iterator[Placed]:

@@ -20,7 +20,7 @@ from truing.diagnosis.naming import alternative_of, causes_of, extended_setup, r
 from truing.diagnosis.problem import Problem, problem_of
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Alternative, Amount, Calibrated, Curves, Diagnosis, Gain, Verdict
-from truing.diagnosis.search import NoiseModel, first_noise
+from truing.diagnosis.search import NoiseModel, first_noise, moved_to
 from truing.diagnosis.second_look import second_look
 from truing.diagnosis.shares import by_share
 from truing.diagnosis.unmeasured import with_results
@@ -70,6 +70,7 @@ def _diagnose(setup: Setup, records: Records, step: _Steps) -> Diagnosis:
             decision = decide(full, seed=setup.seed)
             best, decision = _certain(full, decision)
     step.done("fit")
+    raw = moved_to(raw, machine, full.problem.machine)
     answer = _answer(full, decision, best, raw, done=step.within())
     step.done("gain")
     extended = None if answer.extended is None else replace(answer.extended, inputs=setup.inputs)

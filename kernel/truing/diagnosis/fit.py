@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     Matrix = NDArray[np.float64]
 
 LEVEL = 0.975
+FROM_BOUNDS = 0.03
 LARGEST_LEVERAGE = 0.95
 STEEPEST = 1e-12
 SPARING: Mapping[str, Any] = {"tr_solver": "lsmr", "tr_options": {"atol": 1e-13, "btol": 1e-13}}
@@ -207,11 +208,29 @@ def fit(contest: Contest, place: int) -> Fit:
     found = least_squares(residual, np.clip(start, low, high), jac=jacobian, **way)
     if jacobian.is_off(found.x):
         jacobian.is_exact = True
-        found = least_squares(residual, found.x, jac=jacobian, **way)
+        found = least_squares(residual, _inside(found.x, low, high), jac=jacobian, **way)
     covariance, freedom = _covariance(contest, found.fun, np.asarray(found.jac), setting)
     left = _split(contest, found.fun)
     predicted = fitter.predicted(found.x[:p], found.x[p:])
     return Fit(hypothesis, setting, fitter.parameters, found.x[:p], found.x[p:], covariance, freedom, predicted, left)
+
+
+def is_off(contest: Contest, found: Fit) -> bool:
+    """Whether the inputs of a fit have moved farther than the model is linear in them."""
+    import numpy as np
+
+    fitter = Fitter(contest, found.hypothesis)
+    residual = _residual(contest, fitter, found.setting, len(fitter.parameters))
+    jacobian = Jacobian(fitter.parameters, residual, white_directions(contest, found.setting))
+    return jacobian.is_off(np.concatenate([found.values, found.directions]))
+
+
+def _inside(x: Matrix, low: Matrix, high: Matrix) -> Matrix:
+    """Return a start a little inside its bounds: what begins beside one hardly leaves it."""
+    import numpy as np
+
+    reach = np.where(np.isfinite(high - low), FROM_BOUNDS * (high - low), 0.0)
+    return np.clip(x, low + reach, high - reach)
 
 
 def shape_part(contest: Contest, found: Fit, name: str) -> Any:
@@ -344,5 +363,5 @@ def input_values(contest: Contest, found: Fit) -> Mapping[str, tuple[float, floa
     for place, item in enumerate(machine.inputs):
         off = float(moved[place]) + extra.get(place, 0.0)
         value = float(machine.start.nominal(item.name)) + item.mean + off * item.sd
-        answer.setdefault(item.name, (value, off + item.mean / item.sd))
+        answer.setdefault(item.name, (value, (value - item.design) / item.sd))
     return answer

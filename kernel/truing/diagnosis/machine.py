@@ -36,12 +36,14 @@ FAINTEST = 0.01
 class Tolerated:
     """One input that may be off its nominal: where the prior has its mean (from the start) and its sd, SI.
 
-    ``file`` is the number of the file it belongs to where every file has its own machine in this respect, else -1.
+    ``design`` is the nominal value itself, SI. ``file`` is the number of the file it belongs to where every file has
+    its own machine in this respect, else -1.
     """
 
     name: str
     mean: float
     sd: float
+    design: float
     file: int = -1
 
 
@@ -49,10 +51,11 @@ class Tolerated:
 class Machine:
     """The start of a calibration: prediction at the start, and one column per tolerated input and measured result.
 
-    ``start`` is the setup at its calibrated inputs. ``slopes[result]`` has shape (n, inputs): the change of the result
-    by one standard deviation of the input.
+    ``design`` is the setup as it is given, ``start`` that at its calibrated inputs. ``slopes[result]`` has shape
+    (n, inputs): the change of the result by one standard deviation of the input.
     """
 
+    design: Setup
     start: Setup
     records: Records
     base: Predicted
@@ -122,9 +125,10 @@ def tolerated_inputs(setup: Setup, records: Records) -> list[Tolerated]:
     for name, (mean, sd) in _priors(setup).items():
         if name in records.rows.columns or name in records.rows.series or sd <= 0:
             continue
-        offset = float(setup.nominal(name)) + mean - float(start.nominal(name))
+        design = float(setup.nominal(name))
+        offset = design + mean - float(start.nominal(name))
         files = range(len(records.files)) if name in per_file else (-1,)
-        found += [Tolerated(name, offset, sd, file) for file in files]
+        found += [Tolerated(name, offset, sd, design, file) for file in files]
     return found
 
 
@@ -157,7 +161,7 @@ def machine_of(setup: Setup, records: Records) -> Machine:
         for name, slope in by_name[item.name].items():
             here = slice(None) if item.file < 0 else records.file_of == item.file
             slopes[name][here, place] = slope[here]
-    return Machine(start, records, base, tuple(inputs), slopes)
+    return Machine(setup, start, records, base, tuple(inputs), slopes)
 
 
 def _slope(start: Setup, records: Records, item: Tolerated) -> dict[str, NDArray[np.float64]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -127,6 +127,14 @@ def residuals_of(machine: Machine) -> dict[str, Matrix]:
     """Return measured minus predicted at the mean of the tolerances, SI, NaN where missing."""
     measured = machine.records.measured
     return {name: values - machine.base[name] - machine.shifts[name] for name, values in measured.items()}
+
+
+def moved_to(noise: NoiseModel, here: Machine, there: Machine) -> NoiseModel:
+    """Return the noise with its residuals counted from another start of the calibration."""
+    off = {
+        name: here.base[name] + here.shifts[name] - there.base[name] - there.shifts[name] for name in noise.residuals
+    }
+    return replace(noise, residuals={name: values + off[name] for name, values in noise.residuals.items()})
 
 
 def evidence_of(problem: Problem, noise: NoiseModel, rows: NDArray[np.bool_]) -> Evidence:

@@ -53,7 +53,7 @@ def equation_of(setup: Setup, answers: Mapping[str, Any], item: ResultField) -> 
         symbol=item.symbol,
         symbols={name: field.symbol for name, field in fields.items() if field.symbol},
         numbers={n: _number(setup, fields[n], v, numeric=numeric) for n, v in numbered.items()} if plain else None,
-        results=_results(setup, item, shown, numeric=numeric) if plain else (),
+        results=_results(setup, item, shown, numeric=numeric) if _is_single(shown) else (),
         departs=departing is not None,
     )
 
