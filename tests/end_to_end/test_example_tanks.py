@@ -127,8 +127,8 @@ def test_the_plugin_passes_the_kit(tanks: Any) -> None:
     assert failures(tanks.CASCADED_TANKS) == {}
 
 
-# Fitted by tanks_by_hand.py, run as a script; the last with the tolerances of inputs.toml, the others with none. Reference
-# numbers of the benchmark's records are 0.60 and 0.67 V without anything, 0.2 to 0.5 V with all that is missing.
+# Fitted by tanks_by_hand.py, run as a script; the last with the tolerances of inputs.toml, the others with none.
+# Reference numbers of the benchmark's records: 0.60 and 0.67 V without anything, 0.2 to 0.5 V with all that is missing.
 BASE = hand.Rig(k1=0.053938, k3=0.089720, k4=0.074679, upper=14.0431, lower=5.1309)
 WITH_RIM = hand.Rig(k1=0.049846, k3=0.050108, k4=0.042152, upper=4.7764, lower=5.2282, rim=10.6074, caught=0.5633)
 WITH_POWER = hand.Rig(k1=0.048119, k3=0.058776, k4=0.053245, upper=8.4249, lower=5.2074, rim=13.956, caught=0.5144,
