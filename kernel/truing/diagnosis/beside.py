@@ -92,8 +92,7 @@ def second_beside_first(full: Contest, winner: int, best: Fit, rows: NDArray[np.
     plain = replace(full, noise=replace(full.noise, residuals=residuals_of(full.problem.machine)))
     tried = [pair for first in _firsts(plain, winner) for pair in _fitted_beside(plain, first, rows)]
     top = max(tried, key=lambda pair: pair.worth, default=None)
-    is_shape = full.found.hypotheses[winner].kind != "two"
-    if top is None or top.worth < worth(plain, best) + (-NEARLY if is_shape else BETTER):
+    if top is None or top.worth < worth(plain, best) + BETTER:
         return None
     noise = noise_after(top.contest, 0, top.found, full.noise)
     problem = full.problem

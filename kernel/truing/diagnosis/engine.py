@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import inf
 from typing import TYPE_CHECKING
 
 from truing.declare.near_miss import near_miss
@@ -36,7 +35,7 @@ if TYPE_CHECKING:
 RANKED = 8
 FITTED = 4
 SURELY = 30.0
-"""Twice the log-likelihood by which a cause must be better than none where its interval holds zero."""
+"""Twice the log-likelihood by which a single cause whose interval holds zero must be better than none."""
 LEAST_REDUCIBLE = 0.03
 """Less than this share of the noise is not told from it, so there is nothing to remove."""
 SHARES = (0.0, 0.05, 0.35, 0.45, 0.5, 1.0)
@@ -96,18 +95,14 @@ def _certain(full: Contest, decision: Decision) -> tuple[Fit, Decision]:
 
 
 def _is_doubtful(full: Contest, place: int, best: Fit) -> bool:
-    """Whether some cause may as well be zero: by its intervals, and by what the explanation is worth without it.
+    """Whether some cause may as well be zero: by its intervals and, where it stands alone, by what it is worth.
 
     The interval of an amplitude that saturates may hold zero although nothing else will do.
     """
     found, pieces = full.found, best.hypothesis.pieces
-    for number, piece in enumerate(pieces):
-        if piece.kind == "term" and may_be_zero(best, number):
-            left = tuple(each.tag for each in pieces if each is not piece)
-            others = [found.likelihood[at] for at, item in enumerate(found.hypotheses) if item.key == left]
-            if found.likelihood[place] - max(others, default=-inf) < SURELY:
-                return True
-    return False
+    if len(pieces) == 1 and found.likelihood[place] - found.likelihood[0] >= SURELY:
+        return False
+    return any(may_be_zero(best, number) for number, piece in enumerate(pieces) if piece.kind == "term")
 
 
 def _adds_nothing(full: Contest, winner: int, rival: int) -> bool:
