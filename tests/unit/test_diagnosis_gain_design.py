@@ -43,9 +43,17 @@ def test_a_gain_by_chance_is_significant_as_often_as_promised() -> None:
 @pytest.mark.parametrize("blocks", [4, 7])
 def test_a_gain_in_every_block_is_as_rare_as_all_signs_alike(blocks: int) -> None:
     gain = np.ones(blocks * 6)
-    found = sign_flip_p(gain, np.repeat(np.arange(blocks), 6), seed=1)
-    spread = 4 * np.sqrt(2.0**-blocks / 999)
-    assert_allclose(found, 2.0**-blocks, rtol=0, atol=spread + 1e-3)
+    assert sign_flip_p(gain, np.repeat(np.arange(blocks), 6), seed=1) == 2.0**-blocks
+    uneven = gain * np.repeat(np.random.default_rng(blocks).uniform(0.1, 3, blocks), 6)  # sums that are rounded
+    assert sign_flip_p(uneven, np.repeat(np.arange(blocks), 6), seed=1) == 2.0**-blocks
+
+
+def test_of_many_blocks_some_signs_are_drawn() -> None:
+    gain = np.random.default_rng(8).normal(0.3, 1, 15)
+    every = 1 - 2 * (np.arange(2**15)[:, None] >> np.arange(15) & 1)
+    exact = float((every @ gain >= gain.sum() - 1e-12).mean())
+    found = sign_flip_p(gain, np.arange(15), seed=1)
+    assert_allclose(found, exact, rtol=0, atol=4 * np.sqrt(exact / 999) + 1e-3)
 
 
 def test_a_loss_a_rounding_and_a_single_block_are_no_gain() -> None:
@@ -95,6 +103,26 @@ def test_folds_are_blocks_of_consecutive_rows_of_one_run(tmp_path: Path, rho: fl
         assert len(set(run_of[here])) == 1
         assert len(here) == length or run_of[min(here[-1] + 1, rows - 1)] != run_of[here[0]] or here[-1] == rows - 1
     assert np.bincount(found).max() == length
+
+
+def test_a_short_record_has_shorter_blocks_rather_than_fewer(tmp_path: Path) -> None:
+    _, full = ready(tmp_path, np.zeros(24), 24, [])
+    assert np.bincount(blocks_of(full, WHITE)).tolist() == [3] * 8
+
+
+def test_rows_held_out_are_in_no_block_and_no_file_is_left_out_whole(tmp_path: Path) -> None:
+    """Of two runs of 60 rows the first 20 of each may be used: blocks of six of these, or of ten and less per file."""
+    _, full = ready(tmp_path, np.zeros(120), 120, ["a"] * 60 + ["b"] * 60)
+    machine = full.problem.machine
+    held = np.arange(120) % 60 >= 20
+    there = replace(machine, records=replace(machine.records, held_out=held))
+    found = blocks_of(replace(full, problem=replace(full.problem, machine=there)), WHITE)
+    assert_array_equal(found < 0, held)
+    assert np.bincount(found[~held]).tolist() == [5, 5, 5, 5] * 2
+    per_file = replace(there, start=replace(there.start, diagnose=DiagnoseOptions(per_file=("lead_error",))))
+    slow = next(place for place, item in enumerate(SETTINGS) if item.rho == 0.95 and item.theta == 0)
+    split = blocks_of(replace(full, problem=replace(full.problem, machine=per_file)), (slow,))
+    assert all(len(set(split[rows][~held[rows]])) >= 2 for rows in (slice(0, 60), slice(60, 120)))
 
 
 def test_what_is_judged_was_not_used(tmp_path: Path) -> None:

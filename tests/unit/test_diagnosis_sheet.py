@@ -254,7 +254,30 @@ def test_the_sentence_for_a_colleague_holds_cause_size_gain_and_what_is_next(nam
 
 def test_a_gain_that_may_be_chance_is_called_so() -> None:
     made = replace(named(), gain=tuple(replace(item, p_value=0.3) for item in named().gain))
-    assert "On rows that were not fitted this is worth nothing that could not be chance." in headline(made)
+    (said,) = [words for words in headline(made) if "not fitted" in words]
+    assert said == "On rows that were not fitted this is worth nothing that could not be chance."
+
+
+def test_a_large_gain_in_few_blocks_is_told_with_its_chance() -> None:
+    made = replace(named(), gain=tuple(replace(item, p_value=0.125) for item in named().gain))
+    (said,) = [words for words in headline(made) if "not fitted" in words]
+    assert said == (
+        "On rows that were not fitted the error of slide position falls from 41.2 µm to 6.12 µm; in so few independent "
+        "blocks that may be chance (p 0.12)."
+    )
+
+
+@pytest.mark.parametrize(
+    ("after", "words"),
+    [
+        (7e-6, "On the rows held out the error of slide position falls from 40 µm to 7 µm."),
+        (55e-6, "On the rows held out the error of slide position GROWS from 40 µm to 55 µm: the extension does not "
+                "carry over to them."),
+    ],
+)  # fmt: skip
+def test_what_became_of_rows_held_out_is_told(after: float, words: str) -> None:
+    made = replace(named(), gain=tuple(replace(item, held_out=(40e-6, after)) for item in named().gain))
+    assert words in headline(made)
 
 
 # What residuals are drawn over

@@ -325,10 +325,8 @@ def interval(found: Fit, place: int) -> tuple[float, float]:
     item = found.parameters[place]
     reach = float(stdtrit(found.freedom, LEVEL)) * sqrt(max(float(found.covariance[place, place]), 0.0))
     value = float(found.values[place])
-    ends = (value - reach, value + reach)
-    if item.is_log:
-        return exp(max(ends[0], item.low)), exp(min(ends[1], item.high))
-    return min(ends) * item.per, max(ends) * item.per
+    low, high = max(value - reach, min(item.low, value)), min(value + reach, max(item.high, value))
+    return (exp(low), exp(high)) if item.is_log else (low * item.per, high * item.per)
 
 
 def may_be_zero(found: Fit, piece: int) -> bool:
