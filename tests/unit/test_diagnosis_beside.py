@@ -52,30 +52,39 @@ def softening(joint: Joint, *, share: Float) -> Joint:
     return replace(joint, rigidity=joint.rigidity / (1 + share))
 
 
-SHAFT: Model[Any, Any] = Model(
-    name="shaft", title="A shaft", function=shaft,
-    errors=[
-        Tolerance("rigidity", normal(sd="2 %")),
+def waves(joint: Joint, base: Twist, *, slow: Float, fast: Float) -> Twist:
+    """Go round with the torque, in two parts that are found one by one."""
+    turns = joint.torque / 10
+    return replace(base, angle=base.angle + slow * np.cos(2 * turns) + fast * np.cos(7 * turns))
+
+
+RIGIDITY = Tolerance("rigidity", normal(sd="2 %"))
+EFFECTS = [
         Effect("lost_motion", on_inputs=lost_motion,
                unknowns=[Unknown("play", 0, 200, "mrad"), Unknown("width", 0.3, 10, "N*m")]),
         Effect("friction", on_inputs=friction, unknowns=[Unknown("torque", 0, 10, "N*m")],
                needs=[Condition("direction", "", reference=0)]),
         Effect("softening", on_inputs=softening, unknowns=[Unknown("share", -0.5, 2, "")]),
-    ],
-)  # fmt: skip
+        Effect("waves", on_results=waves, unknowns=[Unknown("slow", -9, 9, "mrad"), Unknown("fast", -9, 9, "mrad")],
+               parts=[["slow"], ["fast"]]),
+]  # fmt: skip
+SHAFT: Model[Any, Any] = Model(name="shaft", title="A shaft", function=shaft, errors=[RIGIDITY, *EFFECTS])
+LOOSE = Tolerance("rigidity", normal(sd="40 %"))
+LOOSE_SHAFT: Model[Any, Any] = Model(name="loose", title="A shaft", function=shaft, errors=[LOOSE, *EFFECTS])
 
 
 @hookimpl
 def truing_models() -> list[Model[Any, Any]]:
-    return [SHAFT]
+    return [SHAFT, LOOSE_SHAFT]
 
 
-def loops(noise: float, *, play: float, held: float) -> str:
+def loops(noise: float, *, play: float, held: float, rigidity: float = 405.0, wave: float = 0.0) -> str:
     """Four loops of torque between -20 and 20 N m, read with noise (mrad); written out without the model's code."""
     phase = np.linspace(0, 8 * np.pi, 320)
     torque, direction = 20 * np.sin(phase), np.sign(np.cos(phase))
     load = torque - held * direction
-    angle = 1e3 * load / 405.0 + play / 2 * np.tanh(load / 1.5)
+    angle = 1e3 * load / rigidity + play / 2 * np.tanh(load / 1.5)
+    angle += wave * (np.cos(torque / 5) + 0.5 * np.cos(0.7 * torque))
     read = angle + noise * np.random.default_rng(5).standard_normal(320)
     rows = "".join(
         f"{a!r},{b!r},{c!r}\n" for a, b, c in zip(*map(np.ndarray.tolist, (torque, direction, read)), strict=True)
@@ -83,10 +92,12 @@ def loops(noise: float, *, play: float, held: float) -> str:
     return "torque [N*m],direction [-],angle [mrad]\n" + rows
 
 
-def diagnosed(folder: Path, text: str) -> Diagnosis:
-    offer = Kernel([sys.modules[__name__]], strict=True).offer("shaft")
+def diagnosed(folder: Path, text: str, *, model: str = "shaft", effects: str = "") -> Diagnosis:
+    offer = next(
+        each for each in Kernel([sys.modules[__name__]], strict=True).offers.values() if each.model.name == model
+    )
     (folder / "measured.csv").write_text(text, encoding="utf-8")
-    (folder / "inputs.toml").write_text('plugin = "shaft"\n', encoding="utf-8")
+    (folder / "inputs.toml").write_text("[inputs]\n" + effects, encoding="utf-8")
     setup = read_setup(folder / "inputs.toml", offer)
     return diagnose(setup, read_records([folder / "measured.csv"], offer, setup))
 
@@ -110,3 +121,26 @@ def test_play_alone_is_named_alone(tmp_path: Path) -> None:
     found = diagnosed(tmp_path, loops(1.0, play=90.0, held=0.0))
     assert [cause.effect for cause in found.causes] == ["lost_motion"]
     assert found.unique
+
+
+def test_the_search_is_laid_out_anew_where_an_input_has_moved_far(tmp_path: Path) -> None:
+    """A shaft half as stiff again: what it adds is not linear in the stiffness so far from the nominal one."""
+    found = diagnosed(tmp_path, loops(1.0, play=90.0, held=3.0, rigidity=620.0), model="loose")
+    assert {cause.effect for cause in found.causes} == {"lost_motion", "friction"}
+    assert found.remainder is None
+    (stiff,) = found.calibrated
+    assert stiff.value == pytest.approx(620, rel=0.02)
+    assert stiff.of_its_sd == pytest.approx((stiff.value - 400) / 160, rel=1e-9)  # sd is 40 % of the nominal 400
+
+
+def test_parts_of_an_effect_that_is_on_are_looked_for_and_join_it(tmp_path: Path) -> None:
+    on = '[effects.waves]\nslow = "6 mrad"\n'
+    found = diagnosed(tmp_path, loops(0.5, play=0.0, held=0.0, wave=6.0), effects=on)
+    (cause,) = found.causes
+    assert cause.effect == "waves"
+    (fast,) = cause.unknowns
+    assert fast.name == "fast"
+    assert fast.value == pytest.approx(3e-3, rel=0.1)
+    assert found.extended is not None
+    (joined,) = found.extended.effects
+    assert joined.values == {"slow": pytest.approx(6e-3), "fast": fast.value}
