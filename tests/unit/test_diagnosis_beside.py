@@ -123,7 +123,7 @@ def test_play_alone_is_named_alone(tmp_path: Path) -> None:
     assert found.unique
 
 
-def test_the_search_is_laid_out_anew_where_an_input_has_moved_far(tmp_path: Path) -> None:
+def test_both_are_found_where_an_input_has_moved_far(tmp_path: Path) -> None:
     """A shaft half as stiff again: what it adds is not linear in the stiffness so far from the nominal one."""
     found = diagnosed(tmp_path, loops(1.0, play=90.0, held=3.0, rigidity=620.0), model="loose")
     assert {cause.effect for cause in found.causes} == {"lost_motion", "friction"}
