@@ -63,3 +63,14 @@ def test_gross_errors_are_listed_with_their_rows(tmp_path: Path) -> None:
     # six standard deviations too high with noise of one: 97.7 % lie beyond four, and 1 of 16000 of the others
     assert listed >= binom.ppf(CHANCE, wrong, 0.90)  # the scale is estimated: up to a sixth larger
     assert others <= 1
+
+
+@pytest.mark.parametrize("rows", [3, 5, 7, 8, 10, 14])
+def test_a_few_rows_name_nothing(tmp_path: Path, rows: int) -> None:
+    """A polynomial with as many free numbers as there are rows follows them all; that is no finding."""
+    alarms = 0
+    for seed in range(8):
+        columns = {name: values[:rows] for name, values in nothing_wrong(NOISES[0], seed).items()}
+        asked = Asked(drive_model(), seed=seed)
+        alarms += diagnose(asked.setup, asked.records(tmp_path, columns)).verdict != "none"
+    assert alarms <= (0 if rows < 8 else most(8, PERMITTED))

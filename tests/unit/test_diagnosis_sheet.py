@@ -255,7 +255,7 @@ def test_the_sentence_for_a_colleague_holds_cause_size_gain_and_what_is_next(nam
 def test_a_gain_that_may_be_chance_is_called_so() -> None:
     made = replace(named(), gain=tuple(replace(item, p_value=0.3) for item in named().gain))
     (said,) = [words for words in headline(made) if "not fitted" in words]
-    assert said == "On rows that were not fitted this is worth nothing that could not be chance."
+    assert said == "On rows that were not fitted there is no gain that could not be chance."
 
 
 def test_a_large_gain_in_few_blocks_is_told_with_its_chance() -> None:

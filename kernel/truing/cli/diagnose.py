@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from truing.cli.console import Settings, one_line, out, out_json, progress_bar, settings_of, verb
+from truing.cli.console import Settings, one_line, out, out_json, progress_bar, say, settings_of, verb
 from truing.cli.load import find_offer, read_or_example
 from truing.cli.words import AsJson, Changed, Plugin
 from truing.errors import UsageError
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from truing.studies.bench import Progress
 
 Data = Annotated[list[Path] | None, typer.Option("--data", "-d", help="A CSV file of measured rows; may be repeated.")]
+
+MISSPELT = "Did you mean"
+"""A note that must be seen: a column that may be misspelt changes what is found."""
 
 
 @verb
@@ -71,7 +74,7 @@ def _say_beside(done: Diagnosed, settings: Settings) -> None:
     for warning in done.diagnosis.warnings:
         settings.say(f"warning: {one_line(warning)}")
     for note in records.notes:
-        settings.say(f"note: {one_line(note)}")
+        (say if MISSPELT in note else settings.say)(f"note: {one_line(note)}")
     if done.note:
         settings.say(done.note)
     settings.detail(f"input hash {done.document['input_hash']}, seed {done.document['seed']}")

@@ -147,20 +147,22 @@ def _distance(item: Alternative) -> str:
 
 def _sight(diagnosis: Diagnosis) -> Iterator[str]:
     """Say what this data could not show, and the smallest size of what it could."""
+    named = {cause.effect for cause in diagnosis.causes}
+    others = [item for item in diagnosis.seen if item.name.partition(".")[0] not in named]
     for sight in ("not excited", "hidden in the tolerances"):
-        found = [_blind(item) for item in diagnosis.seen if item.sight == sight]
+        found = [_blind(item) for item in others if item.sight == sight]
         if found:
             more = "; the sheet lists all" if len(found) > MOST_SEEN else ""
             yield f"{sight}: {'; '.join(found[:MOST_SEEN])}{more}"
     lacking = [f"{spoken(effect)} ({listed(list(needs))})" for effect, needs in diagnosis.not_measured.items()]
     if lacking:
         yield f"not measured: {'; '.join(lacking)}"
-    named = {cause.effect for cause in diagnosis.causes}
     visible: dict[str, str] = {}
-    for item in diagnosis.seen:
-        effect = item.name.partition(".")[0]
-        if item.sight == "visible" and item.smallest is not None and effect not in named:
-            visible.setdefault(effect, f"{spoken(item.name)} {amount_text(readable(item.smallest))}")
+    for item in others:
+        if item.sight == "visible" and item.smallest is not None:
+            visible.setdefault(
+                item.name.partition(".")[0], f"{spoken(item.name)} {amount_text(readable(item.smallest))}"
+            )
     if visible:
         more = "; the sheet lists all" if len(visible) > MOST_SEEN else ""
         yield f"would have been seen from: {'; '.join(list(visible.values())[:MOST_SEEN])}{more}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -22,7 +23,7 @@ def init(
     force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
     no_schema: Annotated[bool, typer.Option("--no-schema", help="Write no schema for editors beside it.")] = False,
 ) -> int:
-    """Write a commented inputs file that holds the paper's example."""
+    """Write a commented inputs file that holds the shipped example."""
     from truing.example_file import example_text, schema_name, with_schema_line
 
     settings = settings_of(context)
@@ -75,4 +76,5 @@ def _write(files: Mapping[Path, str]) -> None:
         raise OutputError(f"{path} cannot be written: {error.strerror}") from None
     finally:
         for part in made:
-            part.unlink(missing_ok=True)
+            with suppress(OSError):
+                part.unlink(missing_ok=True)

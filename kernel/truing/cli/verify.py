@@ -24,7 +24,7 @@ def verify(
     plugin: Plugin,
     as_json: AsJson = False,
 ) -> int:
-    """Print every number of the paper beside ours; exit 0 if every row matches its stated verdict."""
+    """Print every number that the source prints beside ours; exit 0 if every row matches its stated verdict."""
     from truing.published import compare_published
 
     settings = settings_of(context)

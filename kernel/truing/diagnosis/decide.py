@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from truing.diagnosis.contest import Contest, curve_space
 from truing.diagnosis.hypotheses import Hypothesis
+from truing.diagnosis.records import FEWEST_READINGS
 from truing.diagnosis.significance import Null, first_stage, second_stage
 
 if TYPE_CHECKING:
@@ -75,6 +76,8 @@ def decide(contest: Contest, *, seed: int) -> Decision:
     null = first_stage(contest, best, seed=seed)
     p_any = null.p_value
     limit = float(np.quantile(null.maxima, 1 - ANY_LEVEL))
+    if contest.evidence.rows < FEWEST_READINGS:
+        return Decision(0, 1.0, None, null, Thresholds(limit, 0.0))
     if p_any > ANY_LEVEL:
         return Decision(0, p_any, None, null, Thresholds(limit, 0.0))
     one, two = _rivals(contest)

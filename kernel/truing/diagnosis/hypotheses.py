@@ -17,6 +17,8 @@ Kind = Literal["none", "one", "two", "shape", "mixed", "input"]
 MASSES: Mapping[Kind, float] = {"none": 0.50, "one": 0.30, "two": 0.12, "shape": 0.06, "mixed": 0.02, "input": 0.02}
 """Prior mass of every class, shared equally by its members: a class with many members does not win by numbers."""
 
+ROWS_PER_PARAMETER = 4
+"""Fewer rows for every free number are followed by any curve, noise or not."""
 REMEMBERED = 8
 """So many lists of each class are made once: the folds of a cross-validation ask for the same."""
 
@@ -185,10 +187,17 @@ def batches_of(hypotheses: Sequence[Hypothesis], rows: int, largest: int = 4000)
                     np.array([each.columns for each in chosen], dtype=int).reshape(shape),
                     np.array(low, dtype=float).reshape(shape),
                     np.array(high, dtype=float).reshape(shape),
-                    np.array([each.size * log(rows) - 2 * each.log_prior for each in chosen]),
+                    np.array([_penalty(each, rows) for each in chosen]),
                 )
             )
     return found
+
+
+def _penalty(hypothesis: Hypothesis, rows: int) -> float:
+    """Return what the parameters of an explanation cost; one that has too many for so few rows is out of question."""
+    if hypothesis.size * ROWS_PER_PARAMETER > rows:
+        return inf
+    return hypothesis.size * log(rows) - 2 * hypothesis.log_prior
 
 
 def unbounded(columns: Sequence[int]) -> tuple[tuple[float, ...], tuple[float, ...]]:

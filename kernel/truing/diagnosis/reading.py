@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from truing.diagnosis.covariates import covariates_of, held_out_rows
 from truing.diagnosis.data_file import DataFile, read_data_file
 from truing.diagnosis.joining import Joined, complete_rows, join, rows_of, settle_conditions
-from truing.diagnosis.records import Records
+from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.slips import Answers, factor_that_works, suspected_slips
 from truing.diagnosis.tidying import counted, numbered, tidy
 from truing.errors import Fault, InputError
@@ -137,6 +137,9 @@ def _enough_values(joined: Joined, fitted: NDArray[np.bool_], notes: Sequence[st
     said = [
         f"'{name}' is not used: {counted(count, 'value is', 'values are')} too few{more}" for name, count in few.items()
     ]
+    readings = sum(count for name, count in values.items() if name not in few)
+    if readings < FEWEST_READINGS:
+        said.append(f"{readings} readings tell no cause from chance, so none is named; take twenty or more")
     return replace(joined, data=replace(joined.data, columns=columns)), said
 
 

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
 Role = Literal["input", "condition", "time", "other", "order"]
 
 
+FEWEST_READINGS = 8
+"""Fewer readings tell no cause from chance."""
+
+
 @dataclass(frozen=True)
 class Covariate:
     """Something the error may depend on: one value per row, in SI, NaN where missing.

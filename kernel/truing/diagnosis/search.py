@@ -163,7 +163,7 @@ def evidence_of(problem: Problem, noise: NoiseModel, rows: NDArray[np.bool_]) ->
             )
         )
     products = tuple(tuple(products_of(channel)) for channel in channels)
-    counts = [len(channel) * (1 - noise.tails[channel.name].clipped) ** 2 for channel in channels]
+    counts = [max(len(channel) * (1 - noise.tails[channel.name].clipped) ** 2, 1.0) for channel in channels]
     return Evidence(tuple(channels), products, directions, tuple(counts))
 
 

@@ -227,7 +227,7 @@ def _gain_sentences(diagnosis: Diagnosis) -> Iterator[str]:
             f"in so few independent blocks that may be chance ({p_text(item.p_value)})."
         )
     if diagnosis.gain and not gains and not perhaps:
-        yield "on rows that were not fitted this is worth nothing that could not be chance."
+        yield "on rows that were not fitted there is no gain that could not be chance."
     yield from _held_out_sentences(diagnosis)
 
 
