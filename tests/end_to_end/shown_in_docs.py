@@ -78,7 +78,6 @@ class Desk:
     folder: Path
     site: Path
     faults: list[str] = field(default_factory=list)
-    as_processes: bool = False
     editable: list[str] = field(default_factory=list)
     namespace: dict[str, Any] = field(default_factory=dict)
 
@@ -88,7 +87,7 @@ class Desk:
         if parts[0] == "cd":
             self.folder = (self.folder / parts[1]).resolve()
             return "", 0
-        if parts[0] == "calc" and not self.as_processes and not OF_ITS_OWN & set(parts):
+        if parts[0] == "calc" and not OF_ITS_OWN & set(parts):
             return self._here(parts[1:])
         ended = subprocess.run(
             self._spelled_out(parts), cwd=self.folder, env=self._environment(), stdout=subprocess.PIPE,
@@ -172,10 +171,10 @@ def _terminal() -> Iterator[None]:
                 os.environ[name] = value
 
 
-def desk_in(folder: Path, *, as_processes: bool = False) -> Desk:
+def desk_in(folder: Path) -> Desk:
     """Prepare an empty folder with the examples that the manual ships.
 
-    Commands are run in this process where they may be, or each as a process of its own.
+    Commands are run in this process where they may be.
     """
     work = folder / "work"
     work.mkdir(parents=True)
@@ -184,7 +183,7 @@ def desk_in(folder: Path, *, as_processes: bool = False) -> Desk:
             shutil.copytree(example, work / example.name, ignore=shutil.ignore_patterns("__pycache__", "runs"))
         else:
             shutil.copy(example, work / example.name)
-    return Desk(work, folder / "site", as_processes=as_processes)
+    return Desk(work, folder / "site")
 
 
 def blocks(page: Path) -> Iterator[Block]:

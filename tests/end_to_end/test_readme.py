@@ -66,7 +66,7 @@ def test_ci_runs_the_test_command_of_the_readme() -> None:
 
 
 def test_the_tour_does_what_it_shows(tmp_path: Path) -> None:
-    faults = check_page(README, desk_in(tmp_path, as_processes=True))
+    faults = check_page(README, desk_in(tmp_path))
     assert not faults, "\n".join(faults)
 
 

@@ -14,7 +14,7 @@ from scipy.stats import binom, kstest
 
 from truing.diagnosis.engine import diagnose
 
-SEEDS = range(20)
+SEEDS = range(14)
 PERMITTED, NAMED_WITH_GROSS_ERRORS = 0.05, 0.10
 CHANCE = 0.01
 GROSS_SEEDS = range(30)
@@ -69,8 +69,8 @@ def test_gross_errors_are_listed_with_their_rows(tmp_path: Path) -> None:
 def test_a_few_rows_name_nothing(tmp_path: Path, rows: int) -> None:
     """A polynomial with as many free numbers as there are rows follows them all; that is no finding."""
     alarms = 0
-    for seed in range(8):
+    for seed in range(4):
         columns = {name: values[:rows] for name, values in nothing_wrong(NOISES[0], seed).items()}
         asked = Asked(drive_model(), seed=seed)
         alarms += diagnose(asked.setup, asked.records(tmp_path, columns)).verdict != "none"
-    assert alarms <= (0 if rows < 8 else most(8, PERMITTED))
+    assert alarms <= (0 if rows < 8 else most(4, PERMITTED))

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from truing.diagnosis.candidates import Candidate, Term, variants_of
 from truing.diagnosis.chords import REACH, chord, may_bend
 from truing.diagnosis.contest import Contest, contest
-from truing.diagnosis.fit import Fit, fit, input_values, is_off
+from truing.diagnosis.fit import Fit, Fitter, fit, input_values, is_off
 from truing.diagnosis.hypotheses import pairs
 from truing.diagnosis.machine import Machine, machine_of, predict
 from truing.diagnosis.problem import Problem, problem_of, with_pairs, without_pieces
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+ADDED = 1.0
+"""Sum of squares, in units of the noise, from which two causes are more than their sum."""
 MOST_FIRST = 2
 MOST_FITTED = 3
 NEARLY = 16.0
@@ -89,6 +91,8 @@ def second_beside_first(full: Contest, winner: int, best: Fit, rows: NDArray[np.
     is_split = any(file >= 0 for term in full.problem.terms for file in term.files)
     if full.evidence.rows > MOST_ROWS or is_split:
         return None
+    if full.found.hypotheses[winner].kind == "two" and not _has_twins(full, best) and _is_sum(full, best):
+        return None
     plain = replace(full, noise=replace(full.noise, residuals=residuals_of(full.problem.machine)))
     tried = [pair for first in _firsts(plain, winner) for pair in _fitted_beside(plain, first, rows)]
     top = max(tried, key=lambda pair: pair.worth, default=None)
@@ -106,6 +110,29 @@ def second_beside_first(full: Contest, winner: int, best: Fit, rows: NDArray[np.
             twins = {**problem.twins, owner: pair.twins.get(owner, ())}
             problem = replace(_competing(problem, causes), twins=twins)
     return contest(problem, noise, rows, rounds=1)
+
+
+def _has_twins(full: Contest, best: Fit) -> bool:
+    """Whether a cause of a fit is the same curve as another one, alone at least."""
+    return any(full.problem.twins.get(piece.owner) for piece in best.hypothesis.pieces)
+
+
+def _is_sum(full: Contest, best: Fit) -> bool:
+    """Whether a fitted pair does no more than the sum of what its two causes do, as far as the noise lets see."""
+    import numpy as np
+
+    fitter = Fitter(full, best.hypothesis)
+    made = []
+    for kept in ((0, 1), (0,), (1,), ()):
+        off = [item.piece not in kept and not item.is_shape for item in best.parameters]
+        made.append(fitter.predicted(np.where(off, 0.0, best.values), best.directions))
+    both, first, second, none = made
+    left = 0.0
+    for channel in full.evidence.channels:
+        name = channel.name
+        more = (both[name] - first[name] - second[name] + none[name])[channel.rows] / channel.scale
+        left += float(more @ more)
+    return left < ADDED
 
 
 def _about(problem: Problem, inputs: Mapping[str, tuple[float, float]]) -> Problem:
