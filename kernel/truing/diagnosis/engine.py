@@ -17,7 +17,7 @@ from truing.diagnosis.gain import Nested, nested, sign_flip_p
 from truing.diagnosis.machine import machine_of
 from truing.diagnosis.naming import alternative_of, causes_of, extended_setup, remainder_of
 from truing.diagnosis.problem import Problem, problem_of
-from truing.diagnosis.records import Records
+from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.result import Alternative, Amount, Calibrated, Curves, Diagnosis, Gain, Verdict
 from truing.diagnosis.search import NoiseModel, first_noise, moved_to
 from truing.diagnosis.second_look import second_look
@@ -53,6 +53,14 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
 
 
 def _diagnose(setup: Setup, records: Records, step: _Steps) -> Diagnosis:
+    """Go through the stages; of few readings in silence, since what is calculated of them is not used."""
+    import numpy as np
+
+    with np.errstate(all="ignore" if records.readings < FEWEST_READINGS else None):
+        return _staged(setup, records, step)
+
+
+def _staged(setup: Setup, records: Records, step: _Steps) -> Diagnosis:
     machine = machine_of(setup, records)
     raw = first_noise(machine)
     problem = problem_of(machine, raw.scales)

@@ -75,5 +75,12 @@ class Records:
     absent: frozenset[str] = field(default_factory=frozenset)
     """Conditions of effects that no column gives: not measured."""
 
+    @property
+    def readings(self) -> int:
+        """Number of measured values that may be fitted."""
+        import numpy as np
+
+        return sum(int(np.isfinite(values[~self.held_out]).sum()) for values in self.measured.values())
+
     def __len__(self) -> int:
         return len(self.run_of)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Protocol
 import pytest
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
 LONGEST = 900
 """Seconds that a process may take."""
@@ -43,8 +43,14 @@ class CalcProcess(Protocol):
 
 
 @pytest.fixture
-def calc(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Calc:
-    """Run ``calc`` in this process, in an empty folder (that of ``tmp_path``) unless ``cwd`` names another."""
+def calc(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Calc]:
+    """Run ``calc`` in this process, in an empty folder (that of ``tmp_path``) unless ``cwd`` names another.
+
+    What was loaded from that folder is forgotten when the test ends.
+    """
+    import sys
+
+    monkeypatch.setattr(sys, "path", list(sys.path))
 
     def run(*arguments: str | Path, cwd: Path | None = None) -> Answer:
         from truing.cli import main
@@ -55,7 +61,10 @@ def calc(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tm
         said = capsys.readouterr()
         return Answer(code, said.out, said.err)
 
-    return run
+    yield run
+    for name, module in list(sys.modules.items()):
+        if str(getattr(module, "__file__", None) or "").startswith(str(tmp_path)):
+            del sys.modules[name]
 
 
 @pytest.fixture
