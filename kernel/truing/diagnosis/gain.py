@@ -125,21 +125,19 @@ def _judge(
     item = again.evidence.channels[channel]
     weights = again.noise.weights[item.name][test]
     left_over = _residual(again, item.name)
-    truth = left_over[test]
     logs = []
     for solution, errors in zip(solutions, (judged.before, judged.after), strict=True):
-        error = truth - linear_prediction(again, solution, item.name)[test]
+        off = left_over - linear_prediction(again, solution, item.name)
+        trained, error = off[item.rows] * item.weights, off[test]
         errors[test] = error
         left = solution.innovations[channel]
         setting = SETTINGS[solution.setting[channel]]
         sd = float(np.sqrt(np.mean(left**2) * setting.variance_ratio)) * item.scale
         if setting.rho > 0:  # a misfit may remember longer than any filter
-            fitted = (left_over - linear_prediction(again, solution, item.name))[item.rows] * item.weights
-            sd = max(sd, float(np.sqrt(np.mean(fitted**2))))
+            sd = max(sd, float(np.sqrt(np.mean(trained**2))))
         logs.append(_log_density(error * weights / sd, again.noise.tails[item.name].freedom) + np.log(weights / sd))
     judged.gain[test] = logs[1] - logs[0]
-    trained = (left_over - linear_prediction(again, solutions[1], item.name))[item.rows]
-    limit = float(np.quantile(np.abs(trained * item.weights), COVERED))
+    limit = float(np.quantile(np.abs(trained), COVERED))  # of the extended model, which comes last
     limit *= sqrt(len(trained) / max(len(trained) - len(solutions[1].coefficients) - len(solutions[1].directions), 1))
     outside = np.abs(judged.after[test] * weights) > limit
     judged.inside[test] = np.where(np.isfinite(judged.after[test]), ~outside, np.nan)

@@ -7,6 +7,7 @@ import math
 import os
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
@@ -45,20 +46,29 @@ def write_table(
         return
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")
     except OSError as error:
         raise OutputError(f"{target}: cannot be written: {error.strerror or error}") from error
+    with written_whole(target, newline="") as stream:
+        _write(stream, headers, columns, form)
+
+
+@contextmanager
+def written_whole(target: Path, *, newline: str) -> Iterator[TextIO]:
+    """Give a stream whose text becomes a file when all of it is written, and none before. Raises OutputError."""
     try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="") as stream:
-            _write(stream, headers, columns, form)
-        Path(name).chmod(0o666 & ~umask())
-        Path(name).replace(target)
+        handle, name = tempfile.mkstemp(dir=target.absolute().parent, prefix=f".{target.name[:40]}.", suffix=".part")
     except OSError as error:
-        Path(name).unlink(missing_ok=True)
         raise OutputError(f"{target}: cannot be written: {error.strerror or error}") from error
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+    part = Path(name)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline=newline) as stream:
+            yield stream
+        part.chmod(0o666 & ~umask())
+        part.replace(target)
+    except OSError as error:
+        raise OutputError(f"{target}: cannot be written: {error.strerror or error}") from error
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def umask() -> int:

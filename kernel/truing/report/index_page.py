@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import os
-import tempfile
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -13,7 +12,7 @@ from typing import Any
 from urllib.parse import quote
 
 from truing.errors import OutputError
-from truing.measurements.writing import umask
+from truing.measurements.writing import written_whole
 from truing.numbers import ABSENT, format_number, pretty, with_unit
 from truing.report.context import Head
 from truing.report.render import page
@@ -149,20 +148,8 @@ def write_index(place: Path, listing: Listing) -> None:
     """Write the page, whole or not at all; one of ours is replaced. Raises OutputError where another file is there."""
     _demand_ours(place)
     text = index_html(listing, place)
-    try:
-        handle, name = tempfile.mkstemp(dir=place.absolute().parent, prefix=f".{place.name[:40]}.", suffix=".part")
-    except OSError as error:
-        raise OutputError(f"{place}: cannot be written: {error.strerror or error}") from error
-    part = Path(name)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as stream:
-            stream.write(text)
-        part.chmod(0o666 & ~umask())
-        part.replace(place)
-    except OSError as error:
-        raise OutputError(f"{place}: cannot be written: {error.strerror or error}") from error
-    finally:
-        part.unlink(missing_ok=True)
+    with written_whole(place, newline="\n") as stream:
+        stream.write(text)
 
 
 def _demand_ours(place: Path) -> None:
