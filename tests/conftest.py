@@ -1,4 +1,4 @@
-"""What tests share beside the fixtures of ``truing.testing``: the strangers' plugins."""
+"""What tests share beside the fixtures of ``truing.testing``: the size of torture tests, the strangers' plugins."""
 
 import sys
 from pathlib import Path
@@ -9,6 +9,17 @@ from shared import GUESTS, TESTS, copied_guest, process
 
 collect_ignore = ["third_party", "data"]
 sys.path += [str(TESTS / "data"), str(TESTS / "data" / "gear_record")]
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the size of the torture tests: ``python -m pytest tests/torture --torture=full``."""
+    parser.addoption("--torture", choices=["modest", "full"], default="modest", help="size of the tests in tests/torture")
+
+
+@pytest.fixture(scope="session")
+def full_torture(request: pytest.FixtureRequest) -> bool:
+    """Return whether the torture tests run at full size; the suite runs them at a modest one."""
+    return bool(request.config.getoption("--torture") == "full")
 
 
 @pytest.fixture(scope="session")
