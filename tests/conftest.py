@@ -13,7 +13,9 @@ sys.path += [str(TESTS / "data"), str(TESTS / "data" / "gear_record")]
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the size of the torture tests: ``python -m pytest tests/torture --torture=full``."""
-    parser.addoption("--torture", choices=["modest", "full"], default="modest", help="size of the tests in tests/torture")
+    parser.addoption(
+        "--torture", choices=["modest", "full"], default="modest", help="size of the tests in tests/torture"
+    )
 
 
 @pytest.fixture(scope="session")
