@@ -14,7 +14,12 @@ def face_factor(ratio: Float) -> Float:
     return np.where(held <= 1.0, 1.0 + held, 2.0 * np.sqrt(held))
 
 
-def amplification(speed_ratio: Float, damping: Float) -> Float:
-    """Return 1/sqrt((1 - N^2)^2 + (2 zeta N)^2): response of one degree of freedom at N times its own frequency."""
+def shaken_by_error(speed_ratio: Float, damping: Float) -> Float:
+    """Return N^2/sqrt((1 - N^2)^2 + (2 zeta N)^2): force of a spring that an error of position works, over k times it.
+
+    One degree of freedom at N times its own frequency: m y'' + c y' + k y = -m e'' of the deflection y, with an error e
+    of one harmonic. Nothing at rest, in proportion to N^2 below the resonance, 1/(2 zeta) at it, 1 far above it, where
+    the mass stands still and the error alone works the spring. Reference: Den Hartog, Mechanical vibrations, 2.8.
+    """
     square = np.square(speed_ratio)
-    return 1.0 / np.sqrt((1.0 - square) ** 2 + 4.0 * np.square(damping) * square)
+    return square / np.sqrt((1.0 - square) ** 2 + 4.0 * np.square(damping) * square)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gear_geometry.mesh_load import amplification, face_factor
+from gear_geometry.mesh_load import face_factor, shaken_by_error
 from roller_screw_shift.loads import load_of
 from roller_screw_shift.quantities import Pair
 from truing import Float
@@ -41,8 +41,7 @@ def mesh_resonance(
     peak of excitation/(2 zeta) at the resonance, and ``excitation`` far above it, where the roller stands still and the
     error of the teeth alone works the mesh.
     """
-    ratio = np.abs(screw_speed) / resonance_speed
-    swing = excitation * np.square(ratio) * amplification(ratio, damping)
+    swing = excitation * shaken_by_error(screw_speed / resonance_speed, damping)
     return replace(pair, dynamic_factor=pair.dynamic_factor * (1.0 + swing))
 
 

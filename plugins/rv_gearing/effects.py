@@ -21,7 +21,7 @@ from rv_gearing.quantities import Gearing
 from truing import Effect, Unknown
 
 FACE = "face load factor of ISO 6336-1, method C, for a misalignment that grows with the load"
-RESONANCE = "dynamic magnification of one degree of freedom"
+RESONANCE = "one degree of freedom shaken by an error of position, Den Hartog, Mechanical vibrations, 2.8"
 HARMONIC = "first harmonic of an eccentricity; kinematics of the RV reducer with its housing fixed"
 STIFFNESS = "ISO 6336-1, clause 9: stiffness of a tooth pair, and its fall below a line load of 100 N/mm"
 PALMGREN = (
@@ -62,11 +62,12 @@ LOAD: list[Effect[Gearing, Strength]] = [
         "structural_resonance",
         on_inputs=structural_resonance,
         unknowns=[
-            Unknown("strength", 0, 2, "", note="what the dynamic factor gains far below the resonance"),
+            Unknown("strength", 0, 2, "", note="error of the mesh times stiffness over load: gain far above it"),
             Unknown("resonance_speed", 200, 5000, "rpm", note="of the sun relative to the carrier"),
             Unknown("damping", 0.03, 0.3, "", note="damping ratio"),
         ],
-        looks_like="all stresses have a peak at one speed of the input, by the same share at any load",
+        looks_like="all stresses have a peak at one speed of the input, by the same share at any load; nothing at rest "
+        "and below the peak four times as much at twice the speed",
         why="shaft, carrier or housing have a frequency of their own, which the teeth of the sun meet at that speed",
         source=RESONANCE,
     ),
@@ -85,7 +86,7 @@ LOAD: list[Effect[Gearing, Strength]] = [
         unknowns=[Unknown("full_line_load", 0, 200, "N/mm", note="force over width from which all of it carries")],
         looks_like="all stresses too high at small loads, and right from some load on",
         why="crowned teeth touch in the middle of their width; the contact grows with the load",
-        source="Hertz, point contact of crowned flanks that spreads over the face; width as the root of the force",
+        source="Hertz, point contact of crowned flanks that spreads over the face; width as the cube root of the force",
     ),
     Effect(
         "relief_error",

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gear_geometry.mesh_load import amplification
+from gear_geometry.mesh_load import shaken_by_error
 from rv_gearing.loads import load_of
 from rv_gearing.quantities import Gearing
 from truing import Float
@@ -19,12 +19,13 @@ def face_misalignment(stage: Gearing, *, misalignment: Float, per_load: Float) -
 
 
 def structural_resonance(stage: Gearing, *, strength: Float, resonance_speed: Float, damping: Float) -> Gearing:
-    """Shaft, carrier or housing answers to the meshing teeth as one degree of freedom.
+    """Shaft, carrier or housing answers to the meshing teeth as one degree of freedom that their error shakes.
 
-    ``strength`` is what the dynamic factor gains far below the resonance. Speeds are those of the sun relative to the
-    carrier, which the frequency of the mesh follows.
+    ``strength`` is the error, by the stiffness that it works against, over the load: the dynamic factor gains
+    ``strength`` N² / sqrt((1 - N²)² + (2 zeta N)²), nothing at rest and strength/(2 zeta) at the resonance. Speeds are
+    those of the sun relative to the carrier, which the frequency of the mesh follows.
     """
-    answer = strength * amplification(load_of(stage).mesh_speed / resonance_speed, damping)
+    answer = strength * shaken_by_error(load_of(stage).mesh_speed / resonance_speed, damping)
     return replace(stage, extra_dynamic_factor=stage.extra_dynamic_factor + answer)
 
 
@@ -34,9 +35,13 @@ def planet_load_sharing(stage: Gearing, *, lead: Float) -> Gearing:
 
 
 def crowned_contact(stage: Gearing, *, full_line_load: Float) -> Gearing:
-    """Crowned teeth touch over a width that grows with the root of the force, until the whole face carries."""
+    """Crowned teeth touch over a width that grows with the cube root of the force, until the whole face carries.
+
+    Of a parabola, on a bed of springs and on Hertz's half space alike. The mean over this width is what is raised; how
+    uneven the load is across it stays with the face load factor.
+    """
     force = np.maximum(load_of(stage).tangential_force, LEAST_FORCE)
-    share = np.sqrt(force / np.maximum(force, full_line_load * stage.face_width))
+    share = np.cbrt(force / np.maximum(force, full_line_load * stage.face_width))
     return replace(stage, carrying_share=stage.carrying_share * share)
 
 

@@ -23,6 +23,7 @@ from hidden_effects.gearing_stress import (
     mesh_stiffness,
     stresses,
     swinging,
+    touched,
 )
 
 Hidden: TypeAlias = Mapping[str, Mapping[str, float]]  # effect -> unknown, in the units of the registry
@@ -78,14 +79,11 @@ def apart(rows: Rows, hidden: Hidden) -> Array:
 
 
 def loaded(rows: Rows, stage: Stage, hidden: Hidden) -> Loaded:
-    """Force and speed of a mesh; crowned teeth carry over a width whose square grows with the force."""
+    """Force and speed of a mesh, and over which share of their width crowned teeth touch."""
     force = 1000 * sun_torque(rows, stage) / (2 * MODULE * SUN / 2)
     full = of(hidden, "crowned_contact", "full_line_load") * stage.width
-    low, high = np.zeros(len(rows)), np.ones(len(rows))
-    for _ in range(50):  # width at which the contact takes the force
-        middle = (low + high) / 2
-        low, high = np.where(full * middle**2 < force, middle, low), np.where(full * middle**2 < force, high, middle)
-    return Loaded(force, rows.input_speed * (1 - 1 / RATIO), high, apart(rows, hidden))
+    touching = touched(force / full) if full else np.ones(len(rows))
+    return Loaded(force, rows.input_speed * (1 - 1 / RATIO), touching, apart(rows, hidden))
 
 
 def strength(rows: Rows, stage: Stage, hidden: Hidden) -> dict[str, Array]:

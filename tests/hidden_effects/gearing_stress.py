@@ -72,11 +72,15 @@ def dynamic_factor(stage: Stage, loaded: Loaded, stiffness: Array) -> Array:
 
 
 def swinging(speed: Array, resonance: float, damping: float) -> Array:
-    """Amplitude of a mass on a spring shaken by a unit force at this speed: both phases of its motion, solved."""
+    """What a spring gives way, over the error that works it: both phases of the mass behind it, solved, less the error.
+
+    Spring and damper carry the mass along with the error, as a road carries a car.
+    """
     found = []
     for ratio in speed / resonance:
         matrix = np.array([[1 - ratio**2, 2 * damping * ratio], [-2 * damping * ratio, 1 - ratio**2]])
-        found.append(float(np.hypot(*np.linalg.solve(matrix, [1.0, 0.0]))))
+        carried = np.linalg.solve(matrix, [1.0, -2 * damping * ratio])
+        found.append(float(np.hypot(carried[0] - 1.0, carried[1])))
     return np.array(found)
 
 
@@ -89,6 +93,20 @@ def spread(tilted: Array, stiffness: Array, line_load: Array) -> Array:
         carried = stiffness * np.mean(np.maximum(middle[:, None] - gaps, 0.0), axis=1)
         low, high = np.where(carried < line_load, middle, low), np.where(carried < line_load, high, middle)
     return np.asarray(stiffness * high / line_load)
+
+
+def touched(share: Array) -> Array:
+    """Over which share of its width a crowned face touches, at a share of the load that makes its ends touch.
+
+    Strips of springs that only push, behind a parabola that stands back by 1 at both ends.
+    """
+    gaps = ((np.arange(STRIPS) + 0.5) / STRIPS) ** 2
+    low, high = np.zeros(len(share)), 1 + share
+    for _ in range(60):
+        middle = (low + high) / 2
+        pushed = np.mean(np.maximum(middle[:, None] - gaps, 0.0), axis=1) / np.mean(1 - gaps)
+        low, high = np.where(pushed < share, middle, low), np.where(pushed < share, high, middle)
+    return np.asarray(np.minimum(np.sqrt(high), 1.0))
 
 
 def of_first_planet(lead: float, stiffness: Array, force: Array) -> Array:

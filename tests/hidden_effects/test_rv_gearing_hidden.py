@@ -62,6 +62,7 @@ NAMED = [
         seed=30,
         hidden={"structural_resonance": {"strength": 0.06, "resonance_speed": 900, "damping": 0.1}},
         results=STRESS,
+        count=200,
     ),
     Wish(seed=9, hidden={"planet_load_sharing": {"lead": 0.1}}, results=STRESS, kind="heavy", count=70),
     Wish(seed=10, hidden={"crowned_contact": {"full_line_load": 18}}, results=STRESS, count=70),

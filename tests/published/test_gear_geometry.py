@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from traced_gears import (
     ALPHA,
     Couple,
@@ -14,7 +15,7 @@ from traced_gears import (
 )
 
 from gear_geometry.involute import angle_of_involute, involute
-from gear_geometry.mesh_load import amplification, face_factor
+from gear_geometry.mesh_load import face_factor, shaken_by_error
 from gear_geometry.pairs import (
     base_helix_angle,
     clear_of_base,
@@ -302,10 +303,30 @@ def test_the_face_factor_of_a_misaligned_pair() -> None:
     assert (face_factor(1 + step) - face_factor(1 - step)) / (2 * step) == pytest.approx(1.0, abs=1e-6)
 
 
-def test_the_response_of_one_degree_of_freedom() -> None:
-    """Textbook limits: 1 at rest, 1/(2 zeta) at resonance, 1/N^2 far above; largest at sqrt(1 - 2 zeta^2)."""
+def test_the_limits_of_a_mass_that_an_error_shakes() -> None:
+    """Textbook: nothing at rest, N^2 below, 1/(2 zeta) at resonance, 1 far above; largest at 1/sqrt(1 - 2 zeta^2)."""
     zeta, ratio = 0.07, np.linspace(0.5, 1.5, 100_001)
-    assert amplification(0.0, zeta) == 1.0
-    assert amplification(1.0, zeta) == pytest.approx(1 / (2 * zeta), rel=1e-14)
-    assert amplification(100.0, zeta) * 100.0**2 == pytest.approx(1.0, rel=2e-4)
-    assert ratio[np.argmax(amplification(ratio, zeta))] == pytest.approx(np.sqrt(1 - 2 * zeta**2), abs=1e-5)
+    assert shaken_by_error(0.0, zeta) == 0.0
+    assert shaken_by_error(0.01, zeta) / 0.01**2 == pytest.approx(1.0, rel=2e-4)
+    assert shaken_by_error(1.0, zeta) == pytest.approx(1 / (2 * zeta), rel=1e-14)
+    assert shaken_by_error(100.0, zeta) == pytest.approx(1.0, rel=2e-4)
+    assert ratio[np.argmax(shaken_by_error(ratio, zeta))] == pytest.approx(1 / np.sqrt(1 - 2 * zeta**2), abs=1e-5)
+
+
+@pytest.mark.parametrize("ratio", [0.05, 0.6, 1.0, 1.7, 6.0])
+def test_a_mass_that_an_error_shakes_step_by_step(ratio: float) -> None:
+    """The mass of frequency 1 moves by itself from rest, over 60 of its periods; then the spring is read for one wave.
+
+    The error is of one harmonic and size 1; what is read is the way of the mass less the error.
+    """
+    zeta, period = 0.12, 2 * np.pi / ratio
+
+    def moved(at: float, state: np.ndarray) -> list[float]:
+        gap, closing = state[0] - np.sin(ratio * at), state[1] - ratio * np.cos(ratio * at)
+        return [state[1], -gap - 2 * zeta * closing]
+
+    start = np.ceil(60 * 2 * np.pi / period) * period
+    times = start + period * np.linspace(0, 1, 2000)
+    way = solve_ivp(moved, (0.0, times[-1]), [0.0, 0.0], t_eval=times, rtol=1e-9, atol=1e-12).y[0]
+    worked = way - np.sin(ratio * times)
+    assert np.max(np.abs(worked)) == pytest.approx(float(shaken_by_error(ratio, zeta)), rel=1e-5)
