@@ -83,14 +83,14 @@ def test_every_way_to_write_the_same_table(table: Write, content: str) -> None:
 
 
 def test_units_lines_and_missing_cells(table: Write) -> None:
-    content = 'time [h],note,depth [um],probe_temperature [degF]\n1,"two\nlines",,50\n#\n\n2,x,3,\n,,nan,68\n'
+    content = 'time [h],note,depth [um],probe_temperature [degF]\n1,"two ""lines""" ,,50\n#\n\n2,x,3,\n,,nan,68\n'
     found = read_table(table(content), KNOWN)
-    assert found.lines == (2, 6, 7)
+    assert found.lines == (2, 5, 6)
     assert found.units == {"time": "h", "note": "", "depth": "um", "probe_temperature": "degF"}
     np.testing.assert_array_equal(found.columns["time"], [3600.0, 7200.0, math.nan])
     np.testing.assert_array_equal(np.isnan(found.columns["depth"]), [True, False, True])
     np.testing.assert_allclose(found.columns["probe_temperature"], [283.15, math.nan, 293.15], rtol=1e-12)
-    assert found.columns["note"] == ("two\nlines", "x", "")
+    assert found.columns["note"] == ('two "lines"', "x", "")
 
 
 def test_unknown_columns_are_kept_in_si_where_their_unit_is_known(table: Write) -> None:
@@ -172,6 +172,58 @@ def test_faults_of_a_table(table: Write, content: str, sentences: list[str]) -> 
         assert one.startswith(beginning)
 
 
+OPEN = "opens a quotation mark that this line does not close; a cell ends in the line in which it begins"
+"""What an unclosed quotation mark is answered with."""
+
+
+@pytest.mark.parametrize(
+    ("content", "sentences"),
+    [
+        ('depth [um],note\n5,ok\n6,"start\n9.99,bad\n30,last\n', [f"3: cell 2 {OPEN}"]),
+        ('depth [um],note\n5,ok\n6,"end', [f"3: cell 2 {OPEN}"]),
+        ('depth [um],note\n5,"two\nlines"\n', [
+            f"2: cell 2 {OPEN}", "3: this row has 1 cell, expected 2 as in the header"
+        ]),
+        ('depth [um],"note\n5,ok\n', [f"1: cell 2 {OPEN}"]),
+        ('depth [um],note\n"5"0,ok\n', [
+            "2: cell 1 goes on behind its closing quotation mark; write a quotation mark inside of a quoted cell twice"
+        ]),
+        ("run,depth [um]\n#3,5\n# a remark\n4,6\n", [
+            "2: this line begins with '#' and holds 2 cells as a row does; put '#3' in quotation marks where it is "
+            "one, and a remark above the header"
+        ]),
+        ("depth [um];time [h]\n1.050;1\n950,5;1\n1,050;1\n", [
+            "3: '950,5' and '1.050' in line 2 have different decimal marks; write one mark in the whole file, and none "
+            "between the thousands"
+        ]),
+        ("depth [um];gain\n1,5;1.5\n", [
+            "2: '1,5' and '1.5' in line 2 have different decimal marks; write one mark in the whole file, and none "
+            "between the thousands"
+        ]),
+        ("depth [um];time [h]\n1,050;1\n20,000;1\n", [
+            "2: depth: '1,050' may be 1.050 or 1050, and no other number decides; write '1,0500' or '1050'",
+            "3: depth: '20,000' may be 20.000 or 20000, and no other number decides; write '20,0000' or '20000'",
+        ]),
+        ("time [h]\n\u0665\n\uff15\n", [
+            "2: time: '\u0665' is no number; digits are 0 to 9", "3: time: '\uff15' is no number; digits are 0 to 9"
+        ]),
+        ("probe_temperature [degC]\n-300\n-273.15\n", ["2: probe_temperature: '-300 degC' lies below absolute zero"]),
+        ("time [h]\n1e306\n1e-400\n", [
+            "2: time: '1e+306 h' is too large for a number in SI units", "3: time: '1e-400' is too small for a number"
+        ]),
+    ],
+)  # fmt: skip
+def test_what_would_be_misread_is_refused(table: Write, content: str, sentences: list[str]) -> None:
+    assert data_faults(table(content)) == sentences
+
+
+@pytest.mark.parametrize(
+    "content", ["depth [um];time [h]\n1,050;0,5\n", "depth [um]\n1.050\n", "depth [um];x\n1.050;\n"]
+)
+def test_a_mark_that_the_file_decides(table: Write, content: str) -> None:
+    np.testing.assert_allclose(read_table(table(content), KNOWN).columns["depth"], [1.05e-6], rtol=1e-15)
+
+
 def test_words_for_missing_are_faults_in_a_column_of_inputs(table: Write) -> None:
     path = table("time [h],depth [um]\nNaN,NaN\n1,2\n")
     assert math.isnan(read_table(path, KNOWN).columns["time"][0])  # type: ignore[arg-type]
@@ -192,7 +244,11 @@ def test_words_for_missing_are_faults_in_a_column_of_inputs(table: Write) -> Non
         ("rows.ods", b"PK\x03\x04", "is a spreadsheet; save it as CSV UTF-8"),
         ("rows.csv", "time [h]\n1".encode("utf-16"), "is text in UTF-16; save it as UTF-8"),
         ("rows.csv", "note\nPrüfung\n".encode("latin-1"), "is not UTF-8 text; save it as CSV UTF-8"),
-        ("rows.csv", b"note\n" + b"x" * 200_000 + b"\n", "this is no CSV: field larger than field limit"),
+        (
+            "rows.csv",
+            b"note\n" + b"x" * 1_000_001 + b"\n",
+            ":2: this line has 1000002 characters; at most 1000000 are ",
+        ),
     ],
 )
 def test_a_file_that_is_no_table(tmp_path: Path, name: str, content: bytes, sentence: str) -> None:
@@ -304,6 +360,19 @@ def test_rows_of_other_kinds_and_of_a_series(table: Write) -> None:
     np.testing.assert_allclose(found.series["profile"], [1e-6, 2e-6])
     np.testing.assert_allclose(found.axes["lag"], [0, 1e-3])
     assert found.others == ()
+
+
+def test_cases_and_rows_keep_what_the_inputs_file_keeps(table: Write) -> None:
+    path = table("probe_temperature [degC],speed [m/s]\n-300,1\n20,1e-400\n-273.15,1\n")
+    for read in (read_cases, read_rows):
+        assert faults(lambda: read(path, PIN_OFFER, pin_setup())) == [  # noqa: B023
+            "2: probe_temperature: '-300 degC' lies below absolute zero",
+            "3: speed: '1e-400' is too small for a number",
+        ]
+    path = table("probe_temperature [degC];speed [m/s]\n1,050;1.5\n")
+    for read in (read_cases, read_rows):
+        (sentence,) = faults(lambda: read(path, PIN_OFFER, pin_setup()))  # noqa: B023
+        assert "have different decimal marks" in sentence
 
 
 def test_rows_keep_bounds(table: Write) -> None:

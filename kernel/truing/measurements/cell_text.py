@@ -8,7 +8,7 @@ from collections.abc import Sequence
 MARK = "\ufeff"
 """The byte order mark: by it a spreadsheet knows UTF-8, and we a table that was written for one."""
 
-NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
+NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 MISSING_WORDS = {"nan", "na", "n/a", "#n/a", "null", "none", "-"}
 _FORMULA = re.compile(r"'*(?P<words>\s*[=+\-@＝＋－＠].+)", re.DOTALL)
 

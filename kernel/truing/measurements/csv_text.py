@@ -1,12 +1,16 @@
-"""A CSV file taken apart: header cells with their units, rows with the line each begins in, cells still as text."""
+"""A CSV file taken apart: header cells with their units, rows with the line each stands in, cells still as text.
+
+Every line is a row of its own: a cell never runs over a line end. So no row can be swallowed by another, and each line
+behind the header is used, a fault, or in ``left_out`` with its reason.
+"""
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import chain
 from pathlib import Path
 from typing import TextIO
@@ -14,12 +18,25 @@ from typing import TextIO
 from truing.errors import Fault, InputError
 from truing.inputs_file.files import refuse_file
 from truing.measurements.cell_text import MARK, all_unguarded
+from truing.measurements.row_count import LeftOut, RowCount
 from truing.units.grammar import shown
 
 LARGEST_TABLE = 512_000_000
+LONGEST_LINE = 1_000_000
 MOST_FAULTS = 200
 ROWS_AT_ONCE = 8192
-_HEADER = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*")
+COMMENT, NOTHING = "begins with '#'", "holds nothing"
+"""Why lines behind the header are left out: a remark, or cells that are all empty."""
+_OPEN = re.compile(r' *"[^"]*(?:""[^"]*)*')
+_EITHER = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
+
+
+_NOT_CLOSED = "opens a quotation mark that this line does not close; a cell ends in the line in which it begins"
+_GOES_ON = "goes on behind its closing quotation mark; write a quotation mark inside of a quoted cell twice"
+
+
+class RowError(ValueError):
+    """A sentence about a line that is no row."""
 
 
 @dataclass(frozen=True)
@@ -66,34 +83,109 @@ class Faults:
 
 
 @dataclass
+class DecimalMarks:
+    """Which decimal marks the numbers of a file have: the first cell with each, and cells that may be either."""
+
+    may_be_comma: bool
+    first: dict[str, tuple[str, int]] = field(default_factory=dict)
+    unclear: list[tuple[str, str, int]] = field(default_factory=list)
+
+    def take(self, name: str, cell: str, line: int) -> None:
+        """Note the mark of a number that was read in the column *name*."""
+        if "," not in cell and "." not in cell:
+            return
+        if _EITHER.fullmatch(cell):
+            self.unclear.append((name, cell, line))
+        else:
+            self.first.setdefault("," if "," in cell else ".", (cell, line))
+
+    def judge(self, faults: Faults) -> None:
+        """Refuse a file in which the marks are mixed, and cells whose comma nothing decides."""
+        point, comma = self.first.get("."), self.first.get(",")
+        comma = comma or ((self.unclear[0][1], self.unclear[0][2]) if self.unclear else None)
+        if point and comma:
+            first, second = sorted([point, comma], key=lambda mark: mark[1])
+            mixed = f"{shown(second[0])} and {shown(first[0])} in line {first[1]} have different decimal marks"
+            faults.add(f"{mixed}; write one mark in the whole file, and none between the thousands", second[1])
+        elif "," not in self.first:
+            for name, cell, line in self.unclear:
+                either = f"may be {cell.replace(',', '.')} or {cell.replace(',', '')}, and no other number decides"
+                faults.add(f"{name}: {shown(cell)} {either}; write '{cell}0' or '{cell.replace(',', '')}'", line)
+
+
+@dataclass
 class CsvFile:
-    """An open table: its header is read, its rows come in chunks; faults of its form go to ``faults``."""
+    """An open table: its header is read, its rows come in chunks; faults of its form go to ``faults``.
+
+    ``left_out`` holds the lines behind the header that are no rows, by reason, as far as the file is read.
+    """
 
     faults: Faults
     headers: tuple[Header, ...]
     header_line: int
-    decimal_comma: bool
-    _rows: Iterator[tuple[list[str], int]]
+    delimiter: str
+    marks: DecimalMarks
+    _lines: Iterator[tuple[str, int]]
+    is_guarded: bool = False
+    rows: int = 0
+    left_out: dict[str, list[int]] = field(default_factory=dict)
+
+    @property
+    def decimal_comma(self) -> bool:
+        """Whether a comma in a number is read as a decimal mark: where cells are not parted by commas."""
+        return self.marks.may_be_comma
+
+    def count(self) -> RowCount:
+        """Return how many rows the file holds as far as it is read, with those that are no rows left out."""
+        left = tuple(LeftOut(reason, tuple(lines)) for reason, lines in self.left_out.items())
+        return RowCount(self.faults.file, self.rows + sum(len(item.lines) for item in left), left)
 
     def chunks(self) -> Iterator[Chunk]:
-        """Give the rows as columns of text, some thousands at a time; ragged rows are faults and left out."""
-        width = len(self.headers)
+        """Give the rows as columns of text, some thousands at a time; lines that are no rows are faults."""
         rows: list[list[str]] = []
         lines: list[int] = []
-        any_row = False
-        for row, line in self._rows:
-            any_row = True
-            if len(row) != width and not self._fits(row, line):
+        behind = 0
+        for text, line in self._lines:
+            behind += 1
+            row = self._row(text, line)
+            if row is None:
                 continue
-            rows.append(row[:width])
+            rows.append(row)
             lines.append(line)
             if len(rows) == ROWS_AT_ONCE:
-                yield Chunk(list(zip(*rows, strict=True)), tuple(lines))
+                yield self._chunk(rows, lines)
                 rows, lines = [], []
         if rows:
-            yield Chunk(list(zip(*rows, strict=True)), tuple(lines))
-        if not any_row:
+            yield self._chunk(rows, lines)
+        if behind == sum(map(len, self.left_out.values())):
             self.faults.add("holds a header but no rows", self.header_line)
+
+    def _chunk(self, rows: list[list[str]], lines: list[int]) -> Chunk:
+        self.rows += len(rows)
+        return Chunk(list(zip(*rows, strict=True)), tuple(lines))
+
+    def _row(self, text: str, line: int) -> list[str] | None:
+        """Return the cells of a line, as many as the header has; None where it is a fault or left out."""
+        width = len(self.headers)
+        is_comment = text.lstrip().startswith("#")
+        try:
+            row = _cells(text, self.delimiter)
+        except RowError as error:
+            if not is_comment:
+                self.faults.add(str(error), line)
+                return None
+            row = []
+        if is_comment:
+            if len(row) == width > 1:
+                self.faults.add(_like_a_row(row), line)
+            self.left_out.setdefault(COMMENT, []).append(line)
+            return None
+        if not any(cell.strip() for cell in row):
+            self.left_out.setdefault(NOTHING, []).append(line)
+            return None
+        if len(row) != width and not self._fits(row, line):
+            return None
+        return all_unguarded(row[:width]) if self.is_guarded else row[:width]
 
     def _fits(self, row: list[str], line: int) -> bool:
         """Say that a row is ragged, unless what is too much is empty cells at its end."""
@@ -105,6 +197,12 @@ class CsvFile:
         cells = "1 cell" if len(row) == 1 else f"{len(row)} cells"
         self.faults.add(f"this row has {cells}, expected {width} as in the header{hint}", line)
         return False
+
+
+def _like_a_row(row: list[str]) -> str:
+    first = shown(row[0].strip().replace('"', ""))
+    what = f"this line begins with '#' and holds {len(row)} cells as a row does"
+    return f"{what}; put {first} in quotation marks where it is one, and a remark above the header"
 
 
 @contextmanager
@@ -135,50 +233,57 @@ def _foreign_line(path: Path) -> int:
 def _table(path: Path, stream: TextIO, instead: str) -> CsvFile:
     faults = Faults(str(path))
     beginning = stream.readline()
-    lines = _without_comments(chain([beginning.removeprefix(MARK)], stream))
-    position, first = 0, ""
-    for first in lines:
-        position += 1
-        if first.strip():
-            break
-    if not first.strip():
+    lines = _lines(chain([beginning.removeprefix(MARK)], stream), faults)
+    header, line = next(((text, line) for text, line in lines if not text.lstrip().startswith("#")), ("", 1))
+    if not header:
+        faults.raise_any()
         raise InputError([Fault(f"is empty; {instead}", str(path), 1)])
-    delimiter = _delimiter(first)
-    rows = _rows(first, lines, position, delimiter, faults)
-    if delimiter == ";" and beginning.startswith(MARK):
-        rows = ((all_unguarded(row), line) for row, line in rows)
-    header, line = next(rows, ([], position))
-    return CsvFile(faults, _headers(header, line, faults), line, delimiter != ",", rows)
+    delimiter = _delimiter(header)
+    is_guarded = delimiter == ";" and beginning.startswith(MARK)
+    try:
+        cells = _cells(header, delimiter)
+    except RowError as error:
+        raise InputError([Fault(str(error), str(path), line)]) from None
+    headers = _headers(all_unguarded(cells) if is_guarded else cells, line, faults)
+    return CsvFile(faults, headers, line, delimiter, DecimalMarks(delimiter != ","), lines, is_guarded)
 
 
-def _without_comments(stream: Iterable[str]) -> Iterator[str]:
-    for line in stream:
-        yield "\n" if line.lstrip().startswith("#") else line
+def _lines(stream: Iterable[str], faults: Faults) -> Iterator[tuple[str, int]]:
+    """Give every line that holds anything, without its end, and its number."""
+    for number, text in enumerate(stream, start=1):
+        if len(text) > LONGEST_LINE:
+            faults.add(f"this line has {len(text)} characters; at most {LONGEST_LINE} are read", number)
+        elif not text.isspace():
+            yield text.rstrip("\r\n"), number
 
 
 def _delimiter(header: str) -> str:
-    outside = re.sub(r'"[^"]*"|\[[^\]]*\]', "", header)
+    outside = re.sub(r'"[^"]*"|\[[^\[\]]*\]', "", header)
     return next((mark for mark in (";", "\t") if mark in outside), ",")
 
 
-def _rows(
-    first: str, rest: Iterator[str], position: int, delimiter: str, faults: Faults
-) -> Iterator[tuple[list[str], int]]:
-    """Give every row that holds anything with the line it begins in."""
+def _cells(text: str, delimiter: str) -> list[str]:
+    """Take a line apart. Raises RowError where a quotation mark is not closed, or a cell goes on behind its own."""
+    if '"' not in text:
+        return [cell.lstrip(" ") for cell in text.split(delimiter)] if " " in text else text.split(delimiter)
+    pattern = _cell_pattern(delimiter)
+    cells: list[str] = []
+    position = 0
+    while True:
+        cell = pattern.match(text, position)
+        if cell is None:
+            is_open = _OPEN.fullmatch(text, position)
+            raise RowError(f"cell {len(cells) + 1} {_NOT_CLOSED if is_open else _GOES_ON}")
+        cells.append(cell["plain"] if cell["quoted"] is None else cell["quoted"].replace('""', '"'))
+        position = cell.end()
+        if not cell["more"]:
+            return cells
 
-    def all_lines() -> Iterator[str]:
-        yield first
-        yield from rest
 
-    reader = csv.reader(all_lines(), delimiter=delimiter, skipinitialspace=True, strict=False)
-    before = 0
-    try:
-        for row in reader:
-            if any(cell.strip() for cell in row):
-                yield row, position + before
-            before = reader.line_num
-    except csv.Error as error:
-        faults.add(f"this is no CSV: {error}", position + reader.line_num - 1)
+@lru_cache(maxsize=4)
+def _cell_pattern(delimiter: str) -> re.Pattern[str]:
+    quoted = r'"(?P<quoted>[^"]*(?:""[^"]*)*+)" *'
+    return re.compile(rf' *(?:{quoted}|(?P<plain>(?! *")[^{delimiter}]*))(?P<more>{delimiter}|$)')
 
 
 def _headers(cells: list[str], line: int, faults: Faults) -> tuple[Header, ...]:
@@ -186,16 +291,23 @@ def _headers(cells: list[str], line: int, faults: Faults) -> tuple[Header, ...]:
         cells = cells[:-1]
     headers: list[Header] = []
     seen: set[str] = set()
-    for place, cell in enumerate(cells):
-        found = _HEADER.fullmatch(cell.strip())
-        name = found["name"].strip() if found else ""
-        if not found:
-            faults.add(f"the header {shown(cell)} cannot be read; write it like 'load [N]'", line)
+    for place, text in enumerate(cell.strip() for cell in cells):
+        name, unit = _name_and_unit(text)
+        if name is None:
+            faults.add(f"the header {shown(text)} cannot be read; write it like 'load [N]'", line)
         elif not name:
             faults.add(f"column {place + 1} has no name", line)
         elif name in seen:
             faults.add(f"the column {shown(name)} occurs twice", line)
-        seen.add(name)
-        unit = found["unit"] if found else None
-        headers.append(Header(name, unit.strip() if unit is not None else None, place, cell.strip()))
+        seen.add(name or "")
+        headers.append(Header(name or "", unit, place, text))
     return tuple(headers)
+
+
+def _name_and_unit(text: str) -> tuple[str | None, str | None]:
+    """Take "load [N]" apart; the unit is None where none is written, and the name where the text cannot be read."""
+    name, bracket, rest = text.partition("[")
+    unit = rest.removesuffix("]")
+    if "]" in name or (bracket and (unit == rest or "[" in unit or "]" in unit)):
+        return None, None
+    return name.strip(), unit.strip() if bracket else None

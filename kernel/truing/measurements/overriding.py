@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,10 +13,9 @@ from truing.declare.near_miss import near_miss
 from truing.declare.sources import SINCE_START, Condition
 from truing.inputs_file.values import Reading, broken_bound, read_input
 from truing.kernel import Offer
-from truing.measurements.cells import header_fault, read_cell, read_cells
+from truing.measurements.cells import column_in_si, header_fault, read_cell, read_cells
 from truing.measurements.csv_text import CsvFile, Header, opened
 from truing.measurements.derived import derive
-from truing.measurements.table import in_si
 from truing.setup import Setup
 from truing.units.grammar import shown
 from truing.units.names import PURE
@@ -30,7 +28,6 @@ NAMES = ("case", "name")
 REMARKS = ("note", "remark", "comment")
 WORDS = frozenset({"switch", "integer", "choice", "text"})
 """The kinds of inputs whose cells are read one by one."""
-DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d+(?:[eE][+-]?\d+)?\s*", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -116,6 +113,7 @@ def read_cases(path: Path, offer: Offer, setup: Setup) -> list[Case]:
                     values[row][header.name] = value
         elif header.name not in REMARKS:
             table.faults.add(_unknown(header, setup, offer), table.header_line)
+    table.marks.judge(table.faults)
     table.faults.raise_any()
     return [
         Case(row, line, name or f"{row}", found, str(path))
@@ -136,11 +134,22 @@ def read_rows(path: Path, offer: Offer, setup: Setup) -> RowsFile:
         _take(header, cells, texts, setup, read)
     made, used = _histories(texts, setup, read)
     read.columns.update(made)
-    table.faults.raise_any()
-    written = {header.text: _written(cells, table) for header, cells in zip(table.headers, texts.cells, strict=True)}
     used |= {*read.columns, *read.series, *read.axes, *(["run"] if read.series else [])}
     others = tuple(header.name for header in table.headers if header.name not in used)
+    _judge_marks(texts, others)
+    table.faults.raise_any()
+    written = {header.text: _written(cells, table) for header, cells in zip(table.headers, texts.cells, strict=True)}
     return RowsFile(str(path), read.columns, read.series, written, tuple(texts.lines), others, read.axes, read.runs)
+
+
+def _judge_marks(texts: _Texts, others: Sequence[str]) -> None:
+    """Refuse mixed decimal marks, in columns of numbers that are only kept too."""
+    table = texts.table
+    for header, cells in zip(table.headers, texts.cells, strict=True):
+        if table.decimal_comma and header.name in others and header.name != "run" and _are_numbers(cells):
+            for cell, line in zip(cells, texts.lines, strict=True):
+                table.marks.take(header.name, cell.strip(), line)
+    table.marks.judge(table.faults)
 
 
 @dataclass
@@ -215,8 +224,10 @@ def _stranger(condition: Condition, texts: _Texts) -> NDArray[np.float64] | None
         texts.table.faults.add(f"{fault} ('{condition.name}' is made from it)", texts.table.header_line)
         return None
     cells, table = texts.cells[header.place], texts.table
-    numbers = read_cells(cells, texts.lines, header, table.faults, decimal_comma=table.decimal_comma, strict=True)
-    return in_si(numbers, header.unit or "") if condition.history != "direction" else numbers
+    numbers = read_cells(cells, texts.lines, header, table, strict=True)
+    if condition.history == "direction":
+        return numbers
+    return column_in_si(numbers, texts.lines, header, condition.unit, table.faults)
 
 
 def _clock(texts: _Texts) -> NDArray[np.float64] | None:
@@ -234,10 +245,19 @@ def _clock(texts: _Texts) -> NDArray[np.float64] | None:
 
 
 def _written(cells: list[str], table: CsvFile) -> tuple[str, ...]:
-    """Return the cells as written, numbers with a decimal point: what is written back is separated by commas."""
-    if not table.decimal_comma:
+    """Return the cells as written, those of a column of numbers with a decimal point: commas part what is written."""
+    if not table.decimal_comma or not _are_numbers(cells):
         return tuple(cells)
-    return tuple(cell.replace(",", ".") if DECIMAL_COMMA.fullmatch(cell) else cell for cell in cells)
+    return tuple(cell.replace(",", ".") for cell in cells)
+
+
+def _are_numbers(cells: Sequence[str]) -> bool:
+    try:
+        for cell in cells:
+            read_cell(cell, decimal_comma=True, may_be_missing_word=True)
+    except ValueError:
+        return False
+    return True
 
 
 def _is_known(name: str, setup: Setup) -> bool:
@@ -274,7 +294,9 @@ def _values(header: Header, cells: list[str], texts: _Texts, setup: Setup) -> li
     found: list[Any] = []
     for cell, line in zip(cells, texts.lines, strict=True):
         try:
-            found.append(_value(cell, header, item, texts) if cell.strip() else None)
+            found.append(_value(cell, header, item, texts, setup) if cell.strip() else None)
+            if not is_word or (item is not None and item.kind == "integer"):
+                table.marks.take(header.name, cell.strip(), line)
         except ValueError as error:
             found.append(None)
             sentence = str(error)
@@ -304,14 +326,17 @@ def read_word(item: InputField, cell: str, *, decimal_comma: bool) -> Any:
     return read_input(item, raw, Reading(Path()))
 
 
-def _value(cell: str, header: Header, item: InputField | None, texts: _Texts) -> Any:
+def _value(cell: str, header: Header, item: InputField | None, texts: _Texts, setup: Setup) -> Any:
     """Return one cell in SI, its bounds checked. Raises ValueError with one sentence."""
     if item is not None and item.kind in WORDS:
         return read_word(item, cell, decimal_comma=texts.table.decimal_comma)
-    from truing.units import to_si
+    from truing.units import si_fault, to_si
 
-    number = read_cell(cell.strip(), decimal_comma=texts.table.decimal_comma)
-    value = number if header.unit is None or header.unit in PURE else to_si(number, header.unit)
+    number, unit = read_cell(cell.strip(), decimal_comma=texts.table.decimal_comma), header.unit or ""
+    value = number if unit in PURE else to_si(number, unit)
+    fault = si_fault(number, value, _unit_of(header.name, setup))
+    if fault:
+        raise ValueError(f"{shown(f'{cell.strip()} {unit}')} {fault}")
     sentence = broken_bound(item, value) if item is not None else ""
     if sentence:
         raise ValueError(sentence)

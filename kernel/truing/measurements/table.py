@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from truing.errors import UnitError
-from truing.measurements.cells import header_fault, read_cell, read_cells
+from truing.measurements.cells import column_in_si, header_fault, read_cell, read_cells
 from truing.measurements.csv_text import Chunk, CsvFile, Faults, Header, opened
 from truing.units.names import PURE
 
@@ -68,7 +68,8 @@ def gather_table(
             for column in columns:
                 column.take(chunk, table)
     usable = [column for column in columns if column.is_usable]
-    made = {column.header.name: _made(column, words) for column in usable}
+    made = {column.header.name: _made(column, words, table, lines) for column in usable}
+    table.marks.judge(table.faults)
     found = DataTable(
         file=str(path),
         columns=made,
@@ -80,22 +81,24 @@ def gather_table(
     return found, table.faults
 
 
-def _made(column: _Known | _Other, words: Collection[str]) -> NDArray[np.float64] | tuple[str, ...]:
-    if isinstance(column, _Other) and column.header.name in words:
-        return column.words()
-    return column.made()
+def _made(
+    column: _Known | _Other, words: Collection[str], table: CsvFile, lines: Sequence[int]
+) -> NDArray[np.float64] | tuple[str, ...]:
+    if isinstance(column, _Known):
+        return column.made()
+    return column.words() if column.header.name in words else column.made(table, lines)
 
 
 def _column(header: Header, units_of: Mapping[str, str], inputs: Collection[str], table: CsvFile) -> _Known | _Other:
     of = header.name.removeprefix(SIGMA)
     is_sigma = header.name not in units_of and header.name.startswith(SIGMA) and of in units_of
     if header.name not in units_of and not is_sigma:
-        return _Other(header, table.decimal_comma, is_usable=bool(header.name))
+        return _Other(header, is_usable=bool(header.name))
     declared = units_of[of if is_sigma else header.name]
     fault = header_fault(header, declared, is_difference=is_sigma)
     if fault:
         table.faults.add(fault, table.header_line)
-    return _Known(header, is_sigma, strict=header.name in inputs, is_usable=not fault)
+    return _Known(header, declared, is_sigma, strict=header.name in inputs, is_usable=not fault)
 
 
 @dataclass
@@ -103,6 +106,7 @@ class _Known:
     """A column of numbers whose name is known: cells become numbers as they come."""
 
     header: Header
+    declared: str
     is_sigma: bool
     strict: bool
     is_usable: bool
@@ -111,22 +115,25 @@ class _Known:
     def take(self, chunk: Chunk, table: CsvFile) -> None:
         """Take the next rows."""
         cells = chunk.cells[self.header.place]
-        comma = table.decimal_comma
-        values = read_cells(cells, chunk.lines, self.header, table.faults, decimal_comma=comma, strict=self.strict)
+        values = read_cells(cells, chunk.lines, self.header, table, strict=self.strict)
         if self.is_sigma and (values < 0).any():
             worst = int((values < 0).argmax())
             table.faults.add(f"{self.header.name}: a standard deviation is 0 or more", chunk.lines[worst])
-        self.parts.append(values)
+        self.parts.append(self._in_si(values, chunk, table.faults) if self.is_usable else values)
+
+    def _in_si(self, values: NDArray[np.float64], chunk: Chunk, faults: Faults) -> NDArray[np.float64]:
+        from truing.units import difference_unit
+
+        if not self.is_sigma:
+            return column_in_si(values, chunk.lines, self.header, self.declared, faults)
+        header = replace(self.header, unit=difference_unit(self.header.unit or ""))
+        return column_in_si(values, chunk.lines, header, difference_unit(self.declared), faults)
 
     def made(self) -> NDArray[np.float64]:
         """Return the column in SI."""
         import numpy as np
 
-        from truing.units import difference_unit
-
-        unit = self.header.unit or ""
-        values = np.concatenate(self.parts) if self.parts else np.empty(0)
-        return in_si(values, difference_unit(unit) if self.is_sigma else unit)
+        return np.concatenate(self.parts) if self.parts else np.empty(0)
 
 
 @dataclass
@@ -134,7 +141,6 @@ class _Other:
     """A column nobody declared: numbers if every cell is one, else labels."""
 
     header: Header
-    decimal_comma: bool
     is_usable: bool = True
     cells: list[str] = field(default_factory=list)
 
@@ -142,7 +148,7 @@ class _Other:
         """Take the next rows."""
         self.cells.extend(chunk.cells[self.header.place])
 
-    def made(self) -> NDArray[np.float64] | tuple[str, ...]:
+    def made(self, table: CsvFile, lines: Sequence[int]) -> NDArray[np.float64] | tuple[str, ...]:
         """Return numbers, in SI where the unit is known, or words."""
         import numpy as np
 
@@ -150,10 +156,13 @@ class _Other:
             return self.words()
         try:
             values = np.array([
-                read_cell(cell, decimal_comma=self.decimal_comma, may_be_missing_word=True) for cell in self.cells
+                read_cell(cell, decimal_comma=table.decimal_comma, may_be_missing_word=True) for cell in self.cells
             ])  # fmt: skip
         except ValueError:
             return self.words()
+        if table.decimal_comma:
+            for cell, line in zip(self.cells, lines, strict=True):
+                table.marks.take(self.header.name, cell.strip(), line)
         try:
             return in_si(values, self.header.unit or "")
         except UnitError:

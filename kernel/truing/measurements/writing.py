@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import os
+import re
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -39,7 +40,8 @@ def write_table(
     """Write columns under headers such as "depth [um]"; the numbers are in these units already.
 
     Numbers are written so that they read back exactly (at most 17 digits), NaN and None as empty cells; words stay as
-    they are. A path is written atomically. Raises OutputError where it cannot be written.
+    they are, line ends in them become blanks. A path is written atomically. Raises OutputError where it cannot be
+    written.
     """
     if not isinstance(target, Path):
         _write(target, headers, columns, form)
@@ -96,7 +98,7 @@ def _write(stream: TextIO, headers: Sequence[str], columns: Sequence[Iterable[An
     alone = [""] if form.delimiter != "," and len(headers) == 1 else []
     for row in _rows(headers, columns, form):
         # a line that begins with # would be a comment; a column alone must show what parts the cells
-        (everything if row and row[0].startswith("#") else minimal).writerow(row + alone)
+        (everything if row and row[0].lstrip().startswith("#") else minimal).writerow(row + alone)
 
 
 def _rows(headers: Sequence[str], columns: Sequence[Iterable[Any]], form: Form) -> Iterator[list[str]]:
@@ -119,5 +121,5 @@ def _cell(value: Any, form: Form) -> str:
     if isinstance(value, float):
         text = repr(value) if math.isfinite(value) else "" if math.isnan(value) else str(value)
         return text if form.decimal == "." else text.replace(".", form.decimal)
-    text = str(value)
+    text = " ".join(re.split(r"[\r\n]+", str(value)))  # a cell ends in the line in which it begins
     return guarded(text) if form.is_guarded and isinstance(value, str) else text

@@ -29,14 +29,16 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Quantity", "check_unit", "demand_dimension", "difference_unit", "from_si", "human_dimension", "pint_quantity",
-    "quantity", "read_quantity", "registry", "same_dimension", "split_quantity", "to_si", "unit_factor", "unit_latex",
-    "unit_text",
+    "quantity", "read_quantity", "registry", "same_dimension", "si_fault", "split_quantity", "to_si", "unit_factor",
+    "unit_latex", "unit_text",
 ]  # fmt: skip
 
 _DIMENSIONS = {
     "meter": "[length]", "kilogram": "[mass]", "second": "[time]", "ampere": "[current]", "kelvin": "[temperature]",
     "mole": "[substance]", "candela": "[luminosity]",
 }  # fmt: skip
+ROUNDING_OF_ZERO = 1e-9
+"""Kelvin below absolute zero that are rounding: -459.67 degF is 0 K."""
 _PER_SECOND = (("second", Fraction(-1)),)
 
 
@@ -60,18 +62,31 @@ def read_quantity(text: str, unit: str) -> float:
     quantity = split_quantity(text)
     if quantity.unit:
         _demand(text, quantity.unit, unit, quantity.value)
+        is_bare_power = not grammar.parse(quantity.unit).factors and grammar.parse(quantity.unit).power
+        if is_bare_power and not grammar.parse(unit).power:
+            raise UnitError(f"{shown(text)} is two numbers; write one")
     elif declared.dimension or declared.angle or declared.factor != 1:
         raise UnitError(f"{shown(text)} has no unit; expected {_example(quantity.value, unit)}")
     value = to_si(quantity.value, quantity.unit)
-    if not math.isfinite(value):
-        raise UnitError(f"{shown(text)} is too large for a number in SI units")
-    if value == 0 and quantity.value != 0 and not declared.level:
-        raise UnitError(f"{shown(text)} is too small for a number in SI units")
-    if declared.level and value < 0:
-        if value < -1e-9:
-            raise UnitError(f"{shown(text)} lies below absolute zero")
+    if declared.level and -ROUNDING_OF_ZERO <= value < 0:
         return 0.0
+    fault = si_fault(quantity.value, value, unit)
+    if fault:
+        raise UnitError(f"{shown(text)} {fault}")
     return value
+
+
+def si_fault(written: float, value: float, unit: str) -> str:
+    """Return what is wrong with a number brought from *written* to SI where *unit* is declared, or nothing.
+
+    One rule for texts and for cells of a table: not beyond what a number can hold, no level below absolute zero.
+    """
+    is_level = meaning(unit).level
+    if not math.isfinite(value):
+        return "is too large for a number in SI units"
+    if value == 0 and written != 0 and not is_level:
+        return "is too small for a number in SI units"
+    return "lies below absolute zero" if is_level and value < -ROUNDING_OF_ZERO else ""
 
 
 def demand_dimension(given: str, unit: str) -> None:
@@ -261,8 +276,14 @@ def _demand(text: str, given_unit: str, unit: str, value: float | None) -> None:
     if given.level and not declared.level:
         step = "K" if given.factor == 1 else "delta_degF"
         raise UnitError(f"{shown(text)} is a temperature level; a difference is written {number} {step}")
-    if declared.level and "delta" in grammar.parse(given_unit).factors[0][0]:
+    if declared.level and not given.level and not _is_kelvin(given_unit):
         raise UnitError(f"{shown(text)} is a temperature difference; a level is written {number} {unit}")
+
+
+def _is_kelvin(unit: str) -> bool:
+    """Tell whether a unit of temperature is the kelvin alone, in which levels are written too."""
+    (name, exponent), *others = grammar.parse(unit).factors
+    return exponent == 1 and not others and without_prefix(name) == "K"
 
 
 def _mismatch(given_unit: str, unit: str, value: float | None) -> str:

@@ -1,8 +1,16 @@
 """Reading texts: a number and a unit apart, and a unit text into names with exponents; no unit's size is known here.
 
 A unit text is a product of names with exponents, as engineers write it: ``N*m``, ``N·m``, ``N m``, ``N-m``, ``kg m-3``,
-``N/mm²``, ``m/s^2``, ``m/s**2``, ``W/(m·K)``, ``cm4``, ``1e-6/K``, ``10^-6 1/K``. ``*`` and ``/`` work from left to
-right; a product by blank or dot behind a ``/`` is refused, because nobody knows what ``W/m·K`` means.
+``N/mm²``, ``m/s^2``, ``m/s**2``, ``W/(m·K)``, ``cm4``, ``1e-6/K``, ``10^-6 1/K``. The grammar::
+
+    quantity := number [[* ·] unit]          number := 1.5  1.5e3  1.5*10^3  10^3
+    unit     := [power of ten [* · /]] product
+    product  := [1 /] factor {[* · /] factor}    a hyphen without blanks joins two names: N-m
+    factor   := (name | "(" product ")") [exponent]
+    exponent := ^2  ^-2  ^0.5  ^(1/2)  ²  and, behind letters, one digit: m2  s-1
+
+So no number stands in a unit but the power of ten before it and exponents. ``*`` and ``/`` work from left to right; a
+product by blank, dot or hyphen behind a ``/`` is refused, because nobody knows what ``W/m·K`` means.
 """
 
 from __future__ import annotations
@@ -14,7 +22,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from truing.errors import UnitError
-from truing.units.names import PURE, SPELLINGS
+from truing.units.names import COUNTS, PURE, SPELLINGS
 
 LONGEST = 200
 LARGEST_EXPONENT = 12
@@ -30,18 +38,22 @@ _SAME_CHARACTER = str.maketrans({
 _ALLOWED = re.compile(r"[A-Za-z0-9_ .+\-*/^()\[\]·°′″%‰€$£元ΩÅΔ℃℉⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺]*\Z")
 _NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
 _TIMES_TEN = re.compile(r"\s*[*·x]\s*10(?:\^\s*([+-]?\d{1,3})(?![\d.])|([⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]{1,3}))")
+_BEGINS_NUMBER = re.compile(r"[+-]?\.?[0-9]")
 _TEN_TO = re.compile(r"([+-]?)10(?:\^\s*([+-]?\d{1,3})(?![\d.])|([⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]{1,3}))")
 _UNIT_WITH_NUMBER = re.compile(r"[+-]|1\s*/|1[eE]|10[\^⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹]")
 _NOT_FINITE = re.compile(r"[+-]?\s*(?:nan|inf|infinity|∞)(?![A-Za-z])", re.IGNORECASE)
 _BAND = re.compile(r"±|\+\s?/?\s?-")
-_TOKEN = re.compile(
-    r"\s*(?:(?P<power>10\^\(?(?P<ten>[+-]?\d{1,4})\)?(?![\d.^])|10(?P<small>[⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)|\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)"
-    r"|(?P<name>Δ?°[CF]|[A-Za-zΩÅΔ_]+|[°′″%‰€$£元℃℉])"
-    r"(?:\^?(?P<exponent>[+-]?\d+(?:\.\d+)?(?![\d.eE^])|(?<=\^)\(\s*[+-]?\d+(?:\.\d+)?\s*(?:/\s*\d+\s*)?\))"
-    r"|(?P<superscript>[⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+))?"
-    r"|(?P<operator>[*/·-])|(?P<open>\()"
-    r"|(?P<close>\))(?:\^?(?P<outer>[+-]?\d+)|(?P<outer_superscript>[⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+))?)"
+_POWER = re.compile(
+    r"(?:10\^\(?(?P<ten>[+-]?\d{1,4})\)?(?![\d.^])|10(?P<small>[⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)|(?P<digits>\d+(?:\.\d*)?(?:[eE][+-]?\d+)?))\s*[*·]?"
 )
+_ONE_OVER = re.compile(r"\s*1\s*/")
+_RAISED = r"\^(?:[+-]?\d+(?:\.\d+)?(?![\d.eE^])|\(\s*[+-]?\d+(?:\.\d+)?\s*(?:/\s*\d+\s*)?\))|[⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+"
+_TOKEN = re.compile(
+    rf"\s*(?:(?P<name>(?:Δ?°[CF]|[A-Za-zΩÅΔ_]+)(?P<bare>-?\d(?![\d.eE^⁰¹²³⁴⁵⁶⁷⁸⁹]))?|[°′″%‰€$£元℃℉])(?P<exponent>{_RAISED})?"
+    r"|(?P<operator>[*/·]|(?<=[^\s*/·(])-(?=[A-Za-zΩÅ]))|(?P<open>\()"
+    rf"|(?P<close>\))(?P<outer>{_RAISED})?)"
+)
+_LONE_NUMBER = re.compile(r"\s*[+-]?\s*(\d[\d.eE^⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹]*)")
 
 
 @dataclass(frozen=True)
@@ -94,6 +106,17 @@ def split(text: str) -> Quantity:
     return Quantity(value, rest)
 
 
+def number(text: str) -> float | None:
+    """Return the number that a whole text is, None where it is anything else; UnitError where it is out of range."""
+    if not text.isascii():
+        text = text.translate(_SAME_CHARACTER)
+    plain = text.replace("**", "^").strip()
+    if not _BEGINS_NUMBER.match(plain):
+        return None
+    value, end = _leading_number(text, plain)
+    return value if end == len(plain) else None
+
+
 def _refuse_common_slips(text: str) -> None:
     if not text.strip():
         raise UnitError("the text is empty; expected a number and its unit")
@@ -103,13 +126,16 @@ def _refuse_common_slips(text: str) -> None:
         raise UnitError(f"{shown(text)} is not a finite number")
     if _BAND.search(text):
         raise UnitError(f"{shown(text)} holds a tolerance; write the nominal value here, the rest under [tolerances]")
-    grouped = re.match(r"\s*([+-]?\d{1,3}(?:,\d{3})+\.\d*)(.*)", text, re.DOTALL)
+    grouped = re.match(r"\s*([+-]?[0-9]{1,3}(?:,[0-9]{3})+\.[0-9]*)(.*)", text, re.DOTALL)
     if grouped:
         raise UnitError(f"{shown(text)} holds commas; write {shown(grouped[1].replace(',', '') + grouped[2])}")
-    comma = re.match(r"\s*([+-]?\d*),(\d+)(.*)", text, re.DOTALL)
+    comma = re.match(r"\s*([+-]?[0-9]*),([0-9]+)(.*)", text, re.DOTALL)
+    if comma and re.fullmatch(r"[+-]?[1-9][0-9]{0,2}", comma[1]) and len(comma[2]) == 3:
+        either = f"{shown(f'{comma[1]}.{comma[2]}{comma[3]}')} or {shown(f'{comma[1]}{comma[2]}{comma[3]}')}"
+        raise UnitError(f"{shown(text)} holds a comma; write {either}")
     if comma:
         raise UnitError(f"{shown(text)} has a decimal comma; write {shown(f'{comma[1] or 0}.{comma[2]}{comma[3]}')}")
-    if re.match(r"\s*[+-]?[\d.]+_", text):
+    if re.match(r"\s*[+-]?[0-9.]+_", text):
         raise UnitError(f"{shown(text)} holds an underscore; write the number with digits alone")
 
 
@@ -151,11 +177,25 @@ def parse(unit: str) -> Product:
         return Product()
     if plain[:1] == "/":
         plain = "1" + plain
-    reader = _Reader(unit, plain)
-    product = reader.product(closing=False)
-    if abs(product.power) > LARGEST_POWER_OF_TEN:
+    power, plain = _leading_power(unit, plain)
+    if abs(power) > LARGEST_POWER_OF_TEN:
         raise UnitError(f"the unit {shown(unit)} carries too large a power of ten")
-    return product
+    return Product(power, _Reader(unit, plain).product(closing=False) if plain.strip() else ())
+
+
+def _leading_power(unit: str, plain: str) -> tuple[int, str]:
+    """Take the power of ten off a unit text; "1/" is the beginning of a quotient."""
+    found = None if _ONE_OVER.match(plain) else _POWER.match(plain)
+    if found is None:
+        return 0, plain
+    rest = plain[found.end() :].lstrip()
+    if found[0][-1:] in "*·" and not rest:
+        raise _no_unit(unit)
+    return _power_of_ten(unit, found), "1" + rest if rest[:1] == "/" else rest
+
+
+def _no_unit(unit: str) -> UnitError:
+    return UnitError(f"{shown(unit)} is not a unit; write it like 'N*m', 'mm^2' or 'W/(m*K)'")
 
 
 class _Reader:
@@ -165,28 +205,36 @@ class _Reader:
         self.unit, self.plain, self.position, self.depth = unit, plain, 0, 0
 
     def wrong(self) -> UnitError:
-        return UnitError(f"{shown(self.unit)} is not a unit; write it like 'N*m', 'mm^2' or 'W/(m*K)'")
+        number = _LONE_NUMBER.match(self.plain, self.position)
+        if number is None:
+            return _no_unit(self.unit)
+        where = "only a power of ten may stand in a unit, at its beginning"
+        return UnitError(f"the unit {shown(self.unit)} holds the number {shown(number[1])}; {where}")
 
     def next(self) -> re.Match[str] | None:
         """Give the next token, or None at the end."""
         if not self.plain[self.position :].strip():
             return None
         token = _TOKEN.match(self.plain, self.position)
-        if not token or token.end() == self.position:
+        if not token:
             raise self.wrong()
         self.position = token.end()
         return token
 
-    def product(self, *, closing: bool) -> Product:
+    def product(self, *, closing: bool) -> tuple[tuple[str, Fraction], ...]:
         """Read factors up to the end or the closing parenthesis."""
-        power, factors = 0, list[tuple[str, Fraction]]()
+        factors = list[tuple[str, Fraction]]()
         sign, divided, wanted = 1, False, True
+        one_over = _ONE_OVER.match(self.plain, self.position)
+        if one_over:
+            self.position, sign, divided = one_over.end(), -1, True
         while True:
             token = self.next()
             if token is None or token["close"]:
                 if wanted or closing is (token is None):
                     raise self.wrong()
-                return _raised(self.unit, Product(power, tuple(factors)), _outer(token))
+                outer = _exponent_of(self.unit, token["outer"]) if token else Fraction(1)
+                return _raised(self.unit, tuple(factors), outer)
             operator = token["operator"]
             if operator:
                 if wanted:
@@ -199,16 +247,14 @@ class _Reader:
             if not wanted and divided:
                 raise self.ambiguous()
             sign = sign if wanted else 1
-            part = self.factor(token)
-            power += sign * part.power
-            factors += [(name, sign * exponent) for name, exponent in part.factors]
+            factors += [(name, sign * exponent) for name, exponent in self.factor(token)]
             wanted = False
 
     def ambiguous(self) -> UnitError:
         return UnitError(f"{shown(self.unit)} is ambiguous; put what is below the '/' in parentheses, as in 'W/(m*K)'")
 
-    def factor(self, token: re.Match[str]) -> Product:
-        """Read one name with its exponent, a power of ten or a product in parentheses."""
+    def factor(self, token: re.Match[str]) -> tuple[tuple[str, Fraction], ...]:
+        """Read one name with its exponent or a product in parentheses."""
         if token["open"]:
             self.depth += 1
             if self.depth > LARGEST_EXPONENT:
@@ -216,52 +262,50 @@ class _Reader:
             inner = self.product(closing=True)
             self.depth -= 1
             return inner
-        if token["power"]:
-            return Product(_power_of_ten(self.unit, token))
-        name = token["name"]
-        exponent = Fraction(1)
-        if token["superscript"]:
-            exponent = Fraction(token["superscript"].translate(_SUPERSCRIPTS))
-        elif token["exponent"]:
-            exponent = _fraction(self.unit, token["exponent"].strip("() ").replace(" ", ""))
+        bare = token["bare"]
+        name = token["name"].removesuffix(bare or "")
         spelling = SPELLINGS.get(name, name)
+        exponent = Fraction(bare) if bare else _exponent_of(self.unit, token["exponent"])
+        if (bare and token["exponent"]) or (bare and spelling in COUNTS and exponent != -1):
+            raise _no_unit(self.unit)
         if "*" not in spelling and "/" not in spelling:
-            return _raised(self.unit, Product(0, ((spelling, Fraction(1)),)), exponent)
+            return _raised(self.unit, ((spelling, Fraction(1)),), exponent)
         if exponent != 1:
             raise UnitError(f"{shown(self.unit)} is ambiguous; write {shown(name)} as '{spelling}' with its exponents")
-        return parse(spelling)
+        return parse(spelling).factors
 
 
-def _outer(closing: re.Match[str] | None) -> Fraction:
-    if closing is None:
+def _exponent_of(unit: str, text: str | None) -> Fraction:
+    """Return the exponent behind a name: "^2", "^(1/2)", "²"; 1 where none is written."""
+    if text is None:
         return Fraction(1)
-    return Fraction((closing["outer"] or closing["outer_superscript"] or "1").translate(_SUPERSCRIPTS))
-
-
-def _fraction(unit: str, text: str) -> Fraction:
+    plain = text.translate(_SUPERSCRIPTS).strip("^() ").replace(" ", "")
     try:
-        return Fraction(text)
+        return Fraction(plain)
     except ZeroDivisionError:
         raise UnitError(f"{shown(unit)} is not a unit: an exponent divides by zero") from None
 
 
-def _power_of_ten(unit: str, token: re.Match[str]) -> int:
-    if token["ten"]:
-        return int(token["ten"])
-    if token["small"]:
-        return int(token["small"].translate(_SUPERSCRIPTS))
-    digits, _, exponent = token["power"].lower().partition("e")
-    found = re.fullmatch(r"(1)(0*)(?:\.0*)?|0\.(0*)1", digits)
-    if not found:
-        raise UnitError(f"the unit {shown(unit)} may carry a power of ten, but not the number {shown(token['power'])}")
-    return (len(found[2]) if found[1] else -len(found[3]) - 1) + int(exponent or 0)
+def _power_of_ten(unit: str, found: re.Match[str]) -> int:
+    if found["ten"]:
+        return int(found["ten"])
+    if found["small"]:
+        return int(found["small"].translate(_SUPERSCRIPTS))
+    digits, _, exponent = found["digits"].lower().partition("e")
+    ten = re.fullmatch(r"(1)(0*)(?:\.0*)?|0\.(0*)1", digits)
+    if not ten:
+        number = shown(found["digits"])
+        raise UnitError(f"the unit {shown(unit)} may carry a power of ten, but not the number {number}")
+    return (len(ten[2]) if ten[1] else -len(ten[3]) - 1) + int(exponent or 0)
 
 
-def _raised(unit: str, product: Product, exponent: Fraction) -> Product:
+def _raised(
+    unit: str, factors: tuple[tuple[str, Fraction], ...], exponent: Fraction
+) -> tuple[tuple[str, Fraction], ...]:
     """Raise a product to a power, within limits that no unit of engineering exceeds."""
-    factors = tuple((name, own * exponent) for name, own in product.factors)
-    power = product.power * exponent
-    largest = max((abs(own) for _, own in factors), default=Fraction(0))
-    if largest > LARGEST_EXPONENT or abs(exponent) > LARGEST_EXPONENT or power.denominator != 1:
+    if exponent == 0:
+        raise UnitError(f"the unit {shown(unit)} has the exponent 0")
+    raised = tuple((name, own * exponent) for name, own in factors)
+    if max((abs(own) for _, own in raised), default=0) > LARGEST_EXPONENT or abs(exponent) > LARGEST_EXPONENT:
         raise UnitError(f"the unit {shown(unit)} has an exponent beyond {LARGEST_EXPONENT}")
-    return Product(int(power), factors)
+    return raised

@@ -66,7 +66,8 @@ def _registry() -> pint.UnitRegistry[Any]:
 def meaning(text: str) -> Meaning:
     """Look up a unit text. Raises UnitError with one sentence for a text that is no unit or holds an unknown one."""
     product = grammar.parse(text)
-    if len(product.factors) == 1 and product.factors[0][0] in names.LEVELS and product.factors[0][1] == 1:
+    scales = {name for name, _ in product.factors if name in names.LEVELS}
+    if scales and len(product.factors) == 1 and product.factors[0][1] == 1:
         return _level(text, product)
     logarithm, factor, angle = float(product.power), 10.0**product.power, Fraction(0)
     dimension: dict[str, Fraction] = {}
@@ -79,7 +80,13 @@ def meaning(text: str) -> Meaning:
         angle += exponent * part.angle
         for base, own in part.dimension:
             dimension[base] = dimension.get(base, Fraction(0)) + exponent * own
-    return _made(factor, tuple(sorted((base, own) for base, own in dimension.items() if own)), angle)
+    left = tuple(sorted((base, own) for base, own in dimension.items() if own))
+    if scales and left == _KELVIN and not angle:
+        raise UnitError(f"{shown(text)} may be a temperature level or a difference; write {scales.pop()} alone, or K")
+    return _made(factor, left, angle)
+
+
+_KELVIN: Dimension = (("kelvin", Fraction(1)),)
 
 
 def _made(factor: float, dimension: Dimension, angle: Fraction) -> Meaning:
@@ -96,7 +103,7 @@ def _level(text: str, product: grammar.Product) -> Meaning:
     if product.power:
         raise UnitError(f"{shown(text)} is a temperature level and carries no power of ten")
     factor, offset = names.LEVELS[product.factors[0][0]]
-    return Meaning(factor, 0.0, offset, (("kelvin", Fraction(1)),), Fraction(0), level=True)
+    return Meaning(factor, 0.0, offset, _KELVIN, Fraction(0), level=True)
 
 
 @lru_cache(maxsize=1024)
@@ -104,7 +111,7 @@ def _named(name: str) -> Meaning:
     """Look up one name without its exponent; a scale of temperature is a step here."""
     step = names.DIFFERENCES.get(name) or (names.LEVELS[name][0] if name in names.LEVELS else 0.0)
     if step:
-        return Meaning(step, 0.0, 0.0, (("kelvin", Fraction(1)),), Fraction(0))
+        return Meaning(step, 0.0, 0.0, _KELVIN, Fraction(0))
     prefix, bare = split_prefix(name)
     if bare in names.SYMBOLS:
         definition = names.SYMBOLS[bare][0]
@@ -134,15 +141,24 @@ def without_prefix(name: str) -> str:
 
 
 def _full_name(name: str) -> bool:
-    """Say whether pint knows *name* as the full name of a unit: "furlong", "millimeters", but not "kph"."""
+    """Say whether pint knows *name* as the full name of a unit: "furlong", "millimeters", but not "kph".
+
+    What is a pure number or an amount of data there (decade, decibel, byte, alpha) is none here.
+    """
     if len(name) < 4 or not name.isalpha() or not name.islower():
         return False
     units = registry()
     try:
         found = [parts for parts in units.parse_unit_name(name) if "".join(parts) == name]
-        return any(units._units[unit].is_multiplicative and unit not in names.NOT_FROM_PINT for _, unit, _ in found)
+        known = [unit for _, unit, _ in found if unit not in names.NOT_FROM_PINT]
+        return any(units._units[unit].is_multiplicative and _is_quantity(unit) for unit in known)
     except Exception:  # whatever pint says of a strange name, it is no unit of ours
         return False
+
+
+def _is_quantity(name: str) -> bool:
+    bases = dict(registry().get_base_units(name)[1]._units)
+    return "bit" not in bases and bool(set(bases) - {"count"})
 
 
 @lru_cache(maxsize=1024)
@@ -154,7 +170,7 @@ def _from_pint(name: str) -> Meaning:
         exact = Fraction(str(exponent)).limit_denominator(12)
         if unit == "radian":
             angle = exact
-        elif unit not in ("count", "bit"):
+        elif unit != "count":
             dimension.append((unit, exact))
     return _made(float(factor), tuple(sorted(dimension)), angle)
 

@@ -244,4 +244,6 @@ KINDS: tuple[tuple[str, str], ...] = (
 )
 ENERGY_NAMES = frozenset({"J", "Wh", "eV", "cal", "BTU", "joule"})
 ROTATION_NAMES = frozenset({"rpm", "rps", "rev", "turn", "cycle", "revolution", "r", "U"})
-NOT_FROM_PINT = ROTATION_NAMES | {"rads", "zeta", "tansec", "lambda", "gamma", "molar", "strain"}
+COUNTS = ROTATION_NAMES | {"%", "percent", "‰", "ppm", "ppb"}
+"""Pure numbers: a digit behind them is no exponent."""
+NOT_FROM_PINT = ROTATION_NAMES | {"rads", "tansec", "lambda", "gamma", "molar"}
