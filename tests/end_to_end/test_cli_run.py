@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import json
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from block import write_block
 
-from shared import Answer, Calc, process
+from shared import Answer, Calc
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 FILES = ["inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md"]
@@ -112,29 +110,6 @@ def test_what_is_said_goes_to_stderr_and_what_is_found_to_stdout(calc_process: C
     assert answer.code == 0
     assert json.loads(answer.out)["conditions"] == {"probe_temperature": {"value": 25.0, "unit": "degC"}}
     assert answer.err.startswith("no --inputs")
-
-
-def test_python_m_truing_and_a_reader_that_goes_away(tmp_path: Path) -> None:
-    assert process([sys.executable, "-m", "truing", "--version"], tmp_path).out.startswith("truing 0.")
-    command = [sys.executable, "-m", "truing", "describe", "press_linkage"]
-    writer = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    assert writer.stdout is not None
-    assert writer.stderr is not None
-    writer.stdout.close()
-    assert writer.stderr.read() == b""
-    assert writer.wait(60) == 0
-
-
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a disk that is always full")
-@pytest.mark.parametrize("words", ["describe press_linkage", "table press_linkage -i press.toml --rows rows.csv"])
-def test_an_output_that_takes_nothing(tmp_path: Path, words: str) -> None:
-    (tmp_path / "press.toml").write_text("[inputs]\n")
-    (tmp_path / "rows.csv").write_text("crank_angle [deg]\n1\n")
-    command = [sys.executable, "-m", "truing", *words.split()]
-    with Path("/dev/full").open("w") as full:
-        done = subprocess.run(command, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
-    assert done.returncode == 2
-    assert done.stderr == "calc: the results cannot be written to the output: No space left on device\n"
 
 
 def test_without_a_verb_the_help_is_shown(calc: Calc) -> None:

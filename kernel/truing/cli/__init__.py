@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 
 FLAGS = {"--traceback": "traceback", "-v": "verbose", "--verbose": "verbose", "-q": "quiet", "--quiet": "quiet"}
 
@@ -12,20 +13,22 @@ FLAGS = {"--traceback": "traceback", "-v": "verbose", "--verbose": "verbose", "-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run ``calc`` with these arguments (the command line's by default) and return the exit code.
 
-    0 done; 1 done, but a check fails; 2 usage or input; 3 the plugin failed; 4 no convergence; 130 interrupted.
+    0 done, and every check passed; 1 done, but a check fails; 2 usage or input, or results that could not be written;
+    3 the plugin failed; 4 no convergence; 130 interrupted.
     """
     try:
         return _run(list(sys.argv[1:] if arguments is None else arguments))
     except KeyboardInterrupt:
-        print("calc: interrupted; nothing was written", file=sys.stderr)  # noqa: T201
+        with suppress(OSError, ValueError, AttributeError):
+            print("calc: interrupted; nothing was written", file=sys.stderr)  # noqa: T201
         return 130
 
 
 def _run(words: list[str]) -> int:
     from truing.cli.app import app
-    from truing.cli.console import Settings, utf8_streams
+    from truing.cli.console import Settings, after_output, close_stream, lose_output, ready_streams
 
-    utf8_streams()
+    ready_streams()
     if "_CALC_COMPLETE" in os.environ:
         from truing.cli.completion import answer_the_shell
 
@@ -33,8 +36,13 @@ def _run(words: list[str]) -> int:
     end = words.index("--") if "--" in words else len(words)
     said = {FLAGS[word] for word in words[:end] if word in FLAGS}
     kept = [word for word in words[:end] if word not in FLAGS] + words[end:]
+    code: object = 0
     try:
         app(args=kept, prog_name="calc", obj=Settings(**dict.fromkeys(said, True)))
-    except SystemExit as exit_:
-        return exit_.code if isinstance(exit_.code, int) else 0 if exit_.code is None else 2
-    return 0
+    except SystemExit as end_:
+        code = 0 if end_.code is None else end_.code
+    except OSError as error:  # of the help or of a usage error: a verb raises none
+        close_stream(sys.stderr)
+        lose_output(error)
+        code = 2
+    return after_output(code if isinstance(code, int) else 2)

@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from truing.cli.console import GAP, aligned, harmless, out
+from truing.cli.console import GAP, aligned, harmless, out, put
 
 GOOD, BAD, NEW, OLD = "green", "red", "bold", "dim"
 
@@ -28,13 +28,15 @@ def out_table(rows: Sequence[Sequence[str]], styles: Sequence[Sequence[str]], *,
 
     console = Console(file=sys.stdout, highlight=False, soft_wrap=True)
     starts = _starts(rows)
-    for line, of_cells in zip(lines, styles, strict=True):
-        text = Text(harmless(line))
-        for place, style in enumerate(of_cells):
-            if style:
-                end = starts[place + 1] if place + 1 < len(of_cells) else len(line)
-                text.stylize(style, starts[place], end)
-        console.print(text)
+    with console.capture() as coloured:
+        for line, of_cells in zip(lines, styles, strict=True):
+            text = Text(harmless(line))
+            for place, style in enumerate(of_cells):
+                if style:
+                    end = starts[place + 1] if place + 1 < len(of_cells) else len(line)
+                    text.stylize(style, starts[place], end)
+            console.print(text)
+    put(coloured.get())
 
 
 def _starts(rows: Sequence[Sequence[str]]) -> list[int]:

@@ -9,10 +9,11 @@ import re
 import shutil
 import sys
 import textwrap
+import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ParamSpec
+from typing import TYPE_CHECKING, Any, ParamSpec, TextIO
 
 import typer
 
@@ -47,23 +48,47 @@ class Settings:
             say(text)
 
 
-def utf8_streams() -> None:
-    """Speak UTF-8 whatever the terminal's code page says."""
+_lost: list[str] = []
+"""Why the output took no more, since the present command began."""
+
+
+def ready_streams() -> None:
+    """Speak UTF-8 whatever the terminal's code page says; what is written to a closed stream goes nowhere."""
+    _lost.clear()
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115  # as long as the process
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
             reconfigure(encoding="utf-8", errors="replace")
 
 
-def out(text: str) -> None:
-    """Print a result. Raises OutputError where it cannot be written, BrokenPipeError where nobody reads any more."""
+def out(text: str) -> bool:
+    """Print a result, without what a terminal would obey; see ``put``."""
+    return put(f"{harmless(text)}\n")
+
+
+def put(text: str) -> bool:
+    """Write to the output as it stands, and tell whether somebody reads.
+
+    Nothing is raised: a calculation is not undone by an output that takes nothing. Where nobody reads any more nothing
+    is said of it; where it cannot be written (a full disk) the verb says so at its end, and does not end with 0.
+    """
     try:
-        print(harmless(text), flush=True)  # noqa: T201  # this is where printing is done
-    except BrokenPipeError:
-        raise
-    except OSError as error:
-        close_output()
-        raise OutputError(f"the results cannot be written to the output: {error.strerror or error}") from None
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except (OSError, ValueError) as error:
+        lose_output(error)
+        return False
+    return True
+
+
+def lose_output(error: Exception) -> None:
+    """Take note that the output takes no more, and why; a reader who has gone is no fault."""
+    close_stream(sys.stdout)
+    if not isinstance(error, BrokenPipeError):
+        _lost.append(getattr(error, "strerror", None) or str(error))
 
 
 def out_json(document: Any) -> None:
@@ -78,8 +103,12 @@ def json_text(document: Any, *, indent: int | None = 1) -> str:
 
 
 def say(text: str) -> None:
-    """Say something that is no result."""
-    print(harmless(text), file=sys.stderr)  # noqa: T201
+    """Say something that is no result; where that cannot be written, nothing more is said."""
+    try:
+        sys.stderr.write(f"{harmless(text)}\n")
+        sys.stderr.flush()
+    except (OSError, ValueError):
+        close_stream(sys.stderr)
 
 
 def harmless(text: str) -> str:
@@ -101,19 +130,14 @@ def verb(function: Callable[P, int]) -> Callable[P, None]:
         settings = settings_of(kwargs.get("context"))
         try:
             code = function(*args, **kwargs)
-        except BrokenPipeError:
-            close_output()
-            code = 0
         except KeyboardInterrupt as end:
             say(str(end) or INTERRUPTED)
             code = 130
         except Exception as error:
             if settings.traceback:
-                import traceback
-
-                traceback.print_exc()
+                say(traceback.format_exc().rstrip())
             say(sentence_of(error))
-            code = error.exit_code if isinstance(error, TruingError) else 3
+            code = exit_code_of(error)
         raise typer.Exit(code)
 
     return guarded
@@ -122,8 +146,25 @@ def verb(function: Callable[P, int]) -> Callable[P, None]:
 INTERRUPTED = "calc: interrupted; nothing was written"
 
 
+def after_output(code: int) -> int:
+    """Return the exit code of what ended with ``code``; say it where results could not be written, which is not 0."""
+    if not _lost:
+        return code
+    say(f"calc: the results cannot be written to the output: {_lost[0]}")
+    return code or OutputError.exit_code
+
+
+def exit_code_of(error: Exception) -> int:
+    """Return the exit code of an error; one of the system, as of a disk, is no fault of the program."""
+    if isinstance(error, OSError) and error.strerror:
+        return OutputError.exit_code
+    return error.exit_code if isinstance(error, TruingError) else 3
+
+
 def sentence_of(error: Exception) -> str:
     """Return what is said of an error: with the place it names, or in the name of the program."""
+    if isinstance(error, OSError) and error.strerror:
+        return f"calc: {one_line(error.filename or 'the system')}: {one_line(error.strerror)}"
     if not isinstance(error, TruingError):
         words = one_line(f"{type(error).__name__}: {error}")
         return f"calc: {words} (this is a fault of the program; --traceback shows where)"
@@ -131,10 +172,10 @@ def sentence_of(error: Exception) -> str:
     return str(error) if has_place else f"calc: {error}"
 
 
-def close_output() -> None:
-    """Write nothing more to an output that takes nothing, so that nothing is said of it at the end."""
+def close_stream(stream: TextIO) -> None:
+    """Write nothing more to a stream that takes nothing, so that nothing is said of it at the end."""
     with suppress(OSError, ValueError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 @contextmanager

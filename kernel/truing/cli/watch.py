@@ -60,7 +60,7 @@ def watch(
         if watcher.calculating:
             raise KeyboardInterrupt(f"calc: interrupted in the middle of a run; {watcher.what_stays()}") from None
         settings.say(f"calc: watched {watcher.runs} run{'s' * (watcher.runs != 1)}; {watcher.what_stays()}")
-        return 0
+        return 0 if watcher.passed else 1
 
 
 def _demand_file(inputs: Path) -> None:
@@ -87,6 +87,7 @@ class _Watcher:
     broken: bool = False
     looks: int = LOOKS
     calculating: bool = False
+    passed: bool = False
 
     def files(self, offer: Offer) -> list[Path]:
         """Return everything whose change asks for another run."""
@@ -140,7 +141,9 @@ class _Watcher:
         self.runs += 1
         what = _words(self.last, done.document, self.order.folder)
         self.last, self.made_at = done.document, time.strftime("%H:%M:%S")
-        out(one_line(f"{self.made_at} {seconds:.1f} s {what}"))
+        self.passed = done.passed
+        if not out(one_line(f"{self.made_at} {seconds:.1f} s {what}")):
+            raise KeyboardInterrupt
 
     def _warn(self, done: Done) -> None:
         """Say the warnings that the last run did not have, and the cases that failed."""
@@ -153,6 +156,7 @@ class _Watcher:
         self.warned = {*(f"warning: {one_line(one)}" for one in warnings), *failed}
 
     def _complain(self, error: Exception) -> None:
+        self.passed = False
         if self.settings.traceback:
             import traceback
 

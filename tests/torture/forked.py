@@ -1,0 +1,96 @@
+"""The command line in a fork of this process: warm at once, with streams and a file system of its own to break."""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO
+
+LONGEST = 60
+"""Seconds that a forked command may take."""
+
+
+@dataclass(frozen=True)
+class End:
+    """How a forked command ended: exit code, or minus the signal; and what it said where that was not redirected."""
+
+    code: int
+    out: str
+    err: str
+
+
+Redirection = Callable[[], int | None]
+"""Returns the descriptor that a stream is to have, or None where it is to be closed; called in the fork."""
+
+
+def forked(
+    words: Sequence[str],
+    folder: Path,
+    *,
+    stdout: Redirection | None = None,
+    stderr: Redirection | None = None,
+    encoding: str = "utf-8",
+    before: Callable[[], object] = lambda: None,
+) -> End:
+    """Run ``calc`` in a fork, in a folder; ``before`` is called there at last, to inject what it likes."""
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        child = os.fork()
+        if child == 0:
+            _be_the_command(words, folder, (stdout or out.fileno, stderr or err.fileno), encoding, before)
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        return End(code, _text(out), _text(err))
+
+
+def _text(stream: IO[bytes]) -> str:
+    stream.seek(0)
+    return stream.read().decode("utf-8", "replace")
+
+
+def _be_the_command(
+    words: Sequence[str],
+    folder: Path,
+    streams: Sequence[Redirection],
+    encoding: str,
+    before: Callable[[], object],
+) -> None:
+    """Do what the interpreter does from its streams to its exit code; never return."""
+    code = 99
+    try:
+        signal.alarm(LONGEST)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        os.chdir(folder)
+        sys.stdin = io.TextIOWrapper(io.BufferedReader(io.FileIO(os.devnull)))
+        descriptors = [stream() for stream in streams]
+        sys.stdout = _stream(descriptors[0], 1, encoding)
+        sys.stderr = _stream(descriptors[1], 2, encoding)
+        from truing.cli import main
+
+        before()
+        code = main(words)
+        for stream in (sys.stdout, sys.stderr):  # as at the end of the interpreter, which exits with 120
+            try:
+                stream.flush()
+            except (OSError, ValueError):
+                code = 120
+    except BaseException:
+        import traceback
+
+        os.write(2, traceback.format_exc().encode())
+    finally:
+        os._exit(code)
+
+
+def _stream(descriptor: int | None, number: int, encoding: str) -> IO[str]:
+    """Make a descriptor a standard stream as the interpreter does: none where it is closed."""
+    if descriptor is None:
+        os.close(number)
+        return None  # type: ignore[return-value]
+    os.dup2(descriptor, number)
+    raw = io.BufferedWriter(io.FileIO(number, "w", closefd=False))
+    return io.TextIOWrapper(raw, encoding=encoding, errors="strict" if number == 1 else "backslashreplace")
