@@ -7,7 +7,8 @@ LINK_TEMPERATURE = Condition(
 )  # fmt: skip
 FORMING_FORCE = Condition(
     "forming_force", "kN", reference=0, low=-200, high=2000,
-    note="force on the slider, central; positive pushes it up, 0 counts as up",
+    note="force on the slider, central; positive pushes it up; where weight and counterbalance leave nothing of it, "
+    "that counts as up",
 )  # fmt: skip
 TIME = Condition(
     "time", "h", reference=0, derived="since_start", low=0, high=10, note="time at work since the first row"

@@ -105,7 +105,8 @@ LOAD: list[Effect[Press, Slider]] = [
         on_inputs=elastic_deflection,
         needs=[FORMING_FORCE],
         unknowns=[Unknown("compliance", 0, 5, "1/GN", note="1/(EA) of rods and knee links, equal sections")],
-        looks_like="the slider gives way in proportion to the forming force, upward under a positive one; no tilt",
+        looks_like="the slider gives way in proportion to the forming force, upward under a positive one; no tilt; an "
+        "unbalanced weight adds a constant force",
         why="links are bars: a steel bar of 200 cm² has 0.24 1/GN",
         source="Hooke's law of the bar; link forces by virtual work",
     ),
@@ -114,8 +115,8 @@ LOAD: list[Effect[Press, Slider]] = [
         on_inputs=joint_clearance,
         needs=[FORMING_FORCE],
         unknowns=[Unknown("clearance", 0, 500, "um", note="radial, of every joint of rods and knee links")],
-        looks_like="the slider jumps when the forming force changes its sign, however small it is; while the sign "
-        "stays, a lift that varies little with the crank angle; no tilt",
+        looks_like="the slider jumps when the load changes its sign, however small it is: where forming force and "
+        "counterbalance pass its weight; while the sign stays, a lift that varies little with the crank angle; no tilt",
         why="the pin of a loaded joint lies on one side of its bore, and on the other when the load reverses",
         source="joint as a link of zero mass of the length of its clearance; sign of the link force by virtual work",
     ),

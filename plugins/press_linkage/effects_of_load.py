@@ -21,6 +21,8 @@ KNEE = ("knee_drive_length", "upper_knee_length", "lower_knee_length")
 JOINTS = 2  # per link
 MILLION = 1e6
 TURN = 2.0 * np.pi
+GRAVITY = 9.80665  # m/s2
+ROUNDING = 1e-9  # of the weight: a load nearer to nothing is nothing
 
 Shares = tuple[Mapping[str, Float], Mapping[str, Float]]
 
@@ -47,6 +49,16 @@ def _closed(value: Float) -> Float:
     return np.nan_to_num(value, nan=0.0, posinf=0.0, neginf=0.0)
 
 
+def net_force(press: Press, forming_force: Float) -> Float:
+    """What pushes the slider up, N: forming force and counterbalance less its weight; below 0 it hangs in its links.
+
+    The weight of the links and the inertia of the slider are left out.
+    """
+    weight = GRAVITY * press.slider_mass
+    force = forming_force + press.counterbalance - weight
+    return np.where(np.abs(force) <= ROUNDING * weight, 0.0, force)
+
+
 def pressed(press: Press, position: Position, force_by_stiffness: Float) -> Press:
     """The press under a central force F, given as F/(EA) with equal sections: each link shortens by N L/(EA)."""
     sides = zip((press.side_1, press.side_2), shares_of_load(position), strict=True)
@@ -57,8 +69,9 @@ def pressed(press: Press, position: Position, force_by_stiffness: Float) -> Pres
     return replace(press, side_1=side_1, side_2=side_2)
 
 
-def slackened(press: Press, clearance: Float, force: Float) -> Press:
+def slackened(press: Press, clearance: Float, forming_force: Float) -> Press:
     """The press with this radial clearance in both joints of each link: shorter where pressed, longer where pulled."""
+    force = net_force(press, forming_force)
     upward = np.where(np.isnan(force), np.nan, np.where(force < 0, -1.0, 1.0))
     play = JOINTS * clearance * upward
     sides = zip((press.side_1, press.side_2), shares_of_load(position_of(press)), strict=True)
@@ -69,17 +82,20 @@ def slackened(press: Press, clearance: Float, force: Float) -> Press:
 
 
 def elastic_deflection(press: Press, *, compliance: Float, forming_force: Float) -> Press:
-    """Rods and knee links shorten under the forming force like bars of one section; compliance is 1/(EA)."""
-    return pressed(press, position_of(press), compliance * forming_force)
+    """Rods and knee links shorten under the force that they carry like bars of one section; compliance is 1/(EA)."""
+    return pressed(press, position_of(press), compliance * net_force(press, forming_force))
 
 
 def joint_clearance(press: Press, *, clearance: Float, forming_force: Float) -> Press:
-    """The forming force takes up the clearance of every joint, to the side to which it presses or pulls the link."""
+    """The load takes up the clearance of every joint, to the side to which it presses or pulls the link.
+
+    It reverses where the forming force and the counterbalance together are the weight of the slider.
+    """
     return slackened(press, clearance, forming_force)
 
 
 def joint_wear(press: Press, *, wear: Float, strokes: Float, forming_force: Float) -> Press:
-    """Every joint gains clearance in proportion to the strokes; the forming force takes it up."""
+    """Every joint gains clearance in proportion to the strokes; the load takes it up, as above."""
     return slackened(press, wear * strokes / MILLION, forming_force)
 
 

@@ -85,6 +85,14 @@ class Press:
         0.95, "", symbol="G_theta", note="probability that the tilt stays within its limit",
         source="the paper, text after Table 3", above=0, below=1,
     )  # fmt: skip
+    slider_mass: Float = given(
+        0.0, "t", symbol="m_S", note="of the slider with what hangs on it; 0 beside a counterbalance of 0: balanced; "
+        "acts with effects only", source="not in the paper", at_least=0, below=10000,
+    )  # fmt: skip
+    counterbalance: Float = given(
+        0.0, "kN", symbol="F_C", note="force that lifts the slider, of air cylinders or springs; acts with effects "
+        "only", source="not in the paper", at_least=0, below=100000,
+    )  # fmt: skip
     reading: Literal["complete", "printed"] = given(
         "complete",
         note="complete: every installation error in force; printed: what the paper's printed reliabilities contain",

@@ -7,6 +7,7 @@ from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import fields, replace
 from functools import cache
+from itertools import product
 from math import exp, radians
 from typing import Any
 
@@ -351,6 +352,46 @@ def test_clearance_depends_on_the_sign_of_the_force_alone_and_jumps_by_twice_its
     assert len(set(found[:4])) == len(set(found[4:])) == 1
     assert found[0] < 0 < found[-1]  # pushed up, the slider stands higher
     assert found[0] == pytest.approx(-found[-1], rel=1e-4)  # to first order
+
+
+@cache
+def reach_of_play(degrees: float) -> tuple[float, float]:
+    """The highest and the lowest slider of all sixteen ways in which 40 um of play of the links can lie, by hand."""
+    heights = []
+    for ways in product((-4e-5, 4e-5), repeat=len(LOADED)):
+        changed = NOMINAL | {name: NOMINAL[name] + way for name, way in zip(LOADED, ways, strict=True)}
+        crank = radians(degrees) + by_hand.dead_centre(NOMINAL) - by_hand.dead_centre(changed)
+        heights.append(float(by_hand.slider(by_hand.closed(changed, crank), changed)[0]))
+    return min(heights), max(heights)
+
+
+@pytest.mark.parametrize("degrees", [-60.0, 0.0, 40.0])
+@pytest.mark.parametrize(
+    ("tonnes", "lift", "force", "is_up"),
+    [
+        (20.0, 0.0, 0.0, False), (20.0, 0.0, 195e3, False), (20.0, 0.0, 197e3, True), (20.0, 196.133e3, 0.0, True),
+        (20.0, 196.133e3, -1.0, False), (20.0, 250e3, -50e3, True), (20.0, 250e3, -60e3, False), (0.0, 0.0, 0.0, True),
+    ],
+)  # fmt: skip
+def test_a_slider_hangs_in_its_joints_until_the_load_lifts_it(
+    degrees: float, tonnes: float, lift: float, force: float, is_up: bool
+) -> None:
+    """Reference: 20 t are 196.133 kN."""
+    press = replace(press_at(radians(degrees)), slider_mass=1e3 * tonnes, counterbalance=lift)
+    loose, worn = (
+        press_linkage(BY_NAME["joint_clearance"].function(press, clearance=2e-5, forming_force=force)),
+        press_linkage(BY_NAME["joint_wear"].function(press, wear=4e-5, strokes=5e5, forming_force=force)),
+    )
+    assert loose.slider_position == pytest.approx(reach_of_play(degrees)[0 if is_up else 1], abs=1e-12)
+    assert worn.slider_position == loose.slider_position
+
+
+def test_links_carry_what_weight_and_counterbalance_leave() -> None:
+    """A slider of 20 t that 100 kN lift stretches its links as a forming force of -96.133 kN does."""
+    press = replace(press_at(0.3), slider_mass=20e3, counterbalance=1e5)
+    there = BY_NAME["elastic_deflection"].function(press, compliance=SOFT, forming_force=5e4)
+    alone = BY_NAME["elastic_deflection"].function(press_at(0.3), compliance=SOFT, forming_force=5e4 - 96133.0)
+    assert press_linkage(there).slider_position == pytest.approx(press_linkage(alone).slider_position, abs=1e-14)
 
 
 def test_clearance_follows_links_that_change_from_pressed_to_pulled() -> None:
