@@ -134,8 +134,8 @@ def _compare_slope(subject: Subject, setup: Setup, pair: tuple[str, str], stated
     result, name = pair
     if result not in subject.model.own_result_fields or name not in subject.scattering:
         fail(f"{subject.model.name}: derivatives() names '{result}' by '{name}', which is no result by an input")
-    value = float(setup.nominal(name))
-    reach = 0.1 * abs(value) or unit_factor(subject.model.input_fields[name].unit)
+    usual = float(subject.setup.nominal(name))  # an input that is 0 by default is no scale of itself where it is drawn
+    reach = 0.1 * abs(usual) or unit_factor(subject.model.input_fields[name].unit)
     found = [_difference(setup, pair, reach * share) for share in (1.0, 0.1, 1e-2, 1e-3)]
     known = [slope for slope in found if slope is not None]
     if len(known) < 2:
