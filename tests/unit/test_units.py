@@ -242,7 +242,7 @@ REFUSED = [
     ("\u0661\u0662 mm", "mm", "'\u0661\u0662 mm' holds '\u0661', which stands in no number or unit"),
     ("\uff15,\uff15 mm", "mm", "'\uff15,\uff15 mm' holds '\uff15', which stands in no number or unit"),
     ("5 <b>m</b>", "m", "'5 <b>m</b>' holds '<', which stands in no number or unit"),
-    ("5 \x00m", "m", "'5 ?m' holds '?', which stands in no number or unit"),
+    ("5 \x00m", "m", "'5 \\x00m' holds '\\x00', which stands in no number or unit"),
 ]
 
 

@@ -62,7 +62,7 @@ def _setup(document: Document, offer: Offer, folder: Path) -> Setup:
     from truing.inputs_file.values import Reading
 
     reading = Reading(folder)
-    faults = document.faults
+    faults, more = document.faults, 0
     unreadable = _prune(document.data, ())
     _switch_off(document.data)
     reading.stated.update(names_stated(document.data, unreadable))
@@ -70,7 +70,8 @@ def _setup(document: Document, offer: Offer, folder: Path) -> Setup:
     try:
         file_model(offer.model).model_validate(document.data, context=reading)
     except ValidationError as error:
-        faults += faults_of(error, document, offer.model, unreadable)
+        found, more = faults_of(error, document, offer.model, unreadable)
+        faults += found
     late = [
         *reading.faults,
         *part_faults(offer.model, reading.stated),
@@ -81,7 +82,7 @@ def _setup(document: Document, offer: Offer, folder: Path) -> Setup:
     studies = assemble.studies_of(offer.model, reading.values, late)
     faults += [*each(late, document), *assemble.spread_faults(offer.model, document, reading.values)]
     if faults:
-        raise InputError(in_order(faults, document))
+        raise InputError(in_order(faults, document, more))
     return assemble.make_setup(offer, reading, studies, document)
 
 

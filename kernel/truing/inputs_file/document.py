@@ -17,12 +17,22 @@ from truing.units.grammar import shown
 
 Path = tuple[str, ...]
 
+# An unclosed quotation mark takes the rest of its line with it: a scan that fails there and tries again at the next
+# character takes a time that grows with the square of the text.
 _PART = r"""(?:[A-Za-z0-9_-]++|"(?:\\.|[^"\\\n])*+"|'[^'\n]*+')"""
 _KEY = rf"{_PART}(?:[ \t]*+\.[ \t]*+{_PART})*+"
-_ASSIGNMENT = re.compile(rf"\s*({_KEY})[ \t]*=(.*)", re.DOTALL)
-_HEADER = re.compile(rf"\s*(\[\[?)[ \t]*({_KEY})[ \t]*(\]\]?)[ \t]*(?:#.*)?\s*")
-_TOKEN = re.compile(r'"""|\'\'\'|"(?:\\.|[^"\\\n])*+"|\'[^\'\n]*+\'|#[^\n]*|[\[\]{}\n]')
-_LONG_KEY = re.compile(rf"(?<![\w.-])(?:{_PART}[ \t]*+\.[ \t]*+){{40}}")
+_ASSIGNMENT = re.compile(rf"\s*+({_KEY})[ \t]*+=(.*)", re.DOTALL)
+_HEADER = re.compile(rf"\s*+(\[\[?)[ \t]*+({_KEY})[ \t]*+(\]\]?)[ \t]*+(?:#.*)?\s*+")
+_TEXT = r"""(?:"(?:\\.|[^"\\\n])*+"?|'[^'\n]*+'?)"""
+_TOKEN = re.compile(rf"""\"{{3}}|'{{3}}|{_TEXT}|#[^\n]*|[\[\]{{}}\n]""")
+_LONG_TEXT = r"""(?:\"{3}(?:[^"\\]|\\.|"{1,2}(?!"))*+(?:"{3})?|'{3}(?:[^']|'{1,2}(?!'))*+(?:'{3})?)"""
+_NAMES = re.compile(rf"(?:[A-Za-z0-9_-]++|{_LONG_TEXT}|{_TEXT})", re.DOTALL)
+_DOTTED = re.compile(rf"#[^\n]*|{_NAMES.pattern}(?:[ \t]*+\.[ \t]*+{_NAMES.pattern})*+", re.DOTALL)
+_OPENS = re.compile(r"""[\[{]|\"{3}|'{3}""")
+MOST_DOTS = 40
+MOST_STATEMENTS = 20_000
+"""An inputs file says a few hundred things; one that says more than this is something else."""
+_TOO_LONG = f"holds a name with more than {MOST_DOTS} dots"
 _NEXT_BEGINS = re.compile(r"[ \t]*(?:[A-Za-z_][\w.-]*[ \t]*=[^=]|\[+[A-Za-z_][\w.]*\]+[ \t]*(?:#.*)?$)", re.MULTILINE)
 _PLACE = re.compile(r" \(at (?:line \d+, column \d+|end of document)\)$")
 
@@ -42,11 +52,14 @@ class Document:
 
     def fault(self, path: Path, message: str) -> Fault:
         """Return a fault at the place of a name, or of the nearest section around it."""
+        return Fault(message, *self.place(path))
+
+    def place(self, path: Path) -> tuple[str, int | None]:
+        """Return file and line of a name, or of the nearest section around it."""
         for length in range(len(path), -1, -1):
             if path[:length] in self.places:
-                file, line = self.places[path[:length]]
-                return Fault(message, file, line)
-        return Fault(message, self.file)
+                return self.places[path[:length]]
+        return self.file, None
 
 
 @dataclass(frozen=True)
@@ -61,12 +74,16 @@ def read_document(text: str, file: str) -> Document:
     """Read a TOML text; what cannot be read stands in ``faults`` and the rest in ``data``."""
     document = Document(file, places={(): (file, 1)})
     text = text.replace("\r\n", "\n")
-    long_key = _LONG_KEY.search(text)
-    if long_key:
-        line = text.count("\n", 0, long_key.start()) + 1
-        document.faults.append(Fault("holds a name with more than 40 dots", file, line))
+    long_key = _long_key(text)
+    if long_key is not None:
+        line = text.count("\n", 0, long_key) + 1
+        document.faults.append(Fault(_TOO_LONG, file, line))
         return document
     found = list(statements(text))
+    if len(found) > MOST_STATEMENTS:
+        many = f"holds {len(found)} names and headings; at most {MOST_STATEMENTS} are read"
+        document.faults.append(Fault(many, file, found[MOST_STATEMENTS].line))
+        return document
     try:
         document.data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
@@ -78,6 +95,17 @@ def read_document(text: str, file: str) -> Document:
     return document
 
 
+def _long_key(text: str) -> int | None:
+    """Return where a name begins that is nested too deeply to be read, or None."""
+    if text.count(".") <= MOST_DOTS:
+        return None
+    for dotted in _DOTTED.finditer(text):
+        is_long = dotted.end() - dotted.start() > 2 * MOST_DOTS and not dotted[0].startswith("#")
+        if is_long and len(_NAMES.findall(dotted[0])) > MOST_DOTS + 1:
+            return dotted.start()
+    return None
+
+
 def statements(text: str) -> Iterator[Statement]:
     """Split a text into statements; one that never closes ends with its line."""
     position, line, may_continue = 0, 1, True
@@ -86,7 +114,7 @@ def statements(text: str) -> Iterator[Statement]:
         end = len(text) if end < 0 else end
         first = text[position:end].strip()
         if first and not first.startswith("#"):
-            if may_continue and any(mark in first for mark in ("[", "{", '"""', "'''")):
+            if may_continue and _OPENS.search(first):
                 closed = _end_of_statement(text, position)
                 may_continue = closed is not None
                 end = end if closed is None else closed
@@ -184,6 +212,9 @@ class _Repair:
 
     def read(self, statement: Statement) -> None:
         """Read one statement into the data."""
+        if _long_key(statement.text) is not None:
+            self.say(statement, _TOO_LONG)
+            return
         if statement.text.lstrip().startswith("["):
             self.heading(statement)
             return
@@ -218,12 +249,14 @@ class _Repair:
         self.section = path = _parts(header[2])
         if path in self.headings:
             first = self.headings[path]
-            self.say(statement, f"the section [{'.'.join(path)}] occurs twice (first in line {first}); write it once")
+            self.say(
+                statement, f"the section [{_short('.'.join(path))}] occurs twice (first in line {first}); write it once"
+            )
         self.headings.setdefault(path, statement.line)
         _note(self.document, path, statement.line)
         inner = self.inner(path)
         if inner is None:
-            self.say(statement, f"the section [{'.'.join(path)}] has the name of a value given before")
+            self.say(statement, f"the section [{_short('.'.join(path))}] has the name of a value given before")
             self.section = None
 
     def inner(self, path: Path) -> dict[str, Any] | None:
@@ -261,22 +294,22 @@ def _meant(key: str, rest: str) -> tuple[str, str | None] | None:
     """Return what to say of ``key = rest`` and the text that was meant, where it is a text without its quotes."""
     value = rest.strip()
     if not value or value.startswith("#"):
-        return f'{key} has no value; write {key} = "value"', None
+        return f'{_short(key)} has no value; write {_short(key)} = "value"', None
     if value[0] in "\"'" and "\n" not in value and value.count(value[0]) == 1:
         value = value[1:].split("#")[0].strip()
-        return f'the closing quotation mark is missing; write {key} = "{value}"', value
+        return f'the closing quotation mark is missing; write {_short(key)} = "{_short(value)}"', value
     value = value.split("#")[0].strip()
     if value[:1] in "\"'[{" or any(mark in value for mark in '"=\n\\'):
         return None
     comma = re.fullmatch(r"([+-]?\d*),(\d+)\s*([^\d\s,.].*)?", value)
     if comma:
         number = f"{comma[1]}.{comma[2]}"
-        meant = f'"{number} {_short(comma[3])}"' if comma[3] else number
+        meant = f'"{_short(number)} {_short(comma[3])}"' if comma[3] else _short(number)
         return (
-            f"{key} = {_short(value)} has a decimal comma; write {key} = {meant}",
+            f"{_short(key)} = {_short(value)} has a decimal comma; write {_short(key)} = {meant}",
             f"{number} {comma[3] or ''}".strip(),
         )
-    return f'{key} = {_short(value)} needs quotation marks; write {key} = "{_short(value)}"', value
+    return f'{_short(key)} = {_short(value)} needs quotation marks; write {_short(key)} = "{_short(value)}"', value
 
 
 def _short(text: str) -> str:

@@ -18,15 +18,27 @@ _MOST_NEAR_MISSES = 50
 
 def faults_of(
     error: Any, document: Document, model: Model[Any, Any], unreadable: Collection[tuple[str, ...]]
-) -> list[Fault]:
-    """Turn a pydantic ValidationError into faults with places; what was named as unreadable is not missing too."""
+) -> tuple[list[Fault], int]:
+    """Turn a pydantic ValidationError into faults with places; what was named as unreadable is not missing too.
+
+    Sentences are made for the first two hundred in the order of the file; the others are only counted.
+    """
+    found = [(tuple(map(str, item["loc"])), item) for item in error.errors(include_url=False, include_input=False)]
+    found = [(path, item) for path, item in found if item["type"] != "missing" or path not in unreadable]
+    if len(found) > MOST_FAULTS:
+        found.sort(key=lambda fault: _order(document, document.place(fault[0])))
     words = _Words(document, model)
-    faults = []
-    for item in error.errors(include_url=False, include_input=False):
-        path = tuple(str(part) for part in item["loc"])
-        if item["type"] != "missing" or path not in unreadable:
-            faults.append(document.fault(path, words.sentence(path, item)))
-    return faults
+    faults = [document.fault(path, words.sentence(path, item)) for path, item in found[:MOST_FAULTS]]
+    return faults, len(found) - len(faults)
+
+
+def _order(document: Document, place: tuple[str, int | None]) -> tuple[int, int]:
+    """Return the order of places: lines of the file, then overrides as given."""
+    file, line = place
+    return (
+        document.overrides.index(file) + 1 if file != document.file and file in document.overrides else 0,
+        line or 0,
+    )
 
 
 class _Words:
@@ -145,14 +157,11 @@ class _Words:
         )
 
 
-def in_order(faults: Sequence[Fault], document: Document) -> list[Fault]:
-    """Sort faults by line, those of overrides behind them as given; beyond 200 they are counted."""
-    file, places = document.file, {place: order for order, place in enumerate(document.overrides, start=1)}
-    ordered = sorted(faults, key=lambda fault: (places.get(fault.file, 0), fault.line or 0))
-    unique = list(dict.fromkeys(ordered))
-    if len(unique) <= MOST_FAULTS:
-        return unique
-    return [*unique[:MOST_FAULTS], Fault(f"and {len(unique) - MOST_FAULTS} faults more", file)]
+def in_order(faults: Sequence[Fault], document: Document, more: int = 0) -> list[Fault]:
+    """Sort faults by line, those of overrides behind them as given; beyond 200 they are counted, with ``more``."""
+    unique = list(dict.fromkeys(sorted(faults, key=lambda fault: _order(document, (fault.file, fault.line)))))
+    more += max(len(unique) - MOST_FAULTS, 0)
+    return [*unique[:MOST_FAULTS], *([Fault(f"and {more} faults more", document.file)] if more else [])]
 
 
 def each(faults: Sequence[tuple[tuple[str, ...], str]], document: Document) -> Iterator[Fault]:

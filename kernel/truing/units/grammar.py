@@ -25,6 +25,7 @@ from truing.errors import UnitError
 from truing.units.names import COUNTS, PURE, SPELLINGS
 
 LONGEST = 200
+LONGEST_SHOWN = 1000
 LARGEST_EXPONENT = 12
 LARGEST_POWER_OF_TEN = 30
 
@@ -73,8 +74,13 @@ class Product:
 
 
 def shown(text: str) -> str:
-    """Quote a user's text for a sentence: one line, printable, not longer than 60 characters."""
-    flat = "".join(character if character.isprintable() else "?" for character in " ".join(text.split()))
+    """Quote a user's text for a sentence: one line, not longer than 60 characters, control characters as escapes.
+
+    What a user wrote, and what stands in a user's file, comes into a sentence through this function only.
+    """
+    flat = " ".join(text[:LONGEST_SHOWN].split()) if len(text) > LONGEST_SHOWN else " ".join(text.split())
+    if not flat.isprintable():
+        flat = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in flat)
     return f"'{flat if len(flat) <= 60 else flat[:57] + '...'}'"
 
 
