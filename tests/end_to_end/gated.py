@@ -81,7 +81,7 @@ class Gated:
     def kept(self, run: str) -> int:
         """How many batches are kept beside a run folder."""
         log = self.folder / f"{run}.partial" / "batches.log"
-        return log.read_bytes().count(b"TRB1") if log.exists() else 0
+        return log.read_bytes().count(b"TRB2") if log.exists() else 0
 
     def open(self) -> None:
         (self.folder / "open").touch()

@@ -40,7 +40,7 @@ def test_a_killed_run_goes_on_where_it_was(calc_process: Calc, tmp_path: Path) -
     words = "calc: interrupted; finished batches are kept in run.partial, the same command goes on from there\n"
     assert (process.returncode, err) == (130, words)
     with (tmp_path / "run.partial" / "batches.log").open("ab") as torn:
-        torn.write(b"TRB1 the power failed here")
+        torn.write(b"TRB2 the power failed here")
 
     pin.open()
     before = pin.calls

@@ -1,25 +1,30 @@
 """Where batches are computed: the order of the answers, lost workers, and setups that travel as plain data."""
 
+import math
 import os
 import pickle
 import struct
 import time
+import zlib
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from study_models import CHAIN, WEAR, setup_of
 
 from truing.declare.spreads import Off
 from truing.errors import LostWorkersError, PluginError, UsageError
 from truing.executors import BatchLog, KeptExecutor, Place, ProcessExecutor, SerialExecutor, in_order, open_executor
-from truing.executors.kept import key_of
+from truing.executors.data import answer_of, text_of
+from truing.executors.kept import HEAD, MAGIC, key_of
 from truing.executors.versions import differences
 from truing.kernel import kernel_for
 from truing.packed import pack, unpack
 from truing.setup import SwitchedOn, default_setup
+from truing.studies.sampling import Moments
 
 
 def slow_when_even(number: int) -> int:
@@ -241,7 +246,7 @@ def test_a_torn_or_spoilt_end_is_cut_off(tmp_path):
     spoilt[length + 60] ^= 1
     path.write_bytes(spoilt)
     assert len(BatchLog(path)) == 1
-    path.write_bytes(whole[: 2 * length] + struct.pack(">4s32sQI", b"TRB1", bytes(32), 2**62, 0))
+    path.write_bytes(whole[: 2 * length] + struct.pack(">4s32sQI", b"TRB2", bytes(32), 2**62, 0))
     assert len(BatchLog(path)) == 2  # a length beyond the file is no length
 
 
@@ -256,6 +261,74 @@ def test_a_full_disk_ends_the_keeping_and_not_the_run(tmp_path, monkeypatch):
     assert list(in_order(kept, abs, range(4))) == [0, 1, 2, 3]
     assert kept.remarks() == ["finished batches are no longer kept for --resume: No space left on device"]
     assert len(log) == 0
+
+
+class Planted:
+    """What runs code where it is unpickled."""
+
+    def __reduce__(self):
+        return Path.touch, (Path("ran"),)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        pickle.dumps(Planted()),
+        b'{"class": ["Path", {}]}',
+        b'{"class": ["os.system", {"command": "touch ran"}]}',
+        b'{"array": ["|O", [1], "C", "AAAAAAAAAAA="]}',
+        b'{"array": ["<f8", [9], "C", "AAAAAAAAAAA="]}',
+        b'{"tuple": 3}',
+        b"[" * 100_000,
+        b"\xff",
+    ],
+)
+def test_a_planted_record_runs_no_code_and_is_computed_again(tmp_path, monkeypatch, content):
+    """Whoever can write into the folder can plant a record with a right checksum; it stays data."""
+    monkeypatch.chdir(tmp_path)
+    key = key_of(abs, -3)
+    record = HEAD.pack(MAGIC, key, len(content), zlib.crc32(content, zlib.crc32(key))) + content
+    (tmp_path / "log").write_bytes(record)
+    log = BatchLog(tmp_path / "log")
+    assert len(log) == 1
+    kept = KeptExecutor(SerialExecutor(), log)
+    assert list(in_order(kept, abs, [-3])) == [3]
+    assert kept.resumed == 0
+    assert not (tmp_path / "ran").exists()
+    log.close()
+    again = KeptExecutor(SerialExecutor(), BatchLog(tmp_path / "log"))  # what was computed has taken its place
+    assert list(in_order(again, abs, [-3])) == [3]
+    assert again.resumed == 1
+
+
+def test_answers_come_back_to_the_last_bit():
+    """With their types, and the order of arrays in memory, on which the rounding of their sums depends."""
+    rng = np.random.default_rng(5)
+    arrays = [
+        rng.normal(size=(3, 4)), np.asfortranarray(rng.normal(size=(3, 4))), rng.normal(size=(6, 8))[::2, ::3],
+        np.array([0.1, -0.0, np.nan, np.inf]), np.zeros((0, 3)), np.array(["a", "µm"]), np.array([True, False]),
+        np.array(7), rng.integers(0, 9, 5).astype("int16"),
+    ]  # fmt: skip
+    for array in arrays:
+        back = answer_of(text_of(array))
+        assert (back.dtype, back.shape, back.tobytes("A")) == (array.dtype, array.shape, array.tobytes("A"))
+        assert back.flags.c_contiguous or back.flags.f_contiguous
+        assert back.flags.writeable
+    moments = Moments(3, np.float64(0.1), 0.2, -math.inf, None)
+    plain = {"a": (1, [2.5e-308, "µ\ud800"]), 3: {}, "big": 2**80, "moments": moments}
+    back = answer_of(text_of(plain))
+    assert back == plain
+    assert [type(back["moments"].mean), type(back["a"])] == [np.float64, tuple]
+
+
+def test_an_answer_that_is_no_data_is_said_and_not_kept(tmp_path):
+    log = BatchLog(tmp_path / "log")
+    kept = KeptExecutor(SerialExecutor(), log)
+    assert list(in_order(kept, Path, ["a"])) == [Path("a")]
+    assert len(log) == 0
+    assert kept.remarks() == [
+        f"some finished batches are not kept for --resume: a {type(Path()).__name__} is no plain data"
+    ]
 
 
 def test_equal_jobs_have_one_key_wherever_their_parts_lie():

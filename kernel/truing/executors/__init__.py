@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from truing.errors import UsageError
+from truing.executors.data import keepable
 from truing.executors.kept import BatchLog, KeptExecutor
 from truing.executors.ordered import in_order
 from truing.executors.places import Place, SerialExecutor
@@ -15,6 +16,7 @@ __all__ = [
     "ProcessExecutor",
     "SerialExecutor",
     "in_order",
+    "keepable",
     "open_executor",
 ]
 

@@ -12,15 +12,17 @@ import time
 import zlib
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
+from truing.executors.data import NoDataError, answer_of, text_of
 from truing.executors.places import Place, Timed, answered
 
 J = TypeVar("J")
 A = TypeVar("A")
-MAGIC = b"TRB1"
+MAGIC = b"TRB2"
 HEAD = struct.Struct(">4s32sQI")
 SYNC_SECONDS = 1.0
 
@@ -28,6 +30,7 @@ SYNC_SECONDS = 1.0
 class BatchLog:
     """Answers by key in one file that only grows: each record has a length and a checksum, a torn end is cut off.
 
+    A record is data only (see ``executors.data``): whatever lies in the file, reading it runs nothing.
     What was put is safe when this process is killed; when the power fails, but for the last second.
     """
 
@@ -39,6 +42,8 @@ class BatchLog:
         self._synced = time.monotonic()
         self.fault = ""
         """Why no more batches can be kept (a full disk), or nothing."""
+        self.strange = ""
+        """Why some batches are not kept (answers that are no plain data), or nothing."""
         self._read()
 
     def __len__(self) -> int:
@@ -52,16 +57,24 @@ class BatchLog:
         return frozenset(self._places)
 
     def get(self, key: bytes) -> Any:
-        """Return the answer kept under a key."""
+        """Return the answer kept under a key. Raises NoDataError, and forgets it, where what is kept is no answer."""
         start, length = self._places[key]
-        with self._lock:
-            self._file.seek(start)
-            content = self._file.read(length)
-        return pickle.loads(content)
+        try:
+            with self._lock:
+                self._file.seek(start)
+                content = self._file.read(length)
+            return answer_of(content.decode("ascii"))
+        except (OSError, ValueError) as error:
+            del self._places[key]
+            raise NoDataError(str(error)) from None
 
     def put(self, key: bytes, answer: Any) -> None:
         """Keep an answer. Where that fails, say so in ``fault`` and keep no more: the run itself goes on."""
-        content = pickle.dumps(answer, protocol=5)
+        try:
+            content = text_of(answer).encode("ascii")
+        except NoDataError as error:
+            self.strange = str(error)
+            return
         record = memoryview(HEAD.pack(MAGIC, key, len(content), zlib.crc32(content, zlib.crc32(key))) + content)
         with self._lock:
             if self.fault or self._file.closed or key in self._places:
@@ -78,7 +91,7 @@ class BatchLog:
         """Write everything to the disk and close the file."""
         with self._lock:
             if not self._file.closed:
-                if not self.fault:
+                with suppress(OSError):
                     os.fsync(self._file.fileno())
                 self._file.close()
 
@@ -128,10 +141,13 @@ class KeptExecutor(Place):
         key = key_of(function, job)
         if key not in self._log:
             return None
+        future: Future[Timed[A]] = Future()
+        try:
+            future.set_result(Timed([self._log.get(key)], 0.0))
+        except NoDataError:
+            return None  # it is computed again
         if key in self._earlier:
             self._taken.add(key)
-        future: Future[Timed[A]] = Future()
-        future.set_result(Timed([self._log.get(key)], 0.0))
         return future
 
     def submit_together(self, function: Callable[[J], A], jobs: Sequence[J]) -> Future[Timed[A]]:
@@ -192,6 +208,8 @@ class KeptExecutor(Place):
         words = self._inner.remarks()
         if self._log.fault:
             words.append(f"finished batches are no longer kept for --resume: {self._log.fault}")
+        if self._log.strange:
+            words.append(f"some finished batches are not kept for --resume: {self._log.strange}")
         return words
 
 

@@ -18,7 +18,7 @@ from truing.runs.folder import json_text
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
 
-PARTIAL_SCHEMA = "truing.partial/1"
+PARTIAL_SCHEMA = "truing.partial/2"
 HEADER, FRESH, BATCHES, LOCK = OURS = ("partial.json", "partial.json.new", "batches.log", "lock")
 
 

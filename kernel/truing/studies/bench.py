@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 from truing.declare.blocks import Block
+from truing.executors import keepable
 from truing.setup import Setup
 
 Progress = Callable[[str, int, int], None]
@@ -54,6 +55,7 @@ def within(progress: Progress, task: str, begin: float, end: float, stages: Sequ
     return told
 
 
+@keepable
 @dataclass(frozen=True)
 class Check:
     """A limit and how far it is kept: margin > 0 is safe, everywhere. Values are in ``unit``.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from truing.declare.checks import TOTAL_PRICE
 from truing.evaluate import evaluate_rows
-from truing.executors import SerialExecutor, in_order
+from truing.executors import SerialExecutor, in_order, keepable
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup
 from truing.studies.optimise_chances import Cloud, Designs, by_draws, by_first_order, cloud_of
@@ -80,6 +80,7 @@ def _of_rows(values: Any, rows: int) -> NDArray[np.float64]:
     return np.broadcast_to(np.asarray(values, dtype=float), (rows,))
 
 
+@keepable
 @dataclass(frozen=True)
 class Answers:
     """What m designs are worth: objectives (m, a) in SI, margins of every limit (m, b), chances (m, c) and their goals.

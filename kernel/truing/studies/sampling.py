@@ -13,7 +13,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from truing.evaluate import Rows, evaluate_rows
-from truing.executors import SerialExecutor, in_order
+from truing.executors import SerialExecutor, in_order, keepable
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup
 from truing.studies.demands import Demand, nominal_inputs, results_needed
@@ -55,6 +55,7 @@ class Job:
     rows: int
 
 
+@keepable
 @dataclass(frozen=True)
 class Moments:
     """Count, mean, sum of squared deviations, smallest and largest; numbers or arrays along the result's axis."""
@@ -73,6 +74,7 @@ class Moments:
         return np.sqrt(self.squares / (self.count - 1)) if self.count > 1 else self.squares * float("nan")
 
 
+@keepable
 @dataclass(frozen=True)
 class Tally:
     """What some batches found: hits by demand, moments by result, failed rows and the first reasons for them."""

@@ -10,7 +10,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from truing.evaluate import Rows, evaluate_rows
-from truing.executors import SerialExecutor, in_order
+from truing.executors import SerialExecutor, in_order, keepable
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup
 from truing.studies.bench import Done
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 LONGEST = 3.0
 """Seconds after which the model is stopped and its time for the rest is taken from what was run."""
+
+
+keepable(Rows)
 
 
 @dataclass(frozen=True)
