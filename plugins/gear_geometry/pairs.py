@@ -82,3 +82,18 @@ def internal_sliding(teeth: tuple[Float, Float], tip_angle: tuple[Float, Float],
         pinion = np.where(np.asarray(room) > 0.0, difference * at_ring_tip / room, np.nan)
         ring = difference * at_pinion_tip / (teeth[1] * np.tan(working) + teeth[0] * at_pinion_tip)
     return np.abs(pinion), np.abs(ring)
+
+
+def internal_tip_sliding(
+    teeth: tuple[Float, Float], tip_angle: tuple[Float, Float], working: Float
+) -> tuple[Float, Float]:
+    """Return the magnitudes of specific sliding of (pinion, ring), each at its own tip, the other end of its flank.
+
+    Sliding changes in one direction along the path of contact, so that the larger of root and tip is the largest on the
+    path; it is the root's wherever the pitch point lies well within the path.
+    """
+    difference = teeth[1] - teeth[0]
+    tips, middle = (np.tan(tip_angle[0]), np.tan(tip_angle[1])), np.tan(working)
+    pinion = difference * (tips[0] - middle) / (teeth[1] * tips[0])
+    ring = difference * (middle - tips[1]) / (teeth[0] * tips[1])
+    return np.abs(pinion), np.abs(ring)

@@ -94,16 +94,44 @@ class Meshing:
         " + (ring_teeth - roller_teeth) * inv(mounted_angle),"
         " mounted_distance + tip_radius_roller > tip_radius_ring, 2 * pi)",
     )  # fmt: skip
-    sliding_roller: Float = found(
-        "", symbol="eta_E", note="specific sliding at the root of the roller, where the tip of the ring meets it; "
+    root_sliding_roller: Float = found(
+        "", symbol="eta_E,f", note="specific sliding at the root of the roller, where the tip of the ring meets it; "
         "magnitude", source="1 - v_I/v_E of the speeds along the flanks",
         formula="abs((ring_teeth - roller_teeth) * (tan(mounted_angle) - tan(tip_angle_ring)) / margin_involute)",
     )  # fmt: skip
-    sliding_ring: Float = found(
-        "", symbol="eta_I", note="specific sliding at the root of the ring, where the tip of the roller meets it; "
+    tip_sliding_roller: Float = found(
+        "", symbol="eta_E,a", note="specific sliding at the tip of the roller; magnitude",
+        source="1 - v_I/v_E of the speeds along the flanks",
+        formula="abs((ring_teeth - roller_teeth) * (tan(tip_angle_roller) - tan(mounted_angle))"
+        " / (ring_teeth * tan(tip_angle_roller)))",
+    )  # fmt: skip
+    tips_count: Float = found("", symbol="i_a", note="1: sliding at the tips counts too, so the largest on the path of "
+                              "contact; 0: at the roots alone", method="as sliding_reading has it")  # fmt: skip
+    sliding_roller: Float = found(
+        "", symbol="eta_E", note="specific sliding of the roller that counts, its largest on the path of contact",
+        formula="max(root_sliding_roller, tips_count * tip_sliding_roller)",
+        source="sliding changes in one direction along the path",
+    )  # fmt: skip
+    root_sliding_ring: Float = found(
+        "", symbol="eta_I,f", note="specific sliding at the root of the ring, where the tip of the roller meets it; "
         "magnitude", source="1 - v_E/v_I of the speeds along the flanks",
         formula="abs((ring_teeth - roller_teeth) * (tan(tip_angle_roller) - tan(mounted_angle))"
         " / (ring_teeth * tan(mounted_angle) + roller_teeth * (tan(tip_angle_roller) - tan(mounted_angle))))",
+    )  # fmt: skip
+    tip_sliding_ring: Float = found(
+        "", symbol="eta_I,a", note="specific sliding at the tip of the ring; magnitude",
+        source="1 - v_E/v_I of the speeds along the flanks",
+        formula="abs((ring_teeth - roller_teeth) * (tan(mounted_angle) - tan(tip_angle_ring))"
+        " / (roller_teeth * tan(tip_angle_ring)))",
+    )  # fmt: skip
+    sliding_ring: Float = found(
+        "", symbol="eta_I", note="specific sliding of the ring that counts, its largest on the path of contact",
+        formula="max(root_sliding_ring, tips_count * tip_sliding_ring)",
+        source="sliding changes in one direction along the path",
+    )  # fmt: skip
+    ring_meshes: Float = found(
+        "", symbol="n_I/n_E", note="meshes of a tooth of the ring while one of a roller meshes once; decides how fast "
+        "either wears", formula="rollers * roller_teeth / ring_teeth", source="counts of teeth",
     )  # fmt: skip
     # Strength of the roots
     tangential_force: Float = found("N", symbol="F_t", note="load of one mesh", formula="tangential_share * "
@@ -213,7 +241,7 @@ class Meshing:
         "MPa", symbol="f_2", note="to be small: difference of the nominal root stresses, without neutral factors",
         formula="abs(nominal_stress_roller - nominal_stress_ring)", source="equation 2 of the paper",
     )  # fmt: skip
-    sliding_difference: Float = found("", symbol="f_3", note="to be small: difference of specific sliding",
+    sliding_difference: Float = found("", symbol="f_3", note="to be small: difference of the largest specific sliding",
                                       formula="abs(sliding_roller - sliding_ring)", source="equation 3 of the paper",
                                       )  # fmt: skip
     # Constraints: above 0 is safe
@@ -257,7 +285,7 @@ class Meshing:
                                   source="keeps the range of the third objective finite")  # fmt: skip
     # What effects act on
     transmission_error: Float = found("um", symbol="TE", note="along the line of action", method=BASE)
-    wear_depth: Float = found("um", symbol="h", note="wear of the flank of the roller", method=BASE)
+    wear_depth: Float = found("um", symbol="h", note="wear of the roller where it is deepest", method=BASE)
     axial_shift: Float = found("um", symbol="Delta z", note="of a roller along the screw", method=BASE)
     friction_torque: Float = found("N*m", symbol="M_R", note="of the meshes, at the screw", method=BASE)
     backlash: Float = found(

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from roller_screw_shift.courses import Course, Interval, Values, course_of, dens
 from roller_screw_shift.quantities import Pair
 from roller_screw_shift.weighing import Ranges, Three, total, weights_of
 
+OTHER: dict[str, Literal["path", "roots"]] = {"path": "roots", "roots": "path"}
 READINGS = ("own_ranges", "printed_ranges", "printed")
 NEAR = 1e-5  # of a shift: nearer to its end the optimum stands at the limit; the weighed sum is level there
 
@@ -92,6 +94,12 @@ def variants(pair: Pair, ratios: Sequence[float], span: tuple[float, float], poi
             shift = grid_optimum(field, weights)
             margin = course_of(field.pair, np.array([shift])).margins["margin_contact_ratio"][0]
             yield Variant(ratio, reading, weights, shift, ratio + float(margin), limits_at(field, shift))
+
+
+def other_optimum(pair: Pair, span: tuple[float, float], points: int) -> float:
+    """Return the optimum on the grid by the other reading of the sliding; NaN where no shift keeps every limit then."""
+    field = field_of(replace(pair, sliding_reading=OTHER[pair.sliding_reading]), span, points)
+    return float("nan") if field is None else grid_optimum(field, weights_of(pair.weights, field.ranges))
 
 
 def stress_factor(field: Field, weights: Three, shift: float) -> float | None:

@@ -52,7 +52,7 @@ def _circles(geometry: geo.Geometry) -> dict[str, Any]:
 
 def _mesh(pair: Pair, geometry: geo.Geometry) -> dict[str, Any]:
     """Return contact ratio, tips and sliding by the names of their results."""
-    crossing, (roller, ring) = geo.crossing_of(geometry), geo.sliding(geometry)
+    crossing, (roller, ring) = geo.crossing_of(geometry), geo.sliding(pair, geometry)
     return {
         "contact_ratio": geo.contact_ratio(geometry),
         "half_angle_roller": geo.half_angle_at_tip(pair, geometry),
@@ -62,9 +62,13 @@ def _mesh(pair: Pair, geometry: geo.Geometry) -> dict[str, Any]:
         "crossing_angle_roller": crossing.roller,
         "crossing_angle_ring": crossing.ring,
         "tip_clearance": crossing.clearance,
+        **dict(zip(("root_sliding_roller", "root_sliding_ring"), geo.sliding_at_roots(geometry), strict=True)),
+        **dict(zip(("tip_sliding_roller", "tip_sliding_ring"), geo.sliding_at_tips(geometry), strict=True)),
+        "tips_count": geo.tips_count(pair),
         "sliding_roller": roller,
         "sliding_ring": ring,
         "sliding_difference": np.abs(roller - ring),
+        "ring_meshes": load_of(pair).ring_meshes,
     }
 
 

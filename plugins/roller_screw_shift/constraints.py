@@ -58,7 +58,7 @@ def margins_at(pair: Pair, geometry: Geometry) -> Margins:
         margin_involute=involute_margin(geometry),
         margin_undercut=pair.roller_shift - undercut_limit(pair),
         margin_tip_land=tip_land(pair, geometry) / pair.module - pair.least_tip_land,
-        margin_sliding=pair.most_sliding_difference - sliding_difference(geometry),
+        margin_sliding=pair.most_sliding_difference - sliding_difference(pair, geometry),
     )
 
 

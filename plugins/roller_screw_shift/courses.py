@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roller_screw_shift.constraints import margins_of
-from roller_screw_shift.geometry import geometry_of, sliding
+from roller_screw_shift.geometry import geometry_of, sliding_at_roots
 from roller_screw_shift.objectives import objectives_of
 from roller_screw_shift.quantities import Pair
 from roller_screw_shift.weighing import Ranges
@@ -114,7 +114,7 @@ def equal_sliding(pair: Pair, span: tuple[float, float], points: int) -> float:
 
     def excess(shifts: Values) -> Values:
         with np.errstate(all="ignore"):
-            roller, ring = sliding(geometry_of(replace(pair, roller_shift=shifts)))
+            roller, ring = sliding_at_roots(geometry_of(replace(pair, roller_shift=shifts)))
         return np.asarray(np.asarray(roller) - np.asarray(ring))
 
     shifts = np.linspace(*span, points)

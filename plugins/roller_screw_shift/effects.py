@@ -155,7 +155,8 @@ FLANKS: list[Effect[Pair, Meshing]] = [
         unknowns=[
             Unknown("rate", 0, 50, "um", note="depth per million cycles at 51.943 N and a specific sliding of 1"),
         ],
-        looks_like="the depth of wear grows with load and cycles, whatever the time, and the backlash twice as fast",
+        looks_like="the depth of wear grows with load and cycles, whatever the time, and the backlash about twice as "
+        "fast with ten rollers of a fifth of the ring's teeth",
         why="flanks slide on one another away from the pitch point",
         source=ARCHARD,
     ),

@@ -29,13 +29,18 @@ def thermal_centre_distance(pair: Pair, *, expansion: Float, temperature: Float)
 
 
 def flank_wear(pair: Pair, meshing: Meshing, *, rate: Float, cycles: Float) -> Meshing:
-    """The flank of the roller wears in proportion to load, sliding and cycles, and that of the ring as deep.
+    """Flanks wear with load, sliding and meshes: the roller by its cycles, the ring by those of all rollers.
 
-    ``rate`` is the depth after a million cycles with 51.943 N on the mesh and a specific sliding of 1.
+    ``rate`` is the depth after a million cycles with 51.943 N on the mesh and a specific sliding of 1. While a flank
+    passes the contact of width 2b it slides by 2b times its specific sliding. The depth is the roller's deepest; the
+    backlash grows by what both flanks lose where they touch, at the worse end of the path, as an arc.
     """
-    load = load_of(pair).tangential_force / RATED_FORCE
-    depth = rate * load * meshing.sliding_roller * cycles / MILLION
-    return replace(meshing, wear_depth=meshing.wear_depth + depth, backlash=meshing.backlash + 2.0 * depth)
+    worn = rate * load_of(pair).tangential_force / RATED_FORCE * cycles / MILLION
+    deepest = np.maximum(meshing.root_sliding_roller, meshing.tip_sliding_roller)
+    at_ring_tip = meshing.root_sliding_roller + meshing.ring_meshes * meshing.tip_sliding_ring
+    at_roller_tip = meshing.tip_sliding_roller + meshing.ring_meshes * meshing.root_sliding_ring
+    gap = worn * np.maximum(at_ring_tip, at_roller_tip) / np.cos(meshing.mounted_angle)
+    return replace(meshing, wear_depth=meshing.wear_depth + worn * deepest, backlash=meshing.backlash + gap)
 
 
 def mesh_friction(pair: Pair, meshing: Meshing, *, factor: Float, screw_speed: Float, temperature: Float) -> Meshing:

@@ -14,6 +14,7 @@ from gear_geometry.pairs import (
     clear_of_base,
     internal_contact_ratio,
     internal_sliding,
+    internal_tip_sliding,
     shift_per_tooth,
     working_angle_at,
 )
@@ -95,9 +96,29 @@ def involute_margin(geometry: Geometry) -> Float:
     return clear_of_base(_teeth(geometry), geometry.ring.tip_angle, geometry.mounted_angle)
 
 
-def sliding(geometry: Geometry) -> tuple[Float, Float]:
+def sliding(pair: Pair, geometry: Geometry) -> tuple[Float, Float]:
+    """Return the specific sliding of roller and ring that counts, magnitudes; NaN under involute interference.
+
+    The largest on the path of contact, or that at the roots, as ``sliding_reading`` has it.
+    """
+    roots, tips = sliding_at_roots(geometry), sliding_at_tips(geometry)
+    count = tips_count(pair)
+    return np.maximum(roots[0], count * tips[0]), np.maximum(roots[1], count * tips[1])
+
+
+def tips_count(pair: Pair) -> float:
+    """Return 1 where the sliding at the tips counts, 0 where that at the roots alone does."""
+    return 1.0 if pair.sliding_reading == "path" else 0.0
+
+
+def sliding_at_roots(geometry: Geometry) -> tuple[Float, Float]:
     """Return the magnitudes of specific sliding at the roots of roller and ring; NaN under involute interference."""
     return internal_sliding(_teeth(geometry), _tip_angles(geometry), geometry.mounted_angle)
+
+
+def sliding_at_tips(geometry: Geometry) -> tuple[Float, Float]:
+    """Return the magnitudes of specific sliding at the tips of roller and ring."""
+    return internal_tip_sliding(_teeth(geometry), _tip_angles(geometry), geometry.mounted_angle)
 
 
 def half_angle_at_tip(pair: Pair, geometry: Geometry) -> Float:

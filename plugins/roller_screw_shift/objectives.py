@@ -30,11 +30,11 @@ def objectives_of(pair: Pair) -> Objectives:
         return Objectives(
             shift_sum=pair.roller_shift + geometry.ring_shift,
             stress_difference=difference,
-            sliding_difference=sliding_difference(geometry),
+            sliding_difference=sliding_difference(pair, geometry),
         )
 
 
-def sliding_difference(geometry: Geometry) -> Float:
-    """Return the difference of the magnitudes of specific sliding at the two roots."""
-    roller, ring = sliding(geometry)
+def sliding_difference(pair: Pair, geometry: Geometry) -> Float:
+    """Return the difference of the magnitudes of specific sliding that count of both gears."""
+    roller, ring = sliding(pair, geometry)
     return np.abs(roller - ring)

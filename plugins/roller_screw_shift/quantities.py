@@ -78,6 +78,11 @@ class Pair:
     most_sliding_difference: Float = given(3.08, "", symbol="f_3,max", note="largest difference of specific sliding",
                                            source="printed upper limit, taken as bound of the search",
                                            above=0)  # fmt: skip
+    sliding_reading: Literal["path", "roots"] = given(
+        "path",
+        note="third objective: of the largest sliding of each gear on the path of contact, or of that at the roots, "
+        "which folds where the path begins near the pitch point",
+    )
     weights: Literal["own_ranges", "printed_ranges", "printed"] = given(
         "own_ranges",
         note="weights of the objectives: by the paper's rule from the ranges found here, by its rule "

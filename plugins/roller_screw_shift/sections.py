@@ -34,9 +34,11 @@ SECTIONS = [
     ),
     Section(
         "Sliding of the flanks",
-        "sliding_roller", "sliding_ring",
+        "root_sliding_roller", "tip_sliding_roller", "tips_count", "sliding_roller", "root_sliding_ring",
+        "tip_sliding_ring", "sliding_ring", "ring_meshes",
         text="At each end of the path of contact the root of one gear meets the tip of the other, and there the flanks "
-        "slide most for the way they roll.",
+        "slide most for the way they roll: usually at the roots, but at the tip where the path begins near the pitch "
+        "point or beyond it. The largest of the path counts.",
         blocks=drawn.sliding,
     ),
     Section(

@@ -14,6 +14,7 @@ from roller_screw_shift.best_shifts import (
     field_of,
     grid_optimum,
     limits_at,
+    other_optimum,
     stress_factor,
     variants,
 )
@@ -85,6 +86,7 @@ class Shifting:
             weights=weights,
             box=box,
             grid=grid,
+            other=other_optimum(pair, span, self.points),
             variants=tuple(self._variants(bench, ratios, span)),
             factor=stress_factor(field, weights, grid),
             compared=_compared(bench, field, best),
@@ -153,8 +155,8 @@ class Chosen:
     """The optimum by Box's method and on the grid, and where the objectives were weighed.
 
     Without any shift that keeps every limit ``field`` is None and ``status`` says why. ``equal`` is the shift at which
-    both roots slide alike, whatever the limits; ``kept`` the shares of screws, as stated and at the optimum, that keep
-    every limit although their parts scatter.
+    both roots slide alike, whatever the limits; ``other`` the optimum by the other reading of the sliding; ``kept`` the
+    shares of screws, as stated and at the optimum, that keep every limit although their parts scatter.
     """
 
     inputs: Pair
@@ -165,6 +167,7 @@ class Chosen:
     weights: Three = (0.0, 0.0, 0.0)
     box: Found | None = None
     grid: float = float("nan")
+    other: float = float("nan")
     variants: tuple[Variant, ...] = ()
     factor: float | None = None
     compared: Mapping[str, Any] | None = None

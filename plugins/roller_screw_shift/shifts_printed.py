@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from roller_screw_shift.best_shifts import OTHER
 from roller_screw_shift.shifts import before
 from roller_screw_shift.weighing import PRINTED_RANGES, PRINTED_WEIGHTS, lower_limit, rule_weights
 from truing import Table, Words
@@ -14,6 +15,11 @@ if TYPE_CHECKING:
     from truing import Block
 
 MM, MEGA = 1e3, 1e6
+ALIKE = 5e-5  # of a shift, on the sheet
+SLIDING = {
+    "path": "the largest sliding of each gear on the path of contact",
+    "roots": "the sliding at the roots alone, which need not be the largest,",
+}
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 LIMITS = {
     "margin_ring_base": ("g1", "base circle of the ring"),
@@ -43,8 +49,8 @@ ROWS: tuple[tuple[str, str, str, float], ...] = (
     ("tip land of the roller", "tip_land", "mm", MM),
     ("root stress of the roller, nominal", "nominal_stress_roller", "MPa", 1 / MEGA),
     ("root stress of the ring, nominal", "nominal_stress_ring", "MPa", 1 / MEGA),
-    ("specific sliding, root of the roller", "sliding_roller", "", 1.0),
-    ("specific sliding, root of the ring", "sliding_ring", "", 1.0),
+    ("specific sliding of the roller, largest", "sliding_roller", "", 1.0),
+    ("specific sliding of the ring, largest", "sliding_ring", "", 1.0),
     ("sum of the shifts", "shift_sum", "", 1.0),
     ("difference of the root stresses", "stress_difference", "MPa", 1 / MEGA),
     ("difference of specific sliding", "sliding_difference", "", 1.0),
@@ -81,6 +87,7 @@ def chosen_json(chosen: "Chosen") -> Mapping[str, Any]:
             "shift": float(box.point[0]), "cost": box.cost, "spread": box.spread, "evaluations": box.evaluations,
             "drawn": box.drawn, "reflections": box.reflections, "settled": box.settled,
         }  # fmt: skip
+    entry["other_sliding_reading"] = {"reading": OTHER[chosen.inputs.sliding_reading], "shift": number(chosen.other)}
     entry["limits"] = list(chosen.limits)
     entry["kept"] = {"stated": number(chosen.kept[0]), "optimum": number(chosen.kept[1])}
     entry["stress_factor"] = chosen.factor
@@ -160,7 +167,17 @@ def optimum_words(chosen: "Chosen", field: "Field") -> "list[Block]":
     )
     if chosen.factor is not None:
         held += f" The stresses would have to weigh {chosen.factor:.0f} times as much before the optimum left it."
-    return [*blocks, Words(held), Words(_scatter_words(chosen))]
+    return [*blocks, Words(held), Words(_other_words(chosen)), Words(_scatter_words(chosen))]
+
+
+def _other_words(chosen: "Chosen") -> str:
+    """Say where the other reading of the sliding leads."""
+    if not isfinite(chosen.other):
+        return f"By {SLIDING[OTHER[chosen.inputs.sliding_reading]]} no shift keeps every limit."
+    same = abs(chosen.other - chosen.grid) < ALIKE
+    led = "there is the same optimum" if same else f"the optimum would be {signed(chosen.other)} for the roller"
+    taken, other = SLIDING[chosen.inputs.sliding_reading], SLIDING[OTHER[chosen.inputs.sliding_reading]]
+    return f"The third objective compares {taken}. By {other} {led}."
 
 
 def _scatter_words(chosen: "Chosen") -> str:

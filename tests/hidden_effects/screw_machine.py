@@ -1,8 +1,8 @@
 """A roller screw that is tilted, shaken, worn, warm and out of round: its mesh from the equations alone.
 
 Nothing of the plugin is imported. Lengths are mm, errors um, forces N, stresses MPa, times h. Loads are shared between
-slices of a face, and between rollers, by halving intervals until they balance; wear is added up over blocks of cycles;
-friction is integrated along the path of contact; backlash is what is left between tooth and space.
+slices of a face, and between rollers, by halving intervals until they balance; wear is added up place by place of the
+path; friction is integrated along it; backlash is what is left between tooth and space.
 """
 
 from collections.abc import Mapping
@@ -172,15 +172,23 @@ def roller_tip(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> tuple[Ar
 # Wear, friction, motion
 
 
-def wear(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> Array:
-    """Depth that the flank of the roller has lost, um, block of cycles by block."""
-    roller, ring = ring_tip(rows, off, hidden)
-    past = 1 - roller * RING_TEETH / (ring * TEETH)  # of the speeds along both flanks: 1 - v_E/v_I
-    sliding = np.abs(past / (1 - past))
-    blocks, depth = 50, np.zeros(len(rows))
-    for _ in range(blocks):
-        depth += of(hidden, "flank_wear", "rate") * force(rows) / 51.943 * sliding * rows.cycles / blocks / 1e6
-    return depth
+def wear(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> tuple[Array, Array]:
+    """Depth that the roller has lost where it has lost most, and the widest gap that both flanks leave, um.
+
+    At every place of the path, turn of the carrier by turn: a tooth of the roller meets the ring as often as the ring
+    has more teeth, a tooth of the ring every roller once; each flank is rubbed by what the other one overtakes it.
+    """
+    start, end = ring_tip(rows, off, hidden)[0], roller_tip(rows, off, hidden)[0]
+    centres, working = mounted(rows, off, hidden)
+    roller = start[:, None] + (end - start)[:, None] * np.linspace(0, 1, 51)
+    speeds = roller * RING_TEETH, (roller + (centres * np.sin(working))[:, None]) * TEETH
+    turns = rows.cycles * TEETH / RING_TEETH / 1e6
+    once = (of(hidden, "flank_wear", "rate") * force(rows) / 51.943 * turns)[:, None]
+    apart = np.abs(speeds[0] - speeds[1])
+    of_roller, of_ring = (
+        once * count * apart / speed for count, speed in zip((RING_TEETH / TEETH, ROLLERS), speeds, strict=True)
+    )
+    return of_roller.max(axis=1), (of_roller + of_ring).max(axis=1)
 
 
 def friction(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> Array:
@@ -227,7 +235,7 @@ def shown(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> dict[str, Arr
     width = FACE + off.get("face_width", 0.0)
     load = force(rows) / (width * MODULE) * crowding(rows, width, hidden) * sharing(rows, width, hidden)
     load = load * shaking(rows, hidden) / bearing_share(rows, hidden)
-    depth = wear(rows, off, hidden)
+    depth, gap = wear(rows, off, hidden)
     read = {
         "root_stress_roller": load * ROLLER_FACTOR,
         "root_stress_ring": load * RING_FACTOR * (1 + of(hidden, "rim_compliance", "softness")),
@@ -235,7 +243,7 @@ def shown(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> dict[str, Arr
         "wear_depth": depth,
         "axial_shift": creep(rows, hidden),
         "friction_torque": friction(rows, off, hidden),
-        "backlash": play(rows, off, hidden) + depth + depth,
+        "backlash": play(rows, off, hidden) + gap / np.cos(mounted(rows, off, hidden)[1]),
     }
     for name in read:
         read[name] = read[name] * (1 + of(hidden, "sensor_gain", name)) + of(hidden, "sensor_offset", name)

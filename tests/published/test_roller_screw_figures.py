@@ -118,8 +118,10 @@ def test_sliding_at_the_ends_of_the_path_is_that_of_the_objective(shift: float) 
     pair = pair_at(shift)
     meshing: Any = ROLLER_SCREW_SHIFT.function(pair)
     path = path_of(pair)
-    assert -path.roller[0] == pytest.approx(float(meshing.sliding_roller), rel=1e-9)
-    assert -path.ring[-1] == pytest.approx(float(meshing.sliding_ring), rel=1e-9)
+    assert -path.roller[0] == pytest.approx(float(meshing.root_sliding_roller), rel=1e-9)
+    assert -path.ring[-1] == pytest.approx(float(meshing.root_sliding_ring), rel=1e-9)
+    assert np.abs(path.roller).max() == pytest.approx(float(meshing.sliding_roller), rel=1e-9)
+    assert np.abs(path.ring).max() == pytest.approx(float(meshing.sliding_ring), rel=1e-9)
     length = path.place[-1] - path.place[0]
     assert length / (pi * MODULE * cos(ALPHA)) == pytest.approx(float(meshing.contact_ratio), rel=1e-9)
 
@@ -176,13 +178,13 @@ def test_limits_over_the_shift(run: Calculation) -> None:
     assert len(kept) == len(MARGINS)
     low, high = bars.get_xlim()
     assert kept["margin_contact_ratio"][1] == pytest.approx(0.25345, abs=2e-3)
-    assert kept["margin_sliding"][0] == pytest.approx(-0.05664, abs=2e-3)
+    assert kept["margin_sliding"][0] == pytest.approx(-0.06737, abs=2e-3)
     # undercut: h - rho (1 - sin) - z/2 sin^2, by hand
     assert kept["margin_undercut"][0] == pytest.approx(
         1.1 - 0.3 * (1 - np.sin(ALPHA)) - 10 * np.sin(ALPHA) ** 2, abs=2e-3
     )
     assert kept["margin_opposite_tips"] == pytest.approx((low, high), abs=2e-3)
-    for name, root in (("g3", 0.25345), ("g10", -0.05664)):
+    for name, root in (("g3", 0.25345), ("g10", -0.06737)):
         shifts, margin = labelled(lines, name)
         order = np.argsort(margin)
         order = order[np.isfinite(margin[order])]
@@ -237,7 +239,7 @@ def test_sliding_shows_the_ends_before_and_after(run: Calculation) -> None:
     for begin, shift in (("before", 0.0), ("as stated", 0.21), ("optimum", 0.25345)):
         meshing: Any = ROLLER_SCREW_SHIFT.function(pair_at(shift))
         ends = labelled(panel, begin)[1]
-        assert -ends == pytest.approx([float(meshing.sliding_roller), float(meshing.sliding_ring)], rel=1e-3)
+        assert -ends == pytest.approx([float(meshing.root_sliding_roller), float(meshing.root_sliding_ring)], rel=1e-3)
 
 
 def test_the_pair_is_drawn_to_scale_before_and_after(run: Calculation) -> None:

@@ -23,10 +23,12 @@ from roller_screw_shift.geometry import (
     geometry_of,
     involute_margin,
     sliding,
+    sliding_at_roots,
     tip_land,
 )
 from roller_screw_shift.loads import load_of
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
+from roller_screw_shift.objectives import objectives_of
 from roller_screw_shift.quantities import Pair
 
 # The default pair at x_E = 0.21, as an independent program printed it: six digits
@@ -167,7 +169,7 @@ def test_sliding_and_contact_ratio_are_those_of_the_pair_as_mounted(deviation: f
     at_roller_tip, at_ring_tip = path_of_contact(couple)
     length = np.hypot(*(at_roller_tip - at_ring_tip)) / (np.pi * np.cos(ALPHA))
     assert contact_ratio(geometry) == pytest.approx(length, rel=1e-10)
-    roller, ring = sliding(geometry)
+    roller, ring = sliding_at_roots(geometry)
     assert -float(roller) == pytest.approx(sliding_of_surfaces(couple, at_ring_tip)[0], rel=1e-9)
     assert -float(ring) == pytest.approx(sliding_of_surfaces(couple, at_roller_tip)[1], rel=1e-9)
 
@@ -178,7 +180,28 @@ def test_specific_sliding_of_the_printed_shifts() -> None:
     pair = pair_of(centre_distance=0.02 * np.cos(ALPHA) / np.cos(working))
     at_ring_tip = path_of_contact(traced(pair))[1]
     assert sliding_of_surfaces(traced(pair), at_ring_tip)[0] == pytest.approx(-0.828725, abs=5e-7)
-    assert sliding(geometry_of(pair))[0] == pytest.approx(0.828725, abs=5e-7)
+    assert sliding(pair, geometry_of(pair))[0] == pytest.approx(0.828725, abs=5e-7)
+
+
+@pytest.mark.parametrize("shift", [-0.05, 0.0, 0.21, 0.5, 0.7, 1.0, 1.5])
+def test_the_sliding_that_counts_is_the_largest_on_the_path(shift: float) -> None:
+    """Point by point from the speeds of both surfaces; from 0.69 on the path lies wholly beyond the pitch point."""
+    pair = pair_of(roller_shift=shift)
+    at_roller_tip, at_ring_tip = path_of_contact(traced(pair))
+    along = (at_ring_tip + share * (at_roller_tip - at_ring_tip) for share in np.linspace(0.0, 1.0, 401))
+    largest = np.abs([sliding_of_surfaces(traced(pair), point) for point in along]).max(axis=0)
+    assert sliding(pair, geometry_of(pair)) == pytest.approx(tuple(largest), rel=1e-9)
+
+
+def test_the_difference_of_sliding_does_not_fold() -> None:
+    """It grows with the shift on either side of equal sliding; by the roots alone it falls again from 0.69 on."""
+    shifts = np.linspace(0.29, 1.5, 300)
+    found, roots = (
+        np.diff(np.asarray(objectives_of(pair_of(roller_shift=shifts, **reading)).sliding_difference))
+        for reading in ({}, {"sliding_reading": "roots"})
+    )
+    assert found.min() > 0
+    assert roots.min() < 0
 
 
 @pytest.mark.parametrize(("roller", "ring", "stretch", "shift", "addendum"), TIPS)

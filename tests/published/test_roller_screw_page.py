@@ -80,6 +80,23 @@ def test_the_printed_pair_with_teeth_of_full_depth(start: str) -> None:
             assert text == f"{float(value):.{len(text.split('.')[1])}f}"
 
 
+def test_the_difference_by_roots_folds_as_the_page_says() -> None:
+    shifts = np.linspace(0.3, 1.5, 24_001)
+    pair = ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts, sliding_reading="roots")
+    by_roots = np.asarray(objectives_of(pair).sliding_difference)
+    assert f"from $x_E$ = {shifts[np.argmax(by_roots)]:.3f} on" in WORDS
+    there = roller_screw_shift(ROLLER_SCREW_SHIFT.inputs(roller_shift=0.9))
+    told = f"it says {there.root_sliding_roller:.3f} for the roller while its tip slides by {there.sliding_roller:.3f}"
+    assert told in WORDS
+
+
+def test_the_wear_of_the_ring_beside_that_of_the_roller() -> None:
+    meshes = float(FOUND.ring_meshes)
+    gap = (FOUND.root_sliding_roller + meshes * FOUND.tip_sliding_ring) / np.cos(float(FOUND.mounted_angle))
+    assert f"$n_r z_E/z_I = {meshes:g}$ meshes" in WORDS
+    assert f"grows by {float(gap / FOUND.sliding_roller):.2f} times the depth" in WORDS
+
+
 def test_the_geometry_of_the_printed_optimum() -> None:
     assert rf"$\alpha_w = {np.degrees(FOUND.working_angle):.4f}°$" in PAGE
     assert f"$D = {number(float(FOUND.shift_difference), 2).replace('−', '-')}$" in PAGE
@@ -116,16 +133,21 @@ def test_the_normalising_curve() -> None:
     assert f"At a quarter of the range it is {quarter:.4f}, at half {half:.1f}." in WORDS
 
 
-def kept(shifts: np.ndarray, least_contact_ratio: float) -> np.ndarray:
+def kept(shifts: np.ndarray, least_contact_ratio: float, reading: str) -> np.ndarray:
     """Those that keep all limits."""
-    margins = margins_of(ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts, least_contact_ratio=least_contact_ratio))
+    pair = ROLLER_SCREW_SHIFT.inputs(
+        roller_shift=shifts, least_contact_ratio=least_contact_ratio, sliding_reading=reading
+    )
+    margins = margins_of(pair)
     return np.asarray(shifts[np.logical_and.reduce([np.asarray(value) >= 0 for value in vars(margins).values()])])
 
 
-def feasible_shifts(least_contact_ratio: float) -> np.ndarray:
+def feasible_shifts(least_contact_ratio: float, reading: str = "path") -> np.ndarray:
     """Shifts of the roller that keep all limits, from a fine grid, and from a finer one at its ends."""
-    coarse = kept(np.linspace(-0.5, 1.5, 50_001), least_contact_ratio)
-    ends = [kept(end + np.linspace(-4e-5, 4e-5, 8_001), least_contact_ratio) for end in (coarse[0], coarse[-1])]
+    coarse = kept(np.linspace(-0.5, 1.5, 50_001), least_contact_ratio, reading)
+    ends = [
+        kept(end + np.linspace(-4e-5, 4e-5, 8_001), least_contact_ratio, reading) for end in (coarse[0], coarse[-1])
+    ]
     return np.unique(np.concatenate([coarse, *ends]))
 
 
@@ -147,9 +169,9 @@ NEAR = 5e-6  # of the end of the range the curve that normalises is level
 PRINTED = ((2.68, 5.38), (0.0, 33.2), (0.0, 3.08))
 
 
-def weighed_best(shifts: np.ndarray, weights: str = "own_ranges") -> float:
+def weighed_best(shifts: np.ndarray, weights: str = "own_ranges", reading: str = "path") -> float:
     """The shift of least total objective by the formulas of the page."""
-    goals = objectives_of(ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts))
+    goals = objectives_of(ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts, sliding_reading=reading))
     values = [np.asarray(goals.shift_sum), np.asarray(goals.stress_difference) * 1e-6,
               np.asarray(goals.sliding_difference)]  # fmt: skip
     total = np.zeros(len(shifts))
@@ -186,9 +208,10 @@ def test_the_lost_limit_decides(start: str, limit: float, digits: int) -> None:
 
 
 def test_the_weights_lead_elsewhere_where_no_limit_holds_the_optimum() -> None:
-    shifts = feasible_shifts(1.2)
-    own, ranges, weights = (weighed_best(shifts, name) for name in ("own_ranges", "printed_ranges", "printed"))
-    assert f"$x_E$ = {own:.3f} (own ranges), {ranges:.3f} (printed ranges) and {weights:.3f} (printed weights)" in WORDS
+    for reading in ("path", "roots"):
+        shifts = feasible_shifts(1.2, reading)
+        found = [weighed_best(shifts, name, reading) for name in ("own_ranges", "printed_ranges", "printed")]
+        assert "{:.3f} (own ranges), {:.3f} (printed ranges) and {:.3f} (printed weights)".format(*found) in WORDS
     assert f"The contact ratio of its pair is {float(FOUND.contact_ratio):.3f}." in WORDS
 
 
