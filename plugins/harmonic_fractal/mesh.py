@@ -73,6 +73,13 @@ class Pair:
         numbers = {name: taken(getattr(self, name)) for name in ("scale", "film", "area_ratio", "compliance")}
         return Pair(law=law, **numbers)
 
+    @property
+    def numbers(self) -> tuple[Float, ...]:
+        """All numbers of it."""
+        return (
+            self.law.dimension, self.law.pressure_ratio, self.scale, self.film, self.area_ratio, self.compliance,
+        )  # fmt: skip
+
     def rough(self, size: Float) -> Float:
         """Return the stiffness of the rough contact alone at u, N/m."""
         return self.scale * micro.stiffness_share(size, self.law)
@@ -94,6 +101,13 @@ class Mesh:
     engagement: Engagement
     radius: Float
     plastic_limit: Float
+
+    def with_rows(self, *values: Float) -> tuple[NDArray[np.float64], ...]:
+        """Return values in the shape that they and all numbers of the mesh have together: () or (n,)."""
+        engagement = vars(self.engagement).values()
+        own = (*self.pair.numbers, *engagement, self.radius, self.plastic_limit)
+        shape = np.broadcast_shapes(*(np.shape(value) for value in (*values, *own)))
+        return tuple(np.broadcast_to(np.asarray(value, dtype=float), shape) for value in values)
 
     @property
     def plastic_share(self) -> Float:
@@ -152,7 +166,7 @@ def torque_logarithm(torque: Float, mesh: Mesh) -> Float:
 
 def normal_stiffness(torque: Float, mesh: Mesh) -> Float:
     """Return the stiffness of all engaged pairs along their normals, N/m; 0 where every contact is plastic."""
-    given, factor = np.broadcast_arrays(torque_logarithm(torque, mesh), mesh.engagement.factor(torque))
+    given, factor = mesh.with_rows(torque_logarithm(torque, mesh), mesh.engagement.factor(torque))
     first, factor = np.atleast_1d(given), np.atleast_1d(factor)
     rows, found = len(first), np.empty(len(first))
     step = max(CHUNK // len(mesh.arcs.shares), 1)

@@ -44,7 +44,7 @@ def mesh_torsion(torque: Float, reference: Float, mesh: Mesh) -> tuple[Float, Fl
     1e-7.
     """
     begin, lever = mesh.plastic_torque, np.square(mesh.radius)
-    given = np.broadcast_arrays(np.log(np.maximum(np.abs(torque), 1e-300) / begin), np.log(reference / begin), lever)
+    given = mesh.with_rows(np.log(np.maximum(np.abs(torque), 1e-300) / begin), np.log(reference / begin), lever)
     last, first, lever = (np.atleast_1d(item) for item in given)
     rows = len(last)
     whole, rough = np.zeros(rows), np.zeros(rows)

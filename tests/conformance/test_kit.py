@@ -25,6 +25,7 @@ from truing import (
     Unknown,
     Vary,
     drawn,
+    feasible,
     found,
     given,
     hookimpl,
@@ -412,6 +413,42 @@ def test_known_exceptions_stand_on_the_sheet_and_in_the_description() -> None:
         assert f"order of effects: {REASON}" in text
         assert "Known exception" in text
     assert description(offer)["exceptions"] == {"order of effects": REASON}
+
+
+def shaped_by_travel(it: Spring) -> Force:
+    """Answer in the shape of one input alone."""
+    force = np.empty(np.shape(it.travel))
+    force[...] = it.rate * (it.travel - it.lost)
+    return Force(free=it.travel - it.lost, force=force, energy=force * (it.travel - it.lost) / 2)
+
+
+def unbranched(it: Spring) -> Force:
+    """Refuse a batch in which the rate varies more than one calculation would be."""
+    feasible(np.max(it.rate) - np.min(it.rate) == 0, "one rate for all")
+    return spring(it)
+
+
+def jumping(it: Spring, *, extra: Float, room: Float) -> Spring:
+    """Add all of it or nothing, by the first row of whatever varies."""
+    size = extra * (1.0 if np.ravel(extra)[0] > 2e-4 else 0.0)
+    return replace(it, lost=it.lost + size * (np.ravel(room)[0] > ROOM.zero))
+
+
+JUMPING = Effect("jumping", on_inputs=jumping, needs=[ROOM], unknowns=[Unknown("extra", 0, 1, "mm")])
+
+
+@pytest.mark.parametrize(
+    ("model", "sentence"),
+    [
+        (lambda: with_function(shaped_by_travel), "a batch in which only 'rate' varies fails as a whole"),
+        (lambda: with_function(unbranched), "row 0 fails in a batch (one rate for all) and is answered alone"),
+        (lambda: good(errors=[JUMPING]), "effect 'jumping' is on and only 'effects.jumping.extra' varies"),
+    ],
+)
+def test_a_batch_is_the_contract_for_every_input_and_argument_alone(
+    model: Callable[[], Model[Any, Any]], sentence: str
+) -> None:
+    assert sentence in failures(model())["batch equals loop"]
 
 
 test_pin_wear = conformance(PIN_WEAR)

@@ -6,17 +6,15 @@ import sys
 from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any
 
 from truing.declare.specs import Given
 from truing.errors import InfeasibleError, TruingError
 from truing.evaluate import Rows, evaluate, evaluate_rows
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup
+from truing.testing.batches import together
 from truing.testing.subject import Subject, fail
 
-ROWS = 7
-SAME = 1e-12
 SLOPE = 1e-6
 
 
@@ -26,47 +24,16 @@ def finite_at_defaults(subject: Subject) -> None:
         fail(f"{subject.model.name}: the defaults cannot be calculated: {subject.obstacle}")
 
 
-def batch_equals_loop(subject: Subject) -> None:
-    """Seven rows in one call are what seven calls give, to 1e-12, every Float input varied."""
-    import numpy as np
-
-    columns = _columns(subject)
-    batch = evaluate_rows(subject.setup, columns, ROWS)
-    for row in range(ROWS):
-        alone = subject.model.read_results(evaluate(subject.at({name: float(v[row]) for name, v in columns.items()})))
-        if row in batch.reasons:
-            fail(f"{subject.model.name}: row {row} fails in a batch ({batch.reasons[row]}) and does not fail alone")
-        for name, values in batch.results.items():
-            here, there = np.asarray(values[row]), np.asarray(alone[name], dtype=float)
-            here = here[: there.shape[0]] if there.ndim else here
-            scale = np.maximum(np.abs(there), np.nanmax(np.abs(values)))
-            if not np.all(np.abs(here - there) <= SAME * scale):
-                fail(
-                    f"{subject.model.name}: '{name}' of row {row} is {_short(here)} in a batch and {_short(there)} "
-                    "alone; write np.where, not if, on anything that may vary"
-                )
-
-
-def _columns(subject: Subject) -> dict[str, Any]:
-    import numpy as np
-
-    points = subject.points(ROWS)
-    return {name: np.array([point[name] for point in points]) for name in subject.scattering}
-
-
-def _short(value: Any) -> str:
-    return f"{float(value):.15g}" if not value.ndim else str(value)
-
-
 def inputs_untouched(subject: Subject) -> None:
     """A call leaves the arrays it was given as they were."""
     import numpy as np
 
-    columns = _columns(subject)
+    batch = together(subject)
+    columns = batch.columns
     before = {name: values.copy() for name, values in columns.items()}
     own = subject.model.read_inputs(subject.setup.inputs)
     series = {name: np.copy(value) for name, value in own.items() if isinstance(value, np.ndarray)}
-    evaluate_rows(subject.setup, columns, ROWS)
+    evaluate_rows(subject.setup, columns, batch.rows)
     after = {**own, **columns}
     for name, values in {**before, **series}.items():
         if not np.array_equal(values, after[name], equal_nan=True):

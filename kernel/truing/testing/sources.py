@@ -50,11 +50,11 @@ def _priced(subject: Subject, tolerance: str, price: Any, width: float) -> None:
 def zero_is_the_base(subject: Subject) -> None:
     """An effect whose amplitudes are 0 changes nothing, whatever its shapes and conditions."""
     for point in ({}, *subject.points(1)):
-        setup = _off_reference(subject.at(point))
+        setup = off_reference(subject.at(point))
         base = _answers(setup)
         for effect in subject.model.effects.values():
             for share in SHAPES:
-                values = {item.name: 0.0 if item.is_amplitude else _shape(item, share) for item in effect.unknowns}
+                values = {item.name: 0.0 if item.is_amplitude else shape(item, share) for item in effect.unknowns}
                 changed = _changed(_answers(_with(setup, effect, values)), base)
                 if changed:
                     shapes = ", ".join(f"{key} = {value:g}" for key, value in values.items())
@@ -70,7 +70,7 @@ def references_are_neutral(subject: Subject) -> None:
     for effect in subject.model.effects.values():
         if not effect.needs or effect.acts_at_reference:
             continue
-        setup = _switched(subject.setup, effect)
+        setup = switched(subject.setup, effect)
         changed = _changed(_answers(setup), base) if setup is not None else []
         if setup is not None and changed and not _only_switched(setup):
             needs = " and ".join(f"'{need.name}'" for need in effect.needs)
@@ -88,7 +88,7 @@ def _only_switched(setup: Setup) -> bool:
     """
     shown = _answers(setup)
     try:
-        sides = [_answers(_off_reference(setup, steps)) for steps in (10, -10)]
+        sides = [_answers(off_reference(setup, steps)) for steps in (10, -10)]
     except InfeasibleError:
         return False
     return sum(not _changed(answers, shown) for answers in sides) == 1
@@ -96,21 +96,21 @@ def _only_switched(setup: Setup) -> bool:
 
 def effects_act(subject: Subject) -> None:
     """An effect that is on, off its reference, changes some result, at the defaults or at one of three other points."""
-    setups = [_off_reference(subject.at(point)) for point in ({}, *subject.points(3))]
+    setups = [off_reference(subject.at(point)) for point in ({}, *subject.points(3))]
     for effect in subject.model.effects.values():
-        switched = [(setup, on) for setup in setups if (on := _switched(setup, effect)) is not None]
-        if switched and not any(_changed(_answers(on), _answers(setup)) for setup, on in switched):
+        pairs = [(setup, on) for setup in setups if (on := switched(setup, effect)) is not None]
+        if pairs and not any(_changed(_answers(on), _answers(setup)) for setup, on in pairs):
             fail(f"{subject.model.name}: effect '{effect.name}' is on and changes no result")
 
 
 def only_last_results_are_edited(subject: Subject) -> None:
     """An effect on the results edits none that another formula depends on: it would reach nothing behind it."""
-    setup = _off_reference(subject.setup)
+    setup = off_reference(subject.setup)
     base = _answers(setup)
     users = dict(_users(subject))
     for effect in subject.model.effects.values():
-        switched = _switched(setup, effect) if effect.place == "results" else None
-        for name in _changed(_answers(switched), base) if switched is not None else []:
+        on = switched(setup, effect) if effect.place == "results" else None
+        for name in _changed(_answers(on), base) if on is not None else []:
             if name in users:
                 fail(
                     f"{subject.model.name}: effect '{effect.name}' edits the result '{name}', on which '{users[name]}' "
@@ -140,13 +140,13 @@ def order_is_free(subject: Subject) -> None:
 
 def order_matters(subject: Subject) -> list[str]:
     """Name the pairs of effects at one place whose order changes a result by more than 1 % of what they do."""
-    setup = _off_reference(subject.setup)
+    setup = off_reference(subject.setup)
     base = _answers(setup)
     found: list[str] = []
     backwards = replace(setup, model=replace(setup.model, errors=list(setup.model.errors)[::-1]))
-    switched = {effect.name: _switched(setup, effect) for effect in subject.model.effects.values()}
+    on = {effect.name: switched(setup, effect) for effect in subject.model.effects.values()}
     for first, second in combinations(subject.model.effects.values(), 2):
-        one, other = switched[first.name], switched[second.name]
+        one, other = on[first.name], on[second.name]
         if first.place != second.place or one is None or other is None:
             continue
         both = (*one.effects, *other.effects)
@@ -173,7 +173,7 @@ def _difference_by_order(orders: Sequence[Setup], base: Values) -> float:
     return share
 
 
-def _shape(item: Unknown, share: float) -> float:
+def shape(item: Unknown, share: float) -> float:
     """Return a shape within its bounds, on a logarithmic scale where it is positive, SI."""
     from truing.units import to_si
 
@@ -182,24 +182,25 @@ def _shape(item: Unknown, share: float) -> float:
     return float(to_si(item.low + share * (item.high - item.low), item.unit))
 
 
-def _amplitude(item: Unknown, share: float) -> float:
+def amplitude(item: Unknown, share: float) -> float:
+    """Return an amplitude, such a share of the largest that its bounds allow, SI."""
     from truing.units import to_si
 
     return float(to_si(share * max((item.low, item.high), key=abs), item.unit))
 
 
-def _switched(setup: Setup, effect: Effect[Any, Any]) -> Setup | None:
+def switched(setup: Setup, effect: Effect[Any, Any]) -> Setup | None:
     """Return the setup with the effect on, half as large as it may be, or less; None where no size is possible."""
     for size in SIZES:
         values = {
-            item.name: _amplitude(item, size) if item.is_amplitude else _shape(item, 0.5) for item in effect.unknowns
+            item.name: amplitude(item, size) if item.is_amplitude else shape(item, 0.5) for item in effect.unknowns
         }
-        switched = _with(setup, effect, values)
+        on = _with(setup, effect, values)
         try:
-            _answers(switched)
+            _answers(on)
         except InfeasibleError:
             continue
-        return switched
+        return on
     return None
 
 
@@ -207,7 +208,7 @@ def _with(setup: Setup, effect: Effect[Any, Any], values: Mapping[str, float]) -
     return replace(setup, effects=(SwitchedOn(effect, values),))
 
 
-def _off_reference(setup: Setup, steps: float = 10) -> Setup:
+def off_reference(setup: Setup, steps: float = 10) -> Setup:
     """Move every condition off its reference, by so many of its units and a little more from one to the next.
 
     An effect of the difference of two conditions would not be seen if both moved alike.

@@ -115,7 +115,7 @@ class Subject:
             for _ in range(ATTEMPTS + count):
                 if len(found) == count:
                     return found
-                point = {name: self._near(item, share, rng) for name, item in self.scattering.items()}
+                point = {name: self.near(item, share, rng) for name, item in self.scattering.items()}
                 if self._answers(point):
                     found.append(point)
         fail(f"{self.model.name}: no point within a millionth of the defaults can be calculated; state what must hold")
@@ -127,7 +127,8 @@ class Subject:
             return False
         return True
 
-    def _near(self, item: InputField, share: float, rng: np.random.Generator) -> float:
+    def near(self, item: InputField, share: float, rng: np.random.Generator) -> float:
+        """Draw a value of an input within its bounds, SI, up to so large a share of its own away from that."""
         from truing.units import to_si
 
         value, spec = float(self.setup.nominal(item.name)), item.spec
