@@ -3,6 +3,7 @@
 import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -21,15 +22,19 @@ from truing.units import to_si
 
 ROWS = 5
 REACHES = (0.5, 0.2, 0.05, 0.01)  # of a value, by which a random point lies away from the defaults
-MODEST, FULL = 4, 400  # random batches of a model
-GUESTS = Path(__file__).parents[1] / "data"
-FILES = [GUESTS / "pin_wear.py", GUESTS / "gear_record" / "__init__.py"]
+MODEST, FULL = 1, 400  # random batches of a model
+TESTS = Path(__file__).parents[1]
 
 
 def models() -> dict[str, Model[Any, Any]]:
-    installed = {name: offer.model for name, offer in Kernel.installed().offers.items()}
-    files = [offer.model for file in FILES for offer in kernel_for(f"file:{file}").offers.values()]
-    return installed | {model.name: model for model in files}
+    """Return every model that is installed, and those of strangers."""
+    offers = dict(Kernel.installed().offers)
+    for file in (TESTS / "data" / "pin_wear.py", TESTS / "data" / "gear_record" / "gear_record.py"):
+        offers |= kernel_for(f"file:{file}").offers
+    with pytest.MonkeyPatch.context() as patched:
+        patched.syspath_prepend(str(TESTS / "third_party" / "screw_joint"))
+        offers |= Kernel([import_module("screw_joint")]).offers
+    return {name: offer.model for name, offer in offers.items()}
 
 
 MODELS = models()
@@ -118,7 +123,7 @@ def test_every_row_of_a_batch_is_its_own_calculation(name: str, full_torture: bo
     subject = Subject(MODELS[name])
     rng = np.random.default_rng(zlib.crc32(name.encode()))
     count = FULL if full_torture else MODEST
-    if is_row_by_row(subject):
-        count = count // 50 or 1  # the kernel calls such a function once per row anyway
+    if is_row_by_row(subject):  # the kernel calls such a function once per row anyway
+        count //= 50
     for batch in batches(subject, rng, count, alone=full_torture):
         compare(name, batch)
