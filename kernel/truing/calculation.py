@@ -11,7 +11,7 @@ from typing import Any
 from truing.declare.fields import read
 from truing.declare.model import Record
 from truing.errors import InfeasibleError
-from truing.evaluate import acting_inputs, evaluate
+from truing.evaluate import acting_inputs, answered, evaluate
 from truing.executors import open_executor
 from truing.prices import price_answers
 from truing.setup import Setup, SwitchedOn
@@ -21,7 +21,7 @@ from truing.studies.checks import plain_checks
 
 @dataclass(frozen=True)
 class Calculation:
-    """What a run found; everything in SI, by flat name."""
+    """What a run found; everything in SI, by flat name. ``absent`` says why a result does not exist; it is NaN."""
 
     setup: Setup
     results: Any
@@ -30,6 +30,7 @@ class Calculation:
     checks: tuple[Check, ...]
     warnings: tuple[str, ...]
     failed: tuple[tuple[int, str], ...] = field(default=())
+    absent: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def passed(self) -> bool:
@@ -50,7 +51,8 @@ def calculate(setup: Setup, *, executor: Executor | None = None, progress: Progr
 
     Raises InfeasibleError where the inputs describe something impossible, PluginError where the plugin's code fails.
     """
-    results = evaluate(setup)
+    first = answered(setup)
+    results = first.results
     answers = {**setup.model.read_results(results), **price_answers(setup)}
     outcomes: dict[str, Outcome] = {}
     given_by = setup.model.study_result_fields
@@ -58,7 +60,7 @@ def calculate(setup: Setup, *, executor: Executor | None = None, progress: Progr
     executor = executor or open_executor("serial")
     try:
         for study in setup.studies:
-            bench = Bench(setup, results, executor, dict(answers), dict(outcomes), progress)
+            bench = Bench(setup, results, executor, dict(answers), dict(outcomes), progress, first.absent)
             outcomes[study.name] = outcome = study.run(bench)
             if study.gives is not None:
                 given = study.gives(outcome)
@@ -74,6 +76,7 @@ def calculate(setup: Setup, *, executor: Executor | None = None, progress: Progr
         outcomes=outcomes,
         checks=tuple(_checks(setup, answers, outcomes)),
         warnings=tuple(_warnings(setup, outcomes)),
+        absent=first.absent,
     )
 
 

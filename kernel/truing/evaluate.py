@@ -5,11 +5,11 @@ Columns of a batch are named by input, by condition, or by ``effects.NAME.UNKNOW
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from truing.declare.batch import watching
+from truing.declare.batch import FailedRows, watching
 from truing.declare.fields import Axis, Kind, read, with_values
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Unknown
@@ -24,14 +24,33 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Rows:
-    """What a batch answered: results by flat name, shape (n,) or (n, k), NaN in failed rows; why rows failed."""
+    """What a batch answered: results by flat name, shape (n,) or (n, k), NaN in failed rows; why rows failed.
+
+    ``absent`` says by result and row where a row that has not failed lacks one result, NaN there.
+    """
 
     results: Mapping[str, NDArray[np.float64]]
     failed: NDArray[np.bool_]
     reasons: Mapping[int, str]
+    absent: Mapping[str, Mapping[int, str]] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.failed)
+
+    def complete(self) -> Rows:
+        """Return the same rows, of which those that lack any result have failed, with that reason."""
+        import numpy as np
+
+        lacking = {row: reason for rows in self.absent.values() for row, reason in rows.items()}
+        if not lacking:
+            return self
+        reasons = dict(sorted({**lacking, **self.reasons}.items()))
+        failed = np.array(self.failed)
+        failed[list(reasons)] = True
+        results = {name: np.array(values) for name, values in self.results.items()}
+        for values in results.values():
+            values[failed] = np.nan
+        return Rows(results, failed, reasons)
 
 
 def effect_column(effect: str, unknown: str) -> str:
@@ -39,22 +58,50 @@ def effect_column(effect: str, unknown: str) -> str:
     return f"effects.{effect}.{unknown}"
 
 
+@dataclass(frozen=True)
+class Answered:
+    """What one calculation answered: the model's results, and why some of them, by flat name, do not exist (NaN)."""
+
+    results: Any
+    absent: Mapping[str, str]
+
+
 def evaluate(setup: Setup, *, reading: bool = False) -> Any:
-    """Run the calculation once and return the model's results.
+    """Run the calculation once and return the model's results; one that does not exist is NaN: see ``answered``."""
+    return answered(setup, reading=reading).results
+
+
+def answered(setup: Setup, *, reading: bool = False) -> Answered:
+    """Run the calculation once.
 
     Raises InfeasibleError with the sentence of the plugin where something impossible is asked, and where a result is
     not finite; PluginError, with the place, where the plugin's code fails.
     """
     import numpy as np
 
-    with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"), watching(1, is_single=True) as log:
         results = _apply(setup, {}, reading=reading)
     flat = setup.model.read_results(results)
-    for name in flat:
-        if not np.isfinite(_as_rows(setup, name, flat, 1)).all():
+    absent = {name: reasons[0] for name, reasons in _absent(setup, log, 1).items() if reasons}
+    changed: dict[str, Any] = {}
+    for name, value in flat.items():
+        if name in absent:
+            changed[name] = np.full(np.shape(value), np.nan)[()]
+        elif not np.isfinite(_as_rows(setup, name, flat, 1)).all():
             raise InfeasibleError(f"the result '{name}' of {setup.model.name} is not finite for these inputs")
+        elif np.ndim(value) == 0:
+            changed[name] = float(value)
     fields = setup.model.own_result_fields
-    return with_values(results, {fields[name].path: float(flat[name]) for name in flat if np.ndim(flat[name]) == 0})
+    return Answered(with_values(results, {fields[name].path: value for name, value in changed.items()}), absent)
+
+
+def _absent(setup: Setup, log: FailedRows, rows: int) -> dict[str, dict[int, str]]:
+    """Return why results do not exist, by name and row. Raises PluginError where the plugin names no result."""
+    for name in log.of:
+        if name not in setup.model.own_result_fields:
+            near = near_miss(name, setup.model.own_result_fields)
+            raise PluginError(f"{setup.model.name}: feasible(only=...) names '{name}', which is no result.{near}")
+    return {name: own.reasons(rows) for name, own in log.of.items()}
 
 
 def evaluate_rows(
@@ -69,32 +116,40 @@ def evaluate_rows(
     """Run ``rows`` calculations, as one array call wherever the declaration allows it.
 
     A column holds (rows,) values or one value for all. Only ``wanted`` results are returned (all by default). Failed
-    rows are NaN in every result and keep their reason; a table shorter than the longest is filled up with NaN.
+    rows are NaN in every result and keep their reason; a table shorter than the longest is filled up with NaN. A row
+    that lacks a result keeps the others: see ``Rows.absent`` and ``Rows.complete``.
     ``done`` hears of rows that are done where they take several calls.
     Raises UsageError for a column that nobody knows or that has another length.
     """
-    import numpy as np
-
     names = [name for name in setup.model.own_result_fields if wanted is None or name in wanted]
     fixed, arrays = _sorted_columns(setup, columns, rows)
-    gathered: dict[str, list[NDArray[np.float64]]] = {name: [] for name in names}
-    failed = np.zeros(rows, dtype=bool)
-    reasons: dict[int, str] = {}
+    parts: list[Rows] = []
     order: list[NDArray[np.intp]] = []
     finished = 0
     for index, part in _uniform_parts(setup, fixed, arrays, rows):
+        parts.append(_one_call(setup, part, len(index), names, reading=reading))
         if len(index) == rows > 0:
-            return Rows(*_one_call(setup, part, rows, names, reading=reading))
-        answers, part_failed, part_reasons = _one_call(setup, part, len(index), names, reading=reading)
-        failed[index] = part_failed
-        reasons.update({int(index[row]): text for row, text in part_reasons.items()})
+            return parts[0]
         order.append(index)
-        for name, values in answers.items():
-            gathered[name].append(values)
         finished += len(index)
         done(finished, rows)
-    results = {name: _joined(pieces, order, rows) for name, pieces in gathered.items()}
-    return Rows(results, failed, dict(sorted(reasons.items())))
+    return _put_together(parts, order, names, rows)
+
+
+def _put_together(parts: Sequence[Rows], order: Sequence[NDArray[np.intp]], names: Sequence[str], rows: int) -> Rows:
+    """Put the answers of parts back in the order of the rows."""
+    import numpy as np
+
+    failed = np.zeros(rows, dtype=bool)
+    reasons: dict[int, str] = {}
+    absent: dict[str, dict[int, str]] = {}
+    for index, part in zip(order, parts, strict=True):
+        failed[index] = part.failed
+        reasons |= {int(index[row]): text for row, text in part.reasons.items()}
+        for name, lacking in part.absent.items():
+            absent.setdefault(name, {}).update({int(index[row]): text for row, text in lacking.items()})
+    results = {name: _joined([part.results[name] for part in parts], order, rows) for name in names}
+    return Rows(results, failed, dict(sorted(reasons.items())), absent)
 
 
 def evaluate_in_parts(
@@ -118,9 +173,7 @@ def evaluate_in_parts(
         parts.append(evaluate_rows(setup, taken, end - start, wanted=wanted))
         done(end, rows)
     places = np.split(np.arange(rows), range(size, rows, size))
-    results = {name: _joined([part.results[name] for part in parts], places, rows) for name in parts[0].results}
-    reasons = {place * size + row: text for place, part in enumerate(parts) for row, text in part.reasons.items()}
-    return Rows(results, np.concatenate([part.failed for part in parts]), reasons)
+    return _put_together(parts, places, list(parts[0].results), rows)
 
 
 def _is_column(values: Any, rows: int) -> bool:
@@ -141,9 +194,7 @@ def _joined(pieces: list[NDArray[np.float64]], order: list[NDArray[np.intp]], ro
     return joined
 
 
-def _one_call(
-    setup: Setup, columns: Mapping[str, Any], rows: int, names: Collection[str], *, reading: bool
-) -> tuple[dict[str, Any], NDArray[np.bool_], dict[int, str]]:
+def _one_call(setup: Setup, columns: Mapping[str, Any], rows: int, names: Collection[str], *, reading: bool) -> Rows:
     """Call the model once for ``rows`` rows; where no column differs between rows, for one that answers for all."""
     import numpy as np
 
@@ -154,19 +205,19 @@ def _one_call(
         flat = setup.model.read_results(results)
         answers = {name: _as_rows(setup, name, flat, called) for name in names}
         for name, values in answers.items():
-            finite = np.isfinite(values)
-            if not finite.all():
-                log.add(~finite, f"the result '{name}' is not finite")
-    codes = np.broadcast_to(log.codes, (rows,))
-    failed = codes > 0
-    if alike:
-        answers = {name: np.broadcast_to(values, (rows, *values.shape[1:])) for name, values in answers.items()}
-    reasons = {int(row): log.sentences[codes[row] - 1] for row in np.flatnonzero(failed)}
-    if reasons:
-        for name, values in answers.items():
-            answers[name] = values = np.array(values)
-            values[failed] = np.nan
-    return answers, failed, reasons
+            infinite = ~np.isfinite(values)
+            if infinite.any():
+                known = log.of[name].codes > 0 if name in log.of else np.zeros(1, dtype=bool)
+                log.add(infinite & ~known.reshape(-1, *[1] * (values.ndim - 1)), f"the result '{name}' is not finite")
+    absent = {name: why for name, why in _absent(setup, log, rows).items() if why and name in answers}
+    reasons = log.reasons(rows)
+    for name, values in answers.items():
+        gaps = [*reasons, *absent.get(name, ())]
+        answers[name] = np.broadcast_to(values, (rows, *values.shape[1:]))
+        if gaps:
+            answers[name] = np.array(answers[name])
+            answers[name][gaps] = np.nan
+    return Rows(answers, np.broadcast_to(log.codes > 0, (rows,)), reasons, absent)
 
 
 def _as_rows(setup: Setup, name: str, flat: Mapping[str, Any], rows: int) -> NDArray[np.float64]:

@@ -97,7 +97,7 @@ def without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int, 
 
 
 def _row_by_row(machine: Setup, rows: RowsFile, columns: Mapping[str, Any], names: Sequence[str]) -> Rows:
-    found = evaluate_rows(machine, columns, len(rows), reading=True, wanted=_asked(names, machine))
+    found = evaluate_rows(machine, columns, len(rows), reading=True, wanted=_asked(names, machine)).complete()
     places = range(len(rows))
     return Rows({name: _placed(name, found, machine, rows, places) for name in names}, found.failed, found.reasons)
 
@@ -116,7 +116,7 @@ def _by_records(machine: Setup, rows: RowsFile, columns: Mapping[str, Any], name
         for places in _alike(record, machine, columns, rows):
             one = {name: _one_value(name, column, places, rows) for name, column in columns.items()}
             one |= {name: column[record] for name, column in rows.series.items()}
-            found = evaluate_rows(machine, one, 1, reading=True, wanted=asked)
+            found = evaluate_rows(machine, one, 1, reading=True, wanted=asked).complete()
             for name in names:
                 values[name][places] = _placed(name, found, machine, rows, places)
             if found.failed[0]:

@@ -55,7 +55,7 @@ MEAN_PLANE = 0.48  # of the rms height: how far mean planes part while the load 
 
 @dataclass(frozen=True, kw_only=True)
 class Loaded:
-    """One pair over its load, N: stiffness in N/m, load exponent, clearances in m."""
+    """One pair over its load, N: stiffness in N/m, load exponent, clearances in m; NaN where nothing can be counted."""
 
     load: Array
     stiffness: Array
@@ -70,12 +70,13 @@ def loaded(drive: "Drive", load: Array) -> Loaded:
     pair = pressed(load, contact)
     reference = load_of_largest(drive.reference_torque, mesh_of(drive, contact))
     opened = sum(gap.heights(drive)) / 2.0
+    closed = gap.approach(load, reference, contact)
     return Loaded(
         load=load,
         stiffness=np.asarray(pair.stiffness),
         exponent=np.asarray(pair.load_exponent),
         amplitude=np.asarray(gap.amplitude(np.sqrt(pair.largest_area / np.pi), contact, drive.density)),
-        closing=np.asarray(np.maximum(opened - gap.approach(load, reference, contact), 0.0)),
+        closing=np.where(np.isinf(closed), np.nan, np.maximum(opened - closed, 0.0)),
     )
 
 

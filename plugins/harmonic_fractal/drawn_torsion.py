@@ -52,10 +52,10 @@ def torsions(drive: "Drive", printed: Polyline, torque: Array) -> Torsions:
 
 
 def torsion(record: "Run") -> "Sequence[Block]":
-    """The figure, the table at the torques of the catalogue, and what follows."""
+    """The figure, the table at the torques of the catalogue, and what follows; nothing without one of the two."""
     drive = record.acting
     printed = polyline_of(drive.catalogue_size, ratio_of(drive))
-    if printed is None:
+    if printed is None or np.isnan(record.answers["rough_torsion"]):
         return []
     stated = abs(float(drive.torque))
     first, second = printed.first_torque, printed.second_torque

@@ -5,7 +5,7 @@ import numpy as np
 from harmonic_fractal.catalogue import Polyline, polyline_of, ratio_of
 from harmonic_fractal.contact import Contact, Pressed
 from harmonic_fractal.interface import Rough, flanks_of, is_half_stated, range_of
-from harmonic_fractal.mesh import Mesh
+from harmonic_fractal.mesh import Mesh, load_of_largest
 from harmonic_fractal.micro import LEAST_DIMENSION, MOST_DIMENSION
 from harmonic_fractal.quantities import Drive
 from truing import Float, feasible
@@ -41,8 +41,16 @@ def require_surface(drive: Drive, rough: Rough) -> None:
     )
 
 
+CLOSED = ("approach", "closing_clearance", "free_play")
+"""The results that count the way of the pair from the reference load."""
+TURNED = ("mesh_torsion", "torsion", "rough_torsion", "rough_share")
+"""The results that count the torsion from the reference torque."""
+COMPARED = ("catalogue_torsion", "catalogue_stiffness", "rough_share")
+"""The results that need the catalogue."""
+
+
 def require_contact(drive: Drive, contact: Contact, mesh: Mesh) -> None:
-    """Refuse a mesh without stiffness where the torsion begins, and more pairs than there are teeth."""
+    """Refuse more pairs than there are teeth; without stiffness where the torsion begins nothing counts from there."""
     feasible(
         drive.engaged_pairs * np.asarray(mesh.engagement.factor(drive.torque)) <= drive.flexspline_teeth,
         "more pairs are engaged than the flexspline has teeth: reduce engaged_pairs, engaged_factor or engaged_gain, "
@@ -53,11 +61,17 @@ def require_contact(drive: Drive, contact: Contact, mesh: Mesh) -> None:
         "the critical area is not a number that can be calculated with: look at fractal_roughness, hardness and the "
         "moduli",
     )
-    feasible(
-        np.asarray(mesh.plastic_torque) < drive.reference_torque,
-        "at reference_torque all contacts are plastic, so that the torsion counted from there would be infinite: "
-        "raise reference_torque above the torque at which the first contact turns elastic, or reduce fractal_roughness",
-    )
+    starts = np.asarray(mesh.plastic_torque) < drive.reference_torque
+    still = np.abs(drive.torque) <= drive.reference_torque
+    untouched = drive.pair_load <= load_of_largest(drive.reference_torque, mesh)
+    for holds, names in ((starts | untouched, CLOSED), (starts | still, TURNED)):
+        feasible(
+            holds,
+            "at reference_torque all contacts are plastic and have no stiffness, so what counts from there is "
+            "infinite: raise reference_torque above plastic_torque, where the first contact turns elastic, or reduce "
+            "fractal_roughness",
+            only=names,
+        )
 
 
 def require_flank(drive: Drive, one: Pressed, largest: Pressed) -> None:
@@ -71,11 +85,12 @@ def require_flank(drive: Drive, one: Pressed, largest: Pressed) -> None:
 
 
 def require_catalogue(drive: Drive) -> Polyline:
-    """Return what the catalogue prints for this drive; refuse a size and ratio that it does not print."""
+    """Return what the catalogue prints for this drive; without a comparison where it prints none."""
     printed = polyline_of(drive.catalogue_size, ratio_of(drive))
     feasible(
         printed is not None,
-        f"the catalogues print no size {drive.catalogue_size} with a ratio below 40: choose catalogue_size 32 or "
-        "smaller, or flexspline_teeth of 80 or more",
+        f"the catalogues print no size {drive.catalogue_size} with a ratio below 40: for a comparison choose "
+        "catalogue_size 32 or smaller, or flexspline_teeth of 80 or more",
+        only=COMPARED,
     )
     return printed or Polyline(np.nan, np.nan, (np.nan, np.nan, np.nan))

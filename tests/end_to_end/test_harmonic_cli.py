@@ -357,3 +357,40 @@ def test_verify_states_every_row_as_it_is(calc: Calc) -> None:
     titles = " ".join(finding["title"] for finding in found["findings"]).lower()
     for words in ("clearance", "weakest", "missing", "straight line"):
         assert words in titles
+
+
+@pytest.mark.parametrize(
+    ("lines", "lacking", "reason"),
+    [
+        # the first contact turns elastic at 2.3 and 4.2 mN m, above the 1 mN m from which the torsion counts
+        (
+            ["fractal_dimension = 2.444", 'fractal_roughness = "3.3421e-10 m"'],
+            ["torsion", "rough_torsion", "mesh_torsion", "approach", "closing_clearance", "free_play", "rough_share"],
+            "raise reference_torque above plastic_torque",
+        ),
+        # the catalogues print 30 as the ratio of sizes up to 32
+        (
+            ['catalogue_size = "40"', "flexspline_teeth = 60", "engaged_pairs = 18"],
+            ["catalogue_torsion", "catalogue_stiffness", "rough_share"],
+            "print no size 40",
+        ),
+    ],
+)
+def test_the_pair_is_answered_and_what_does_not_exist_says_why(
+    tmp_path: Path, lines: list[str], lacking: list[str], reason: str
+) -> None:
+    file = tmp_path / "drive.toml"
+    text = ['plugin = "harmonic_fractal"', "[inputs]", 'convention = "areal"', *lines]
+    studies = ["[studies]", 'run = ["sensitivity", "reliability", "sweep"]']
+    file.write_text("\n".join([*text, *studies, "[studies.reliability]", "draws = 100"]), encoding="utf-8")
+    raised = tmp_path / "raised.toml"
+    raised.write_text("\n".join([*text, 'reference_torque = "20 mN*m"', "[studies]", "run = []"]), encoding="utf-8")
+    found, other = (ran(tmp_path / at.stem, "run", "harmonic_fractal", "--inputs", at) for at in (file, raised))
+    assert found.code == 0
+    results = found.found["results"]
+    assert sorted(name for name, result in results.items() if result["value"] is None) == sorted(lacking)
+    assert all(reason in results[name]["reason"] for name in lacking)
+    for name in ("stiffness", "clearance", "mesh_stiffness"):
+        assert value(found, name) == value(other, name) > 0
+    assert reason in found.said
+    assert found.sheet.count(reason.replace("_", "\\_")) >= len(lacking)

@@ -14,6 +14,10 @@ from truing import (
     Effect,
     Float,
     Model,
+    Reliability,
+    Require,
+    Sensitivity,
+    Tolerance,
     Unknown,
     axis,
     column,
@@ -22,11 +26,13 @@ from truing import (
     found,
     given,
     inputs,
+    normal,
     results,
     rows,
 )
+from truing.calculation import calculate
 from truing.errors import InfeasibleError, PluginError, UsageError
-from truing.evaluate import evaluate, evaluate_rows
+from truing.evaluate import answered, evaluate, evaluate_rows
 from truing.setup import Setup, SwitchedOn, default_setup
 
 CALLS: list[int] = []
@@ -90,6 +96,66 @@ def test_what_does_not_hold_ends_a_single_calculation(arm: float) -> None:
 def test_a_result_without_value_ends_a_single_calculation() -> None:
     with pytest.raises(InfeasibleError, match="the result 'hold' of lever is not finite"):
         evaluate(setup_with(other_arm=0.0))
+
+
+# Results that do not exist
+
+
+def swung(lever: Lever) -> Balance:
+    """Hold the lever; without a force there is no torque to speak of."""
+    feasible(lever.force > 0, "nothing turns it", only=["torque"])
+    return replace(balance(lever), torque=lever.force / np.where(lever.force < 5, 0.0, 1.0))
+
+
+def still(force: float, *, limit: bool = False) -> Setup:
+    limits = [Require("torque", at_most="5 N*m", reliability=0.9 if limit else None)]
+    scatter = [Tolerance("arm", normal(sd="1 %"), why="")]
+    model = Model(
+        name="lever", title="", function=swung, objectives=[*limits, Require("hold", at_most="90 N")], errors=scatter,
+        studies=[Sensitivity(of=("hold", "torque")), Reliability(draws=100)] if limit else [],
+    )  # fmt: skip
+    return default_setup(model, force=force)
+
+
+def test_a_result_that_does_not_exist_has_its_reason_and_leaves_the_others() -> None:
+    found = answered(still(-3.0))
+    assert (found.results.hold, found.absent) == (-6.0, {"torque": "nothing turns it"})
+    assert np.isnan(found.results.torque)
+    with pytest.raises(InfeasibleError, match="'torque' of lever is not finite"):
+        evaluate(still(3.0))
+
+
+def test_a_row_that_lacks_a_result_keeps_the_others() -> None:
+    columns = {"force": np.array([-1.0, 20.0, 2e3]), "kind": ["plain", "double", "plain"]}
+    rows_ = evaluate_rows(still(1.0), columns, 3)
+    assert rows_.results["hold"].tolist()[:2] == [-2.0, 20.0]
+    assert np.isnan(rows_.results["torque"]).tolist() == [True, False, True]
+    assert (rows_.reasons, rows_.absent) == ({2: "the lever breaks"}, {"torque": {0: "nothing turns it"}})
+    complete = rows_.complete()
+    assert complete.reasons == {0: "nothing turns it", 2: "the lever breaks"}
+    assert (complete.failed.tolist(), np.isnan(complete.results["hold"]).tolist()) == ([True, False, True],) * 2
+
+
+@pytest.mark.parametrize("limit", [False, True])
+def test_a_limit_on_a_result_that_does_not_exist_is_not_kept(limit: bool) -> None:
+    done = calculate(still(-3.0, limit=limit))
+    assert not any(check.passed for check in done.checks if check.name == "torque")
+    assert any(check.passed for check in done.checks if check.name == "hold") or limit
+    if limit:
+        assert set(done.outcomes["sensitivity"].derivatives) == {"hold"}  # type: ignore[attr-defined]
+        assert any("'torque' has no probability: nothing turns it" in text for text in done.warnings)
+
+
+def test_a_name_that_is_no_result_is_the_plugins_fault() -> None:
+    def misspelt(lever: Lever) -> Balance:
+        feasible(lever.force > 100, "", only=["torqe"])
+        return balance(lever)
+
+    model = Model(name="lever", title="", function=misspelt)
+    with pytest.raises(
+        PluginError, match=r"feasible\(only=...\) names 'torqe', which is no result. Did you mean 'torque'"
+    ):
+        evaluate(default_setup(model))
 
 
 # Batches

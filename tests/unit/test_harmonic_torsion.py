@@ -14,6 +14,8 @@ from harmonic_fractal.mesh import Mesh, mesh_of, normal_stiffness
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.quantities import Drive
 from harmonic_fractal.torsion import mesh_torsion
+from truing.evaluate import evaluate_rows
+from truing.setup import default_setup
 
 # inputs and torque: all pairs elastic from the start, some of them not, nearly none of them; springs; a film; pairs
 # that come to bear on the way
@@ -94,6 +96,26 @@ def test_rows_are_single_drives_however_they_are_cut(monkeypatch: pytest.MonkeyP
         single = mesh(drive_of(fractal_dimension=dimension[row], engaged_factor=factor[row]))
         for all_rows, one in zip((whole, rough), mesh_torsion(torque[row], 1e-3, single), strict=True):
             assert all_rows[row] == pytest.approx(one, rel=1e-12)  # type: ignore[index]
+
+
+def test_the_pair_is_always_answered_and_the_torsion_where_it_is_finite() -> None:
+    """Of 500 designs many are plastic at the reference; those lack the torsion, and none of them lacks its pair."""
+    rng = np.random.default_rng(30)
+    columns = {
+        "fractal_dimension": rng.uniform(2.2, 2.8, 500), "fractal_roughness": 10 ** rng.uniform(-12, -8.5, 500),
+        "torque": 10 ** rng.uniform(-4, 1, 500),
+    }  # fmt: skip
+    setup = default_setup(HARMONIC_FRACTAL, hardness="3 GPa", pair_load="5 N")
+    found = evaluate_rows(setup, columns, 500)
+    torsion, least = found.results["torsion"], found.results["plastic_torque"]
+    assert set(found.reasons.values()) <= {reason for reason in found.reasons.values() if "exceeds the flank" in reason}
+    alive = ~found.failed
+    assert alive.sum() > 400
+    for name in ("stiffness", "clearance", "normal_stiffness"):
+        assert np.isfinite(found.results[name][alive]).all()
+    endless = (least >= 1e-3) & (columns["torque"] > 1e-3)
+    assert endless.sum() > 50
+    np.testing.assert_array_equal(np.isnan(torsion[alive]), endless[alive])
 
 
 def test_torsion_is_odd_and_counts_from_its_reference() -> None:

@@ -28,6 +28,7 @@ def lines_of(done: Done, folder: Path, *, with_titles: bool) -> Iterator[str]:
     if done.cases is not None:
         yield from _cases_lines(done.cases, calculation.setup)
     yield from _result_lines(calculation, with_titles=with_titles)
+    yield from _absent_lines(calculation)
     if calculation.checks:
         yield ""
         head = ("check", "value", "limit", "unit", "margin", "", "")
@@ -75,6 +76,16 @@ def _result_lines(calculation: Calculation, *, with_titles: bool) -> Iterator[st
         elif place == 0:
             yield ""
         yield from islice(rows, len(names))
+
+
+def _absent_lines(calculation: Calculation) -> Iterator[str]:
+    """Say which results do not exist, and why, a line per reason."""
+    by_reason: dict[str, list[str]] = {}
+    for name, reason in calculation.absent.items():
+        by_reason.setdefault(reason, []).append(name)
+    for reason, names in by_reason.items():
+        yield ""
+        yield one_line(f"no {', '.join(names)}: {reason}")
 
 
 def _groups(calculation: Calculation) -> Iterator[tuple[str, Sequence[str]]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any
@@ -17,13 +17,19 @@ if TYPE_CHECKING:
 
 
 class FailedRows:
-    """Rows of one batch that broke a condition, each with the first sentence it broke."""
+    """Rows of one batch that broke a condition, each with the first sentence it broke.
 
-    def __init__(self, rows: int) -> None:
+    ``of`` holds, by result, the rows that have no answer to that one and may have others. ``is_single`` says that
+    a condition of the whole row ends the calculation.
+    """
+
+    def __init__(self, rows: int, *, is_single: bool = False) -> None:
         import numpy as np
 
         self.codes: NDArray[np.int32] = np.zeros(rows, dtype=np.int32)
         self.sentences: list[str] = []
+        self.of: dict[str, FailedRows] = {}
+        self.is_single = is_single
 
     def add(self, failed: Any, sentence: str) -> None:
         """Note ``sentence`` for every failed row that has none yet.
@@ -46,14 +52,21 @@ class FailedRows:
         code = int(self.codes[row])
         return self.sentences[code - 1] if code else None
 
+    def reasons(self, rows: int) -> dict[int, str]:
+        """Return why rows failed, by row; what holds for a batch of one answer holds for all its ``rows``."""
+        import numpy as np
+
+        codes = np.broadcast_to(self.codes, (rows,))
+        return {int(row): self.sentences[codes[row] - 1] for row in np.flatnonzero(codes)}
+
 
 _WATCH: ContextVar[FailedRows | None] = ContextVar("truing_failed_rows", default=None)
 
 
 @contextmanager
-def watching(rows: int) -> Iterator[FailedRows]:
-    """Collect what ``feasible`` finds in a batch of ``rows`` instead of ending the calculation."""
-    failed = FailedRows(rows)
+def watching(rows: int, *, is_single: bool = False) -> Iterator[FailedRows]:
+    """Collect what ``feasible`` finds in a batch of ``rows``; ``is_single``: what ends the calculation still does."""
+    failed = FailedRows(rows, is_single=is_single)
     token = _WATCH.set(failed)
     try:
         yield failed
@@ -61,11 +74,14 @@ def watching(rows: int) -> Iterator[FailedRows]:
         _WATCH.reset(token)
 
 
-def feasible(holds: Any, sentence: str) -> None:
+def feasible(holds: Any, sentence: str, *, only: Sequence[str] = ()) -> None:
     """State what must hold; NaN does not hold.
 
     A single calculation ends with ``InfeasibleError`` and the sentence; in a batch the row keeps its reason and
     the others go on. ``holds`` is a bool or an array (n,) or (n, k): a row fails if any of its values does.
+
+    ``only`` names results (flat names): where it does not hold these alone have no answer, with the sentence as the
+    reason, and all others stand. The function returns any number for them, which nobody sees.
     """
     import numpy as np
 
@@ -73,7 +89,11 @@ def feasible(holds: Any, sentence: str) -> None:
     if values.all():
         return
     failed = _WATCH.get()
-    if failed is None:
+    if only:
+        for name in only if failed is not None else ():
+            failed.of.setdefault(name, FailedRows(len(failed.codes))).add(np.logical_not(values), sentence)
+        return
+    if failed is None or failed.is_single:
         raise InfeasibleError(sentence)
     failed.add(np.logical_not(values), sentence)
 

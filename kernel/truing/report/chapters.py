@@ -140,14 +140,16 @@ def _results(writing: Writing, names: Sequence[str]) -> tuple[tuple[Entry, ...],
 def _entry(writing: Writing, name: str, *, with_formula: bool) -> Entry:
     item = writing.setup.model.result_fields[name]
     answers = writing.calculation.answers
+    absent = writing.calculation.absent.get(name, "")
     return Entry(
         name=name,
         symbol=item.symbol,
         note=item.spec.note,
         value=Value(*format_value(answers[name], writing.setup.print_unit(name), item.digits)),
-        equation=equation_of(writing.setup, answers, item) if with_formula else None,
+        equation=equation_of(writing.setup, answers, item) if with_formula and not absent else None,
         method=getattr(item.spec, "method", ""),
         source=getattr(item.spec, "source", ""),
+        absent=absent,
     )
 
 
@@ -174,6 +176,7 @@ def _range_entry(writing: Writing, item: ResultField) -> Entry:
         method=getattr(item.spec, "method", ""),
         source=getattr(item.spec, "source", ""),
         extent=words,
+        absent=writing.calculation.absent.get(item.name, ""),
     )
 
 

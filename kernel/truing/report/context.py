@@ -137,6 +137,8 @@ class Entry:
     method: str = ""
     source: str = ""
     extent: str = ""
+    absent: str = ""
+    """Why it does not exist."""
 
 
 @dataclass(frozen=True)

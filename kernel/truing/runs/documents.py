@@ -177,4 +177,5 @@ def _result(calculation: Calculation, name: str) -> dict[str, Any]:
     value, unit = calculation.answers[name], calculation.setup.print_unit(name)
     if np.size(value) > LARGE:
         return {"value": None, "unit": unit, "array": name, "shape": list(np.shape(value))}
-    return _value(value, unit)
+    absent = calculation.absent.get(name)
+    return {**_value(value, unit), **({"reason": absent} if absent else {})}

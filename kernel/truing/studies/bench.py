@@ -78,7 +78,8 @@ class Bench:
     """The workbench of a study: the checked setup, the calculation's own results, and what was answered before.
 
     ``answers`` holds results in SI by flat name (the function's, then those earlier studies gave); ``outcomes`` the
-    outcomes of earlier studies by name. ``progress(task, done, total)`` may be called as often as one likes.
+    outcomes of earlier studies by name. ``progress(task, done, total)`` may be called as often as one likes. ``absent``
+    says why results of the function do not exist; they are NaN among the answers.
     """
 
     setup: Setup
@@ -87,6 +88,7 @@ class Bench:
     answers: Mapping[str, Any] = field(default_factory=dict)
     outcomes: Mapping[str, Outcome] = field(default_factory=dict)
     progress: Progress = silent
+    absent: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def inputs(self) -> Any:
@@ -104,14 +106,14 @@ class Bench:
 
         Results and price are those of the new design; nobody hears of its progress. Raises InfeasibleError.
         """
-        from truing.evaluate import evaluate
+        from truing.evaluate import answered
         from truing.prices import price_answers
         from truing.studies.strips import with_widths
 
         setup = with_widths(self.setup.changed(values), dict(widths or {}))
-        results = evaluate(setup)
-        answers = {**setup.model.read_results(results), **price_answers(setup)}
-        return replace(self, setup=setup, results=results, answers=answers, progress=silent)
+        first = answered(setup)
+        answers = {**setup.model.read_results(first.results), **price_answers(setup)}
+        return replace(self, setup=setup, results=first.results, answers=answers, absent=first.absent, progress=silent)
 
     def drawn(self, rows: int) -> Mapping[str, Any]:
         """Return what scatters in so many machines, (rows,) by column in SI: the first that ``Reliability`` draws."""

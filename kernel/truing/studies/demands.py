@@ -64,12 +64,20 @@ def _beside(limit: Any, values: Any) -> Any:
 def demands(setup: Setup, answers: Mapping[str, Any], *, with_goal: bool | None = None) -> list[Demand]:
     """Return the limits on results of the function: those with a probability to reach, or all where none has one.
 
-    ``with_goal=True`` returns only those with one.
+    ``with_goal=True`` returns only those with one. A limit on a result that does not exist (NaN) is left out.
     """
     own = setup.model.own_result_fields
     found = [_demand(limit, setup) for limit in limits(setup, dict(answers)) if limit.result in own]
     goals = [demand for demand in found if demand.goal is not None]
-    return goals if goals or with_goal else found
+    chosen = goals if goals or with_goal else found
+    return [demand for demand in chosen if all(exists(answers.get(name, 0.0)) for name in demand.wanted)]
+
+
+def exists(answer: Any) -> bool:
+    """Tell whether an answer in SI is a number, or numbers along an axis."""
+    import numpy as np
+
+    return not np.isnan(answer).any()
 
 
 def _demand(limit: Limit, setup: Setup) -> Demand:

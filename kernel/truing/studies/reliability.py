@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 from truing.declare.blocks import Block
 from truing.errors import InfeasibleError, UsageError
-from truing.evaluate import acting_inputs, evaluate
+from truing.evaluate import acting_inputs, answered
 from truing.setup import Setup
 from truing.studies.bench import Bench, Check
 from truing.studies.chances import chance, straightened
-from truing.studies.checks import chance_check
+from truing.studies.checks import chance_check, requirements
 from truing.studies.demands import Z95, Demand, demands, nominal_inputs, wilson, worst
 from truing.studies.form import Form, form
 from truing.studies.reading import read_range, scattering_name
@@ -59,7 +59,7 @@ class Reliability:
 
     def _answer(self, bench: Bench, setup: Setup, answers: Mapping[str, Any], stage: int) -> Odds:
         wanted = demands(setup, answers)
-        if not wanted:
+        if not any(item.result in setup.model.own_result_fields for item in requirements(setup)):
             raise UsageError(
                 f"study '{self.name}': {setup.model.name} requires nothing; add Require(result, ...) to it"
             )
@@ -77,7 +77,7 @@ class Reliability:
             first_sd={demand.name: straight[demand.name].sd for demand in wanted},
             form=self._form(machines, wanted, nominal),
             tally=tally,
-            remarks=(*found.warnings, *_still(machines), *_few_draws(self, wanted)),
+            remarks=(*_lacking(bench), *found.warnings, *_still(machines), *_few_draws(self, wanted)),
             inputs=acting_inputs(setup),
             nominal={demand.result: answers[demand.result] for demand in wanted},
         )
@@ -114,10 +114,20 @@ class Reliability:
         item = setup.model.input_fields.get(over)
         setup = setup.changed({over: int(value) if item is not None and item.kind == "integer" else value})
         try:
-            answers = setup.model.read_results(evaluate(setup))
+            found = answered(setup)
         except InfeasibleError as error:
             return str(error)
-        return self._answer(bench, setup, answers, stage)
+        wanted = [name for demand in demands(bench.setup, bench.answers) for name in demand.wanted]
+        lacking = [found.absent[name] for name in wanted if name in found.absent]
+        if lacking:
+            return lacking[0]
+        return self._answer(bench, setup, setup.model.read_results(found.results), stage)
+
+
+def _lacking(bench: Bench) -> list[str]:
+    """Say which limits have no probability because their result does not exist."""
+    limited = dict.fromkeys(item.result for item in requirements(bench.setup) if item.result in bench.absent)
+    return [f"'{name}' has no probability: {bench.absent[name]}" for name in limited]
 
 
 def _check_options(study: Reliability) -> None:
@@ -179,7 +189,7 @@ class Curve:
         import numpy as np
 
         good = [odds for odds in answers if not isinstance(odds, str)]
-        names = list(good[0].probability) if good else []
+        names = [name for name in good[0].probability if all(name in odds.probability for odds in good)] if good else []
 
         def along(read: Callable[[Odds], Mapping[str, Any]]) -> dict[str, NDArray[np.float64]]:
             gap = {name: np.full(np.shape(read(good[0])[name]), np.nan) for name in names}

@@ -148,7 +148,7 @@ def run_batch(job: Job) -> Tally:
     _keep_freed_memory()
     machines = _unpacked(job.machines) if isinstance(job.machines, Packed) else job.machines
     columns = machines.scatter.draw(job.seed, job.batch, job.rows)
-    rows = evaluate_rows(machines.setup, columns, job.rows, wanted=job.plan.wanted)
+    rows = evaluate_rows(machines.setup, columns, job.rows, wanted=job.plan.wanted).complete()
     return Tally(
         draws=job.rows,
         hits={demand.name: _hits(demand, rows, columns, job.plan) for demand in job.plan.demands},
@@ -228,4 +228,4 @@ def standard_rows(
 ) -> tuple[Rows, dict[str, Any]]:
     """Run machines given by standard normal values (dimension, n); return rows and their columns."""
     columns: dict[str, Any] = dict(machines.scatter.from_standard(standard))
-    return evaluate_rows(machines.setup, columns, standard.shape[1], wanted=wanted), columns
+    return evaluate_rows(machines.setup, columns, standard.shape[1], wanted=wanted).complete(), columns

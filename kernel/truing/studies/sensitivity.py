@@ -44,7 +44,9 @@ class Sensitivity:
     def run(self, bench: Bench) -> Sensitivities:
         """Differentiate in one batch of the model; then Sobol's samples where asked."""
         setup = bench.setup
-        results = self._results(setup)
+        asked = self._results(setup)
+        results = tuple(name for name in asked if name not in bench.absent)
+        missing = [f"'{name}' has no derivatives: {bench.absent[name]}" for name in asked if name in bench.absent]
         scatter = scatter_of(setup)
         sources = _sources(setup, self.at_inputs, self.name)
         found = slopes(setup, results, tuple(dict.fromkeys([*sources, *scatter.columns])), scatter)
@@ -62,7 +64,7 @@ class Sensitivity:
             sobol_total=total,
             agreement=_agreement(numeric, exact),
             units={name: setup.print_unit(name) for name in results} | {name: _unit(setup, name) for name in sources},
-            remarks=(*found.warnings, *remarks),
+            remarks=(*missing, *found.warnings, *remarks),
             inputs=acting_inputs(setup),
             still=frozenset(source for source in sources if not scatter.sd_of(source)),
         )

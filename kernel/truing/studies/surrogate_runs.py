@@ -63,7 +63,7 @@ def run_points(job: Job) -> tuple[Rows, float]:
     """Run the model at some points, all in one call; return the seconds too."""
     setup = _unpacked(job.setup) if isinstance(job.setup, Packed) else job.setup
     start = perf_counter()
-    rows = evaluate_rows(setup, job.columns, job.rows, wanted=job.wanted)
+    rows = evaluate_rows(setup, job.columns, job.rows, wanted=job.wanted).complete()
     return rows, perf_counter() - start
 
 

@@ -88,7 +88,7 @@ def compare(name: str, batch: Batch) -> None:
         fail(f"{name}: a batch in which {batch.what} fails as a whole: {error}")
     for row in range(batch.rows):
         alone = batch.alone(row)
-        here, there = together.reasons.get(row), alone.reasons.get(0)
+        here, there = reason(together, row), reason(alone, 0)
         if here != there:
             fail(
                 f"{name}: where {batch.what}, row {row} {f'fails in a batch ({here})' if here else 'is answered'} and "
@@ -102,6 +102,12 @@ def compare(name: str, batch: Batch) -> None:
                     f"{name}: where {batch.what}, '{result}' of row {row} is {_short(outer)} in a batch and "
                     f"{_short(inner)} alone; write np.where, not if, on anything that may vary"
                 )
+
+
+def reason(rows: Rows, row: int) -> str:
+    """Say why a row failed, or lacks results."""
+    lacking = {name: why[row] for name, why in sorted(rows.absent.items()) if row in why}
+    return rows.reasons.get(row) or "; ".join(f"no '{name}': {why}" for name, why in lacking.items())
 
 
 def _differs(here: Any, there: Any, values: np.ndarray[Any, Any]) -> bool:
