@@ -5,17 +5,18 @@ Columns of a batch are named by input, by condition, or by ``effects.NAME.UNKNOW
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.batch import FailedRows, watching
-from truing.declare.fields import Axis, Kind, read, with_values
+from truing.declare.fields import read, with_values
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Unknown
 from truing.errors import InfeasibleError, PluginError, TruingError, UsageError
 from truing.kernel.blame import home_of, place_of
 from truing.setup import Setup, SwitchedOn
+from truing.uniform import uniform_parts
 
 if TYPE_CHECKING:
     import numpy as np
@@ -126,7 +127,7 @@ def evaluate_rows(
     parts: list[Rows] = []
     order: list[NDArray[np.intp]] = []
     finished = 0
-    for index, part in _uniform_parts(setup, fixed, arrays, rows):
+    for index, part in uniform_parts(setup, fixed, arrays, rows):
         parts.append(_one_call(setup, part, len(index), names, reading=reading))
         if len(index) == rows > 0:
             return parts[0]
@@ -180,7 +181,7 @@ def _is_column(values: Any, rows: int) -> bool:
     return isinstance(values, list) or (getattr(values, "shape", ()) or (0,))[0] == rows
 
 
-def _joined(pieces: list[NDArray[np.float64]], order: list[NDArray[np.intp]], rows: int) -> NDArray[np.float64]:
+def _joined(pieces: Sequence[NDArray[np.float64]], order: Sequence[NDArray[np.intp]], rows: int) -> NDArray[np.float64]:
     """Put the answers of the parts back in the order of the rows."""
     import numpy as np
 
@@ -261,71 +262,6 @@ def _sorted_columns(setup: Setup, columns: Mapping[str, Any], rows: int) -> tupl
             raise UsageError(f"the column '{name}' has the shape {numbers.shape}; expected one value or ({rows},)")
         arrays[name] = numbers if numbers.ndim else np.float64(numbers)
     return fixed, arrays
-
-
-def _uniform_parts(
-    setup: Setup, fixed: Mapping[str, Any], arrays: Mapping[str, Any], rows: int
-) -> Iterator[tuple[NDArray[np.intp], dict[str, Any]]]:
-    """Split a batch so that everything but Float inputs has one value; tables are made row by row, equal rows once."""
-    import numpy as np
-
-    per_row = {name: _each(values, setup.model.input_fields[name].kind) for name, values in fixed.items()}
-    for name, values in per_row.items():
-        if values is not None and len(values) != rows:
-            raise UsageError(f"the column '{name}' has {len(values)} values for {rows} rows")
-    common = {name: values for name, values in fixed.items() if per_row[name] is None}
-    differing = {name: values for name, values in per_row.items() if values is not None}
-    alone = any(isinstance(item.spec, Axis) and item.spec.is_table for item in setup.model.own_result_fields.values())
-    vary = differing or any(isinstance(values, np.ndarray) for values in arrays.values())
-    groups = [np.array([row]) for row in range(rows)] if alone and vary else _groups(differing, rows)
-    for index in groups:
-        part = {name: _taken(values, index, rows, alone=alone) for name, values in arrays.items()}
-        yield index, {**common, **part, **{name: values[index[0]] for name, values in differing.items()}}
-
-
-def _each(values: Any, kind: Kind) -> list[Any] | None:
-    """Return the value of each row, or None where there is one for all; a series is a value itself."""
-    import numpy as np
-
-    if isinstance(values, np.ndarray):
-        if kind == "series" and values.ndim == 1:
-            return None
-        return list(values) if kind == "series" else values.tolist() if values.ndim else None
-    if kind in {"series", "file"}:
-        return values if isinstance(values, list) else None
-    return list(values) if isinstance(values, (list, tuple)) else None
-
-
-def _taken(values: Any, index: NDArray[Any], rows: int, *, alone: bool) -> Any:
-    import numpy as np
-
-    if not isinstance(values, np.ndarray) or (len(index) == rows and not alone):
-        return values
-    return values[index[0]] if alone else values[index]
-
-
-def _groups(differing: Mapping[str, list[Any]], rows: int) -> list[NDArray[Any]]:
-    """Return the row numbers that share the values of every differing column, in the order they first appear."""
-    import numpy as np
-
-    if not differing:
-        return [np.arange(rows)] if rows else []
-    places: dict[tuple[Any, ...], list[int]] = {}
-    for row in range(rows):
-        places.setdefault(tuple(_key(values[row]) for values in differing.values()), []).append(row)
-    return [np.array(indices) for indices in places.values()]
-
-
-def _key(value: Any) -> Any:
-    import numpy as np
-
-    if isinstance(value, np.ndarray):
-        return value.shape, value.tobytes()
-    try:
-        hash(value)
-    except TypeError:
-        return id(value)
-    return value
 
 
 def _apply(setup: Setup, columns: Mapping[str, Any], *, reading: bool) -> Any:

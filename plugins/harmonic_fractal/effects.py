@@ -85,9 +85,11 @@ MESH: list[Effect[Drive, Stiffness]] = [
             Unknown("stiffness", 0, 200, "kN/um", note="of a pair full of oil at 1000 rpm, 20 degC, T_2; 5 to 60"),
         ],
         looks_like="the mesh is stiffer while it turns, most at a low speed and with warm oil, by one amount at any "
-        "torque; nothing at rest",
+        "torque; it is lost again where it creeps, and nothing is left at rest",
         why="oil between the flanks cannot leave in time and carries beside the asperities",
-        source=DOWSON,
+        source=f"{DOWSON}; share of a film at a fixed gap: Reynolds 1886; load shared with asperities: Johnson, K. L., "
+        "Greenwood, J. A., Poon, S. Y., A simple theory of asperity contact in elastohydrodynamic lubrication, Wear 19 "
+        "(1972) 91",
     ),
     Effect(
         "asperity_smoothing",

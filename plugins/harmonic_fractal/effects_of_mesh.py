@@ -13,7 +13,9 @@ FILM_EXPONENT = 0.67  # of viscosity times speed in the thickness of the film
 LOAD_EXPONENT = -0.07  # of the load in it
 FILM_THINNING = 0.035  # 1/K, of the viscosity
 LEAST_TORQUE = 1e-3  # N*m, from which it is counted
-LEAST_FILM = 0.1  # over that at 1000 rpm and 20 degC: the roughness holds the flanks as far apart
+LEAST_GAP = 0.1  # over the film at 1000 rpm and 20 degC: without oil the asperities hold the flanks so far apart
+YIELDING = 0.02  # likewise: by which the gap grows while the load of the asperities falls by e (Persson 2007)
+STEPS = 8  # of Newton's iteration for the gap; six do, from any speed
 
 
 def series_compliance(drive: Drive, *, compliance: Float) -> Drive:
@@ -37,14 +39,28 @@ def oil_film(drive: Drive, *, stiffness: Float, speed: Float, temperature: Float
     """The oil between the flanks carries beside their asperities, the stiffer the thinner it is; at rest it is gone.
 
     ``stiffness`` is that of a film which fills the flank of a pair at 1000 rpm, 20 degC and T_2 of the catalogue, 25 N
-    m for size 20: modulus of compression times flank over thickness. The thickness follows (viscosity speed)^0.67
-    torque^-0.07 and is never less than a tenth of that one, where the roughness holds it open.
+    m for size 20: modulus of compression times flank over thickness. Alone it would be as thick as (viscosity
+    speed)^0.67 torque^-0.07 says; the asperities hold the flanks apart at a tenth of that, and the film shares the load
+    with them. The asperities' own stiffness is that under the whole load, which is too much by what the film carries.
     """
-    turns = np.abs(speed) / RATED_SPEED
-    thickness = (np.exp(-FILM_THINNING * (temperature - TEMPERATURE.zero)) * turns) ** FILM_EXPONENT
-    thickness = thickness * (np.maximum(np.abs(drive.torque), LEAST_TORQUE) / rated_torque(drive)) ** LOAD_EXPONENT
-    film = np.where(turns > 0.0, stiffness / np.maximum(thickness, LEAST_FILM), 0.0)
-    return replace(drive, film_stiffness=drive.film_stiffness + film)
+    flow = np.exp(-FILM_THINNING * (temperature - TEMPERATURE.zero)) * np.abs(speed) / RATED_SPEED
+    load = np.maximum(np.abs(drive.torque), LEAST_TORQUE) / rated_torque(drive)
+    gap, share = shared(flow**FILM_EXPONENT * load**LOAD_EXPONENT)
+    return replace(drive, film_stiffness=drive.film_stiffness + stiffness * share / gap)
+
+
+def shared(alone: Float) -> tuple[Float, Float]:
+    """Return the gap between flanks, over the film at 1000 rpm, and the share of the load that the film carries.
+
+    ``alone`` is how thick the film would be without asperities. At a fixed gap h it carries in proportion to viscosity
+    times speed (Reynolds), so (alone/h)^(1/0.67), and the asperities exp(-(h - h_r)/gamma); together that is all of it.
+    The sum is convex and falls over h, so Newton's iteration closes in from below.
+    """
+    gap = np.maximum(alone, LEAST_GAP)
+    for _ in range(STEPS):
+        asperities, film = np.exp((LEAST_GAP - gap) / YIELDING), (alone / gap) ** (1.0 / FILM_EXPONENT)
+        gap = gap + (asperities + film - 1.0) / (asperities / YIELDING + film / (FILM_EXPONENT * gap))
+    return gap, (alone / gap) ** (1.0 / FILM_EXPONENT)
 
 
 def asperity_smoothing(drive: Drive, *, dimension: Float, roughness: Float, cycle_scale: Float, cycles: Float) -> Drive:

@@ -6,10 +6,12 @@ tooth by tooth, runout is the reach of a circle about a point. Torques N m, angl
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 from scipy.special import ndtr
 
 from hidden_effects.harmonic_contact import FIRST_TORQUE, Array, Flanks, torques, torsion_of
@@ -19,6 +21,7 @@ TORSION, MESH = "torsion", "mesh_stiffness"
 COMPLIANCE = 36.0  # urad/(N m), of all that is in series with the mesh, as the inputs have it
 RATED, PITCH, ALPHA = 25.0, 25.4e3, np.radians(20)  # N m, um
 SLIDERS = 400
+SCATTER = 0.06  # of the heights of asperities, over the film at 1000 rpm
 
 
 @dataclass(frozen=True)
@@ -71,12 +74,32 @@ def flanks_at(row: int, rows: Rows, hidden: Hidden, tooth: float) -> Flanks:
     )
 
 
+@cache
+def gap(alone: float) -> float:
+    """Where film and asperities share the load, over the film at 1000 rpm; alone it would be as thick as given.
+
+    Asperities with a Gaussian height touch as Greenwood and Williamson have it, and hold a tenth without oil; the film
+    carries what its wedge does at this gap, in proportion to viscosity times speed.
+    """
+    above = np.linspace(0, 8, 801)
+
+    def held(wide: float) -> float:
+        return float(np.trapezoid(above**1.5 * np.exp(-((above + wide / SCATTER) ** 2) / 2), above))
+
+    def missing(wide: float) -> float:
+        return held(wide) / held(0.1) + (alone / wide) ** (1 / 0.67) - 1
+
+    return float(brentq(missing, 0.1, 0.3 + 2 * alone, xtol=1e-14))
+
+
 def film(speed: float, warmer: float, hidden: Hidden) -> float:
-    """Stiffness of the oil in a pair, N/m; gone at rest, when the oil has had time to leave."""
+    """Stiffness of the oil in a pair, N/m: of the share of the flank in which it carries."""
     if not speed:
         return 0.0
     viscosity = np.exp(np.interp(warmer, [-20, 0, 20, 40, 60], np.log([2.03, 1.0, 0.495, 0.246, 0.122])))
-    return of(hidden, "oil_film", "stiffness") * 1e9 / float((viscosity * abs(speed) / 1000) ** 0.67)
+    alone = float((viscosity * abs(speed) / 1000) ** 0.67)
+    wide = gap(alone)
+    return of(hidden, "oil_film", "stiffness") * 1e9 * (alone / wide) ** (1 / 0.67) / wide
 
 
 def engaged(torque: Array, hidden: Hidden) -> Array:

@@ -1,7 +1,7 @@
 """A batch is what single calls give: every input, condition and effect argument alone and in random company."""
 
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -71,51 +71,38 @@ def with_effects(setup: Setup, rng: np.random.Generator, most: int) -> Setup:
     return setup
 
 
-def columns(subject: Subject, setup: Setup, rng: np.random.Generator) -> dict[str, Callable[[], list[Any]]]:
-    """Return how each input, condition and unknown is drawn for a batch."""
-
-    def number(name: str) -> list[Any]:
-        item = subject.model.input_fields[name]
-        if setup.nominal(name) != setup.nominal(name):
-            return list(rng.choice(input_values(subject, name), ROWS))
-        return [subject.near(item, float(rng.choice(REACHES)), rng) for _ in range(ROWS)]
-
-    def choice(values: list[Any]) -> list[Any]:
-        return [values[place] for place in rng.integers(len(values), size=ROWS)]
-
-    found: dict[str, Callable[[], list[Any]]] = {}
+def drawn(subject: Subject, setup: Setup, rng: np.random.Generator) -> dict[str, list[Any]]:
+    """Return a column of each input, and of each condition and unknown of the effects that are on."""
+    columns: dict[str, list[Any]] = {}
     for name, item in subject.model.input_fields.items():
-        if item.varies:
-            found[name] = lambda name=name: number(name)
-        elif len(values := input_values(subject, name)) > 1:
-            found[name] = lambda values=values: choice(values)
+        values = input_values(subject, name)
+        if item.varies and setup.nominal(name) == setup.nominal(name):
+            columns[name] = [subject.near(item, float(rng.choice(REACHES)), rng) for _ in range(ROWS)]
+        elif len(values) > 1:
+            columns[name] = [values[place] for place in rng.integers(len(values), size=ROWS)]
     for on in setup.effects:
         for unknown in on.effect.unknowns:
-            low, high = (to_si(bound, unknown.unit) for bound in (unknown.low, unknown.high))
-            own = on.values[unknown.name]
+            low, high = (float(to_si(bound, unknown.unit)) for bound in (unknown.low, unknown.high))
             if unknown.is_amplitude:
-                low, high = sorted((0.0, own))
-            found[effect_column(on.effect.name, unknown.name)] = lambda low=low, high=high: list(
-                rng.uniform(low, high, ROWS)
-            )
+                low, high = sorted((0.0, on.values[unknown.name]))
+            columns[effect_column(on.effect.name, unknown.name)] = list(rng.uniform(low, high, ROWS))
         for need in on.effect.needs:
-            found[need.name] = lambda need=need: list(
-                rng.uniform(*sorted(condition_values(setup, need)[1:]), size=ROWS)
-            )
-    return found
+            low, high = sorted(condition_values(setup, need)[1:])
+            columns[need.name] = list(rng.uniform(low, high, ROWS))
+    return columns
 
 
 def batches(subject: Subject, rng: np.random.Generator, count: int, *, alone: bool) -> Iterator[Batch]:
     """Random batches: some columns in company; with ``alone`` every column by itself at a random point, too."""
     for _ in range(count):
         setup = with_effects(off_reference(point(subject, rng)), rng, most=4)
-        drawn = columns(subject, setup, rng)
+        columns = drawn(subject, setup, rng)
         share = rng.random()
-        some = [name for name in drawn if rng.random() < share] or list(drawn)[:1]
-        yield Batch(setup, {name: drawn[name]() for name in some}, f"{', '.join(some)} vary")
+        some = {name: values for name, values in columns.items() if rng.random() < share} or columns
+        yield Batch(setup, some, f"{', '.join(some)} vary")
         if alone:
-            name = list(drawn)[int(rng.integers(len(drawn)))]
-            yield Batch(setup, {name: drawn[name]()}, f"only '{name}' varies")
+            name = list(columns)[int(rng.integers(len(columns)))]
+            yield Batch(setup, {name: columns[name]}, f"only '{name}' varies")
 
 
 @pytest.mark.parametrize("name", MODELS)

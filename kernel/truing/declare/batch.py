@@ -89,13 +89,13 @@ def feasible(holds: Any, sentence: str, *, only: Sequence[str] = ()) -> None:
     if values.all():
         return
     failed = _WATCH.get()
-    if only:
-        for name in only if failed is not None else ():
+    if failed is not None and only:
+        for name in only:
             failed.of.setdefault(name, FailedRows(len(failed.codes))).add(np.logical_not(values), sentence)
-        return
-    if failed is None or failed.is_single:
+    elif failed is not None and not failed.is_single:
+        failed.add(np.logical_not(values), sentence)
+    elif not only:
         raise InfeasibleError(sentence)
-    failed.add(np.logical_not(values), sentence)
 
 
 def either(value: Float, otherwise: Float) -> Float:
