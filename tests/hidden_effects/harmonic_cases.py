@@ -96,7 +96,7 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
     legs = int(leg.max()) + 1
     of_leg = {"temperature": rng.uniform(0, 60, legs)[leg], "speed": rng.choice([0, 250, 500, 1000, 2000], legs)[leg]}
     if design == "points":
-        of_leg = {"temperature": rng.uniform(0, 60, count), "speed": rng.choice([0, 10, 600, 1200, 2400], count)}
+        of_leg = {"temperature": rng.uniform(0, 60, count), "speed": rng.choice([0, 300, 600, 1200, 2400], count)}
     time = np.sort(rng.uniform(0, 12, count))
     time[:2] = 0.0
     return Rows(

@@ -48,12 +48,16 @@ def formulas_have_the_unit(subject: Subject) -> None:
 
 def formulas_equal_the_function(subject: Subject) -> None:
     """Every printed formula gives what the function gives, to 1e-9, at the defaults and two points beside them."""
+    import numpy as np
+
     from truing.units import from_si
 
     for point in ({}, *subject.points(2)):
         values = _values(subject, point)
         for item, formula, numeric, scope in formulas_of(subject):
             result = values[item.name]
+            if np.isnan(result).any():  # it does not exist at this point, for a reason that the function states
+                continue
             expected = from_si(result, item.unit) if numeric and formula.left is None else result
             fault = _difference(formula, _in_formula(formula, values, numeric, scope), expected)
             if fault:
