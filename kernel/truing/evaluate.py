@@ -15,8 +15,8 @@ from truing.declare.near_miss import near_miss
 from truing.declare.sources import Unknown
 from truing.errors import InfeasibleError, PluginError, TruingError, UsageError
 from truing.kernel.blame import home_of, place_of
+from truing.parts_of_batch import uniform_parts
 from truing.setup import Setup, SwitchedOn
-from truing.uniform import uniform_parts
 
 if TYPE_CHECKING:
     import numpy as np
