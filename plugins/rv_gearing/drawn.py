@@ -1,6 +1,7 @@
 """Tables, words and figures by section of the sheet: each is there where its study ran."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ from rv_gearing.drawn_look import number
 from rv_gearing.drawn_mesh import mesh_figure, meshing_of
 from rv_gearing.drawn_safeties import AXES, safeties_figure
 from rv_gearing.drawn_tooth import notched_of, root_figure
-from rv_gearing.search import SIZES, STRENGTH, Column, Found, printed_in
+from rv_gearing.search import MEETING, SIZES, STRENGTH, Column, Found, printed_in
 from truing import Drawing, Swept, Table, Words
 
 if TYPE_CHECKING:
@@ -26,7 +27,8 @@ HEADS = {
     "root_stress_planet": "root, planet", "contact_stress_sun": "contact, sun",
     "contact_stress_planet": "contact, planet", "root_safety_sun": "breakage, sun",
     "root_safety_planet": "breakage, planet", "contact_safety_sun": "pitting, sun",
-    "contact_safety_planet": "pitting, planet",
+    "contact_safety_planet": "pitting, planet", "common_first": "common factor, sun and planet",
+    "common_second": "disc and pins", "planet_kinds": "kinds of planet", "mesh_phases": "phases",
 }  # fmt: skip
 DIGITS: dict[Column, int] = {"ratio": 4, "deviation": 3, "torque": 2, "centre_distance": 3, "circle_low": 2,
                              "circle_high": 2}  # fmt: skip
@@ -50,6 +52,7 @@ def search(record: "Run") -> "Sequence[Block]":
     caption = "Every group by its number. Both dashed pairs are limits: of the ratio and of the centre distance."
     return [
         table,
+        _preferred(found),
         Words(window_words(found)),
         Drawing("Groups in their window", partial(groups_figure, found), caption),
         *_catalogue(found),
@@ -79,6 +82,19 @@ def _table(found: Found, title: str, columns: Sequence[Column], note: str) -> Ta
     ]
     heads = tuple({"group": "no."}.get(name, HEADS.get(name, name)) for name in named)
     return Table(title, heads, rows, tuple(printed_in(name)[0] for name in named), note)
+
+
+def _preferred(found: Found) -> Table:
+    """Common factors, assembly and sharing of every group, with its preference and the reason."""
+    of = f"{found.inputs.planets} planet{'s' if found.inputs.planets > 1 else ''}"
+    note = (
+        f"For {of} at equal spacing. Common factor 1: hunting teeth, so that every tooth meets every other and errors "
+        "spread. Phase 1: planets mesh in phase and carry alike at any moment. Kinds: planets that differ by the angle "
+        'of their teeth on the crank. sort_by = "preference" lists the better groups first.'
+    )
+    table = _table(found, "Which groups are better", ("sun", "planet", *MEETING), note)
+    rows = [(*row, reason) for row, reason in zip(table.rows, found.reasons(), strict=True)]
+    return replace(table, columns=(*table.columns, "reason"), rows=rows, units=(*table.units, ""))
 
 
 def _cell(value: float, places: int | None) -> float | None:

@@ -19,6 +19,7 @@ from rv_gearing.duty import (
     ratio_of,
     torque_of,
 )
+from rv_gearing.preference import preference_of
 from rv_gearing.quantities import Gearing
 from truing import Float, column, either, feasible
 
@@ -59,6 +60,11 @@ class Groups:
     centre_distance: "Values"
     circle_low: "Values"
     circle_high: "Values"
+    common_first: "Values"  # largest common factor of sun and planet, and of disc and pins
+    common_second: "Values"
+    planet_kinds: "Values"
+    mesh_phases: "Values"
+    preference: "Values"  # 1 is best
 
     def __len__(self) -> int:
         """Return how many groups there are."""
@@ -72,7 +78,9 @@ class Groups:
 def search(stage: Gearing) -> Groups:
     """Return all groups of one duty, ordered by pins, then sun, then planet; there may be none."""
     teeth = candidates(stage)
-    return groups_of(stage, teeth).at(np.flatnonzero(admitted(stage, teeth)))
+    kept = admitted(stage, teeth)
+    sun, planet, pins = (np.asarray(each)[kept] for each in (teeth.sun, teeth.planet, teeth.pins))
+    return groups_of(stage, Teeth(sun=sun, planet=planet, pins=pins))
 
 
 def groups_of(stage: Gearing, teeth: Teeth) -> Groups:
@@ -85,6 +93,7 @@ def groups_of(stage: Gearing, teeth: Teeth) -> Groups:
     return Groups(
         sun=sun, planet=planet, pins=pins, ratio=ratio, deviation=ratio / stage.target_ratio - 1.0, torque=torque,
         centre_distance=centre, circle_low=np.asarray(low), circle_high=np.asarray(high),
+        **vars(preference_of(stage, sun, planet, pins)),
     )  # fmt: skip
 
 

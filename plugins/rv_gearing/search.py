@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from rv_gearing.groups import Groups, chosen_teeth, search
+from rv_gearing.preference import reason_of
 from rv_gearing.quantities import Gearing
 from truing import Block, Float, TruingError, found, results, rows
 
@@ -19,8 +20,9 @@ if TYPE_CHECKING:
 
 Column = Literal[
     "group", "sun", "planet", "pins", "ratio", "deviation", "torque", "centre_distance", "circle_low", "circle_high",
-    "root_stress_sun", "root_stress_planet", "contact_stress_sun", "contact_stress_planet", "root_safety_sun",
-    "root_safety_planet", "contact_safety_sun", "contact_safety_planet",
+    "common_first", "common_second", "planet_kinds", "mesh_phases", "preference", "root_stress_sun",
+    "root_stress_planet", "contact_stress_sun", "contact_stress_planet", "root_safety_sun", "root_safety_planet",
+    "contact_safety_sun", "contact_safety_planet",
 ]  # fmt: skip
 STRENGTH: tuple[Column, ...] = (
     "root_stress_sun", "root_stress_planet", "contact_stress_sun", "contact_stress_planet", "root_safety_sun",
@@ -29,6 +31,7 @@ STRENGTH: tuple[Column, ...] = (
 SIZES: tuple[Column, ...] = (
     "sun", "planet", "pins", "ratio", "deviation", "torque", "centre_distance", "circle_low", "circle_high",
 )  # fmt: skip
+MEETING: tuple[Column, ...] = ("common_first", "common_second", "planet_kinds", "mesh_phases", "preference")
 PERMITTED = (
     "permitted_root_stress_sun", "permitted_root_stress_planet", "permitted_contact_stress_sun",
     "permitted_contact_stress_planet",
@@ -61,6 +64,17 @@ class Listed:
     group_circle_high: Float = found("mm", symbol="R_p,max", along="group_number",
                                      note="largest radius of the pin circle",
                                      source="equations 3 and 4")  # fmt: skip
+    group_common_first: Float = found("", symbol="g_1", along="group_number", note="largest common factor of the teeth "
+                                      "of sun and planet; 1: hunting teeth")  # fmt: skip
+    group_common_second: Float = found("", symbol="g_2", along="group_number",
+                                       note="largest common factor of the teeth of a disc and the pins")  # fmt: skip
+    group_planet_kinds: Float = found("", symbol="n_k", along="group_number", note="kinds of planet, by the angle "
+                                      "between crank and teeth, for equal spacing; 1: all alike")  # fmt: skip
+    group_mesh_phases: Float = found("", symbol="n_f", along="group_number", note="phases in which the planets mesh; "
+                                     "1: all carry alike at any moment")  # fmt: skip
+    group_preference: Float = found("", symbol="r", along="group_number", note="1: hunting teeth and planets in phase, "
+                                    "better; 2: hunting teeth; 3: planets in phase; 4: neither; none: planets touch",
+                                    )  # fmt: skip
     group_root_stress_sun: Float = found("MPa", symbol="sigma_F1", along="group_number", note="root stress of the sun")
     group_root_stress_planet: Float = found(
         "MPa", symbol="sigma_F2", along="group_number", note="root stress of the planet"
@@ -88,7 +102,7 @@ class Search:
     gives: Callable[[Any], Any] | None = None
 
     def __post_init__(self) -> None:
-        if self.sort_by not in ("group", *SIZES, *STRENGTH):
+        if self.sort_by not in ("group", *SIZES, *MEETING, *STRENGTH):
             raise TruingError(f"study '{self.name}': the groups have no column '{self.sort_by}'")
 
     def run(self, bench: "Bench") -> "Found":
@@ -183,7 +197,7 @@ class Found:
     def as_json(self) -> Mapping[str, Any]:
         """Return counts, the rated group and every column in its printed unit; null where there is no answer."""
         columns = {}
-        for name in ("group", *SIZES, *STRENGTH):
+        for name in ("group", *SIZES, *MEETING, *STRENGTH):
             unit, factor = printed_in(name)
             values = [float(value) * factor if np.isfinite(value) else None for value in self.column(name)]
             columns[name] = {"unit": unit, "values": values}
@@ -194,7 +208,14 @@ class Found:
             "sort_by": self.sort_by,
             "descending": self.descending,
             "groups": columns,
+            "reasons": self.reasons(),
         }
+
+    def reasons(self) -> list[str]:
+        """Say of every group why it has its preference."""
+        told = ("common_first", "mesh_phases", "planet_kinds", "preference")
+        asked = zip(*(getattr(self.groups, name) for name in told), strict=True)
+        return [reason_of(*map(float, values)) for values in asked]
 
     def blocks(self) -> Sequence[Block]:
         """Return nothing: the section on the search shows tables and figures where they are read."""
@@ -228,7 +249,7 @@ def printed_in(name: str) -> tuple[str, float]:
 def listed(found: Found) -> Listed:
     """The table as results of the run."""
     names: dict[str, Column] = {"group_sun_teeth": "sun", "group_planet_teeth": "planet"}
-    columns = {f"group_{name}": found.column(name) for name in (*SIZES[2:], *STRENGTH)}
+    columns = {f"group_{name}": found.column(name) for name in (*SIZES[2:], *MEETING, *STRENGTH)}
     return Listed(
         group_count=float(found.count),
         exact_count=float(found.exact),

@@ -22,7 +22,7 @@ from rv_gearing.drawn_groups import groups_figure, stresses_figure
 from rv_gearing.drawn_mesh import mesh_figure, meshing_of
 from rv_gearing.drawn_tooth import notched_of
 from rv_gearing.model import RV_GEARING
-from rv_gearing.search import SIZES, STRENGTH, Column, Found, Search, listed
+from rv_gearing.search import MEETING, SIZES, STRENGTH, Column, Found, Search, listed
 from rv_gearing.tooth_form import half_space, tooth, trochoid, undercut
 from truing import Drawing, Kernel, Swept, Table, TruingError, Words
 from truing.calculation import Calculation, calculate
@@ -66,11 +66,11 @@ def test_the_list_is_a_result_of_the_run(whole: Calculation) -> None:
     assert whole.answers["group_number"].tolist() == list(range(1, 26))
     assert whole.answers["group_sun_teeth"][4] == 23
     assert whole.answers["group_planet_teeth"][4] == 63
-    for name in (*SIZES[2:], *STRENGTH):
+    for name in (*SIZES[2:], *MEETING, *STRENGTH):
         assert whole.answers[f"group_{name}"].tolist() == found(whole).column(name).tolist()
 
 
-@pytest.mark.parametrize("column", ["group", *SIZES, *STRENGTH])
+@pytest.mark.parametrize("column", ["group", *SIZES, *MEETING, *STRENGTH])
 @pytest.mark.parametrize("descending", [False, True])
 def test_the_list_is_sorted_by_any_column(whole: Calculation, column: Column, descending: bool) -> None:
     told = replace(found(whole), sort_by=column, descending=descending).sorted()
@@ -79,6 +79,26 @@ def test_the_list_is_sorted_by_any_column(whole: Calculation, column: Column, de
     assert sorted(told.numbers) == list(range(1, 26))
     at = told.numbers.tolist().index(7.0)
     assert (told.groups.sun[at], told.groups.planet[at]) == (25, 69)
+
+
+def test_the_better_groups_come_first_where_the_list_is_sorted_so() -> None:
+    calculation = run(Search(sort_by="preference"))
+    told = found(calculation)
+    assert told.numbers[:4].tolist() == [4, 8, 15, 21]
+    entry = told.as_json()
+    assert entry["groups"]["preference"]["values"][:5] == [1, 1, 1, 1, 2]
+    assert [text.startswith("better: hunting teeth; planets in phase") for text in entry["reasons"]] == [True] * 4 + [
+        False
+    ] * 21
+    (table,) = [
+        block for block in drawn.search(calculation.record) if isinstance(block, Table) and "better" in block.title
+    ]
+    assert [row[0] for row in table.rows[:4]] == [4, 8, 15, 21]
+    assert [row[-1] for row in table.rows] == entry["reasons"]
+    page = (Path(__file__).parents[2] / "docs" / "how-to" / "choose_teeth.md").read_text(encoding="utf-8")
+    for number in (4, 5, 1):
+        row = next(row for row in table.rows if row[0] == number)
+        assert f"| {number} | {row[1]:.0f}/{row[2]:.0f} | {row[-1]} |" in page
 
 
 def test_groups_with_just_the_wanted_ratio_keep_their_numbers() -> None:

@@ -89,6 +89,62 @@ def test_every_reading_has_its_count_and_finds_what_a_plain_loop_finds(
     assert sorted(named(groups)) == sorted(plain(reading))
 
 
+# Which groups are better
+
+
+def partners(one: int, other: int) -> int:
+    """How many teeth of the other gear a tooth meets, both turning tooth by tooth until they stand as before."""
+    met, tooth = set(), 0
+    while tooth not in met:
+        met.add(tooth)
+        tooth = (tooth + one) % other
+    return len(met)
+
+
+def placed(sun: int, planet: int, planets: int) -> tuple[int, int]:
+    """Phases of the meshes and kinds of planets, from the angles of teeth around a sun with a tooth at angle 0.
+
+    A planet is turned until its gap stands where the sun has a tooth: its angle on the crank, within a pitch.
+    """
+    phases, kinds = set(), set()
+    for number in range(planets):
+        towards = 2 * math.pi * number / planets
+        tooth = round(towards / (2 * math.pi / sun)) * 2 * math.pi / sun  # of the sun, next to this planet
+        beside = (tooth - towards) * sun / (2 * math.pi)  # in pitches, ahead of the line of centres
+        phases.add(round(beside % 1, 6) % 1)
+        gap = towards + math.pi - beside * 2 * math.pi / planet  # rolls the other way; there the planet has its gap
+        kinds.add(round((gap * planet / (2 * math.pi)) % 1, 6) % 1)
+    return len(phases), len(kinds)
+
+
+@pytest.mark.parametrize("planets", [1, 2, 3])
+def test_teeth_that_meet_and_planets_that_share(planets: int) -> None:
+    groups = search(RV_GEARING.inputs(planets=planets, fewest_pins=30, most_pins=60))
+    assert len(groups) == 422
+    for at, (sun, planet, pins) in enumerate(named(groups)):
+        assert partners(sun, planet) == planet / groups.common_first[at]
+        assert partners(pins - 1, pins) == pins / groups.common_second[at]
+        assert (groups.mesh_phases[at], groups.planet_kinds[at]) == placed(sun, planet, planets)
+    hunts = (groups.common_first == 1) & (groups.common_second == 1)
+    in_phase = groups.mesh_phases == 1
+    assert groups.preference.tolist() == (4 - 2 * hunts - in_phase).tolist()
+    if planets > 1:
+        assert not np.any(hunts & in_phase & (groups.planet_kinds == 1)), "no group has everything"
+
+
+def test_the_better_groups_are_those_of_the_page() -> None:
+    preference = search(Gearing()).preference
+    assert (np.flatnonzero(preference == 1) + 1).tolist() == [4, 8, 15, 21]
+    assert [int(np.sum(preference == rank)) for rank in (1, 2, 3, 4)] == [4, 11, 9, 1]
+
+
+@pytest.mark.parametrize(("planets", "shift", "touches"), [(3, 0.0, False), (4, 0.0, True), (3, 9.7, True)])
+def test_planets_that_would_touch_have_no_preference(planets: int, shift: float, touches: bool) -> None:
+    """36/99: centres 116.9, 95.5 modules apart, tips of 101; with 9.7 of shift 120.4."""
+    stage = replace(Gearing(planets=planets), planet=replace(Gearing().planet, shift=shift))
+    assert bool(np.isnan(search(stage).preference[-1])) is touches
+
+
 @pytest.mark.parametrize("factor", [0.85, 1.0])
 def test_one_pin_circle_of_either_factor_leaves_five_groups(factor: float) -> None:
     assert len(search(RV_GEARING.inputs(window="one_pin_circle", pin_circle_low=factor * 1e-2))) == 5
