@@ -8,8 +8,12 @@ from truing.testing.fixtures import process
 
 TESTS = Path(__file__).parent
 ROOT = TESTS.parent
+ROUNDING = 8 * 2.0**-52
+"""How far apart, relatively, one formula may come out in other instructions: alone or in a row of a batch, at another
+place of an array, on another processor. numpy keeps its functions within 4 units in the last place on every processor,
+so two ways agree to 8; what follows multiplies that by its condition."""
 GUESTS = ("screw_joint", "broken_guest")
-__all__ = ["GUESTS", "ROOT", "TESTS", "Answer", "Calc", "copied_guest", "process"]
+__all__ = ["GUESTS", "ROOT", "ROUNDING", "TESTS", "Answer", "Calc", "copied_guest", "process"]
 
 
 def copied_guest(name: str, folder: Path) -> Path:

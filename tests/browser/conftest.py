@@ -8,7 +8,7 @@ import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import pytest
 
@@ -43,16 +43,50 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.browser)
 
 
+def missed(words: str) -> NoReturn:
+    """Skip a test that needs what this machine has not; fail where CI=true says that everything is there."""
+    if os.environ.get("CI", "").lower() == "true":
+        pytest.fail(words)
+    pytest.skip(words)
+
+
 @pytest.fixture(scope="session")
 def chromium() -> Path:
     """The browser of this machine; without one the tests are skipped, but never where CI=true says it must be there."""
     found = find_browser()
     if found is None:
-        words = "no Chromium, Chrome or Edge on this machine (CHROME_PATH names one): the sheet was not looked at"
-        if os.environ.get("CI", "").lower() == "true":
-            pytest.fail(words)
-        pytest.skip(words)
+        missed("no Chromium, Chrome or Edge on this machine (CHROME_PATH names one): the sheet was not looked at")
     return found
+
+
+FONTS = {
+    "DejaVu": {"text": "DejaVu Sans", "mono": "DejaVu Sans Mono", "math": "DejaVu Serif", "italic": "DejaVu Serif"},
+    "Liberation": {
+        "text": "Liberation Sans", "mono": "Liberation Mono", "math": "Liberation Serif", "italic": "Liberation Serif",
+    },
+    "wide": dict.fromkeys(("text", "mono", "math", "italic"), "DejaVu Sans Mono"),
+}  # fmt: skip
+"""Fonts in which a sheet is looked at, so that those of the machine do not decide: all that many Linux machines have,
+those with the widths of Arial and Times, and a wide one."""
+
+IS_THERE = """(family) => {
+    const pen = document.createElement('canvas').getContext('2d');
+    const width = fonts => { pen.font = `40px ${fonts}`; return pen.measureText('Wm ili 0').width; };
+    return ['monospace', 'serif', 'sans-serif'].some(other => width(`"${family}", ${other}`) !== width(other));
+}"""
+
+
+@pytest.fixture(scope="session")
+def fonts(browser: Browser) -> dict[str, str]:
+    """The sets of fonts as style sheets; where one is missing the tests are skipped, but never where CI=true."""
+    page = browser.new_page()
+    families = {family for families in FONTS.values() for family in families.values()}
+    missing = sorted(family for family in families if not page.evaluate(IS_THERE, family))
+    page.close()
+    if missing:
+        missed(f"the fonts {', '.join(missing)} are not on this machine (Debian: fonts-dejavu-core, fonts-liberation)")
+    rules = {name: [f'--{use}: "{family}";' for use, family in families.items()] for name, families in FONTS.items()}
+    return {name: f":root {{ {' '.join(lines)} }}" for name, lines in rules.items()}
 
 
 @pytest.fixture(scope="session")

@@ -15,6 +15,7 @@ sys.path.append(str(Path(__file__).parents[1] / "unit"))
 from diagnosis_samples import SAMPLES, ambiguous
 from test_pdf import printed, test_pages_are_numbered_and_named, unescaped, words_of  # noqa: F401
 from test_sheet import (  # noqa: F401
+    test_every_character_is_drawn,
     test_every_figure_has_a_title_for_those_who_cannot_see_it,
     test_every_text_stands_out_from_its_ground,
     test_nothing_is_cut_off_on_paper,

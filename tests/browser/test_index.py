@@ -12,6 +12,7 @@ sys.path.append(str(Path(__file__).parents[1] / "unit"))
 
 from made_runs import made_runs
 from test_sheet import (  # noqa: F401
+    test_every_character_is_drawn,
     test_every_text_stands_out_from_its_ground,
     test_nothing_is_cut_off_on_paper,
     test_the_dark_sheet_is_dark_and_the_printed_one_never,

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from measured import calc_here
 
-from shared import Calc
+from shared import ROUNDING, Calc
 from truing import Kernel
 from truing.calculation import Calculation, calculate
 from truing.inputs_file import setup_from_settings
@@ -157,7 +157,8 @@ def test_loads_of_both_signs_and_none(table: Table) -> None:
     back, idle, forth, double = table("axial_load [N]\n-10000\n0\n10000\n20000\n")
     for name in ("root_stress_roller", "root_stress_ring"):
         assert idle[name] == 0
-        assert back[name] == forth[name] > 50
+        assert back[name] == pytest.approx(forth[name], rel=ROUNDING)
+        assert forth[name] > 50
         assert double[name] == pytest.approx(2 * forth[name], rel=1e-12)
 
 
@@ -171,9 +172,10 @@ def test_centres_farther_apart_jam_a_pair_without_backlash(table: Table) -> None
 def test_a_neutral_factor_acts_on_its_stress_alone(table: Table) -> None:
     plain, soft, shared = table("rim_factor,sharing_factor\n1,1\n1.5,1\n1,1.25\n")
     assert soft["root_stress_ring"] == pytest.approx(1.5 * plain["root_stress_ring"])
-    assert soft["root_stress_roller"] == plain["root_stress_roller"]
+    assert soft["root_stress_roller"] == pytest.approx(plain["root_stress_roller"], rel=ROUNDING)
     assert shared["root_stress_roller"] == pytest.approx(1.25 * plain["root_stress_roller"])
-    assert soft["stress_difference"] == shared["stress_difference"] == plain["stress_difference"]
+    for changed in (soft, shared):
+        assert changed["stress_difference"] == pytest.approx(plain["stress_difference"], rel=ROUNDING)
 
 
 def test_describe_names_what_is_declared(calc: Calc) -> None:

@@ -23,6 +23,7 @@ from press_linkage.effects import LINK_TEMPERATURE, link_heating
 from press_linkage.mechanism import press_linkage as slider_of
 from press_linkage.model import PRESS_LINKAGE
 from press_linkage.quantities import Press
+from shared import ROUNDING
 from truing import Drawing, Kernel
 from truing.calculation import Calculation, calculate
 from truing.errors import InfeasibleError, InputError
@@ -247,7 +248,7 @@ def test_link_heating_changes_every_study() -> None:
     for name in ("bdc_position", "stroke", "slider_shift", "salience_position_key", "salience_tilt_key"):
         assert warm.answers[name] != cold.answers[name], name
     assert warm.answers["slider_shift"] * 1e6 == pytest.approx(40 * 49.9, rel=2e-3)
-    assert warm.answers["bdc_position"] == warm.answers["slider_position"]
+    assert warm.answers["bdc_position"] == pytest.approx(warm.answers["slider_position"], rel=ROUNDING)
     for name in ("position_reliability", "tilt_reliability", "position_reliability_final", "coefficient_rod_length"):
         assert warm.answers[name] != cold.answers[name], name
     assert (warm.outcomes["sweep"].results["slider_position"] > cold.outcomes["sweep"].results["slider_position"]).all()

@@ -199,7 +199,7 @@ def test_dynamic_factor_follows_the_speed() -> None:
     below = ratio <= found["resonance_limit"]
     assert np.allclose(factor[below] - 1.0, found["dynamic_slow"] * ratio[below], rtol=1e-9)
     assert np.ptp(factor[(ratio > found["resonance_limit"]) & (ratio <= 1.15)]) < 1e-12
-    assert np.ptp(factor[ratio >= 1.5]) == 0.0
+    assert np.ptp(factor[ratio >= 1.5]) < 1e-12
     assert (ratio > 1.5).any()
 
 

@@ -22,10 +22,13 @@ from rv_wear.quantities import Reducer
 from rv_wear.sharing import Loads, shared, start_scale
 from rv_wear.teeth import Teeth, teeth_of
 from rv_wear.wear import worn
+from shared import ROUNDING
 from truing.errors import InfeasibleError
 
 PAPER: Reducer = RV_WEAR.inputs()
 MESH = mesh_of(PAPER)
+CONDITION = 100.0
+"""Of a force: the approach of disc and pins over what it is more than the clearance, up to the pins that just carry."""
 K_1 = 2.2 * 40 / 114.5
 Q = sqrt(1 - K_1**2)
 PSI_0 = acos(K_1)
@@ -164,7 +167,7 @@ def test_bounds_of_the_equidistant_modification() -> None:
     (low,), (high,) = curves.allowed_equidistant(PAPER)
     assert high * 1e3 == pytest.approx(0.0111, abs=5.01e-5)  # printed 0.011
     assert low * 1e3 == pytest.approx(-0.05375, abs=5.01e-6)  # printed -0.053
-    assert worn(PAPER).equidistant_low == low
+    assert worn(PAPER).equidistant_low == pytest.approx(low, rel=ROUNDING)
     at_high, above = (plain_clearance(x, x - 4e-6, ANGLES).min() for x in (high, high + 1e-7))
     assert at_high > -1e-18
     assert above < -5e-11
@@ -343,7 +346,8 @@ def test_each_of_many_meshes_is_solved_as_if_alone() -> None:
         _, together = unworn(many(replace(base, **values)))
         for row in range(9):
             _, alone = unworn(replace(base, **{name: value[row] for name, value in values.items()}))
-            assert np.array_equal(together.force[:, :, row], alone.force[:, :, 0])
+            near = CONDITION * ROUNDING * alone.force.max()
+            assert together.force[:, :, row] == pytest.approx(alone.force[:, :, 0], rel=0, abs=near)
 
 
 # What cannot be

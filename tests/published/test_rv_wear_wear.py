@@ -21,9 +21,12 @@ from rv_wear.model import RV_WEAR
 from rv_wear.quantities import Reducer
 from rv_wear.teeth import teeth_of
 from rv_wear.wear import exposure_of, oil_part, worn
+from shared import ROUNDING
 
 PAPER: Reducer = RV_WEAR.inputs()
 HOUR = 3600.0
+CONDITION = 10.0
+"""Of the wear: the exponents of its coefficient together, 7.377 of the pressure viscosity the largest."""
 MODULUS = 2.06e11 / (1 - 0.3**2)
 
 
@@ -189,7 +192,7 @@ def test_speed_and_time_enter_by_their_product() -> None:
 def test_the_deepest_point_lies_in_the_middle_of_the_contact() -> None:
     found = curves.flank(PAPER, 6000 * HOUR)
     assert found.wear.max() == pytest.approx(worn(PAPER).depth, rel=1e-12)
-    assert found.angle[found.wear[0].argmax()] == worn(PAPER).angle
+    assert found.angle[found.wear[0].argmax()] == pytest.approx(worn(PAPER).angle, rel=ROUNDING)
     loaded = found.angle[found.force[0] > 0]
     assert 0.3 < (worn(PAPER).angle - loaded[0]) / (loaded[-1] - loaded[0]) < 0.6
 
@@ -338,7 +341,7 @@ def test_a_row_that_cannot_be_leaves_the_others_alone() -> None:
     assert found.failed.tolist() == [False, True, True, False]
     assert "interfere" in found.reasons[1]
     assert "undercut" in found.reasons[2]
-    assert found.results["max_wear"][0] == worn(PAPER).depth
+    assert found.results["max_wear"][0] == pytest.approx(worn(PAPER).depth, rel=CONDITION * ROUNDING)
     nobody = evaluate_rows(setup, {"pin_radius": np.full(3, 9.2e-3)}, 3)
     assert nobody.failed.all()
     alike = evaluate_rows(setup, {"pin_radius": 9.2e-3}, 3)

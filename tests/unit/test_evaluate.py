@@ -162,6 +162,7 @@ def test_a_name_that_is_no_result_is_the_plugins_fault() -> None:
 
 
 def test_a_batch_equals_the_loop() -> None:
+    """Products and quotients are rounded alike on every processor, so these numbers are equal to the last digit."""
     rng = np.random.default_rng(3)
     columns = {"force": rng.uniform(1, 5, 7), "arm": rng.uniform(1, 2, 7), "other_arm": rng.uniform(1, 2, 7)}
     batch = evaluate_rows(setup_with(), columns, 7)

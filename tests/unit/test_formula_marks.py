@@ -28,13 +28,13 @@ SYMBOLS = [
     ("h_0", "<msub><mi>h</mi><mn>0</mn></msub>", "h_{0}", "h_0"),
     ("k_R", "<msub><mi>k</mi><mi>R</mi></msub>", "k_{R}", "k_R"),
     ("theta_11", "<msub><mi>θ</mi><mn>11</mn></msub>", r"\theta_{11}", "θ_11"),
-    ("xi_lh", "<msub><mi>ξ</mi><mi>lh</mi></msub>", r"\xi_{\mathrm{lh}}", "ξ_lh"),
+    ("xi_lh", '<msub><mi>ξ</mi><mi mathvariant="normal">lh</mi></msub>', r"\xi_{\mathrm{lh}}", "ξ_lh"),
     ("Phi_alpha", "<msub><mi>Φ</mi><mi>α</mi></msub>", r"\Phi_{\alpha}", "Φ_α"),
     ("θ", "<mi>θ</mi>", r"\theta", "θ"),
     ("Delta z", '<mrow><mi mathvariant="normal">Δ</mi><mi>z</mi></mrow>', r"\Delta z", "Δz"),
     ("z_2'", "<msubsup><mi>z</mi><mn>2</mn><mo>′</mo></msubsup>", r"z_{2}^{\prime}", "z_2′"),
     ("z'", "<msup><mi>z</mi><mo>′</mo></msup>", r"z^{\prime}", "z′"),
-    ("Re", "<mi>Re</mi>", r"\mathrm{Re}", "Re"),
+    ("Re", '<mi mathvariant="normal">Re</mi>', r"\mathrm{Re}", "Re"),
 ]
 
 

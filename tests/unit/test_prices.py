@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from pin_wear import PIN_WEAR
 
+from shared import ROUNDING
 from truing import (
     Allocation,
     Float,
@@ -94,7 +95,7 @@ def test_every_case_has_its_own_price() -> None:
     assert light == pytest.approx(40 / (BAND / 4) ** 0.5 + 2, rel=1e-12)
     assert normal_ == pytest.approx(SUM, rel=1e-12)
     assert table.governing == 0
-    assert full.answers["tolerance_price"] == light
+    assert full.answers["tolerance_price"] == pytest.approx(light, rel=ROUNDING)
 
 
 def test_a_model_without_prices_has_no_such_result() -> None:

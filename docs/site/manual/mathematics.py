@@ -20,6 +20,8 @@ _FUNCTION = "<mi>(?:arc)?(?:sin|cos|tan|cot)</mi>|<mi>(?:ln|log|exp)</mi>"
 _BEFORE = re.compile(rf"(</(?:mi|mn|msub|msup|msubsup|mfrac)>)(?=(?:<msup>)?(?:{_FUNCTION}))")
 _AFTER = re.compile(rf"(?<!<msup>)(?<!<msub>)(?<!<mover>)({_FUNCTION})(?=<m(?:i|n|sub|sup|subsup|frac|over)>)")
 """A thin space around the name of a function, which latex2mathml leaves out: z cos α."""
+_WORD = re.compile(r"<mi>(?=[^<&]{2})")
+"""A name of several letters, which the style sheet must not slant."""
 _UNREAD = re.compile(r"\\|>&<")
 _log = logging.getLogger("mkdocs.manual")
 
@@ -49,5 +51,6 @@ def mathml(latex: str, display: bool) -> str:
     readable = bare.replace("{aligned}", "{align*}")  # the one of the two that latex2mathml knows
     made: str = _BRACE.sub(r"\1", convert(readable, display="block" if display else "inline"))
     made = _AFTER.sub(r"\1" + _SPACE, _BEFORE.sub(r"\1" + _SPACE, made))
+    made = _WORD.sub('<mi mathvariant="normal">', made)
     tag = "".join(f'<span class="tag">({number})</span>' for number in _TAG.findall(latex))
     return made.replace("<math ", f'<math alttext="{html.escape(bare.strip())}" ', 1) + tag

@@ -66,9 +66,13 @@ def _piece(piece: Piece) -> str:
         return f"<mn>{text}</mn>"
     if piece.text == ",":
         return '<mo separator="true">,</mo>'
-    if len(piece.text) == 1 and piece.style is Style.UPRIGHT:
-        return f'<mi mathvariant="normal">{text}</mi>'
-    return f"<mi>{text}</mi>"
+    is_upright = len(piece.text) > 1 or piece.style is Style.UPRIGHT
+    return upright_mathml(text) if is_upright else f"<mi>{text}</mi>"
+
+
+def upright_mathml(text: str) -> str:
+    """Write upright letters, and say that they are: style sheets slant the others in a font that every machine has."""
+    return f'<mi mathvariant="normal">{text}</mi>'
 
 
 def _grouped(pieces: Sequence[Piece]) -> str:
@@ -107,7 +111,7 @@ class MathMLWriter:
 
     def constant(self, name: str) -> str:
         """Write pi upright, as a constant."""
-        return '<mi mathvariant="normal">π</mi>'
+        return upright_mathml("π")
 
     def minus(self, operand: str) -> str:
         """Write minus the operand."""
@@ -142,8 +146,8 @@ class MathMLWriter:
         if name == "∑":
             return '<mo largeop="true">∑</mo>'
         if name == "log10":
-            return "<msub><mi>log</mi><mn>10</mn></msub>"
-        upright = f"<mi>{name}</mi>" if len(name) > 1 else f'<mi mathvariant="normal">{name}</mi>'
+            return f"<msub>{upright_mathml('log')}<mn>10</mn></msub>"
+        upright = upright_mathml(name)
         return upright if exponent is None else f"<msup>{upright}{exponent}</msup>"
 
     def applied(self, function: str, argument: str, *, bare: bool) -> str:

@@ -14,6 +14,7 @@ from truing.formulas.write_mathml import MathMLWriter
 from truing.numbers import pretty, with_unit
 from truing.published import ComparedRow
 from truing.report import equations
+from truing.report.columns import with_room
 from truing.report.context import Entry, Equation, FigureView, Sheet, TableView, Value
 from truing.report.markdown import Raw, escaped
 from truing.report.templates import template_folder
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
 
 COLUMN = equations.LINE
 """How wide a formula may be, in em, beside the words of its result; a wider one stands below them."""
-PAGE = 45.0
-"""How wide a formula may be on A4; a wider one is set smaller there."""
+WIDEST = 1.3
+"""How much wider than estimated a formula may come out, in the widest of usual fonts; paper keeps room for that."""
 LONG = 7
 """A sheet with more chapters than this has a table of contents."""
 
@@ -39,7 +40,7 @@ def page(template: str, sheet: Any, *, styles: Sequence[str] = ("sheet.css",), *
     """Write a page from its template; ``sheet`` has a ``head``, whose footer stands in the margin of every page."""
     style = "".join((template_folder() / name).read_text(encoding="utf-8") for name in styles)
     style = _markup(style + page_style(sheet.head.footer))
-    return _html().get_template(template).render(sheet=sheet, style=style, **more) + "\n"
+    return with_room(_html().get_template(template).render(sheet=sheet, style=style, **more)) + "\n"
 
 
 def markdown_of(sheet: Sheet) -> str:
@@ -198,14 +199,15 @@ def _html_lines(equation: Equation) -> list[equations.Line]:
 
 
 def _equation_html(equation: Equation) -> Any:
-    """Set a formula as blocks of MathML, one a line; one too wide for a page is set smaller on paper."""
+    """Set a formula as blocks of MathML, one a line; ``--room`` is the width in em for which paper keeps room."""
     alternative = escape(f"{equation.name} = {equation.formula.text}")
     blocks = []
-    for place, line in enumerate(_html_lines(equation)):
-        fit = f' style="--fit: {PAGE / line.width:.3f}"' if line.width > PAGE else ""
+    lines = _html_lines(equation)
+    room = f' style="--room: {WIDEST * max(line.width for line in lines):.0f}"'
+    for place, line in enumerate(lines):
         label = f' alttext="{alternative}"' if place == 0 else ""
         mathematics = f'<math display="block"{label}><mrow>{line.markup}</mrow></math>'
-        blocks.append(f'<div class="line{" next" if place else ""}"{fit}>{mathematics}</div>')
+        blocks.append(f'<div class="line{" next" if place else ""}"{room}>{mathematics}</div>')
     return _markup("".join(blocks))
 
 
