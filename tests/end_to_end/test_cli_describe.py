@@ -151,11 +151,9 @@ def test_a_schema_is_replaced_only_when_told_to(calc: Calc, tmp_path: Path) -> N
     assert {path.name for path in tmp_path.iterdir()} == {schema.name, "one.toml", "two.toml", "three.toml"}
 
 
-def test_init_into_a_folder_that_is_not_there(calc: Calc, tmp_path: Path) -> None:
-    answer = calc("init", PIN, "-o", "nowhere/pin.toml")
-    assert (answer.code, answer.out) == (2, "")
-    assert answer.err == f"calc: {Path('nowhere/pin.toml')} cannot be written: No such file or directory\n"
-    assert list(tmp_path.iterdir()) == []
+def test_init_makes_the_folder_that_is_not_there(calc: Calc, tmp_path: Path) -> None:
+    assert calc("init", PIN, "-o", "new/pin.toml").code == 0
+    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == ["pin.toml", "pin_wear.schema.json"]
 
 
 def test_what_init_writes_runs(calc: Calc, tmp_path: Path) -> None:

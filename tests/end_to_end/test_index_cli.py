@@ -143,8 +143,8 @@ def test_cases_count_each_and_the_least_margin_is_that_of_all(calc: Calc, tmp_pa
         (["runs", "-o", "letter.txt"], "calc: letter.txt: is a file that calc index has not written, so it is left "
          "alone; name another\n"),
         (["runs", "-o", "runs"], f"calc: runs: is a folder; name a file, such as {Path('runs') / 'index.html'}\n"),
-        (["runs", "-o", "deep/index.html"], f"calc: {Path('deep') / 'index.html'}: cannot be written: "
-         "No such file or directory\n"),
+        (["runs", "-o", "letter.txt/index.html"], f"calc: {Path('letter.txt') / 'index.html'}: cannot be written: "
+         "letter.txt is a file and no folder\n"),
     ],
 )  # fmt: skip
 def test_bad_input_ends_in_one_sentence(calc: Calc, tmp_path: Path, words: list[str], sentence: str) -> None:

@@ -49,8 +49,13 @@ def wait_until_begun(process: subprocess.Popen[str]) -> None:
         time.sleep(0.05)
 
 
-def interrupted(folder: Path, *more: str, after: float) -> tuple[subprocess.CompletedProcess[str], list[int]]:
-    """Start a run that would take hours, interrupt it as a terminal does, and return its end and its children."""
+def interrupted(
+    folder: Path, *more: str, after: float, children_first: bool = False, by: int = signal.SIGINT
+) -> tuple[subprocess.CompletedProcess[str], list[int]]:
+    """Start a run that would take hours, signal to all its processes as a terminal does; return its end and children.
+
+    With ``children_first`` the time counts from when it has children.
+    """
     (folder / "press.toml").write_text(INPUTS)
     command = [sys.executable, "-m", "truing", "run", "press_linkage", "--inputs", "press.toml", *more]
     process = subprocess.Popen(
@@ -63,10 +68,12 @@ def interrupted(folder: Path, *more: str, after: float) -> tuple[subprocess.Comp
     )
     try:
         wait_until_begun(process)
+        while children_first and process.poll() is None and len(children_of(process.pid)) < 2:
+            time.sleep(0.01)
         time.sleep(after)
         assert process.poll() is None, process.communicate()
         children = children_of(process.pid) if Path("/proc/self/task").exists() else []
-        os.killpg(process.pid, signal.SIGINT)
+        os.killpg(process.pid, by)
         out, err = process.communicate(timeout=60)
     finally:
         if process.poll() is None:
@@ -97,14 +104,17 @@ def test_an_interrupted_run_leaves_the_earlier_one_as_it_was(tmp_path: Path) -> 
     assert [path.name for path in (tmp_path / "runs").iterdir()] == ["press"]
 
 
-def test_an_interrupted_run_leaves_no_worker_behind(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("by", "after"), [(signal.SIGINT, 0.1), (signal.SIGTERM, 0.4), (signal.SIGTERM, 4.0)])
+def test_an_interrupted_run_leaves_no_worker_behind(tmp_path: Path, by: int, after: float) -> None:
+    """Nor a word of one, while they start (the first two) and while they work."""
     (tmp_path / "press.toml").write_text(INPUTS)
     before = listing(tmp_path)
-    end, children = interrupted(tmp_path, "--workers", "2", "-o", "new/run", after=8.0)
-    assert end.returncode == 130
+    seen = Path("/proc/self/task").exists()
+    end, children = interrupted(tmp_path, "--workers", "2", "-o", "new/run", after=after, children_first=seen, by=by)
+    assert end.returncode == (130 if by == signal.SIGINT else 143)
     assert end.stderr == "calc: interrupted; nothing was written\n"
     assert listing(tmp_path) == before
-    if Path("/proc/self/task").exists():
+    if seen:
         assert len(children) >= 2
         until = time.monotonic() + 20
         while any(map(is_alive, children)) and time.monotonic() < until:

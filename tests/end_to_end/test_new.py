@@ -116,7 +116,7 @@ def test_the_readme_names_verbs_and_files_that_are_there() -> None:
         (["belt", "--output", "there.py/below"], "there.py/below: the project cannot be written: "),
         (
             ["belt", "--single-file", "--output", "there.py/b.py"],
-            "there.py/b.py: there.py is a file and no folder; name another file",
+            "there.py/b.py: cannot be written: there.py is a file and no folder",
         ),
     ],
 )

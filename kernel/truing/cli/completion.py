@@ -13,8 +13,9 @@ from typing import Annotated
 
 import typer
 
+from truing.atomic import write_files
 from truing.cli.console import out, settings_of, verb
-from truing.errors import OutputError, UsageError
+from truing.errors import UsageError
 
 ASKED = "_CALC_COMPLETE"
 """The environment variable by which a shell asks."""
@@ -75,26 +76,24 @@ def _installed(shell: Shell, text: str) -> list[str]:
         script = Path(os.environ.get("XDG_CONFIG_HOME") or home / ".config") / "fish" / "completions" / "calc.fish"
     else:
         script = Path(os.environ.get("XDG_DATA_HOME") or home / ".local" / "share") / "truing" / FILES[shell]
-    try:
-        script.parent.mkdir(parents=True, exist_ok=True)
-        script.write_text(text, encoding="utf-8", newline="\n")
-        said = [f"wrote {script}"]
-        if shell != Shell.fish and _added(home / f".{shell}rc", f'source "{script}"'):
-            said.append(f"added a line to {home / f'.{shell}rc'}")
-    except OSError as error:
-        raise OutputError(f"{script} cannot be written: {error.strerror or error}") from None
+    files: dict[Path, str | bytes] = {script: text}
+    said = [f"wrote {script}"]
+    settings = home / f".{shell}rc"
+    added = _with_line(settings, f'source "{script}"') if shell != Shell.fish else None
+    if added is not None:
+        files[settings] = added
+        said.append(f"added a line to {settings}")
+    write_files(files)
     return [*said, f"open a new {shell} and try: calc run <Tab>"]
 
 
-def _added(file: Path, line: str) -> bool:
-    """Add a line to a file unless it stands there; say whether it was added."""
-    present = file.read_text(encoding="utf-8", errors="surrogateescape") if file.is_file() else ""
-    if line in present.splitlines():
-        return False
-    gap = "" if not present or present.endswith("\n") else "\n"
-    with file.open("a", encoding="utf-8", errors="surrogateescape", newline="\n") as stream:
-        stream.write(f"{gap}{line}\n")
-    return True
+def _with_line(file: Path, line: str) -> bytes | None:
+    """Return what a file holds with a line added to it, or None where the line stands there already."""
+    present = file.read_bytes() if file.is_file() else b""
+    if line.encode() in present.splitlines():
+        return None
+    gap = b"" if not present or present.endswith(b"\n") else b"\n"
+    return present + gap + line.encode() + b"\n"
 
 
 def answer_the_shell(app: Callable[..., object]) -> int:

@@ -7,6 +7,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import sys
 import textwrap
 import traceback
@@ -17,6 +18,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TextIO
 
 import typer
 
+from truing.atomic import writings, written
 from truing.errors import InputError, OutputError, TruingError
 
 if TYPE_CHECKING:
@@ -128,11 +130,12 @@ def verb(function: Callable[P, int]) -> Callable[P, None]:
     @functools.wraps(function)
     def guarded(*args: P.args, **kwargs: P.kwargs) -> None:
         settings = settings_of(kwargs.get("context"))
+        before = writings()
         try:
             code = function(*args, **kwargs)
         except KeyboardInterrupt as end:
-            say(str(end) or INTERRUPTED)
-            code = 130
+            say(str(end) or interrupted(before))
+            code = exit_code_of(end)
         except Exception as error:
             if settings.traceback:
                 say(traceback.format_exc().rstrip())
@@ -143,7 +146,25 @@ def verb(function: Callable[P, int]) -> Callable[P, None]:
     return guarded
 
 
-INTERRUPTED = "calc: interrupted; nothing was written"
+class Terminated(KeyboardInterrupt):  # as the interrupt it is
+    """The system has asked this process to end (SIGTERM): what Ctrl-C does, with another exit code."""
+
+
+def hear_termination() -> None:
+    """End as after an interrupt when the system asks for it, so that nothing is left behind."""
+
+    def terminate(number: int, frame: object) -> None:
+        raise Terminated
+
+    signal.signal(signal.SIGTERM, terminate)
+
+
+def interrupted(before: int) -> str:
+    """Say what was written when it was interrupted, of all that followed the first ``before`` writings."""
+    complete = written(before)
+    if not complete:
+        return "calc: interrupted; nothing was written"
+    return f"calc: interrupted; {' and '.join(map(str, complete))} {'is' if len(complete) == 1 else 'are'} complete"
 
 
 def after_output(code: int) -> int:
@@ -154,8 +175,10 @@ def after_output(code: int) -> int:
     return code or OutputError.exit_code
 
 
-def exit_code_of(error: Exception) -> int:
+def exit_code_of(error: BaseException) -> int:
     """Return the exit code of an error; one of the system, as of a disk, is no fault of the program."""
+    if isinstance(error, KeyboardInterrupt):
+        return 143 if isinstance(error, Terminated) else 130
     if isinstance(error, OSError) and error.strerror:
         return OutputError.exit_code
     return error.exit_code if isinstance(error, TruingError) else 3

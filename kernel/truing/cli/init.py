@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from truing.atomic import write_files
 from truing.cli.console import json_text, out, settings_of, verb
 from truing.cli.load import find_offer
 from truing.cli.words import OutputFile, Plugin
@@ -40,7 +40,7 @@ def init(
         files = {output: with_schema_line(text, schema.name), schema: json_text(json_schema(offer), indent=None) + "\n"}
     if not force:
         _demand_new(output, files)
-    _write(files)
+    write_files(files)
     settings.say(f"wrote {' and '.join(map(str, files))}; now: calc run {plugin} --inputs {output}")
     return 0
 
@@ -59,22 +59,3 @@ def _holds(path: Path, content: str) -> bool:
         return path.read_bytes() == content.encode()
     except OSError:
         return False
-
-
-def _write(files: Mapping[Path, str]) -> None:
-    """Write the files, all of them complete or none; raises OutputError."""
-    made: list[Path] = []
-    try:
-        for path, content in files.items():
-            if path.is_dir():
-                raise OutputError(f"{path} cannot be written: it is a folder")
-            made.append(path.with_name(f".{path.name}.part"))
-            made[-1].write_text(content, encoding="utf-8", newline="\n")
-        for part, path in zip(made, files, strict=True):
-            part.replace(path)
-    except OSError as error:
-        raise OutputError(f"{path} cannot be written: {error.strerror}") from None
-    finally:
-        for part in made:
-            with suppress(OSError):
-                part.unlink(missing_ok=True)

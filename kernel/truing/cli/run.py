@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from truing.atomic import writings, written
 from truing.cli.console import Settings, one_line, out, out_json, progress_bar, say, settings_of, verb
 from truing.cli.load import find_offer, read_or_example
 from truing.cli.run_printed import lines_of
@@ -66,16 +67,14 @@ def _told_what_is_kept(order: RunOrder, settings: Settings) -> Iterator[None]:
     """Say of batches that lie there whether they are taken up, and of an interrupt whether they are kept."""
     from truing.runs.partial import is_partial, partial_folder
 
-    kept = partial_folder(order.folder)
+    kept, before = partial_folder(order.folder), writings()
     if not order.resume and is_partial(kept):
         settings.say(f"note: {kept} holds finished batches of an interrupted run; --resume would take them up")
     try:
         yield
-    except KeyboardInterrupt:
-        if order.resume and kept.is_dir():
-            raise KeyboardInterrupt(
-                f"calc: interrupted; finished batches are kept in {kept}, the same command goes on from there"
-            ) from None
+    except KeyboardInterrupt as end:
+        if order.resume and kept.is_dir() and not written(before):
+            end.args = (f"calc: interrupted; finished batches are kept in {kept}, the same command goes on from there",)
         raise
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from truing.atomic import writings, written
 from truing.cli.console import Settings, one_line, out, progress_bar, say, sentence_of, settings_of, verb
 from truing.cli.load import find_offer
 from truing.cli.words import Changed, Excel, Plugin
@@ -56,9 +57,10 @@ def watch(
             watcher.run(offer)
             watched.add(watcher.files(offer))
             offer = watcher.loaded_anew(offer, watched.changed())
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as end:
         if watcher.calculating:
-            raise KeyboardInterrupt(f"calc: interrupted in the middle of a run; {watcher.what_stays()}") from None
+            end.args = (f"calc: interrupted in the middle of a run; {watcher.what_stays()}",)
+            raise
         settings.say(f"calc: watched {watcher.runs} run{'s' * (watcher.runs != 1)}; {watcher.what_stays()}")
         return 0 if watcher.passed else 1
 
@@ -88,6 +90,7 @@ class _Watcher:
     looks: int = LOOKS
     calculating: bool = False
     passed: bool = False
+    before: int = 0
 
     def files(self, offer: Offer) -> list[Path]:
         """Return everything whose change asks for another run."""
@@ -124,7 +127,7 @@ class _Watcher:
 
         if self.broken:
             return
-        started, self.calculating = time.monotonic(), True
+        started, self.before, self.calculating = time.monotonic(), writings(), True
         try:
             setup = read_setup(self.inputs, offer, overrides=self.overrides)
             with progress_bar(self.settings) as progress, told_by_line(setup):
@@ -166,6 +169,8 @@ class _Watcher:
 
     def what_stays(self) -> str:
         """Say which sheet is there."""
+        if self.calculating and written(self.before):
+            return "its sheet is complete"
         return f"the sheet of {self.made_at} stays" if self.made_at else "there is no sheet yet"
 
 

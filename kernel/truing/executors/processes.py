@@ -5,9 +5,12 @@ from __future__ import annotations
 import os
 import signal
 import threading
-from collections.abc import Callable
-from concurrent.futures import Future
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError, Future
 from concurrent.futures.process import BrokenProcessPool, ProcessPoolExecutor
+from contextlib import contextmanager
+from functools import partial
+from types import TracebackType
 from typing import Any
 
 from truing.errors import LostWorkersError
@@ -29,8 +32,11 @@ class ProcessExecutor(Place):
         self._pool = self._new_pool()
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Hand a call to a worker."""
-        return self._pool.submit(function, *args, **kwargs)
+        """Hand a call to a worker, which may start for it."""
+        answer: Future[Any] = Future()
+        with _interrupts_held_back():
+            self._pool.submit(function, *args, **kwargs).add_done_callback(partial(_hand_on, answer))
+        return answer
 
     def is_loss(self, error: BaseException) -> bool:
         """Tell whether a worker ended without an answer."""
@@ -56,6 +62,15 @@ class ProcessExecutor(Place):
             "the results are the same"
         ]
 
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """End the workers; where this process has failed or is interrupted, nobody waits for what they compute."""
+        if error is not None:
+            for process in list((self._pool._processes or {}).values()):
+                process.terminate()
+        self.shutdown(cancel_futures=error is None)
+
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """End the workers."""
         self._pool.shutdown(wait=wait, cancel_futures=cancel_futures)
@@ -65,6 +80,37 @@ class ProcessExecutor(Place):
 
         context = multiprocessing.get_context("spawn")
         return ProcessPoolExecutor(self.workers, mp_context=context, initializer=_depend_on_the_parent)
+
+
+def _hand_on(answer: Future[Any], own: Future[Any]) -> None:
+    """Give what the pool has answered to whoever waits, unless nobody does.
+
+    The pool's own futures are never cancelled one by one: it fails where workers end while some are.
+    """
+    if not answer.set_running_or_notify_cancel():
+        return
+    error = CancelledError() if own.cancelled() else own.exception()
+    if error is not None:
+        answer.set_exception(error)
+    else:
+        answer.set_result(own.result())
+
+
+@contextmanager
+def _interrupts_held_back() -> Iterator[None]:
+    """Hear an interrupt after the block; a worker that starts in it hears none in all its life.
+
+    An interrupt from a terminal goes to all processes, and a worker that starts has not yet said that it leaves it to
+    its parent.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _depend_on_the_parent() -> None:

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import csv
 import math
-import os
 import re
-import tempfile
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
 from typing import Any, TextIO
 
-from truing.errors import OutputError
+from truing.atomic import write_files
 from truing.measurements.cell_text import MARK, guarded
 
 
@@ -40,44 +37,12 @@ def write_table(
     """Write columns under headers such as "depth [um]"; the numbers are in these units already.
 
     Numbers are written so that they read back exactly (at most 17 digits), NaN and None as empty cells; words stay as
-    they are, line ends in them become blanks. A path is written atomically. Raises OutputError where it cannot be
-    written.
+    they are, line ends in them become blanks. A file is written whole or not at all. Raises OutputError.
     """
-    if not isinstance(target, Path):
+    if isinstance(target, Path):
+        write_files({target: table_text(headers, columns, form=form)})
+    else:
         _write(target, headers, columns, form)
-        return
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(f"{target}: cannot be written: {error.strerror or error}") from error
-    with written_whole(target, newline="") as stream:
-        _write(stream, headers, columns, form)
-
-
-@contextmanager
-def written_whole(target: Path, *, newline: str) -> Iterator[TextIO]:
-    """Give a stream whose text becomes a file when all of it is written, and none before. Raises OutputError."""
-    try:
-        handle, name = tempfile.mkstemp(dir=target.absolute().parent, prefix=f".{target.name[:40]}.", suffix=".part")
-    except OSError as error:
-        raise OutputError(f"{target}: cannot be written: {error.strerror or error}") from error
-    part = Path(name)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline=newline) as stream:
-            yield stream
-        part.chmod(0o666 & ~umask())
-        part.replace(target)
-    except OSError as error:
-        raise OutputError(f"{target}: cannot be written: {error.strerror or error}") from error
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def umask() -> int:
-    """Return what this process takes from the permissions of new files; temporary ones are made without them."""
-    mask = os.umask(0o022)
-    os.umask(mask)
-    return mask
 
 
 def table_text(headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form: Form = PLAIN) -> str:

@@ -10,10 +10,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from truing.atomic import place_folder, write_files
 from truing.errors import OutputError
 from truing.report.markdown import escaped
 from truing.report.templates import template_folder
-from truing.runs.folder import place_folder
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -106,17 +106,6 @@ def write_single_file(path: Path, text: str) -> None:
     """Write one file that is not there yet. Raises OutputError where it is, or where it cannot be written."""
     if path.is_dir():
         raise OutputError(f"{path}: is a folder; name the file with --output")
-    is_ours = False
-    try:
-        if not path.parent.is_dir():
-            path.parent.mkdir(parents=True)
-        with path.open("x", encoding="utf-8", newline="\n") as stream:
-            is_ours = True
-            stream.write(text)
-    except FileExistsError as error:
-        what = "is there already" if path.exists() else f"{error.filename} is a file and no folder"
-        raise OutputError(f"{path}: {what}; name another file with --output") from None
-    except OSError as error:
-        if is_ours:
-            path.unlink(missing_ok=True)
-        raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error
+    if path.exists():
+        raise OutputError(f"{path}: is there already; name another file with --output")
+    write_files({path: text})

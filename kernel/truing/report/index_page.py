@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+from truing.atomic import write_files
 from truing.errors import OutputError
-from truing.measurements.writing import written_whole
 from truing.numbers import ABSENT, format_number, pretty, with_unit
 from truing.report.context import Head
 from truing.report.render import page
@@ -147,9 +147,7 @@ def listing_document(listing: Listing) -> dict[str, Any]:
 def write_index(place: Path, listing: Listing) -> None:
     """Write the page, whole or not at all; one of ours is replaced. Raises OutputError where another file is there."""
     _demand_ours(place)
-    text = index_html(listing, place)
-    with written_whole(place, newline="\n") as stream:
-        stream.write(text)
+    write_files({place: index_html(listing, place)})
 
 
 def _demand_ours(place: Path) -> None:

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
-import tempfile
 import zipfile
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from truing.atomic import place_folder, recover
 from truing.errors import OutputError, UnknownPluginError
-from truing.measurements.writing import umask
 from truing.runs.documents import SCHEMA, large_arrays, results_document
 from truing.runs.inputs_written import complete_inputs
 from truing.runs.spreadsheet import spreadsheets
@@ -112,9 +109,10 @@ def is_run(folder: Path) -> bool:
 def demand_place(folder: Path, kind: Kind = "run") -> None:
     """Raise OutputError, with one sentence, unless a run (a diagnosis) can be put at ``folder``; nothing is written.
 
-    To be asked before a long calculation begins.
+    To be asked before a long calculation begins. What a death has left beside the folder is cleared up.
     """
     try:
+        recover(folder)
         _demand_place(folder, kind)
     except OSError as error:
         raise OutputError(f"{folder}: cannot be used for the {kind}: {error.strerror or error}") from None
@@ -149,82 +147,6 @@ def write_folder(folder: Path, files: Mapping[str, str | bytes], kind: Kind = "r
     """Write files into a folder that appears complete or not at all; an earlier one of its kind is replaced whole."""
     demand_place(folder, kind)
     place_folder(folder, files, kind)
-
-
-def place_folder(folder: Path, files: Mapping[str, str | bytes], what: str) -> None:
-    """Write files, by their paths inside, into a folder that appears complete or not at all; ``what`` it will be.
-
-    A folder that is there is replaced whole: ask first. An empty one stays where it is and is filled, so that whoever
-    works in it goes on doing so. Raises OutputError where nothing can be written.
-    """
-    target = folder.resolve() if folder.is_symlink() else folder.absolute()
-    is_filled = target.is_dir() and not any(target.iterdir())
-    try:
-        with _made_parents(target.parent), _beside(target / target.name if is_filled else target) as part:
-            for name, content in files.items():
-                (part / name).parent.mkdir(parents=True, exist_ok=True)
-                (part / name).write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
-            if is_filled:
-                _fill(target, part)
-            else:
-                _put_in_place(part, target)
-    except OSError as error:
-        raise OutputError(f"{folder}: the {what} cannot be written: {error.strerror or error}") from error
-
-
-def _fill(target: Path, part: Path) -> None:
-    """Move everything into an empty folder, or nothing."""
-    names = [item.name for item in part.iterdir()]
-    try:
-        for name in names:
-            (part / name).rename(target / name)
-    except BaseException:
-        for name in names:
-            if not (part / name).exists():
-                (target / name).rename(part / name)
-        raise
-
-
-@contextmanager
-def _made_parents(parent: Path) -> Iterator[None]:
-    """Make the folders above; those that were made go again if the run does not get there."""
-    missing = [place for place in (parent, *parent.parents) if not place.exists()]
-    try:
-        parent.mkdir(parents=True, exist_ok=True)
-        yield
-    except BaseException:
-        for place in missing:
-            with suppress(OSError):
-                place.rmdir()
-        raise
-
-
-@contextmanager
-def _beside(target: Path) -> Iterator[Path]:
-    """Give a temporary folder beside the target, which is gone afterwards whatever happens."""
-    part = Path(tempfile.mkdtemp(prefix=f".{target.name[:40]}.", suffix=".part", dir=target.parent))
-    try:
-        part.chmod(0o777 & ~umask())
-        yield part
-    finally:
-        if part.exists():
-            shutil.rmtree(part, ignore_errors=True)
-
-
-def _put_in_place(part: Path, target: Path) -> None:
-    """Move an earlier run aside, the new one in, and only then delete the earlier one."""
-    if not target.exists():
-        part.rename(target)
-        return
-    aside = part.with_name(part.name.removesuffix(".part") + ".old")
-    try:
-        target.rename(aside)
-        part.rename(target)
-    except BaseException:
-        if aside.exists() and not target.exists():
-            aside.rename(target)
-        raise
-    shutil.rmtree(aside, ignore_errors=True)
 
 
 def load_run(folder: Path) -> dict[str, Any]:
