@@ -216,7 +216,7 @@ TORQUE: list[Effect[Gearing, Strength]] = [
         "wear_drift",
         on_results=wear_drift,
         needs=[TIME],
-        unknowns=[Unknown("rate", 0, 50, "um/(1000*h)", note="that each loaded flank loses")],
+        unknowns=[Unknown("rate", 0, 50, "nm/h", note="that each loaded flank loses")],
         looks_like="transmission error drifts with the hours, to the side of the torque; the backlash grows twice as "
         "fast",
         why="flanks wear, or peel by micropitting",
