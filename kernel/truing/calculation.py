@@ -15,8 +15,8 @@ from truing.evaluate import acting_inputs, answered, evaluate
 from truing.executors import open_executor
 from truing.prices import price_answers
 from truing.setup import Setup, SwitchedOn
-from truing.studies.bench import Bench, Check, Outcome, Progress, silent
-from truing.studies.checks import plain_checks
+from truing.studies.bench import Bench, Check, Outcome, Progress, State, silent
+from truing.studies.verdicts import Decided, decide
 
 
 @dataclass(frozen=True)
@@ -27,15 +27,20 @@ class Calculation:
     results: Any
     answers: Mapping[str, Any]
     outcomes: Mapping[str, Outcome]
-    checks: tuple[Check, ...]
+    decided: Decided
     warnings: tuple[str, ...]
     failed: tuple[tuple[int, str], ...] = field(default=())
     absent: Mapping[str, str] = field(default_factory=dict)
 
     @property
-    def passed(self) -> bool:
-        """Whether every check on the sheet holds."""
-        return all(check.passed for check in self.checks)
+    def checks(self) -> tuple[Check, ...]:
+        """Every limit with its state."""
+        return self.decided.checks
+
+    @property
+    def verdict(self) -> State:
+        """The worst state of all checks."""
+        return self.decided.verdict
 
     @cached_property
     def record(self) -> Record[Any, Any]:
@@ -74,18 +79,10 @@ def calculate(setup: Setup, *, executor: Executor | None = None, progress: Progr
         results=results,
         answers=answers,
         outcomes=outcomes,
-        checks=tuple(_checks(setup, answers, outcomes)),
+        decided=decide(setup, answers, outcomes),
         warnings=tuple(_warnings(setup, outcomes)),
         absent=first.absent,
     )
-
-
-def _checks(setup: Setup, answers: Mapping[str, Any], outcomes: Mapping[str, Outcome]) -> list[Check]:
-    """Plain limits first; a chance that two studies decide is the last one's word (allocation after reliability)."""
-    checks = {check.name: check for check in plain_checks(setup, dict(answers))}
-    for outcome in outcomes.values():
-        checks.update({check.name: check for check in outcome.checks()})
-    return list(checks.values())
 
 
 def _warnings(setup: Setup, outcomes: Mapping[str, Outcome]) -> list[str]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from truing.calculation import Calculation, calculate
-from truing.declare.goals import Require
+from truing.declare.model import Study
 from truing.errors import Fault, InputError, UsageError
 from truing.evaluate import evaluate_rows
 from truing.executors import SerialExecutor, in_order, open_executor
@@ -16,11 +16,23 @@ from truing.measurements import Case
 from truing.packed import Packed, pack, travels, unpack
 from truing.prices import price_answers
 from truing.setup import Setup
-from truing.studies.bench import FINE, Check, Progress, silent, within
-from truing.studies.checks import plain_checks
+from truing.studies.allocation import Allocation
+from truing.studies.bench import FINE, Check, Progress, State, silent, within
+from truing.studies.checks import requirements
+from truing.studies.optimise import Optimise
+from truing.studies.reliability import Reliability
+from truing.studies.sensitivity import Sensitivity
+from truing.studies.surrogate import Surrogate
+from truing.studies.sweep import Sweep
+from truing.studies.verdicts import Decided, decide, worst
 
 BLOCK = 2**10
 """How many cases one array call calculates."""
+UNDECIDED = Decided(())
+"""What is decided of a case that cannot be calculated."""
+DECIDE_NOTHING = (Optimise, Sensitivity, Surrogate, Sweep)
+DECIDE_CHANCES = (Allocation, Reliability)
+"""Studies that decide no other limits than those on a chance."""
 
 
 @dataclass(frozen=True)
@@ -29,8 +41,18 @@ class CaseResult:
 
     case: Case
     answers: Mapping[str, Any]
-    checks: tuple[Check, ...] = ()
+    decided: Decided = UNDECIDED
     reason: str | None = None
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """Its limits, each with its state."""
+        return self.decided.checks
+
+    @property
+    def verdict(self) -> State:
+        """The worst state of its checks; a case that cannot be calculated fails."""
+        return self.decided.verdict if self.reason is None else "fails"
 
     @property
     def row(self) -> int:
@@ -49,8 +71,8 @@ class CaseResult:
 
     @property
     def margin(self) -> float:
-        """The smallest margin of its checks; infinite where there are none."""
-        return min((check.margin for check in self.checks), default=float("inf"))
+        """The smallest margin of its checks that are decided; infinite where there are none."""
+        return min((check.margin for check in self.checks if not check.undecided), default=float("inf"))
 
     @property
     def fault(self) -> Fault:
@@ -76,9 +98,12 @@ class CasesTable:
         return tuple((case.row, case.reason) for case in self.cases if case.reason is not None)
 
     @property
-    def passed(self) -> bool:
-        """Whether every case could be calculated and keeps its limits."""
-        return not self.failed and all(check.passed for case in self.cases for check in case.checks)
+    def verdict(self) -> State:
+        """The worst verdict of all cases; where they pass with different changes only, no single design passes."""
+        found = worst(case.verdict for case in self.cases)
+        needed = {case.decided.proposal for case in self.cases if case.verdict == "proposed"}
+        changes = {one.changes for one in needed if one is not None}
+        return "fails" if found == "proposed" and len(changes) > 1 else found
 
 
 def case_setup(setup: Setup, case: Case) -> Setup:
@@ -91,13 +116,14 @@ def run_cases(
 ) -> tuple[Calculation, CasesTable]:
     """Calculate every case and, in full with its studies, the governing one.
 
-    Limits that studies decide need the studies of each case; without such limits cases are calculated in array calls of
-    fixed length. Either is shared out by ``executor``. Raises InputError with every reason and its line when no case
+    Limits that studies decide, and results that they give, need the studies of each case, up to the last that decides
+    or gives; where there are none cases are calculated in array calls of fixed length. Either is shared out by
+    ``executor``. Raises InputError with every reason and its line when no case
     can be calculated.
     """
     cases = _completed(setup, cases)
-    one_by_one = _studies_decide(setup)
-    done = (_one_by_one if one_by_one else _in_blocks)(setup, cases, executor, progress)
+    of_each = replace(setup, studies=_studies_of_each(setup))
+    done = (_one_by_one if of_each.studies else _in_blocks)(of_each, cases, executor, progress)
     while alive := [place for place, case in enumerate(done) if case.reason is None]:
         governing = min(alive, key=lambda place: done[place].margin)
         try:
@@ -117,12 +143,13 @@ def _completed(setup: Setup, cases: Sequence[Case]) -> list[Case]:
     return [replace(case, values={**kept, **case.values}) for case in cases]
 
 
-def _studies_decide(setup: Setup) -> bool:
-    """Tell whether a limit is one on a chance, or on a result that a study gives."""
-    running = {study.name for study in setup.studies}
-    given = {name for study, names in setup.model.study_result_fields.items() if study in running for name in names}
-    limits_ = [item for item in setup.model.objectives if isinstance(item, Require)]
-    return bool(running) and any(item.reliability is not None or item.result in given for item in limits_)
+def _studies_of_each(setup: Setup) -> tuple[Study, ...]:
+    """Return the studies that every case runs: up to the last that gives results, or that may decide a limit."""
+    by_chance = any(item.reliability is not None for item in requirements(setup))
+    silent_ones = DECIDE_NOTHING if by_chance else (*DECIDE_NOTHING, *DECIDE_CHANCES)
+    needed = [study.gives is not None or not isinstance(study, silent_ones) for study in setup.studies]
+    last = max((number for number, is_needed in enumerate(needed, start=1) if is_needed), default=0)
+    return tuple(setup.studies[:last])
 
 
 def _one_by_one(setup: Setup, cases: Sequence[Case], executor: Executor, progress: Progress) -> list[CaseResult]:
@@ -141,13 +168,13 @@ def _one_by_one(setup: Setup, cases: Sequence[Case], executor: Executor, progres
         )
     done = []
     progress("cases", 0, FINE)
-    for case, (found, checks, reason) in zip(cases, answers, strict=True):
-        done.append(CaseResult(case, found, checks, reason))
+    for case, (found, decided, reason) in zip(cases, answers, strict=True):
+        done.append(CaseResult(case, found, decided, reason))
         progress("cases", round(FINE * len(done) / len(cases)), FINE)
     return done
 
 
-Answer = tuple[Mapping[str, Any], tuple[Check, ...], str | None]
+Answer = tuple[Mapping[str, Any], Decided, str | None]
 
 
 def _packed_case(packed: Packed) -> Answer:
@@ -166,8 +193,8 @@ def _case_answer(setup: Setup, executor: Executor, progress: Progress = silent) 
     try:
         found = calculate(setup, executor=executor, progress=progress)
     except UsageError as error:  # impossible, or a tolerance that its size outgrows
-        return {}, (), str(error)
-    return found.answers, found.checks, None
+        return {}, UNDECIDED, str(error)
+    return found.answers, found.decided, None
 
 
 def _in_blocks(setup: Setup, cases: Sequence[Case], executor: Executor, progress: Progress) -> list[CaseResult]:
@@ -213,7 +240,7 @@ def _checked(case: Case, setup: Setup, answers: Mapping[str, Any]) -> CaseResult
         known = {**answers, **price_answers(setup)}
     except UsageError as error:  # a tolerance that its size outgrows
         return CaseResult(case, {}, reason=str(error))
-    return CaseResult(case, known, tuple(plain_checks(setup, known)))
+    return CaseResult(case, known, decide(setup, known, {}))
 
 
 def _plain(value: Any) -> Any:

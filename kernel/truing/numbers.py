@@ -13,6 +13,8 @@ ABSENT = "–"
 
 CLOSE = frozenset({"°", "′", "″", "'"})
 RESULT_DIGITS = 5
+MOST_DECIMALS = 12
+"""A probability in per cent has no more: what a double holds."""
 STATED_DIGITS = 10
 _NUMBER = re.compile(r"(?P<minus>-?)(?P<digits>\d[\d.]*)(?:e(?P<sign>[+-]?)0*(?P<exponent>\d+))?", re.ASCII)
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -38,6 +40,17 @@ def format_number(value: Any, digits: int = 4) -> str:
         return _with_exponent(number, digits)
     before = math.floor(math.log10(abs(rounded))) + 1
     text = f"{number:.{max(digits - before, 0)}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def format_chance(value: float, digits: int = 4) -> str:
+    """Write a probability in per cent, with so many digits of its distance from 0 or 100 %: 99.705, 56.6, 99.99968."""
+    share = 100.0 * value
+    rest = min(abs(share), abs(100.0 - share))
+    if not math.isfinite(share) or rest == 0:
+        return format_number(share)
+    decimals = min(max(digits - 1 - math.floor(math.log10(rest)), 0), MOST_DECIMALS)
+    text = f"{share:.{decimals}f}"
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 

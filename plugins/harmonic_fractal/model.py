@@ -44,7 +44,7 @@ HARMONIC_FRACTAL = Model(
     function=harmonic_fractal,
     errors=[*TOLERANCES, *EFFECTS],
     objectives=[
-        Require("surface_accepted", at_least="1"),
+        Require("surface_accepted", at_least="yes"),
         Require("stiffness", at_least="required_stiffness", reliability="required_reliability"),
         Vary("fractal_dimension", "2.2", "2.7"),
         Vary("fractal_roughness", "1e-12 m", "1e-10 m"),

@@ -88,11 +88,11 @@ def test_what_is_no_run_is_refused(runs: Calc, tmp_path: Path, content: str | No
 
 def test_a_name_that_one_run_lacks() -> None:
     before = {"results": {"a": {"value": 1.0, "unit": ""}}, "checks": [], "seed": 1}
-    after = {"results": {"b": {"value": 1.0, "unit": ""}}, "checks": [{"name": "c", "passed": True}], "seed": 1}
+    after = {"results": {"b": {"value": 1.0, "unit": ""}}, "checks": [{"name": "c", "state": "passes"}], "seed": 1}
     assert changes(before, after) == [
         Change("results", "a", {"value": 1.0, "unit": ""}, None),
         Change("results", "b", None, {"value": 1.0, "unit": ""}),
-        Change("checks", "c", None, {"passed": True}),
+        Change("checks", "c", None, {"state": "passes"}),
     ]
 
 
@@ -147,9 +147,9 @@ def test_by_how_much(before: Any, after: Any, words: str) -> None:
     assert amount_of(Change("inputs", "x", before, after)) == words
 
 
-@pytest.mark.parametrize("passed", [True, False])
-def test_a_check_that_one_run_lacks_did_not_flip(passed: bool) -> None:
-    check = {"value": 5.0, "limit": 8.0, "unit": "mm", "margin": 0.375, "passed": passed}
+@pytest.mark.parametrize("state", ["passes", "fails"])
+def test_a_check_that_one_run_lacks_did_not_flip(state: str) -> None:
+    check = {"value": 5.0, "limit": 8.0, "unit": "mm", "margin": 0.375, "state": state}
     gone, new = Change("checks", "depth", check, None), Change("checks", "depth", None, check)
     assert (gone.flipped, amount_of(gone)) == (False, "gone")
     assert (new.flipped, amount_of(new)) == (False, "new")
@@ -169,7 +169,7 @@ def test_what_is_long_or_nested_stays_short() -> None:
 
 
 def test_a_limit_that_moved_is_said() -> None:
-    check = {"value": 5.0, "limit": 8.0, "unit": "mm", "margin": 0.375, "passed": True}
+    check = {"value": 5.0, "limit": 8.0, "unit": "mm", "margin": 0.375, "state": "passes"}
     change = Change("checks", "depth", check, {**check, "limit": 6.0, "margin": 1 / 6})
     assert amount_of(change) == "limit 8 -> 6"
 

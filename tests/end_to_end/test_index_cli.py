@@ -40,7 +40,7 @@ def test_a_run_is_listed_with_what_matters_most(listed: dict[str, Any]) -> None:
         "run", "press", "1.2", "2026-11-02 08:00",
     )  # fmt: skip
     assert first["head"] == {"project": "Werk Nord", "drawing": "D-9"}
-    assert (first["verdict"], first["passed"], first["checks"], first["failed"]) == ("passes", True, 2, 0)
+    assert (first["verdict"], first["state"], first["checks"], first["failed"]) == ("passes", "passes", 2, 0)
     assert [one["name"] for one in first["findings"]] == ["shift", "tilt"]
     assert first["margin"] == 0.05
     deep = listed["later/deep"]
@@ -50,7 +50,7 @@ def test_a_run_is_listed_with_what_matters_most(listed: dict[str, Any]) -> None:
 
 def test_a_run_without_limits_shows_its_first_results(listed: dict[str, Any]) -> None:
     free = listed["no_limits"]
-    assert (free["verdict"], free["passed"], free["margin"]) == ("no limits", None, None)
+    assert (free["verdict"], free["state"], free["margin"]) == ("no limits", None, None)
     assert [(one["name"], one["value"], one["unit"]) for one in free["findings"]] == [("stroke", 12.5, "mm")]
 
 
@@ -129,10 +129,10 @@ def test_cases_count_each_and_the_least_margin_is_that_of_all(calc: Calc, tmp_pa
         {"row": 2, "checks": [check("tilt", 9.8, 10.0, 0.02)], "failed": None},
         {"row": 3, "checks": [], "failed": "the rod cannot reach"},
     ]
-    run(tmp_path / "runs" / "many", check("tilt", 9.8, 10.0, 0.02), cases=cases)
+    run(tmp_path / "runs" / "many", check("tilt", 9.8, 10.0, 0.02), cases=cases, verdict="fails")
     (entry,) = json.loads(calc("index", "--json", "-q").out)["entries"]
     assert (entry["cases"], entry["checks"], entry["margin"]) == (3, 2, 0.02)
-    assert (entry["verdict"], entry["passed"]) == ("fails: a case", False)
+    assert (entry["verdict"], entry["state"]) == ("fails: a case", "fails")
 
 
 @pytest.mark.parametrize(

@@ -19,12 +19,16 @@ def written(folder: Path, name: str, document: Any) -> None:
 
 def check(name: str, value: float, limit: float, margin: float, unit: str = "mm") -> dict[str, Any]:
     """One check of results.json."""
-    return {"name": name, "value": value, "limit": limit, "unit": unit, "margin": margin, "passed": margin >= 0}
+    state, relation = ("passes" if margin >= 0 else "fails"), "≤" if (limit - value) * margin >= 0 else "≥"
+    numbers = {"name": name, "value": value, "limit": limit, "unit": unit, "margin": margin}
+    return {**numbers, "compared": name, "relation": relation, "state": state, "passed": margin >= 0}
 
 
 def run(folder: Path, *checks: dict[str, Any], date: str = "", head: str = "", **more: Any) -> None:
     """Write what the index reads of a run."""
+    states = [one["state"] for one in checks]
     document = {
+        "verdict": "fails" if "fails" in states else "passes",
         "schema": "truing.results/1", "plugin": {"name": "press", "version": "1.2", "model": "press"}, "kernel": "0.1",
         "results": {"stroke": {"value": 12.5, "unit": "mm"}}, "checks": list(checks), "warnings": [], **more,
     }  # fmt: skip

@@ -74,7 +74,7 @@ def test_the_smallest_margin_governs(model: Model[Any, Any]) -> None:
     assert table.governing == 1
     assert [case.answers["pressure"] / 1e6 for case in table.cases] == pytest.approx([5, 82, 10])
     assert [all(check.passed for check in case.checks) for case in table.cases] == [True, False, True]
-    assert not table.passed
+    assert table.verdict == "fails"
     assert table.failed == ()
     assert table.varied == ("load",)
 
@@ -86,7 +86,7 @@ def test_a_case_that_is_impossible_keeps_its_reason(model: Model[Any, Any]) -> N
     assert table.failed == ((1, reason),)
     assert table.cases[0].answers == {}
     assert str(table.cases[0].fault) == f"cases.csv:2: {reason}"
-    assert not table.passed
+    assert table.verdict == "fails"
     assert table.governing == 1
     assert table.varied == ("load", "speed")
 
@@ -113,7 +113,7 @@ def test_a_limit_on_what_a_study_gives_is_asked_in_every_case() -> None:
 def test_cases_without_limits_are_governed_by_the_first() -> None:
     table = run(replace(PLAIN, objectives=[]), {"load": 280.0}, {"load": 140.0})
     assert table.governing == 0
-    assert table.passed
+    assert table.verdict == "passes"
     assert [case.margin for case in table.cases] == [float("inf")] * 2
 
 

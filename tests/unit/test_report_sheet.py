@@ -188,8 +188,8 @@ def test_inputs_say_whether_they_are_stated(html: str) -> None:
 
 
 def test_checks_are_told_by_words_and_not_by_colour(html: str) -> None:
-    rows = re.findall(r'<tr class="(passed|broken)">.*?</tr>', html, re.DOTALL)
-    assert rows == ["passed", "broken", "passed"]
+    rows = re.findall(r'<tr class="(passes|fails)">.*?</tr>', html, re.DOTALL)
+    assert rows == ["passes", "fails", "passes"]
     text = Page(html).text
     assert text.count("✓ pass") == 2
     assert text.count("✗ FAIL") == 1
@@ -341,7 +341,7 @@ def test_cases_are_listed_and_the_governing_one_is_marked(offer: Offer, tmp_path
     table = next(block for chapter in sheet.chapters if chapter.title == "Cases" for block in chapter.blocks)
     assert [row[:2] for row in table.rows] == [("light", "60"), ("heavy <b>", "200"), ("middle", "120")]  # type: ignore[union-attr]
     assert table.marked == 1  # type: ignore[union-attr]
-    assert sheet.verdict == "3 of 3 cases fail; the governing case is heavy <b>."
+    assert sheet.banner.text == "3 of 3 cases fail; the governing case is heavy <b>."
     assert "heavy &lt;b&gt;" in html_of(sheet)
     assert "**heavy &lt;b&gt;**" in markdown_of(sheet)
 

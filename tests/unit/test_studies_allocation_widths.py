@@ -358,6 +358,6 @@ def test_results_json_and_sheet() -> None:
     assert read["least_cost"]["cost"] == read["cost"]
     titles = [block.title for block in answer.blocks() if isinstance(block, Table)]
     assert titles == ["In force and at least cost", "The widths of least cost"]
-    assert {check.note for check in answer.checks() if check.name == "end"} == {
-        "with the tolerances after the allocation"
-    }
+    (proposal,) = answer.proposals()
+    assert {name for name, *_ in proposal.changes} == {"a", "b", "c"}
+    assert [check.name for check in proposal.checks] == [check.name for check in answer.checks()]

@@ -8,6 +8,7 @@ from typing import Any
 from truing.cli.coloured import BAD, GOOD, NEW, OLD
 from truing.cli.console import one_line
 from truing.runs.comparison import Change, differing, number_in
+from truing.studies.verdicts import EXIT_CODES, SHORT
 
 LONGEST = 60
 ABSENT = "-"
@@ -45,7 +46,8 @@ def styles_of(change: Change) -> tuple[str, str, str, str, str]:
 def _is_better(change: Change) -> bool | None:
     """Tell whether a check has more left than before; None where that cannot be said."""
     if change.flipped:
-        return bool(change.after["passed"])
+        states = list(EXIT_CODES)
+        return states.index(change.after["state"]) < states.index(change.before["state"])
     if not isinstance(change.before, Mapping) or not isinstance(change.after, Mapping):
         return None
     before, after = change.before.get("margin"), change.after.get("margin")
@@ -70,7 +72,7 @@ def _is_study(change: Change) -> bool:
 
 
 def _flip(change: Change) -> str:
-    return ("now passes" if change.after["passed"] else "now FAILS") if change.flipped else ""
+    return f"now {'passes' if change.after['passed'] else SHORT[change.after['state']]}" if change.flipped else ""
 
 
 def _moved(change: Change) -> str:
@@ -166,12 +168,17 @@ def _value(value: Any) -> str:
         number = value["value"]
         is_number = isinstance(number, (int, float)) and not isinstance(number, bool)
         said = f"{format_number(number, 8) if is_number else number} {value.get('unit') or ''}".strip()
-        return _short(said if value.get("passed", True) else said + " (fails)")
+        return _short(_with_state(said, value.get("state", "passes")))
     if isinstance(value, dict) and {"name", "version", "model"} <= value.keys():
         return _short(f"{value['model']} {value['version']}")
     if isinstance(value, dict) and all(isinstance(item, dict) for item in value.values()):
         return _short(", ".join(f"{name} = {_value(item)}" for name, item in value.items()), 2 * LONGEST)
     return _short(str(value))
+
+
+def _with_state(said: str, state: str) -> str:
+    words = {"proposed": "not as stated", "undecided": "undecided", "fails": "fails"}
+    return f"{said} ({words[state]})" if state in words else said
 
 
 def _short(text: str, longest: int = LONGEST) -> str:

@@ -150,7 +150,9 @@ def _check_words(limit: Told) -> str:
 
     check = limit["check"]
     if check is None:
-        return "calc run decides it" if limit["chance"] else ""
+        return ""
+    if check["state"] == "undecided":
+        return "calc run decides it"
     value = f"{format_number(check['value'], 5)} {unit_text(check['unit'])}".strip()
     verdict = "passes" if check["passed"] else "FAILS"
     return f"{value} {verdict}, margin {format_number(check['margin'], 3)}"

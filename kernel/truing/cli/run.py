@@ -15,6 +15,7 @@ from truing.cli.load import find_offer, read_or_example
 from truing.cli.run_printed import lines_of
 from truing.cli.words import AsJson, Changed, Excel, Plugin
 from truing.errors import UsageError
+from truing.studies.verdicts import EXIT_CODES
 
 if TYPE_CHECKING:
     from truing.report.run import Done, RunOrder
@@ -59,7 +60,7 @@ def run(
         out_json(done.document)
     else:
         out("\n".join(lines_of(done, folder, with_titles=not settings.quiet)))
-    return 0 if done.passed else 1
+    return EXIT_CODES[done.verdict]
 
 
 @contextmanager

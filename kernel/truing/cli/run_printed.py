@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import islice
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from truing.cli.console import aligned, columns, one_line
+from truing.studies.verdicts import EXIT_CODES, HEADLINES, SHORT, change_words, sentence_of
 
 if TYPE_CHECKING:
     from truing.calculation import Calculation
     from truing.cases import CaseResult, CasesTable
+    from truing.report.context import Value
     from truing.report.run import Done
     from truing.setup import Setup
+    from truing.studies.verdicts import Decided
 
 MOST_CASES = 40
 
@@ -31,16 +35,22 @@ def lines_of(done: Done, folder: Path, *, with_titles: bool) -> Iterator[str]:
     yield from _absent_lines(calculation)
     if calculation.checks:
         yield ""
-        head = ("check", "value", "limit", "unit", "margin", "", "")
-        yield columns([head, *_check_rows(calculation)], right=(1, 2, 4))
+        yield _checks(calculation)
     yield ""
-    broken = [one_line(check.name) for check in calculation.checks if not check.passed]
-    if broken:
-        count = f"{len(broken)} of {len(calculation.checks)} checks"
-        yield f"{count} FAIL: {', '.join(broken)} (exit code 1; the sheet shows why)"
+    yield from _verdict_lines(calculation.decided)
     yield f"sheet: {folder / 'sheet.html'}"
     for outcome in calculation.outcomes.values():
         yield from (f"beside it: {folder / name}" for name in files_of(outcome))
+
+
+def _verdict_lines(decided: Decided) -> Iterator[str]:
+    """Say which limits are not kept as stated, and what would have to change."""
+    if decided.verdict == "passes":
+        return
+    code = EXIT_CODES[decided.verdict]
+    yield one_line(f"{HEADLINES[decided.verdict]}: {sentence_of(decided)} (exit code {code})")
+    if decided.verdict == "proposed" and decided.proposal is not None:
+        yield one_line(f"changed: {change_words(decided.proposal)}")
 
 
 def _cases_lines(cases: CasesTable, setup: Setup) -> Iterator[str]:
@@ -61,8 +71,8 @@ def _case_row(case: CaseResult, setup: Setup, *, governs: bool) -> tuple[str, ..
         one_line(value) if isinstance(value, (str, bool)) else format_value(value, setup.print_unit(name))[0]
         for name, value in case.values.items()
     ]
-    margin = format_number(case.margin, 3) if case.checks else "–"
-    verdict = "failed" if case.reason else "pass" if all(check.passed for check in case.checks) else "FAILS"
+    margin = f"{format_number(100 * case.margin, 3)} %" if isfinite(case.margin) else "–"
+    verdict = "failed" if case.reason else SHORT[case.verdict]
     return (str(case.row), one_line(case.name), *values, margin, verdict + ", governing" * governs)
 
 
@@ -124,15 +134,24 @@ def _range_words(values: Any, print_unit: str) -> tuple[str, str]:
     return f"{low} .. {high}", unit
 
 
-def _check_rows(calculation: Calculation) -> Iterator[tuple[str, ...]]:
-    from truing.numbers import format_number
+def _checks(calculation: Calculation) -> str:
+    """Say every limit: what is compared, with what, and what is left."""
     from truing.report.content import check_rows
 
-    for check, row in zip(calculation.checks, check_rows(calculation), strict=True):
-        numbers = (
-            format_number(check.value),
-            format_number(check.limit),
-            row.limit.unit,
-            format_number(check.margin, 3),
+    rows = list(check_rows(calculation))
+    proposed = calculation.decided.proposal is not None
+    head = ("check", "as stated" if proposed else "value", "", "limit", "margin", "", "as proposed" if proposed else "")
+    lines = [
+        (
+            one_line(row.compared), _written(row.value), row.relation, _written(row.limit), _written(row.margin),
+            SHORT[row.state], _written(row.proposed) if row.proposed is not None else one_line(row.remark),
         )
-        yield (one_line(check.name), *numbers, "pass" if check.passed else "FAILS", one_line(row.chance))
+        for row in rows
+    ]  # fmt: skip
+    return columns([head, *lines], right=(1, 3, 4))
+
+
+def _written(value: Value) -> str:
+    from truing.numbers import with_unit
+
+    return with_unit(value.text, value.unit)

@@ -15,6 +15,7 @@ from truing.atomic import writings, written
 from truing.cli.console import Settings, one_line, out, progress_bar, say, sentence_of, settings_of, verb
 from truing.cli.load import find_offer
 from truing.cli.words import Changed, Excel, Plugin
+from truing.studies.verdicts import SHORT
 
 if TYPE_CHECKING:
     from truing.kernel import Offer
@@ -177,8 +178,9 @@ class _Watcher:
 def _words(before: Mapping[str, Any] | None, after: Mapping[str, Any], folder: Path) -> str:
     """Say in one line what a run changed and which checks fail."""
     checks = [*after["checks"], *(check for case in after.get("cases", []) for check in case["checks"])]
-    broken = list(dict.fromkeys(check["name"] for check in checks if not check["passed"]))
-    state = f"FAILS: {', '.join(broken)}" if broken else "all checks pass" if checks else "no checks"
+    of = {state: list(dict.fromkeys(check["name"] for check in checks if check["state"] == state)) for state in SHORT}
+    said = [f"{SHORT[state]}: {', '.join(of[state])}" for state in ("fails", "undecided", "proposed") if of[state]]
+    state = "; ".join(said) or ("all checks pass" if checks else "no checks")
     if before is None:
         return f"{state}; sheet: {folder / 'sheet.html'}"
     return f"{_changes(before, after)}; {state}"

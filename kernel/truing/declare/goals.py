@@ -9,6 +9,8 @@ from typing import Any, Literal, TypeAlias
 from truing.errors import DeclarationError
 
 LimitKind = Literal["at_most", "at_least", "within"]
+YES = "yes"
+"""What ``at_least`` asks of a result that is 1 for yes and 0 for no."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,8 @@ class Maximise:
 class Require:
     """A limit on a result; with ``reliability`` a limit on the chance of meeting it.
 
-    A limit is a quantity ("80 MPa") or the name of an input or result. ``within`` is the distance from the nominal
+    A limit is a quantity ("80 MPa") or the name of an input or result; ``at_least="yes"`` asks of a
+    result that is 1 for yes and 0 for no (``is_flag``) that it is 1. ``within`` is the distance from the nominal
     result, that of the design without any scatter. ``reliability`` is a probability or the name of an input.
     """
 
@@ -98,6 +101,7 @@ class Require:
     kind: LimitKind
     limit: str
     reliability: float | str | None
+    is_flag: bool
 
     def __init__(
         self,
@@ -115,7 +119,10 @@ class Require:
             raise DeclarationError(f"Require('{result}') takes one of at_most, at_least and within")
         if isinstance(reliability, (int, float)) and not 0 < reliability < 1:
             raise DeclarationError(f"Require('{result}'): the reliability {reliability} must lie between 0 and 1")
-        values = {"result": result, "kind": stated[0][0], "limit": stated[0][1], "reliability": reliability}
+        kind, text = stated[0]
+        is_flag = (kind, text) == ("at_least", YES)
+        limit = "1" if is_flag else text
+        values = {"result": result, "kind": kind, "limit": limit, "reliability": reliability, "is_flag": is_flag}
         for key, value in values.items():
             object.__setattr__(self, key, value)
 

@@ -143,12 +143,10 @@ def _limits(setup: Setup, name: str, calculation: Calculation, below: set[str]) 
             yield {
                 "says": "should be small" if isinstance(item, Minimise) else "should be large",
                 "check": None,
-                "chance": False,
             }
         if isinstance(item, Require) and (name in {item.result, item.limit, item.reliability} or item.result in below):
             check = checks.get(check_name(item, requires))
-            data = None if check is None else check_data(check)
-            yield {"says": require_words(item, name), "check": data, "chance": item.reliability is not None}
+            yield {"says": require_words(item, name), "check": None if check is None else check_data(check)}
 
 
 def require_words(item: Require, name: str) -> str:
@@ -162,7 +160,7 @@ def check_data(check: Any) -> dict[str, Any]:
     """Return value, limit, margin and verdict of a check."""
     from truing.runs.documents import clean
 
-    named = ("value", "limit", "unit", "margin", "passed")
+    named = ("value", "limit", "unit", "margin", "compared", "relation", "state", "passed", "undecided")
     return {key: clean(getattr(check, key)) for key in named}
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import PurePath
 from typing import Any
 
@@ -15,10 +15,10 @@ from truing.numbers import (
     ABSENT,
     RESULT_DIGITS,
     STATED_DIGITS,
+    format_chance,
     format_difference,
     format_number,
     format_value,
-    with_unit,
 )
 from truing.report.context import (
     ChangedInput,
@@ -32,7 +32,9 @@ from truing.report.context import (
 )
 from truing.setup import Setup
 from truing.studies.bench import Check
-from truing.studies.checks import check_name
+from truing.studies.checks import check_name, requirements
+from truing.studies.verdicts import NO_STUDY
+from truing.units import unit_text
 
 PLACES = {"inputs": "on the inputs", "results": "on the results", "reading": "on the reading"}
 LONGEST_SERIES = 8
@@ -152,72 +154,73 @@ def changed_inputs(setup: Setup) -> Iterator[ChangedInput]:
 
 def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
     """Say every limit with what is left of it."""
-    from truing.units import unit_text
-
     setup = calculation.setup
     fields = setup.model.result_fields
-    requires = _requires(setup)
+    requires = requirements(setup)
     named = {check_name(item, requires): item for item in requires}
+    relative = relative_margins(calculation.checks)
     for check in calculation.checks:
-        item = fields.get(check.name) or fields.get(check.name.partition(" ")[0])
         require = named.get(check.name)
-        chance = require if require is not None and _is_chance(require) else None
-        calculated = require is not None and chance is None and require.limit in fields
-        unit = unit_text(check.unit)
-        number = format_number(check.margin, 3)
+        item = fields.get(check.name if require is None else require.result)
+        calculated = require is not None and not check.chance and require.limit in fields
         yield CheckRow(
             name=check.name,
-            symbol=item.symbol if item is not None and item.name == check.name else "",
+            symbol=item.symbol if item is not None and item.name == check.compared else "",
             note=item.spec.note if item is not None else check.note,
-            relation=_relation(check, setup),
-            value=Value(format_number(check.value, RESULT_DIGITS), unit),
-            limit=Value(format_number(check.limit, RESULT_DIGITS if calculated else STATED_DIGITS), unit),
-            margin=_margin(check, number),
-            passed=bool(check.passed),
-            chance=_chance_words(chance, check.note, calculation) if chance is not None else "",
+            compared=check.compared or check.name,
+            relation=check.relation,
+            value=check_value(check, check.value),
+            limit=check_value(check, check.limit, RESULT_DIGITS if calculated else STATED_DIGITS),
+            margin=margin_value(check, relative=relative),
+            state=check.state,
+            proposed=None if check.proposed is None else check_value(check, check.proposed.value),
+            remark=_remark(check, require, setup),
             method=check.method,
         )
 
 
-def _requires(setup: Setup) -> list[Require]:
-    return [item for item in setup.model.objectives if isinstance(item, Require)]
+def check_value(check: Check, number: float, digits: int = RESULT_DIGITS) -> Value:
+    """Write a value or a limit of a check: a probability in per cent, a flag as yes or no."""
+    if number != number:
+        return Value(ABSENT)
+    if check.flag:
+        return Value("yes" if number >= 1 else "no")
+    if check.chance:
+        return Value(format_chance(number), "%")
+    return Value(format_number(number, digits), unit_text(check.unit))
 
 
-def _is_chance(require: Require) -> bool:
-    return require.reliability is not None
+def relative_margins(checks: Iterable[Check]) -> bool:
+    """Tell whether the margins of a sheet are shares of their limits: where no limit is 0, else all are distances."""
+    return all(check.limit for check in checks if not check.flag)
 
 
-def _chance_words(require: Require, note: str, calculation: Calculation) -> str:
-    """Say what a probability is one of: the limit in numbers where it is an input or a result."""
-    setup = calculation.setup
-    limit = require.limit
-    if limit in setup.model.input_fields or limit in calculation.answers:
-        limit = _named_limit(calculation, limit)
-    words = {"at_most": "at or below {}", "at_least": "at or above {}", "within": "within {} of its nominal"}
-    return f"probability of staying {words[require.kind].format(limit)}" + (f", {note}" if note else "")
+def margins_words(checks: Iterable[Check]) -> str:
+    """Say what the margins of a sheet are."""
+    return "in per cent of the limit" if relative_margins(checks) else "the distance to the limit"
 
 
-def _named_limit(calculation: Calculation, name: str) -> str:
-    """Write a limit that an input or a result gives: its name, and its number where it is one."""
-    setup = calculation.setup
-    value = {**setup.model.read_inputs(setup.inputs), **calculation.answers}[name]
-    words = name.replace("_", " ")
-    if getattr(value, "ndim", 0) or value != value:
-        return words
-    return f"{words} ({with_unit(*format_value(value, setup.print_unit(name)))})"
+def margin_value(check: Check, *, relative: bool) -> Value:
+    """Write a margin, with per cent or its unit; a flag has none, and a value on its limit says so."""
+    if check.flag or check.margin != check.margin:
+        return Value(ABSENT)
+    if check.margin == 0:
+        return Value("on the limit")
+    if relative:
+        return Value(format_number(100 * check.margin, 3), "%")
+    distance = abs(check.value - check.limit) * (1 if check.margin > 0 else -1)
+    return (
+        Value(format_number(100 * distance, 3), "%")
+        if check.chance
+        else Value(format_number(distance, 3), unit_text(check.unit))
+    )
 
 
-def _margin(check: Check, number: str) -> str:
-    """Write a margin as a share of the limit; where the limit is 0, as it is."""
-    if not check.limit or number == ABSENT:
-        return number
-    return f"{format_number(100 * check.margin, 3)} %"
-
-
-def _relation(check: Check, setup: Setup) -> str:
-    """Return which side is safe: the sign of the margin tells, and where it is 0 the requirement does."""
-    distance = check.limit - check.value
-    if distance * check.margin:
-        return "≤" if distance * check.margin > 0 else "≥"
-    stated = [item for item in _requires(setup) if check.name.startswith(item.result)]
-    return "≥" if any(item.kind == "at_least" or _is_chance(item) for item in stated) else "≤"
+def _remark(check: Check, require: Require | None, setup: Setup) -> str:
+    """Say which study would decide a limit; else what the bound of a probability is called."""
+    if check.undecided:
+        return f"not decided: {check.undecided} would" if check.undecided != NO_STUDY else f"{NO_STUDY} decides it"
+    if require is None or not check.chance:
+        return check.note if check.note and check.compared else ""
+    known = require.limit in {*setup.model.input_fields, *setup.model.result_fields}
+    return f"bound: {require.limit.replace('_', ' ')}" if known else ""

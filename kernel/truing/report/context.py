@@ -13,6 +13,7 @@ from truing.declare.blocks import Words
 from truing.declare.published import Finding
 from truing.published import ComparedRow
 from truing.runs.provenance import Provenance
+from truing.studies.bench import Proposal, State
 
 if TYPE_CHECKING:
     from truing.formulas import Formula
@@ -95,20 +96,24 @@ class ChangedInput:
 
 @dataclass(frozen=True)
 class CheckRow:
-    """A limit and how far it is kept."""
+    """A limit and how far it is kept.
+
+    ``compared`` is what the value is; ``proposed`` the value of the design that a study proposes, ``remark`` says
+    which study would decide the limit, or what its bound is called; ``method`` how a probability was found.
+    """
 
     name: str
     symbol: str
     note: str
+    compared: str
     relation: str
     value: Value
     limit: Value
-    margin: str
-    passed: bool
-    chance: str = ""
-    """What the value is the probability of, where it is one."""
+    margin: Value
+    state: State
+    proposed: Value | None = None
+    remark: str = ""
     method: str = ""
-    """How it was found."""
 
 
 @dataclass(frozen=True)
@@ -194,14 +199,25 @@ class Head:
     """A picture as a data address, or nothing."""
 
 
+@dataclass(frozen=True)
+class Banner:
+    """The verdict below the title block: ``mood`` is the state, or none where there are no limits."""
+
+    mood: str
+    headline: str
+    text: str
+    proposal: Proposal | None = None
+
+
 @dataclass(frozen=True, kw_only=True)
 class Sheet:
     """Everything on a sheet, in order."""
 
     head: Head
     detail: str
-    passed: bool
-    verdict: str
+    banner: Banner
+    margins: str
+    """What the margins are shares of, or that they are distances."""
     summary: str
     chapters: tuple[Chapter, ...]
     checks: tuple[CheckRow, ...]

@@ -18,6 +18,7 @@ from truing.report.context import Head
 from truing.report.render import page
 from truing.report.templates import template_folder
 from truing.runs.index import Entry, Finding, Listing, Other
+from truing.studies.bench import State
 
 MARK = '<meta name="generator" content="calc index">'
 """What an index of ours holds, and no other page."""
@@ -26,12 +27,12 @@ SHOWN = 3
 
 @dataclass(frozen=True)
 class FindingView:
-    """A finding as printed: its name, its number, its limit where it has one, and whether that holds."""
+    """A finding as printed: its name, its number, its limit where it has one, and the state of that."""
 
     name: str
     value: str
     limit: str
-    passed: bool | None
+    state: State | None
 
 
 @dataclass(frozen=True)
@@ -73,8 +74,10 @@ def _view(listing: Listing, place: Path) -> IndexView:
 def summary_of(listing: Listing) -> str:
     """Say how many runs and diagnoses there are, how many fail, and how much else."""
     runs = [entry for entry in listing.entries if entry.kind == "run"]
-    broken = sum(entry.passed is False for entry in runs)
-    parts = [_counted(len(runs), "run", "runs") + (f" ({_counted(broken, 'fails', 'fail')})" if broken else "")]
+    words = {"fails": ("fails", "fail"), "undecided": ("undecided",) * 2, "proposed": ("not as stated",) * 2}
+    counts = {state: sum(entry.state == state for entry in runs) for state in words}
+    told = ", ".join(_counted(count, *words[state]) for state, count in counts.items() if count)
+    parts = [_counted(len(runs), "run", "runs") + (f" ({told})" if told else "")]
     parts.append(_counted(len(listing.entries) - len(runs), "diagnosis", "diagnoses"))
     if listing.others:
         parts.append(_counted(len(listing.others), "other folder", "other folders"))
@@ -86,11 +89,10 @@ def _counted(count: int, one: str, many: str) -> str:
 
 
 def _row(entry: Entry, folder: Path, place: Path) -> Row:
-    state = {None: "none", True: "pass", False: "fail"}[entry.passed]
     return Row(
         entry=entry,
         link=_link(folder.absolute() / entry.sheet, place) if entry.sheet else "",
-        state="found" if entry.kind == "diagnosis" else state,
+        state="found" if entry.kind == "diagnosis" else entry.state or "none",
         margin=_margin(entry),
         shown=tuple(_findings(entry)),
         more=max(len(entry.findings) - SHOWN, 0) if entry.kind == "diagnosis" or entry.checks else 0,
@@ -116,7 +118,7 @@ def _margin(entry: Entry) -> str:
 def _findings(entry: Entry) -> Iterator[FindingView]:
     for one in entry.findings[:SHOWN]:
         limit = _number(one, one.limit) if one.limit is not None else ""
-        yield FindingView(one.name, _number(one, one.value), f"{_relation(one)} {limit}" if limit else "", one.passed)
+        yield FindingView(one.name, _number(one, one.value), f"{one.relation} {limit}" if limit else "", one.state)
 
 
 def _number(one: Finding, value: float | None) -> str:
@@ -128,14 +130,6 @@ def _number(one: Finding, value: float | None) -> str:
     except UnitError:
         unit = one.unit
     return with_unit(pretty(format_number(value, 4)), unit)
-
-
-def _relation(one: Finding) -> str:
-    """Return which side of the limit is safe: the sign of the margin tells."""
-    if one.value is None or one.limit is None or one.margin is None:
-        return "/"
-    distance = (one.limit - one.value) * one.margin
-    return "≤" if distance > 0 else "≥" if distance < 0 else "="
 
 
 def listing_document(listing: Listing) -> dict[str, Any]:

@@ -102,7 +102,6 @@ def _html() -> Environment:
         value=_value_html,
         ratio=_ratio,
         digits=_paper_digits,
-        margin=_margin,
         unit=_unit,
         breakable=_breakable,
         unbroken=_unbroken,
@@ -124,7 +123,6 @@ def _markdown() -> Environment:
         table=_table_markdown,
         ratio=_ratio,
         digits=_paper_digits,
-        margin=_margin,
         unit=_unit,
         raw=Raw,
     )
@@ -172,11 +170,6 @@ def _paper_digits(row: ComparedRow) -> tuple[str, str]:
     paper = format_number(row.published.value, 10)
     digits = len(paper.partition("e")[0].replace(".", "").replace("-", "").lstrip("0"))
     return pretty(paper), pretty(format_number(row.value, max(digits + 1, 4)))
-
-
-def _margin(text: str) -> str:
-    number, gap, percent = text.partition(" ")
-    return f"{pretty(number)}{gap and chr(0x202F)}{percent}"
 
 
 def _unit(unit: str) -> str:

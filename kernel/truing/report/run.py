@@ -24,7 +24,7 @@ from truing.runs.folder import demand_place, write_run
 from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
-from truing.studies.bench import Progress
+from truing.studies.bench import Progress, State
 
 
 @dataclass(frozen=True)
@@ -63,9 +63,9 @@ class Done:
     resumed: int = 0
 
     @property
-    def passed(self) -> bool:
-        """Whether every check holds, in every case."""
-        return self.calculation.passed if self.cases is None else self.cases.passed
+    def verdict(self) -> State:
+        """The worst state of all checks, of all cases."""
+        return self.calculation.verdict if self.cases is None else self.cases.verdict
 
 
 def perform(setup: Setup, offer: Offer, order: RunOrder, progress: Progress) -> Done:

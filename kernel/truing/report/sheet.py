@@ -5,6 +5,7 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,13 +17,17 @@ from truing.report.content import (
     NOT_GIVEN,
     changed_inputs,
     check_rows,
+    check_value,
     condition_rows,
     effect_rows,
     input_rows,
+    margins_words,
     tolerance_rows,
 )
-from truing.report.context import Chapter, Head, InputRow, Sheet, TableView
+from truing.report.context import Banner, Chapter, Head, InputRow, Sheet, TableView
 from truing.runs.provenance import Provenance
+from truing.studies.bench import Proposal
+from truing.studies.verdicts import HEADLINES, SHORT, sentence_of
 
 if TYPE_CHECKING:
     from truing.cases import CaseResult, CasesTable
@@ -43,6 +48,7 @@ FEW = 6
 """So many inputs at a default of 0 still have rows of their own."""
 
 NOT_SHOWN = {"title", "logo"}
+NO_LIMITS = "No limits"
 
 
 def make_sheet(
@@ -62,8 +68,8 @@ def make_sheet(
     sheet = Sheet(
         head=head_of(setup, provenance),
         detail=detail,
-        passed=calculation.passed and (cases is None or cases.passed),
-        verdict="",
+        banner=_banner(calculation, cases),
+        margins=margins_words(calculation.checks),
         summary=setup.model.summary,
         chapters=(),
         checks=tuple(check_rows(calculation)),
@@ -81,7 +87,7 @@ def make_sheet(
         provenance=provenance,
     )
     chapters = [*_front(sheet, calculation, cases), *results, *_back(sheet)]
-    return replace(sheet, verdict=verdict(sheet, cases), chapters=tuple(numbered(chapters, 1).values()))
+    return replace(sheet, chapters=tuple(numbered(chapters, 1).values()))
 
 
 def head_of(setup: Setup, provenance: Provenance) -> Head:
@@ -132,26 +138,35 @@ def logo_of(setup: Setup) -> tuple[str, str]:
     return f"data:{kind};base64,{b64encode(content).decode()}", ""
 
 
-def verdict(sheet: Sheet, cases: CasesTable | None) -> str:
-    """Say in one sentence whether the limits are kept, and which are not."""
-    if cases is not None:
-        return _verdict_of_cases(cases)
-    if not sheet.checks:
-        return "This calculation states no limits: there is nothing to pass or fail."
-    broken = [check for check in sheet.checks if not check.passed]
-    count = len(sheet.checks)
-    if not broken:
-        return {1: "The one check passes.", 2: "Both checks pass."}.get(count, f"All {count} checks pass.")
-    names = ", ".join(check.name.replace("_", " ") for check in broken)
-    return f"{len(broken)} of {count} checks {'fails' if len(broken) == 1 else 'fail'}: {names}."
+def _banner(calculation: Calculation, cases: CasesTable | None) -> Banner:
+    """Say the verdict, of all cases where there are some."""
+    state = calculation.verdict if cases is None else cases.verdict
+    text = sentence_of(calculation.decided) if cases is None else _verdict_of_cases(cases)
+    proposal = _proposal(calculation, cases)
+    if not calculation.checks and state == "passes":
+        return Banner("none", NO_LIMITS, text, proposal)
+    return Banner(state, HEADLINES[state], text, proposal)
+
+
+def _proposal(calculation: Calculation, cases: CasesTable | None) -> Proposal | None:
+    """Return the design that is proposed instead: of cases that of the first which needs one."""
+    needing = (
+        case.decided.proposal for case in (cases.cases if cases is not None else ()) if case.verdict == "proposed"
+    )
+    return next(needing, calculation.decided.proposal)
 
 
 def _verdict_of_cases(cases: CasesTable) -> str:
-    broken = [case for case in cases.cases if case.reason is not None or not all(check.passed for check in case.checks)]
-    governing = case_name(cases.cases[cases.governing])
-    if broken:
-        return f"{len(broken)} of {len(cases.cases)} cases fail; the governing case is {governing}."
-    return f"All {len(cases.cases)} cases keep every limit; the governing case, {governing}, is shown in full."
+    """Say in one sentence how many cases keep every limit."""
+    governing, count = case_name(cases.cases[cases.governing]), len(cases.cases)
+    verdicts = [case.verdict for case in cases.cases]
+    words = {"fails": "fail", "undecided": "are undecided", "proposed": "pass with the proposed changes only"}
+    said = [f"{verdicts.count(state)} of {count} cases {how}" for state, how in words.items() if state in verdicts]
+    if cases.verdict == "fails" and "fails" not in verdicts:
+        said.append("but with different changes, so that no one design passes")
+    if said:
+        return f"{', '.join(said)}; the governing case is {governing}."
+    return f"All {count} cases keep every limit; the governing case, {governing}, is shown in full."
 
 
 def case_name(case: CaseResult) -> str:
@@ -235,17 +250,18 @@ def cases_table(calculation: Calculation, cases: CasesTable, most: int) -> Table
 def _check_unit(cases: CasesTable, name: str) -> str:
     from truing.units import unit_text
 
-    return next(unit_text(check.unit) for case in cases.cases for check in case.checks if check.name == name)
+    check = next(check for case in cases.cases for check in case.checks if check.name == name)
+    return "%" if check.chance else unit_text(check.unit)
 
 
 def _case_row(setup: Setup, case: CaseResult, varied: Sequence[str], checks: Sequence[str]) -> tuple[str, ...]:
     values = [_case_value(setup, case.values, name) for name in varied]
     if case.reason is not None:
         return (case_name(case), *values, *("–" for _ in checks), "–", f"cannot be calculated: {case.reason}")
-    found = {check.name: format_number(check.value, 5) for check in case.checks}
-    broken = [check.name.replace("_", " ") for check in case.checks if not check.passed]
-    verdict_text = f"FAILS: {', '.join(broken)}" if broken else "passes"
-    margin = format_number(100 * case.margin, 3) if case.checks else "–"
+    found = {check.name: check_value(check, check.value).text for check in case.checks}
+    broken = [check.name.replace("_", " ") for check in case.checks if check.state == case.verdict]
+    verdict_text = case.verdict if case.verdict == "passes" else f"{SHORT[case.verdict]}: {', '.join(broken)}"
+    margin = format_number(100 * case.margin, 3) if isfinite(case.margin) else "–"
     return (case_name(case), *values, *(found.get(name, "–") for name in checks), margin, verdict_text)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from truing.errors import UsageError
+from truing.studies.verdicts import EXIT_CODES
 
 ROUNDING = 1e-12
 
@@ -23,8 +24,8 @@ class Change:
 
     @property
     def flipped(self) -> bool:
-        """Whether this is a check that fails in one run and passes in the other."""
-        before, after = _passed(self.before), _passed(self.after)
+        """Whether this is a check of another state than before."""
+        before, after = _state(self.before), _state(self.after)
         return before is not None and after is not None and before != after
 
     @property
@@ -39,8 +40,8 @@ class Change:
         return (after - before) / before
 
 
-def _passed(piece: Any) -> bool | None:
-    return bool(piece["passed"]) if isinstance(piece, Mapping) and "passed" in piece else None
+def _state(piece: Any) -> Any:
+    return piece.get("state") if isinstance(piece, Mapping) else None
 
 
 def number_in(piece: Any) -> float | None:
@@ -50,14 +51,16 @@ def number_in(piece: Any) -> float | None:
 
 
 def in_order(found: Sequence[Change]) -> list[Change]:
-    """Return the changes as they are read: checks that fail now, checks that pass now, then the rest as it was."""
-    flips = sorted((one for one in found if one.flipped), key=lambda one: bool(_passed(one.after)))
+    """Return the changes as they are read: checks of another state, the worst first, then the rest as it was."""
+    order = list(EXIT_CODES)
+    flips = sorted((one for one in found if one.flipped), key=lambda one: -order.index(_state(one.after)))
     return [*flips, *(one for one in found if not one.flipped)]
 
 
 def compared(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[Change]:
     """Return what differs between two documents of one kind; raises UsageError for a run beside a diagnosis."""
-    kinds = ["diagnosis" if "verdict" in document else "run" for document in (before, after)]
+    schemas = [str(document.get("schema")) for document in (before, after)]
+    kinds = ["diagnosis" if schema.startswith("truing.diagnosis") else "run" for schema in schemas]
     if kinds[0] != kinds[1]:
         raise UsageError(f"the first is a {kinds[0]} and the second a {kinds[1]}; compare two of one kind")
     return changes_of_diagnoses(before, after) if kinds[0] == "diagnosis" else changes(before, after)

@@ -14,7 +14,7 @@ from truing.units.names import PURE
 if TYPE_CHECKING:
     from truing.cases import CasesTable
     from truing.declare.fields import InputField
-    from truing.studies.bench import Check
+    from truing.studies.bench import Check, Proposal
 
 SCHEMA = "truing.results/1"
 LARGE = 1000
@@ -43,6 +43,8 @@ def results_document(
         "conditions": {name: _value(value, setup.print_unit(name)) for name, value in setup.conditions.items()},
         "effects": {item.effect.name: _effect_values(item) for item in setup.effects},
         "results": {name: _result(calculation, name) for name in model.result_fields if name in calculation.answers},
+        "verdict": calculation.verdict if cases is None else cases.verdict,
+        "proposal": _proposal(calculation.decided.proposal),
         "checks": [_check(check) for check in calculation.checks],
         "studies": {name: clean(outcome.as_json()) for name, outcome in calculation.outcomes.items()},
         "failed": [{"row": int(row), "reason": reason} for row, reason in calculation.failed],
@@ -59,8 +61,21 @@ def _check(check: Check) -> dict[str, Any]:
         "limit": _number(check.limit),
         "unit": check.unit,
         "margin": _number(check.margin),
+        "compared": check.compared or check.name,
+        "relation": check.relation,
+        "state": check.state,
         "passed": bool(check.passed),
+        "undecided": check.undecided,
+        "proposed": None if check.proposed is None else _number(check.proposed.value),
     }
+
+
+def _proposal(proposal: Proposal | None) -> dict[str, Any] | None:
+    """Return the design that a study proposes: its changes to the one that is stated."""
+    if proposal is None:
+        return None
+    changes = [{"name": name, "from": stated, "to": proposed} for name, stated, proposed in proposal.changes]
+    return {"study": proposal.study, "what": proposal.what, "changes": changes}
 
 
 def _cases(calculation: Calculation, cases: CasesTable) -> list[dict[str, Any]]:
@@ -76,6 +91,8 @@ def _cases(calculation: Calculation, cases: CasesTable) -> list[dict[str, Any]]:
                 "governing": place == cases.governing,
                 "values": {name: _case_value(setup, name, value) for name, value in case.values.items()},
                 "results": {name: _value(value, setup.print_unit(name)) for name, value in single.items()},
+                "verdict": case.verdict,
+                "proposal": _proposal(case.decided.proposal),
                 "checks": [_check(check) for check in case.checks],
                 "failed": case.reason,
             }

@@ -14,6 +14,8 @@ from typing import Any
 from truing.errors import UnknownPluginError
 from truing.runs.folder import DOCUMENTS, Kind
 from truing.runs.partial import HEADER
+from truing.studies.bench import State
+from truing.studies.verdicts import EXIT_CODES, HEADLINES, worst
 
 DEEPEST = 20
 LARGEST = 100_000_000
@@ -31,7 +33,8 @@ class Finding:
     unit: str = ""
     limit: float | None = None
     margin: float | None = None
-    passed: bool | None = None
+    relation: str = ""
+    state: State | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +54,7 @@ class Entry:
     stamp: float | None = None
     head: Mapping[str, str]
     verdict: str
-    passed: bool | None = None
+    state: State | None = None
     checks: int = 0
     failed: int = 0
     cases: int = 0
@@ -174,14 +177,17 @@ def _json(path: Path) -> dict[str, Any]:
 def _of_run(document: Mapping[str, Any], name: str) -> Entry:
     cases = list(document.get("cases") or [])
     checks = [_check(item) for each in (cases or [document]) for item in each["checks"]]
-    impossible = [case for case in cases if case.get("failed") is not None]
-    failed = [check for check in checks if not check.passed]
-    names = list(dict.fromkeys(check.name for check in failed))
-    passed = None if not checks and not impossible else not failed and not impossible
-    words = "no limits" if passed is None else "passes" if passed else f"fails: {', '.join(names) or 'a case'}"
+    impossible = any(case.get("failed") is not None for case in cases)
+    states = {check.name: check.state for check in checks if check.state not in {None, "passes"}}
+    verdict = worst(check.state for check in checks if check.state is not None) if not impossible else "fails"
+    state = _state(document.get("verdict", verdict)) if checks or impossible else None
+    concerned = ", ".join(name for name, of_one in states.items() if of_one == state)
+    words = "no limits" if state is None else HEADLINES[state].lower()
+    words += f": {concerned or 'a case'}" if state not in {None, "passes"} else ""
+    failed = [check for check in checks if check.state != "passes"]
     ranked = sorted(checks, key=lambda one: float("-inf") if one.margin is None else one.margin)
     return Entry(
-        **_made_by(document, name, "run"), verdict=words, passed=passed, checks=len(checks), failed=len(failed),
+        **_made_by(document, name, "run"), verdict=words, state=state, checks=len(checks), failed=len(failed),
         cases=len(cases), findings=tuple(ranked) or tuple(_first_results(document)),
     )  # fmt: skip
 
@@ -195,9 +201,21 @@ def _made_by(document: Mapping[str, Any], name: str, kind: Kind) -> dict[str, An
 
 def _check(item: Mapping[str, Any]) -> Finding:
     return Finding(
-        name=str(item["name"]), value=_number(item["value"]), unit=str(item["unit"]), limit=_number(item["limit"]),
-        margin=_number(item["margin"]), passed=bool(item["passed"]),
-    )  # fmt: skip
+        name=str(item["name"]),
+        value=_number(item["value"]),
+        unit=str(item["unit"]),
+        limit=_number(item["limit"]),
+        margin=_number(item["margin"]),
+        relation=str(item.get("relation", "")),
+        state=_state(item.get("state", "passes" if item["passed"] else "fails")),  # an older run has no state
+    )
+
+
+def _state(word: Any) -> State:
+    state: State = word
+    if state not in EXIT_CODES:
+        raise ValueError
+    return state
 
 
 def _number(value: Any) -> float | None:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from truing.measurements import EXCEL, table_text
+from truing.studies.verdicts import SHORT
 
 if TYPE_CHECKING:
     from truing.declare.model import Model
@@ -27,9 +28,8 @@ def _single(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[Row
     """Give what is one number, or one word: results, checks, inputs, and what acts on them."""
     yield from _named("result", document["results"], _notes(model))
     for check in document["checks"]:
-        verdict = "pass" if check["passed"] else "FAILS"
         said = {name: check[name] for name in ("name", "value", "unit", "limit", "margin")}
-        yield {"part": "check", **said, "verdict": verdict}
+        yield {"part": "check", **said, "verdict": SHORT[check["state"]], "note": check["compared"]}
     yield from _named("input", document["inputs"], _notes(model))
     for name, tolerance in document["tolerances"].items():
         for target, item in tolerance["on"].items():
@@ -93,8 +93,9 @@ def _cases(cases: Sequence[Mapping[str, Any]]) -> str:
             **_with_units(case["values"]),
             **_with_units(case["results"]),
         }
-        if case["checks"]:
-            found["margin [1]"] = min((check["margin"] for check in case["checks"]), key=_order)
+        margins = [check["margin"] for check in case["checks"] if check["state"] != "undecided"]
+        if margins:
+            found["margin [1]"] = min(margins, key=_order)
         found["verdict"] = _verdict(case)
         for header in {**columns, **found}:
             columns.setdefault(header, [None] * place).append(found.get(header))
@@ -115,5 +116,5 @@ def _order(margin: float | None) -> float:
 def _verdict(case: Mapping[str, Any]) -> str:
     if case["failed"]:
         return f"failed: {case['failed']}"
-    verdict = "pass" if all(check["passed"] for check in case["checks"]) else "FAILS"
+    verdict = SHORT[case["verdict"]]
     return f"{verdict}, governing" if case["governing"] else verdict

@@ -11,10 +11,11 @@ from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
 from truing.evaluate import acting_inputs
 from truing.fits import GRADES
+from truing.prices import price_answers
 from truing.setup import Setup
-from truing.studies.bench import Bench, Check
+from truing.studies.bench import Bench, Check, Proposal
 from truing.studies.chances import straightened
-from truing.studies.checks import chance_check
+from truing.studies.checks import chance_check, plain_checks
 from truing.studies.demands import Demand, demands, nominal_inputs, wilson
 from truing.studies.differences import slopes
 from truing.studies.grades import Shop, open_shop, with_grades
@@ -24,10 +25,7 @@ from truing.studies.strips import priced_widths, with_widths
 from truing.studies.synthesis import Plan, Step, as_it_stands, by_rule, coefficients, least_cost
 from truing.studies.widths_bought import bettered, bought
 
-ALLOTTED = "with the grades after the allocation"
-BOUGHT = "with the tolerances after the allocation"
 BALANCED_TO = 1e-4
-GOAL_REACHED = "probability after the allocation over its goal, the smallest of all"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,6 +88,7 @@ class Allocation:
             coefficients=order,
             sampled=self._verified(bench, wanted, designs),
             texts={key: _texts(setup, shop, plan) for key, plan in designs.items()},
+            priced={key: _price_checks(setup, plan) for key, plan in designs.items()},
             remarks=(*found.warnings, *_left_alone(setup, shop)),
             inputs=acting_inputs(setup),
         )
@@ -146,6 +145,12 @@ def _texts(setup: Setup, shop: Shop, plan: Plan) -> dict[str, str]:
     return {name: chosen.spread_of(name).text for name in (*shop.parts, *shop.strips)}
 
 
+def _price_checks(setup: Setup, plan: Plan) -> tuple[Check, ...]:
+    """Return the limits on the price of all tolerances, with those of a plan."""
+    chosen = with_plan(setup, plan)
+    return tuple(plain_checks(chosen, price_answers(chosen)))
+
+
 def _left_alone(setup: Setup, shop: Shop) -> list[str]:
     """Say which widths with a price were not chosen, since the grades beside them have none."""
     names = [f"'{item.name}'" for item in priced_widths(setup) if item.name not in shop.strips]
@@ -175,7 +180,7 @@ class Allotted:
     ``start`` and ``final`` are first-order probabilities by check; ``tolerances`` what the rule ends with, grades and
     widths as an inputs file states them, ``texts[design]`` that of each;
     ``monte_carlo["start" | "rule" | "least"][check]`` the probabilities on the exact model.
-    ``inputs`` are those of the run, as effects leave them.
+    ``priced[design]`` are its limits on the price; ``inputs`` those of the run, as effects leave them.
     """
 
     name: str = "allocation"
@@ -187,6 +192,7 @@ class Allotted:
     coefficients: Mapping[str, float]
     sampled: Mapping[str, Tally] = field(default_factory=dict)
     texts: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    priced: Mapping[str, tuple[Check, ...]] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     inputs: Any = None
 
@@ -260,14 +266,30 @@ class Allotted:
         return allotted_blocks(self)
 
     def checks(self) -> Sequence[Check]:
-        """Compare the probability after the synthesis, first order, with each goal; and say whether all are reached."""
-        goals = {demand.name: demand.goal for demand in self.shop.demands if demand.goal is not None}
-        note = BOUGHT if self.shop.strips else ALLOTTED
-        each = [
-            chance_check(name, self.final[name], goal, method="first order", note=note) for name, goal in goals.items()
-        ]
-        worst = min(self.final[name] / goal if goal else 1.0 for name, goal in goals.items())
-        return [*each, chance_check("goal reached", worst, 1.0, method="first order", note=GOAL_REACHED)]
+        """Compare the probability of the tolerances in force with each goal."""
+        return self._kept("start", self.start)
+
+    def proposals(self) -> Sequence[Proposal]:
+        """Propose the rule's tolerances and those of least cost, where they are others than those in force."""
+        stated = self.texts["start"]
+        found = []
+        for key, (what, plan) in self.spoken.items():
+            texts = self.texts[key]
+            changes = tuple((name, stated[name], text) for name, text in texts.items() if text != stated[name])
+            if changes:
+                found.append(Proposal(self.name, what, changes, (*self._kept(key, plan.chances), *self.priced[key])))
+        return found
+
+    def _kept(self, key: str, first_order: Mapping[str, float]) -> tuple[Check, ...]:
+        """Return the check of every goal for one design: on the exact model where its machines were drawn."""
+        tally = self.sampled.get(key)
+        drawn = self.monte_carlo.get(key, first_order)
+        method = "first order" if tally is None else f"Monte Carlo, {tally.draws} machines"
+        return tuple(
+            chance_check(demand.name, drawn[demand.name], demand.goal, method=method)
+            for demand in self.shop.demands
+            if demand.goal is not None
+        )
 
     def warnings(self) -> Sequence[str]:
         """Say what cannot be reached, and where the exact model contradicts first order."""

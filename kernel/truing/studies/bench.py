@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field, replace
-from typing import Any, Protocol
+from dataclasses import KW_ONLY, dataclass, field, replace
+from typing import Any, Literal, Protocol
 
 from truing.declare.blocks import Block
 from truing.executors import keepable
@@ -55,12 +55,20 @@ def within(progress: Progress, task: str, begin: float, end: float, stages: Sequ
     return told
 
 
+State = Literal["passes", "proposed", "undecided", "fails"]
+"""What is said of a limit and of a run: kept as stated, kept by a design that a study proposes, not decided, missed."""
+
+
 @keepable
 @dataclass(frozen=True)
 class Check:
-    """A limit and how far it is kept: margin > 0 is safe, everywhere. Values are in ``unit``.
+    """A limit and how far it is kept: margin > 0 is safe, everywhere. Values are in ``unit``, probabilities have none.
 
-    ``note`` says what is compared, where the name of a result does not say it; ``method`` how a probability was found.
+    Value and margin are those of the design as stated; ``passed`` says that this one keeps the limit. ``proposed`` is
+    the same limit for the design that a study proposes. Where no study of the run decides the limit, ``undecided`` says
+    which one would, and value and margin are NaN. ``compared`` says what the value is, as P(backlash ≤ 1′); empty: the
+    result called ``name``. ``relation`` is read from the margin where it is not given. A ``flag`` is a yes or a no.
+    ``method`` says how a probability was found.
     """
 
     name: str
@@ -71,6 +79,41 @@ class Check:
     passed: bool
     note: str = ""
     method: str = ""
+    _: KW_ONLY
+    relation: Literal["", "≤", "≥"] = ""
+    compared: str = ""
+    chance: bool = False
+    flag: bool = False
+    undecided: str = ""
+    proposed: Check | None = None
+
+    def __post_init__(self) -> None:
+        if not self.relation:
+            safe_above = (self.limit - self.value) * self.margin < 0
+            object.__setattr__(self, "relation", "≥" if safe_above else "≤")
+
+    @property
+    def state(self) -> State:
+        """Whether the limit is kept: by the design as stated, by the one proposed, or by neither."""
+        if self.undecided:
+            return "undecided"
+        if self.passed:
+            return "passes"
+        return "proposed" if self.proposed is not None and self.proposed.passed else "fails"
+
+
+@keepable
+@dataclass(frozen=True)
+class Proposal:
+    """Another design that a study proposes: what it changes, as (name, stated, proposed), and limits as it keeps them.
+
+    A limit that the changes do not touch is not among the checks.
+    """
+
+    study: str
+    what: str
+    changes: tuple[tuple[str, str, str], ...]
+    checks: tuple[Check, ...]
 
 
 @dataclass(frozen=True)
@@ -134,10 +177,17 @@ def files_of(outcome: Outcome) -> Mapping[str, str | bytes]:
     return files
 
 
+def proposals_of(outcome: Outcome) -> Sequence[Proposal]:
+    """Return the designs that an outcome proposes instead of the stated one; none where it has no such method."""
+    proposals: Callable[[], Sequence[Proposal]] | None = getattr(outcome, "proposals", None)
+    return proposals() if proposals is not None else ()
+
+
 class Outcome(Protocol):
     """What a study found; the sheet and results.json ask it for their part.
 
-    One that has ``files``, a mapping from file names to text or bytes, leaves these in the run folder.
+    One that has ``files``, a mapping from file names to text or bytes, leaves these in the run folder. One with a
+    method ``proposals()`` proposes designs of which each keeps limits that the stated one may miss.
     """
 
     def as_json(self) -> Mapping[str, Any]:
@@ -147,7 +197,7 @@ class Outcome(Protocol):
         """Return what the sheet shows: words, tables, drawings."""
 
     def checks(self) -> Sequence[Check]:
-        """Return the limits this study decides."""
+        """Return the limits this study decides, for the design as stated."""
 
     def warnings(self) -> Sequence[str]:
         """Return what the user must know: failed rows, a search without end, a method beside its range."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import isnan
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 from truing.declare.fields import in_si
 from truing.declare.goals import Require
 from truing.evaluate import evaluate
+from truing.numbers import STATED_DIGITS, format_value, with_unit
 from truing.setup import Setup
 from truing.studies.bench import Check
 
@@ -35,9 +37,15 @@ def margin_of(value: float, limit: float, *, at_least: bool = False) -> float:
 
 
 def limits(setup: Setup, answers: dict[str, Any]) -> list[Limit]:
-    """Return every requirement of the model in numbers; ``answers`` holds the nominal results in SI."""
+    """Return every requirement of the model in numbers whose results are known; ``answers`` holds them in SI."""
     requires = requirements(setup)
-    return [_limit(require, requires, setup, answers) for require in requires if require.result in answers]
+    return [_limit(require, requires, setup, answers) for require in requires if is_known(require, setup, answers)]
+
+
+def is_known(require: Require, setup: Setup, answers: Mapping[str, Any]) -> bool:
+    """Tell whether the results that a requirement reads are answered: its own, and one that is its limit."""
+    read = {require.result, require.limit} & {require.result, *setup.model.result_fields}
+    return read <= answers.keys()
 
 
 def requirements(setup: Setup) -> list[Require]:
@@ -57,10 +65,13 @@ def _limit(require: Require, others: list[Require], setup: Setup, answers: dict[
     else:
         centre = of_design(setup, require.result, answers)
         low, high = centre - amount, centre + amount
+    return Limit(check_name(require, others), require.result, low, high, goal_of(require, setup), require)
+
+
+def goal_of(require: Require, setup: Setup) -> float | None:
+    """Return the probability that a requirement asks for, None where it must simply hold."""
     goal = require.reliability
-    if isinstance(goal, str):
-        goal = float(setup.nominal(goal))
-    return Limit(check_name(require, others), require.result, low, high, goal, require)
+    return float(setup.nominal(goal)) if isinstance(goal, str) else goal
 
 
 def of_design(setup: Setup, result: str, answers: dict[str, Any]) -> Any:
@@ -120,10 +131,37 @@ def _plain(limit: Limit, setup: Setup, answers: dict[str, Any]) -> Check:
     worst = int(np.argmin(values - bounds) if at_least else np.argmax(values - bounds))
     value, bound = float(from_si(values[worst], unit)), float(from_si(bounds[worst], unit))
     margin = margin_of(value, bound, at_least=at_least)
-    return Check(limit.name, value, bound, unit, margin, margin >= 0)
+    return Check(
+        limit.name, value, bound, unit, margin, margin >= 0, relation="≥" if at_least else "≤",
+        compared=_subject(limit.require), flag=limit.require.is_flag,
+    )  # fmt: skip
 
 
 def chance_check(name: str, probability: float, goal: float, *, method: str = "", note: str = "") -> Check:
     """Return the check of a probability, found by a method, against its goal."""
     margin = margin_of(probability, goal, at_least=True)
-    return Check(name, probability, goal, "", margin, margin >= 0, note, method)
+    return Check(name, probability, goal, "", margin, margin >= 0, note, method, relation="≥", chance=True)
+
+
+def compared_words(require: Require, setup: Setup, answers: Mapping[str, Any]) -> str:
+    """Say what a check compares with its limit: the result, or P(result ≤ bound) where a probability is asked for."""
+    if require.reliability is None:
+        return _subject(require)
+    relation = "≥" if require.kind == "at_least" else "≤"
+    return f"P({_subject(require)} {relation} {_bound_words(require, setup, answers)})"
+
+
+def _subject(require: Require) -> str:
+    return f"|{require.result} − nominal|" if require.kind == "within" else require.result
+
+
+def _bound_words(require: Require, setup: Setup, answers: Mapping[str, Any]) -> str:
+    """Write the bound inside a probability as a number, or by its name where it moves from machine to machine."""
+    from truing.units import difference_unit
+
+    scattering = {name for inner in setup.distributions().values() for name in inner}
+    if require.limit in setup.model.result_fields or require.limit in scattering:
+        return require.limit
+    unit = setup.print_unit(require.result)
+    unit = difference_unit(unit) if require.kind == "within" else unit
+    return with_unit(*format_value(limit_amount(require, setup, dict(answers)), unit, STATED_DIGITS))
