@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from truing.kernel import Kernel
     from truing.markers import hookimpl, hookspec
     from truing.studies.allocation import Allocation, Allotted
-    from truing.studies.bench import Bench, Check
+    from truing.studies.bench import Bench, Check, Proposal
     from truing.studies.optimise import Optimise, Optimum
     from truing.studies.reliability import Odds, Reliability
     from truing.studies.sensitivity import Sensitivities, Sensitivity
@@ -40,7 +40,7 @@ _HOMES = {
     "truing.kernel": ("Kernel",),
     "truing.markers": ("hookimpl", "hookspec"),
     "truing.studies.allocation": ("Allocation", "Allotted"),
-    "truing.studies.bench": ("Bench", "Check"),
+    "truing.studies.bench": ("Bench", "Check", "Proposal"),
     "truing.studies.optimise": ("Optimise", "Optimum"),
     "truing.studies.reliability": ("Odds", "Reliability"),
     "truing.studies.sensitivity": ("Sensitivities", "Sensitivity"),
@@ -61,7 +61,7 @@ __all__ = [  # noqa: RUF022  # in the order of a plugin's story
     "Sweep", "Swept", "Sensitivity", "Sensitivities", "Reliability", "Odds", "Allocation", "Allotted",
     "Optimise", "Optimum",
     "Surrogate", "Emulated",
-    "Bench", "Check",
+    "Bench", "Check", "Proposal",
     "hookimpl", "hookspec", "Kernel", "TruingError",
 ]  # fmt: skip
 

@@ -96,7 +96,9 @@ def test_an_interrupted_run_leaves_the_earlier_one_as_it_was(tmp_path: Path) -> 
     (tmp_path / "press.toml").write_text(INPUTS)
     quick = ["--set", "studies.run=[]", "-q"]
     command = [sys.executable, "-m", "truing", "run", "press_linkage", "--inputs", "press.toml", *quick]
-    assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
+    assert (
+        subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 1
+    )  # its limits stay undecided
     before = [(path.name, path.read_bytes()) for path in sorted((tmp_path / "runs/press").iterdir())]
     end, _ = interrupted(tmp_path, after=4.0)
     assert end.returncode == 130

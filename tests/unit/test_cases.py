@@ -11,12 +11,15 @@ import pytest
 from pin_wear import PIN_WEAR, Pin
 
 from truing import Float, Model, Reliability, Require, Sensitivities, Sensitivity, found, results
-from truing.cases import CasesTable, case_setup, run_cases
+from truing.calculation import calculate
+from truing.cases import CaseResult, CasesTable, case_setup, run_cases
 from truing.errors import InputError
 from truing.executors import Place, SerialExecutor, open_executor
 from truing.kernel import Origin
 from truing.measurements import Case
 from truing.setup import Setup, default_setup
+from truing.studies.bench import Check, Proposal
+from truing.studies.verdicts import Decided
 
 
 @results
@@ -162,3 +165,30 @@ def test_cases_are_shared_out_where_they_are_many(count: int, studies: bool, ask
     assert there.asked == asked
     _, alone = run_cases(setup, rows, executor=SerialExecutor())
     assert shared == alone
+
+
+def test_every_row_carries_what_studies_give_and_a_limit_that_none_decides() -> None:
+    """A study that decides no limit is run for each row all the same: its results stand in every row."""
+    table = run(replace(GIVEN, objectives=PLAIN.objectives), {"speed": 0.5}, {"speed": 1.0})
+    slopes = [case.answers["slope"] for case in table.cases]
+    assert slopes[1] == pytest.approx(2 * slopes[0], rel=1e-9)
+    setup = replace(default_setup(CHANCE), studies=())
+    table = run(CHANCE, {"load": 140.0}, {"load": 280.0}, setup=setup)
+    assert [case.verdict for case in table.cases] == ["undecided"] * 2
+    assert table.verdict == "undecided"
+    (check,) = calculate(replace(default_setup(GIVEN), studies=())).checks
+    assert (check.name, check.limit, check.unit, check.undecided) == ("slope", 0.2, "um/N", "sensitivity")
+
+
+def test_cases_that_pass_with_different_changes_only_do_not_pass() -> None:
+    """One press cannot have two sets of grades."""
+    check = Check("gap", 0.5, 0.9, "", -0.4, passed=False, proposed=Check("gap", 0.95, 0.9, "", 0.05, passed=True))
+    fine, finest = (
+        Decided((check,), Proposal("allocation", "grades", (("a", "IT7", to),), ())) for to in ("IT6", "IT5")
+    )
+    case = Case(1, 2, "", {}, "cases.csv")
+    verdicts = [
+        CasesTable(tuple(CaseResult(case, {}, decided) for decided in pair), 0).verdict
+        for pair in ((fine, fine), (fine, finest))
+    ]
+    assert verdicts == ["proposed", "fails"]

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from study_models import CHAIN, UNIFORMS, WEAR, setup_of
 
-from truing import Float, Maximise, Model, Optimise, Optimum, Require, Vary, found, given, inputs, results
+from truing import Float, Maximise, Model, Optimise, Optimum, Reliability, Require, Vary, found, given, inputs, results
 from truing.calculation import calculate
 from truing.studies.checks import chance_check, margin_of
 from truing.studies.optimise_goals import bounds_of
+from truing.studies.verdicts import EXIT_CODES, sentence_of
 
 
 def check_of(model, require, **values):
@@ -106,3 +107,23 @@ def test_a_search_without_the_limit_goes_to_its_end() -> None:
     setup = replace(setup_of(BAR), studies=(Optimise(population=8, generations=12),))
     (best,) = calculate(setup).record.outcome(Optimum).as_json()["front"]
     assert best["objectives"]["rate"] == pytest.approx(150.0, rel=5e-3)
+
+
+PROBABLE = replace(
+    UNIFORMS, objectives=[Require("total", at_most="1.5", reliability=0.9), Require("total", at_least="0")]
+)
+
+
+def test_a_limit_that_no_study_of_the_run_decides_is_undecided() -> None:
+    """Reliability would; without it the run neither passes nor says that there are no limits."""
+    model = replace(PROBABLE, studies=[Reliability(draws=500)])
+    decided = calculate(replace(setup_of(model), studies=())).decided
+    assert {check.compared: (check.state, check.undecided) for check in decided.checks} == {
+        "total": ("passes", ""), "P(total ≤ 1.5)": ("undecided", "reliability"),
+    }  # fmt: skip
+    assert (decided.verdict, EXIT_CODES[decided.verdict]) == ("undecided", 1)
+    words = "1 of 2 checks is undecided: total at most. No study of this run decides it; reliability would."
+    assert sentence_of(decided) == words
+    assert calculate(setup_of(model)).verdict != "undecided"
+    alone = calculate(setup_of(replace(PROBABLE, studies=[]))).decided
+    assert sentence_of(alone).endswith("No study of the model decides it.")

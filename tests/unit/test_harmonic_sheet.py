@@ -118,7 +118,7 @@ def test_without_a_surface_the_sheet_says_so(stated: Calculation) -> None:
         == "No flank was measured: D and G are as stated, and how sure they are is not known."
     )
     assert stated.answers["surface_accepted"] == 1
-    assert stated.passed
+    assert stated.verdict == "passes"
 
 
 def test_a_good_surface_is_used_and_shown(measured: Calculation, good: Flank) -> None:
@@ -135,7 +135,7 @@ def test_a_good_surface_is_used_and_shown(measured: Calculation, good: Flank) ->
     assert [row[-1] for row in rows] == ["self-affine, not used", "self-affine, not used", "used"]
     assert good.used is not None
     assert measured.answers["dimension"] == pytest.approx(good.used.dimension + 1)
-    assert measured.passed
+    assert measured.verdict == "passes"
 
 
 def test_a_refused_surface_fails_the_check_and_says_whose_contact_it_is(refused: Calculation) -> None:
@@ -152,7 +152,7 @@ def test_a_refused_surface_fails_the_check_and_says_whose_contact_it_is(refused:
     assert len(local) >= 6
     assert float(local[0][1] or 0.0) < 1.05  # smooth at short lags
     assert refused.answers["surface_accepted"] == 0
-    assert not refused.passed
+    assert refused.verdict == "fails"
     assert [check.name for check in refused.checks if not check.passed] == ["surface_accepted"]
     assert any("surface is refused" in text for text in refused.warnings)
     assert float(refused.answers["stiffness"]) == pytest.approx(1.95e9, rel=1e-3)
@@ -161,7 +161,7 @@ def test_a_refused_surface_fails_the_check_and_says_whose_contact_it_is(refused:
 def test_a_refused_mating_flank_leaves_that_flank_smooth(good: Flank, bad: Flank) -> None:
     found = run(surface=good, mating_surface=bad, reference_torque="1 N*m")
     assert "mating_dimension is not stated, so the circular spline is taken as smooth" in words(flanks(found.record))
-    assert not found.passed
+    assert found.verdict == "fails"
     assert table(interface(found.record), "Both flanks").rows[1][-1] == "smooth"
 
 
