@@ -25,7 +25,7 @@ from shared import Calc
 from truing.watching import PATIENCE, Watched
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
-INPUTS = '[inputs]\nload = "120 N"\n[studies]\nrun = []\n'
+INPUTS = '[inputs]\nload = "120 N"\n[studies]\nrun = ["reliability"]\n'
 LONGEST = 120.0
 """Seconds that anything may take before a test gives up; nothing waits for them where all is well."""
 

@@ -9,9 +9,9 @@ from press_stand_in import PRESS
 from scipy.stats import norm
 from study_models import CHAIN, PRICED, STACK, Graded, Stack, setup_of, stack
 
-from truing import Allocation, Reliability, Require, Tolerance, feasible
+from truing import Allocation, Price, Reliability, Require, Tolerance, feasible
 from truing.calculation import calculate
-from truing.declare.spreads import Off
+from truing.declare.spreads import Grade, Off
 from truing.errors import UsageError
 from truing.fits import GRADES, tolerance
 from truing.report.content import check_rows
@@ -40,6 +40,7 @@ STEPS = [
     ("knee_drive", 0.056, 0.040, 0.8869, 0.9971),
 ]
 # Table 4 of the paper.
+COST = Price("1 / width", width="mm", unit="1/mm")
 COEFFICIENTS = {"lower_knee": 1.0, "upper_knee": 1.040, "knee_drive": 1.426, "rod": 4.281, "crank": 4.876, "arm": 5.389}
 
 
@@ -130,7 +131,9 @@ def test_a_check_passes_only_for_the_design_as_stated(studies):
 
 def test_what_breaks_a_limit_that_the_stated_design_keeps_is_not_proposed():
     """The press costs 65.6 per mm as stated and 121.9 with the grades of the rule: not for a budget of 80."""
-    model = replace(PRESS, objectives=[*PRESS.objectives, Require("tolerance_price", at_most="80 1/mm")])
+    priced = [replace(item, price=COST) if isinstance(item.spread, Grade) else item for item in PRESS.errors]
+    budget = Require("tolerance_price", at_most="80 1/mm")
+    model = replace(PRESS, errors=priced, objectives=[*PRESS.objectives, budget])
     calculation = calculate(replace(setup_of(model), studies=(Allocation(draws=1000),)))
     states = {check.name: check.state for check in calculation.checks}
     assert states == {"tolerance_price": "passes", "position": "fails", "tilt": "fails"}

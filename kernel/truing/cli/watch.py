@@ -15,7 +15,7 @@ from truing.atomic import writings, written
 from truing.cli.console import Settings, one_line, out, progress_bar, say, sentence_of, settings_of, verb
 from truing.cli.load import find_offer
 from truing.cli.words import Changed, Excel, Plugin
-from truing.studies.verdicts import SHORT
+from truing.studies.verdicts import EXIT_CODES, SHORT
 
 if TYPE_CHECKING:
     from truing.kernel import Offer
@@ -63,7 +63,7 @@ def watch(
             end.args = (f"calc: interrupted in the middle of a run; {watcher.what_stays()}",)
             raise
         settings.say(f"calc: watched {watcher.runs} run{'s' * (watcher.runs != 1)}; {watcher.what_stays()}")
-        return 0 if watcher.passed else 1
+        return watcher.exit_code
 
 
 def _demand_file(inputs: Path) -> None:
@@ -90,7 +90,7 @@ class _Watcher:
     broken: bool = False
     looks: int = LOOKS
     calculating: bool = False
-    passed: bool = False
+    exit_code: int = 1
     before: int = 0
 
     def files(self, offer: Offer) -> list[Path]:
@@ -145,7 +145,7 @@ class _Watcher:
         self.runs += 1
         what = _words(self.last, done.document, self.order.folder)
         self.last, self.made_at = done.document, time.strftime("%H:%M:%S")
-        self.passed = done.passed
+        self.exit_code = EXIT_CODES[done.verdict]
         if not out(one_line(f"{self.made_at} {seconds:.1f} s {what}")):
             raise KeyboardInterrupt
 
@@ -160,7 +160,7 @@ class _Watcher:
         self.warned = {*(f"warning: {one_line(one)}" for one in warnings), *failed}
 
     def _complain(self, error: Exception) -> None:
-        self.passed = False
+        self.exit_code = 1
         if self.settings.traceback:
             import traceback
 
