@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from built_site import site  # noqa: F401
-from shared import ROOT
+from shared import ROOT, missed
 from truing.calculation import calculate
 from truing.inputs_file import read_setup
 from truing.kernel import Kernel
@@ -43,13 +42,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.browser)
 
 
-def missed(words: str) -> NoReturn:
-    """Skip a test that needs what this machine has not; fail where CI=true says that everything is there."""
-    if os.environ.get("CI", "").lower() == "true":
-        pytest.fail(words)
-    pytest.skip(words)
-
-
 @pytest.fixture(scope="session")
 def chromium() -> Path:
     """The browser of this machine; without one the tests are skipped, but never where CI=true says it must be there."""
@@ -60,11 +52,15 @@ def chromium() -> Path:
 
 
 FONTS = {
-    "DejaVu": {"text": "DejaVu Sans", "mono": "DejaVu Sans Mono", "math": "DejaVu Serif", "italic": "DejaVu Serif"},
-    "Liberation": {
-        "text": "Liberation Sans", "mono": "Liberation Mono", "math": "Liberation Serif", "italic": "Liberation Serif",
+    "DejaVu": {
+        "text": "DejaVu Sans", "mono": "DejaVu Sans Mono", "math": "DejaVu Sans Mono", "signs": "DejaVu Serif",
+        "italic": "DejaVu Serif",
     },
-    "wide": dict.fromkeys(("text", "mono", "math", "italic"), "DejaVu Sans Mono"),
+    "Liberation": {
+        "text": "Liberation Sans", "mono": "Liberation Mono", "math": "Liberation Mono", "signs": "Liberation Serif",
+        "italic": "Liberation Serif",
+    },
+    "wide": dict.fromkeys(("text", "mono", "math", "signs", "italic"), "DejaVu Sans Mono"),
 }  # fmt: skip
 """Fonts in which a sheet is looked at, so that those of the machine do not decide: all that many Linux machines have,
 those with the widths of Arial and Times, and a wide one."""
@@ -86,7 +82,7 @@ def fonts(browser: Browser) -> dict[str, str]:
     if missing:
         missed(f"the fonts {', '.join(missing)} are not on this machine (Debian: fonts-dejavu-core, fonts-liberation)")
     rules = {name: [f'--{use}: "{family}";' for use, family in families.items()] for name, families in FONTS.items()}
-    return {name: f":root {{ {' '.join(lines)} }}" for name, lines in rules.items()}
+    return {"the machine's": "", **{name: f":root {{ {' '.join(lines)} }}" for name, lines in rules.items()}}
 
 
 @pytest.fixture(scope="session")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from shared import missed
 from truing.errors import OutputError
 from truing.report.pdf import find_browser, pdf_bytes, print_pdf
 
@@ -18,7 +19,7 @@ ONE = pytest.mark.parametrize("sheet", ["press"], indirect=True)  # what does no
 
 def words_of(pdf: Path) -> str:
     if shutil.which("pdftotext") is None:
-        pytest.skip("pdftotext is not on this machine: the words of the PDF were not read")
+        missed("pdftotext is not on this machine (Debian: poppler-utils): the words of the PDF were not read")
     done = subprocess.run(["pdftotext", "-enc", "UTF-8", str(pdf), "-"], capture_output=True, check=True)
     return re.sub(r"\s+", " ", done.stdout.decode("utf-8"))
 

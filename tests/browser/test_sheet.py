@@ -39,6 +39,11 @@ BOXES = """() => {
     });
 }"""
 
+LEVEL = """() => [...document.querySelectorAll('msub > :first-child, msubsup > :first-child')]
+    .filter(base => base.nodeName === 'mi' && /^[A-Zacemnrsuvwxz]$/.test(base.textContent))
+    .filter(base => !(base.nextElementSibling.getBoundingClientRect().bottom > base.getBoundingClientRect().bottom + 1))
+    .map(base => base.parentElement.textContent)"""
+
 CONTRASTS = """() => {
     const parts = colour => (colour.match(/[\\d.]+/g) || []).map(Number);
     const light = ([r, g, b]) => [r, g, b].map(v => v / 255)
@@ -143,9 +148,9 @@ def test_nothing_is_cut_off_on_paper(page: Any, fonts: dict[str, str]) -> None:
 
 
 def test_every_character_is_drawn(page: Any, fonts: dict[str, str]) -> None:
-    """No letter is an empty box; the italic letters of mathematics, which few fonts have, are not asked for.
+    """No letter is an empty box, and every index of a formula stands below the line.
 
-    Titles of sources in Chinese need a font of that script.
+    The italic letters of mathematics, which few fonts have, are not asked for. Titles in Chinese need their own font.
     """
     transformed = (
         "[...document.querySelectorAll('mi')].filter(n => getComputedStyle(n).textTransform !== 'none').length"
@@ -155,6 +160,7 @@ def test_every_character_is_drawn(page: Any, fonts: dict[str, str]) -> None:
     for name, style in fonts.items():
         page.add_style_tag(content=style)
         boxes[name] = page.evaluate(BOXES)
+        assert page.evaluate(LEVEL) == [], name
     assert {name: found for name, found in boxes.items() if found} == {}
 
 
