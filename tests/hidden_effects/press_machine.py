@@ -186,6 +186,12 @@ def gap(rows: Rows, hidden: Hidden) -> Array:
     return np.asarray(hidden.get("joint_clearance", {}).get("clearance", 0.0) + worn)
 
 
+def pushed_up(rows: Rows, hidden: Hidden) -> Array:
+    """What the links carry, N: the forming force and what lifts the slider, less what hangs on it (``hanging``)."""
+    slider = hidden.get("hanging", {})
+    return np.asarray(rows.forming_force + slider.get("lift", 0.0) - 9.80665 * slider.get("mass", 0.0))
+
+
 def yielded(rows: Rows, angle: Array, sizes: Sizes, hidden: Hidden) -> Sizes:
     """The sizes with the links of the knee and the rods shortened by their load and pushed through their clearance."""
     compliance = hidden.get("elastic_deflection", {}).get("compliance", 0.0)
@@ -194,10 +200,10 @@ def yielded(rows: Rows, angle: Array, sizes: Sizes, hidden: Hidden) -> Sizes:
     if not (compliance or inertia or np.any(loose)):
         return sizes
     slopes = lowering(angle, sizes)
-    load = compliance * rows.forming_force
+    load = compliance * pushed_up(rows, hidden)
     if inertia:
         load = load + inertia * curvature(angle, sizes) * (2 * pi * rows.speed) ** 2
-    pushed = np.where(rows.forming_force >= 0, 1.0, -1.0)
+    pushed = np.where(pushed_up(rows, hidden) >= 0, 1.0, -1.0)
     return sizes | {
         name: sizes[name] * (1 - slope * load) - 2 * loose * np.sign(slope) * pushed for name, slope in slopes.items()
     }

@@ -10,12 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hidden_effects.asking import diagnosed
+from hidden_effects.asking import INPUTS, diagnosed, press_offer, table
 from hidden_effects.candidates import stacked
 from hidden_effects.cases import Case
+from hidden_effects.designs import measured
 from hidden_effects.making import Wish, make_case
 from hidden_effects.outcome import outcome
-from hidden_effects.press_machine import POSITION, TILT, Array
+from hidden_effects.press_machine import POSITION, TILT, Array, Rows, shown
+from truing.testing import recorded
 
 POSITION_ALONE, BOTH = (POSITION,), (POSITION, TILT)
 CLEAR = 60.0
@@ -102,6 +104,22 @@ def test_rows_held_out_are_predicted_as_well_as_can_be(seed: int, wish: Wish) ->
     held = found["held_out"]
     assert held["rmse"] < 1.05 * held["oracle"]
     assert 1 - held["mse"] / held["mse_base"] > 0.9
+
+
+def test_the_play_of_a_hanging_slider_is_sized_where_its_mass_is_stated() -> None:
+    """A slider of 20 t that nothing lifts hangs in its joints until the forming force passes 196 kN."""
+    rng = np.random.default_rng(5)
+    rows = measured("wide", 80, rng)
+    rows = Rows(**{**vars(rows), "forming_force": rng.uniform(-50e3, 450e3, len(rows))})
+    read = shown(rows, {}, {"hanging": {"mass": 20e3}, "joint_clearance": {"clearance": 6e-6}})
+    readings = {POSITION: read[POSITION] + rng.normal(0, 2e-6, len(rows))}
+    inputs = INPUTS.replace("[inputs]\n", '[inputs]\nslider_mass = "20 t"\n')
+    document = recorded(press_offer().model, inputs=inputs, measured=table(rows, readings)).answered.document
+    assert (document["verdict"], document["remainder"]) == ("named", None)
+    (cause,) = document["causes"]
+    low, high = cause["unknowns"]["clearance"]["interval95"]
+    assert cause["effect"] == "joint_clearance"
+    assert low <= 6.0 <= high
 
 
 def scatter(values: Array, count: int) -> float:
