@@ -112,7 +112,8 @@ def chosen_teeth(stage: Gearing) -> Teeth:
         return Teeth(sun=stage.sun_teeth, planet=stage.planet_teeth, pins=pins)
     found, counts = _of_group(stage)
     holds = np.logical_not(unstated) | (counts >= stage.group)
-    feasible(holds, _too_few(stage.group, counts))
+    for count in np.unique(np.where(holds, stage.group, counts)):
+        feasible(holds | (counts != count), _too_few(stage.group, int(count)))
     return Teeth(
         sun=either(stage.sun_teeth, found.sun),
         planet=either(stage.planet_teeth, found.planet),
@@ -120,13 +121,11 @@ def chosen_teeth(stage: Gearing) -> Teeth:
     )
 
 
-def _too_few(group: int, counts: "NDArray[np.intp]") -> str:
+def _too_few(group: int, count: int) -> str:
     """Say that there is no such group."""
-    most = int(np.max(counts))
-    many = {0: "no group", 1: "one group"}.get(most, f"{most} groups")
-    least = "" if np.min(counts) == most else " at most"
-    way = "state sun_teeth and planet_teeth" if not most else "take one of them, or state sun_teeth and planet_teeth"
-    return f"group = {group}, but the search finds {many}{least}: {way}"
+    many = {0: "no group", 1: "one group"}.get(count, f"{count} groups")
+    way = "take one of them, or state sun_teeth and planet_teeth" if count else "state sun_teeth and planet_teeth"
+    return f"group = {group}, but the search finds {many}: {way}"
 
 
 def candidates(stage: Gearing) -> Teeth:
