@@ -218,6 +218,10 @@ WRONG: dict[str, tuple[Callable[[], Model[Any, Any]], str]] = {
         "(rate * travel**2 / 2) is not what is calculated: it gives 0.1, the function gives 0.100000001",
     ),
     "batch equals loop": (branching, "write np.where, not if"),
+    "steps may be halved": (
+        lambda: with_input(lambda it: 1.0 + it * 1e3, default=1.0, halving=0.3),
+        "a finer 'it' moves 'out' from 2 to 1.5 (SI), which is more than 30 %",
+    ),
     "inputs untouched": (lambda: with_function(writing), "the function writes to the input 'coils'"),
     "seeds decide": (
         lambda: good(errors=[Tolerance("travel", drawn(forgetful_draw))]),
@@ -317,6 +321,16 @@ MORE_WRONG: list[tuple[str, Callable[[], Model[Any, Any]], str]] = [
         "printed numbers are of results",
         lambda: good(published=[Published(name="F", result="forse", value=1, unit="N")]),
         "'forse', which is no result",
+    ),
+    (
+        "steps may be halved",
+        lambda: with_input(lambda it: 1.0 + 1 / it, default=2, unit="", whole=True, at_least=1, halving=0.1),
+        "from 1.5 to 1.25 (SI), which is more than 10 %",
+    ),
+    (
+        "steps may be halved",
+        lambda: with_input(lambda it: 1.0 + it * 1e3, default=1.0, halving=0.9, halving_but={"out": "0.4"}),
+        "which is more than 0.4",
     ),
     ("formulas have the unit", lambda: with_result("N", "rate + travel", lambda it: it.rate), "formula of 'it'"),
     (

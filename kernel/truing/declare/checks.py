@@ -30,6 +30,7 @@ def check_model(model: Model[Any, Any]) -> None:
         *_of_names(model),
         *_of_axes(model),
         *_of_companions(model),
+        *_of_halving(model),
         *_of_errors(model),
         *_of_objectives(model),
         *_of_sheet(model),
@@ -94,6 +95,20 @@ def _of_companions(model: Model[Any, Any]) -> Iterator[str]:
         if other and (other == name or other not in model.input_fields):
             meant = near_miss(other, model.input_fields)
             yield f"the input '{name}' is stated with '{other}', which is no other input.{meant}"
+
+
+def _of_halving(model: Model[Any, Any]) -> Iterator[str]:
+    """Say which numerical steps are no numbers, promise nothing, or name what is no result."""
+    fields = model.own_result_fields
+    for name, item in model.input_fields.items():
+        share, but = getattr(item.spec, "halving", None), getattr(item.spec, "halving_but", {})
+        if share is None and but:
+            yield f"the input '{name}' has a halving_but without a halving; give the share for all other results"
+        if share is not None and (item.kind not in {"float", "whole", "integer"} or not 0 < share < 1):
+            yield f"the input '{name}' has the halving {share!r}; it is a share from 0 to 1, of a number or count"
+        for result in but:
+            if result not in fields:
+                yield f"the halving of '{name}' names '{result}', which is no result.{near_miss(result, fields)}"
 
 
 def _of_errors(model: Model[Any, Any]) -> Iterator[str]:

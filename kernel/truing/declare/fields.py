@@ -34,15 +34,20 @@ def given(
     whole: bool = False,
     along: str = "",
     stated_with: str = "",
+    halving: float | None = None,
+    halving_but: Mapping[str, str] | None = None,
 ) -> Any:
     """Declare an input with its default and unit; ``None`` makes it optional (NaN inside).
 
     Bounds are in ``unit``. ``whole`` asks for whole numbers. ``along`` names the axis of an input that is a series.
     ``stated_with`` names the input that tells what this one means: a file that states one must state the other too.
+    ``halving`` makes it a numerical step, tolerance or grid: the share of a result that halving it (doubling a count)
+    changes at the most wherever the model answers; ``halving_but`` gives quantities for results that move otherwise.
     """
     spec = Given(
         default=default, unit=unit, symbol=symbol, note=note, source=source, above=above, below=below,
         at_least=at_least, at_most=at_most, whole=whole, along=along, stated_with=stated_with,
+        halving=halving, halving_but=halving_but or {},
     )  # fmt: skip
     return field(default_factory=spec.initial, metadata={KEY: spec})
 
@@ -207,6 +212,11 @@ class InputField:
     def varies(self) -> bool:
         """Whether the input may be an array inside a batch."""
         return self.kind in {"float", "whole"}
+
+    @property
+    def is_count(self) -> bool:
+        """Whether it takes whole numbers only; a numerical one is made finer by doubling it, any other by halving."""
+        return self.kind in {"whole", "integer"}
 
     @property
     def is_optional(self) -> bool:

@@ -15,6 +15,7 @@ Promise = Literal[
     "formulas have the unit",
     "formulas equal the function",
     "batch equals loop",
+    "steps may be halved",
     "inputs untouched",
     "seeds decide",
     "serial equals parallel",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING, dataclass
+from dataclasses import MISSING, dataclass, field
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 from truing.units.names import PURE
@@ -36,6 +36,8 @@ class Given:
     whole: bool = False
     along: str = ""
     stated_with: str = ""
+    halving: float | None = None
+    halving_but: Mapping[str, str] = field(default_factory=dict)
 
     def initial(self) -> Any:
         """Return the default as the function sees it: SI, NaN where nothing is given."""

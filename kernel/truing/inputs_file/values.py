@@ -143,14 +143,28 @@ def _quantity(value: float, unit: str) -> str:
 
 
 def bounds_in_words(item: InputField, *, with_unit: bool = True) -> str:
-    """Return the bounds of an input as a phrase, such as "above 0 m, at most 2 m"; nothing where there are none."""
+    """Return the bounds of an input as a phrase, such as "above 0 m, at most 2 m"; nothing where there are none.
+
+    Of a numerical step it says behind them what halving it changes.
+    """
     spec = item.spec
     if not isinstance(spec, Given):
         return ""
     named = (("above", spec.above), ("below", spec.below), ("at least", spec.at_least), ("at most", spec.at_most))
     unit = item.unit if with_unit else ""
     words = [f"{word} {_quantity(bound, unit)}" for word, bound in named if bound is not None]
-    return ", ".join([*words, "whole number"] if spec.whole else words)
+    bounds = ", ".join([*words, "whole number"] if spec.whole else words)
+    return "; ".join(part for part in (bounds, halving_in_words(item)) if part)
+
+
+def halving_in_words(item: InputField) -> str:
+    """Say of a numerical step how much halving it (a count: doubling it) changes; nothing of any other input."""
+    spec = item.spec
+    if not isinstance(spec, Given) or spec.halving is None:
+        return ""
+    but = "".join(f"; {name} by at most {most}" for name, most in spec.halving_but.items())
+    step = "doubling" if item.is_count else "halving"
+    return f"numerical: {step} it changes no result by more than {100 * spec.halving:g} %{but}"
 
 
 def _switch(item: InputField, raw: Any) -> bool:

@@ -11,6 +11,7 @@ from truing.declare.fields import Given, InputField
 from truing.declare.goals import Require
 from truing.declare.spreads import Distribution
 from truing.evaluate import acting_inputs
+from truing.inputs_file.values import halving_in_words
 from truing.numbers import (
     ABSENT,
     RESULT_DIGITS,
@@ -51,7 +52,7 @@ def input_rows(setup: Setup) -> Iterator[InputRow]:
             name=name,
             symbol=item.symbol,
             value=input_value(setup, item, value),
-            note=item.spec.note,
+            note="; ".join(part for part in (item.spec.note, halving_in_words(item)) if part),
             source=item.spec.source,
             stated=name in setup.stated,
             calibrated=None if fitted is None else Value(*format_value(fitted, unit, STATED_DIGITS)),

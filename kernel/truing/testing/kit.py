@@ -8,7 +8,7 @@ from typing import Any
 
 from truing.declare.model import Model
 from truing.declare.promises import Promise
-from truing.testing import batches, declared, formulas, running, sources
+from truing.testing import batches, declared, formulas, running, sources, steps
 from truing.testing.subject import Subject, fail
 
 
@@ -46,6 +46,7 @@ CHECKS: tuple[ConformanceCheck, ...] = (
     ConformanceCheck("formulas have the unit", formulas.formulas_have_the_unit),
     ConformanceCheck("formulas equal the function", formulas.formulas_equal_the_function),
     ConformanceCheck("batch equals loop", batches.batch_equals_loop),
+    ConformanceCheck("steps may be halved", steps.steps_may_be_halved),
     ConformanceCheck("inputs untouched", running.inputs_untouched),
     ConformanceCheck("seeds decide", running.seeds_decide),
     ConformanceCheck("serial equals parallel", running.serial_equals_parallel, needs_home=True),
