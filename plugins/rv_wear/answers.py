@@ -35,13 +35,13 @@ class Wear:
                                 method="equation 5: force over the area of the contact")  # fmt: skip
     mesh_period: Float = found("s", symbol="t", note="time in which every tooth meshes once",
                                formula="1 / (output_speed * pin_count)", source="equation 14")  # fmt: skip
-    coefficient: Float = found("1/Pa", symbol="k", note="wear coefficient at the largest force, unworn",
+    coefficient: Float = found("1/Pa", symbol="k", note="wear coefficient at the longest arm, unworn",
                                method="regression of Janakiraman, Li and Kahraman, equations 9 and 10")  # fmt: skip
-    max_wear: Float = found("um", symbol="h_max", note="deepest wear of the flank",
+    max_wear: Float = found("um", symbol="h_max", note="deepest wear, of the flank that is loaded longer",
                             method="equations 13 to 16: wear, new profile, new forces, step by step")  # fmt: skip
     wear_angle: Float = found("deg", symbol="psi_h", note="phase angle of the deepest wear", method="as the wear")
     backlash_wear: Float = found("um", symbol="h_phi", note="wear that is felt at a flank as lost motion",
-                                 method="deepest wear, with the shares that the inputs state")  # fmt: skip
+                                 method="deepest wear, mean of both flanks, with the shares of the inputs")  # fmt: skip
     backlash_involute: Float = found(
         "arcmin", symbol="Delta phi_1", note="backlash of the involute stage, factors 1 to 3", source=EQUATION_21,
         formula="(2 * sin(pressure_angle) * (gear_runout + centre_distance_error) - base_tangent_error)"
@@ -54,7 +54,7 @@ class Wear:
     gap_pins: Float = found(
         "um", symbol="Delta beta_p", note="gap by pins and holes, factors 6, 7, 8 and 10", source=EQUATION_21,
         formula="2 * root * pin_circle_error - 2 * pin_radius_error + pin_fit_clearance"
-        " + 2 * short_width * pin_position_error",
+        " + 2 * short_width * pin_position_error - runout_gap",
     )  # fmt: skip
     gap_disc: Float = found(
         "um", symbol="Delta beta_d", note="gap by toothing and crank, factors 9, 11 and 14", source=EQUATION_21,

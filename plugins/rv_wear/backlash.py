@@ -37,6 +37,7 @@ def backlash_of(reducer: Reducer, felt_wear: Float) -> Shares:
         - 2.0 * reducer.pin_radius_error
         + reducer.pin_fit_clearance
         + 2.0 * short_width * reducer.pin_position_error
+        - reducer.runout_gap
     )
     disc = (
         0.5 * reducer.disc_runout

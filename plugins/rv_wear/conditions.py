@@ -18,6 +18,10 @@ OIL_TEMPERATURE = Condition(
 OUTPUT_ANGLE = Condition(
     "output_angle", "deg", reference=0, low=0, high=360, note="of the output, at which the backlash is read"
 )  # fmt: skip
+CRANK_ANGLE = Condition(
+    "crank_angle", "deg", reference=0, low=0, high=360,
+    note="of the throw of the crank against the housing, at which the backlash is read",
+)  # fmt: skip
 MEASURING_TORQUE = Condition(
     "measuring_torque", "N*m", reference=0, low=0, high=1000,
     note="at the output, to one side and the other while the backlash is read; its amplitude",

@@ -67,18 +67,17 @@ def unworn(mesh: Mesh) -> Unworn:
     teeth = teeth_of(mesh)
     loads = shared(teeth, teeth.slack, start_scale(teeth))
     force = loads.force.reshape(-1, teeth.count)
-    radius = teeth.relative_radius.reshape(-1, teeth.count)
-    place = force.argmax(axis=0)[None]
-    largest, its_radius = (np.take_along_axis(values, place, axis=0)[0] for values in (force, radius))
+    at_pitch_point = cycloid.relative_radius(teeth.mesh, cycloid.longest_arm_angle(teeth.mesh))
+    scale = loads.scale.max(axis=0)
     fastest = growth(teeth, loads)(loads.force).max(axis=(0, 1))
     return Unworn(
-        scale=loads.scale.max(axis=0),
+        scale=scale,
         approach=loads.approach.max(axis=0),
-        largest_force=largest,
+        largest_force=force.max(axis=0),
         loaded_pins=(loads.force > 0.0).sum(axis=0).max(axis=0).astype(float),
         pressure=np.asarray(contact.mean_pressure(teeth.mesh, loads.force, teeth.relative_radius)).max(axis=(0, 1)),
         contact_part=np.asarray(
-            coefficient.contact_part(teeth.mesh.equivalent_modulus, largest / teeth.mesh.width, its_radius)
+            coefficient.contact_part(teeth.mesh.equivalent_modulus, scale / teeth.mesh.width, at_pitch_point)
         ),
         lowest_equidistant=np.asarray(cycloid.lowest_equidistant(teeth.mesh)),
         first_step=np.where(fastest > 0.0, teeth.mesh.threshold / np.maximum(fastest, 1.0 / NEVER), NEVER),

@@ -6,6 +6,7 @@ then what is in the reading alone. A new effect is a function beside the others 
 
 from rv_wear.answers import Wear
 from rv_wear.conditions import (
+    CRANK_ANGLE,
     DIRECTION,
     DISC_TEMPERATURE,
     HOUSING_TEMPERATURE,
@@ -45,22 +46,22 @@ CLEARANCE: list[Effect[Reducer, Wear]] = [
         unknowns=[Unknown("expansion", -40, 40, "um/(m*K)", note="linear, of housing and disc alike; steel 11.5")],
         looks_like="the backlash follows the difference of both temperatures, back and forth, and never the hours",
         why="the discs turn in warm oil and the housing stands in cold air: the clearance between them closes",
-        source="linear expansion; steel 11.5 um/(m*K), 0.068 arcmin per kelvin of difference",
+        source="linear expansion; steel 11.5 um/(m*K), 0.063 arcmin per kelvin of difference",
     ),
     Effect(
         "runout",
         on_inputs=runout,
-        needs=[OUTPUT_ANGLE],
+        needs=[CRANK_ANGLE],
         acts_at_reference=True,
         unknowns=[
-            Unknown(
-                "cosine", -100, 100, "um", note="of the pin circle, in proportion to the cosine of the output angle"
-            ),
-            Unknown("sine", -100, 100, "um", note="of the pin circle, in proportion to the sine of the output angle"),
+            Unknown("offset", 0, 10, "um", note="of the circle of the pins from the axis of the output"),
+            Unknown("direction", 180, 360, "deg", note="of the offset, as a crank angle; half a turn more is the same"),
         ],
-        looks_like="the backlash swings once per turn of the output, about 0.05 arcmin per micrometre",
-        why="the circle of the pins, or the bore of the housing that holds it, is off the axis of the output",
-        source="first harmonic of an eccentricity; equation 21 for the radius of the pin circle",
+        looks_like="the backlash dips twice per turn of the crank, by 0.08 arcmin per micrometre, where the throw "
+        "stands across the offset; the mean of both ends of the play stays",
+        why="the circle of the pins, or the bore of the housing that holds it, is off the axis of the output; two "
+        "opposite discs then touch at opposite ends of the play",
+        source="geometry of two opposite cycloid discs, derived on the theory page of the calculation",
     ),
     Effect(
         "bearing_wear",
@@ -147,9 +148,7 @@ WEAR: list[Effect[Reducer, Wear]] = [
     Effect(
         "lubricant_ageing",
         on_inputs=lubricant_ageing,
-        unknowns=[
-            Unknown("rate", 0, 5, "1/(1000*h)", note="growth of the momentary wear coefficient, over that when new")
-        ],
+        unknowns=[Unknown("rate", 0, 5, "1e-3/h", note="growth of the momentary wear coefficient, over that when new")],
         looks_like="wear that does not slow down with the hours, or even hastens",
         why="additives are used up, and debris stays in the grease",
         source="linear growth of the wear coefficient with the age of the lubricant",
@@ -166,9 +165,16 @@ WEAR: list[Effect[Reducer, Wear]] = [
         "duty_share",
         on_inputs=duty_share,
         unknowns=[
-            Unknown("reversing", 0, 1, "", note="0: always the same flank is loaded, 1: both share the time evenly")
+            Unknown(
+                "idle",
+                0,
+                1,
+                "",
+                note="share of the working time in which a flank is not loaded: 0.5 where both share it evenly",
+            )
         ],
-        looks_like="the backlash gains less, as if the reducer had worked fewer hours; the deepest wear is the old one",
+        looks_like="wear and backlash gain less, as if the reducer had worked fewer hours, like less sliding; the log "
+        "of the load tells: state it as the input reversing, and the question is answered",
         why="robots turn to and fro: what one flank wears the other does not",
         source="wear of both flanks, each after its own time",
     ),

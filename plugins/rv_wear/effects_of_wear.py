@@ -58,6 +58,6 @@ def load_exponent(reducer: Reducer, *, exponent: Float) -> Reducer:
     return replace(reducer, depth_factor=reducer.depth_factor * (reducer.output_torque / RATED_TORQUE) ** exponent)
 
 
-def duty_share(reducer: Reducer, *, reversing: Float) -> Reducer:
-    """A load that reverses wears each flank for a part of the time only: at 1 both flanks share it evenly."""
-    return replace(reducer, loaded_share=reducer.loaded_share * (1.0 - 0.5 * reversing))
+def duty_share(reducer: Reducer, *, idle: Float) -> Reducer:
+    """Either flank is idle for this share of the working time: 0.5 where both share it evenly."""
+    return replace(reducer, loaded_share=reducer.loaded_share * (1.0 - idle))

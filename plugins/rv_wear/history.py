@@ -61,18 +61,16 @@ def growth(teeth: Teeth, unworn: Loads) -> Rate:
         factor = _at_pitch_point(teeth, unworn) * by_load
         return lambda force: factor * force
     by_load = by_load * coefficient.contact_part(modulus, 1.0 / mesh.width, teeth.relative_radius)
-    power = 1.0 + coefficient.LOAD
+    bare = _power_law(by_load, 1.0 + coefficient.LOAD)
     if mesh.film is None:
-        return _power_law(by_load, power)
+        return bare
     turning = 2.0 * np.pi * mesh.film.speed
     carried = sliding.rolling_speed(mesh, teeth.angle) - 0.5 * sliding.sliding_speed(mesh, teeth.angle)
     number = coefficient.film_number(mesh, np.abs(carried) * turning, teeth.relative_radius)
     line = number * (mesh.width * modulus * teeth.relative_radius) ** 0.13
 
     def with_film(force: Array) -> Array:
-        ratio = line * np.maximum(force, 1e-9) ** -0.13
-        rate: Array = by_load * force**power * coefficient.unworn_share(ratio)
-        return rate
+        return bare(force) * coefficient.unworn_share(line * np.maximum(force, SLIGHT) ** -0.13)
 
     return with_film
 

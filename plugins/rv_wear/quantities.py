@@ -9,6 +9,8 @@ INDICES = "follows from the indices of Table 2; Table 1 is lost"
 CATALOGUE = "known of reducers of this size; Table 1 is lost"
 CALIBRATED = "chosen so that 3.127 um after 6000 h follow"
 LARGEST = 1000.0  # mm or um: no reducer has a metre, no deviation or wear a millimetre
+HALVING = 0.03  # in the worst case that is not refused; a fifth of a percent of the wear of the paper's reducer
+SAMPLED = {"loaded_pins": "1", "wear_angle": "10 deg"}  # a count, and the place of a flat maximum
 ZONE = "middle of its zone; the zones were chosen to fit"
 
 
@@ -63,6 +65,11 @@ class Reducer:
     output_speed: Float = given(15.0, "r/min", symbol="n", note="speed of the output", source=PAPER, above=0)
     working_time: Float = given(6000.0, "h", symbol="T", source=PAPER, at_least=0,
                                 note="working time of this set of discs; rated life 6000 h")  # fmt: skip
+    reversing: Float = given(
+        None, "", symbol="f_r", at_least=0, at_most=1,
+        note="0: the load is always on the same flank, 1: both flanks share the working time evenly; without it each "
+        "flank is loaded in all of it, as the paper counts",
+    )  # fmt: skip
     torque_share: Float = given(0.55, "", symbol="kappa_T", note="share of the output torque on the worse of two discs",
                                 source="Chinese practice for cycloid drives", above=0, at_most=1)  # fmt: skip
     young_modulus: Float = given(2.06e5, "MPa", symbol="E", note="modulus of steel", source="literature", above=0)
@@ -80,9 +87,12 @@ class Reducer:
     wear_coefficient: Literal["pointwise", "pitch_point"] = given(
         "pointwise", note="regression with the force of every point, or once with that at the pitch point"
     )
-    reconstruction_depth: Float = length(0.05, "um", "epsilon", "new wear after which forces are found again",
-                                         "0.4 % from convergence")  # fmt: skip
-    phases: int = given(8, note="positions of the disc within one pin pitch", at_least=1, at_most=64)
+    reconstruction_depth: Float = given(
+        0.05, "um", symbol="epsilon", note="new wear after which forces are found again",
+        source="0.4 % from convergence", above=0, below=LARGEST, halving=HALVING, halving_but=SAMPLED,
+    )  # fmt: skip
+    phases: int = given(8, note="positions of the disc within one pin pitch", at_least=4, at_most=256, halving=HALVING,
+                        halving_but=SAMPLED)  # fmt: skip
     # The error factors of the backlash, by their number in the paper's Table 2
     base_tangent_error: Float = deviation(-15.0, "Delta E_bn", "1: mean base tangent length of the involute gears")
     gear_runout: Float = deviation(5.0, "F_r", "2: radial runout of the involute gears")
@@ -97,6 +107,8 @@ class Reducer:
     shift_error: Float = deviation(0.0, "delta Delta r_p", "13: shift modification as ground")
     eccentricity_error: Float = deviation(0.0, "delta e", "14: throw of the crank")
     bearing_clearance: Float = deviation(11.1, "delta_b", "16: clearance of the crank bearings")
+    runout_gap: Float = given(0.0, "um", symbol="delta_R", at_least=0, at_most=LARGEST,
+                              note="neutral 0: gap of both flanks that runout of the pin circle takes")  # fmt: skip
     # What is asked
     permitted_backlash: Float = given(
         1.0, "arcmin", symbol="Delta phi_per", note="permitted backlash", source=PAPER, above=0
@@ -131,7 +143,7 @@ class Reducer:
                               at_least=-LARGEST, at_most=LARGEST)  # fmt: skip
     loaded_share: Float = given(
         1.0, "", symbol="f_T", at_least=0, at_most=1,
-        note="neutral 1: share of the working time in which a flank of the backlash was loaded",
+        note="neutral 1: share of the working time in which either flank is loaded; acts without reversing",
     )  # fmt: skip
     lost_motion_share: Float = given(
         1.0, "", symbol="kappa_w", note="neutral 1: share of the largest wear that is felt", at_least=0

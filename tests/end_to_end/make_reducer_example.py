@@ -26,7 +26,8 @@ NOISE = {"backlash": 0.008, "max_wear": 0.08}  # arcmin, um
 OPENED = range(4, READINGS, 5)  # readings after which the housing was opened and a flank measured, every 380 h
 DECIMALS = {
     "working_time [h]": 0, "time [h]": 0, "housing_temperature [degC]": 1, "disc_temperature [degC]": 1,
-    "oil_temperature [degC]": 1, "output_angle [deg]": 0, "measuring_torque [N*m]": 0, "direction [1]": 0,
+    "oil_temperature [degC]": 1, "output_angle [deg]": 0, "crank_angle [deg]": 0, "measuring_torque [N*m]": 0,
+    "direction [1]": 0,
 }  # fmt: skip
 
 
@@ -41,6 +42,7 @@ def settings(rng: np.random.Generator) -> dict[str, Array]:
         "disc_temperature [degC]": housing + rng.uniform(-2, 8, READINGS),
         "oil_temperature [degC]": 40 + 2 * np.sin(hours / 900),
         "output_angle [deg]": rng.uniform(0, 360, READINGS),
+        "crank_angle [deg]": np.random.default_rng(READINGS).uniform(0, 360, READINGS),
         "measuring_torque [N*m]": rng.uniform(0, 200, READINGS),
         "direction [1]": rng.choice([-1.0, 1.0], READINGS),
     }

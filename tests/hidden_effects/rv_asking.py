@@ -5,8 +5,8 @@ from hidden_effects.rv_cases import UNIT, Case
 
 WRITTEN = {
     "time": "h", "working_time": "h", "output_torque": "N*m", "output_speed": "r/min", "housing_temperature": "degC",
-    "disc_temperature": "degC", "oil_temperature": "degC", "output_angle": "deg", "measuring_torque": "N*m",
-    "direction": "1",
+    "disc_temperature": "degC", "oil_temperature": "degC", "output_angle": "deg", "crank_angle": "deg",
+    "measuring_torque": "N*m", "direction": "1",
 }  # fmt: skip
 REDUCER = Rig(plugin="rv_wear", inputs='plugin = "rv_wear"\n', written=WRITTEN, measured=UNIT)
 

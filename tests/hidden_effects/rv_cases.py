@@ -96,6 +96,7 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
         housing_temperature=warm,
         disc_temperature=warm + rng.uniform(-2, 8, count),
         output_angle=rng.uniform(0, 360, count),
+        crank_angle=np.random.default_rng(count).uniform(0, 360, count),
         measuring_torque=rng.uniform(0, 300, count),
         direction=rng.choice([-1.0, 1.0], count),
     )

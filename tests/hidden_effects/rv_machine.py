@@ -1,4 +1,4 @@
-"""A reducer that wears, is warm, runs out of round and is read under torque: mesh and wear from the equations alone.
+"""A reducer that wears, is warm, has its pins off centre and is read under torque: from the equations alone.
 
 Nothing of the plugin is imported. Lengths are mm, forces N, stresses MPa, times h; the wear coefficient alone is worked
 out in m, Pa. The mesh is solved by halving intervals, the wear integrated by the midpoint rule in the turns of the
@@ -13,6 +13,8 @@ from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+from hidden_effects.rv_play import Mesh, ends_of_play
 
 Array: TypeAlias = NDArray[np.float64]
 Hidden: TypeAlias = Mapping[str, Mapping[str, float]]  # effect -> unknown, in the units of the registry
@@ -58,6 +60,7 @@ class Rows:
     disc_temperature: Array
     oil_temperature: Array
     output_angle: Array
+    crank_angle: Array
     measuring_torque: Array
     direction: Array
 
@@ -191,7 +194,8 @@ def made_turns(rows: Rows, hidden: Hidden) -> Array:
     turns = rows.output_speed * 60 * rows.working_time
     softer = np.exp(-of(hidden, "wear_temperature", "softening") * (rows.oil_temperature - 40))
     older = 1 + of(hidden, "lubricant_ageing", "rate") / 1000 * rows.working_time / 2  # mean of 1 + rate t
-    return np.asarray(turns * softer**-7.377 * older * (1 - of(hidden, "pin_rolling", "rolling")))
+    loaded = 1 - of(hidden, "duty_share", "idle")
+    return np.asarray(turns * softer**-7.377 * older * loaded * (1 - of(hidden, "pin_rolling", "rolling")))
 
 
 def depth_after(rows: Rows, turns: Array, off: Mapping[str, float], hidden: Hidden) -> Array:
@@ -214,23 +218,25 @@ def worn(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> tuple[Array, A
     early = of(hidden, "running_in", "depth") * 1e-3
     tau = of(hidden, "running_in", "run_in_time") or 1.0
     deepest = depth_after(rows, turns, off, hidden) + early * (1 - np.exp(-rows.working_time / tau))
-    share = 1 - of(hidden, "duty_share", "reversing") / 2
-    flank = deepest if share == 1 else depth_after(rows, turns * share, off, hidden)
-    both = (1 + of(hidden, "pin_wear", "ratio")) * (1 - of(hidden, "lost_motion_share", "loss")) * (flank + flank)
+    both = (1 + of(hidden, "pin_wear", "ratio")) * (1 - of(hidden, "lost_motion_share", "loss")) * (deepest + deepest)
     return deepest, both
 
 
-def circle_error(rows: Rows, hidden: Hidden) -> Array:
-    """How much larger the circle of the pins is for the disc than as made: heat of both, and a centre that is off."""
+def moved_ends(rows: Rows, hidden: Hidden, size: Mapping[str, float]) -> Array:
+    """Play at the output, rad, that heat of housing and discs and an offset of the pins give, by exact geometry."""
+    if not hidden.keys() & {"thermal_clearance", "runout"}:
+        return np.zeros(len(rows))
     strain = of(hidden, "thermal_clearance", "expansion") * 1e-6
-    outer, inner = (
-        CIRCLE * (1 + strain * (rows.housing_temperature - 20)),
-        CIRCLE * (1 + strain * (rows.disc_temperature - 20)),
-    )
-    angle = np.radians(rows.output_angle)
-    x, y = of(hidden, "runout", "cosine") * 1e-3, of(hidden, "runout", "sine") * 1e-3
-    reach = np.hypot(CIRCLE * np.cos(angle) + x, CIRCLE * np.sin(angle) + y)
-    return np.asarray(outer - inner + reach - CIRCLE)
+    outer = (1 + strain * (rows.housing_temperature - 20))[:, None, None]
+    inner = (1 + strain * (rows.disc_temperature - 20))[:, None, None]
+    circle, pin = CIRCLE + size["pin_circle_error"], PIN + size["pin_radius_error"] - size["pin_fit_clearance"] / 2
+    ground = CIRCLE + SHIFT + size["shift_error"], PIN + EQUIDISTANT + size["equidistant_error"]
+    cold = Mesh(circle, pin, *ground, THROW, THROW)
+    warm = Mesh(circle * outer, pin * outer, ground[0] * inner, ground[1] * inner, THROW * inner, THROW * inner)
+    offset, towards = of(hidden, "runout", "offset") * 1e-3, np.radians(of(hidden, "runout", "direction"))
+    crank = np.radians(rows.crank_angle)
+    ends = ends_of_play(warm, crank, (offset * np.cos(towards), offset * np.sin(towards)))
+    return np.asarray((ends - ends_of_play(cold, crank)).sum(axis=0))
 
 
 def play(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> Array:
@@ -239,7 +245,7 @@ def play(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> Array:
     felt = worn(rows, off, hidden)[1]
     involute = 2 * np.sin(PRESSURE_ANGLE) * (size["gear_runout"] + size["centre_distance_error"])
     radial = EQUIDISTANT + size["equidistant_error"] - size["pin_radius_error"]
-    circle = size["pin_circle_error"] + circle_error(rows, hidden) - SHIFT - size["shift_error"]
+    circle = size["pin_circle_error"] - SHIFT - size["shift_error"]
     circle = circle + 1.6e-4 * size["eccentricity_error"]
     around = SHORT * (2 * size["pin_position_error"] - size["disc_pitch_error"])
     gearing = 2 * radial + 2 * ROOT * circle + size["pin_fit_clearance"] + size["disc_runout"] / 2 + around
@@ -249,6 +255,7 @@ def play(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> Array:
         (involute - size["base_tangent_error"]) / (SUN * RATIO)
         + (gearing + felt) / LONGEST
         + (size["bearing_clearance"] + gained) / CENTRES
+        + moved_ends(rows, hidden, size)
     )
 
 

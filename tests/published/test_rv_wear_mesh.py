@@ -384,7 +384,7 @@ def test_impossible_geometry_is_refused_by_name(changes: dict[str, float], words
         {"shift_modification": -26e-6},
         {"equidistant_modification": 11.1e-6, "shift_modification": 7.1e-6},
         {"equidistant_modification": -200e-6, "shift_modification": -204e-6},
-        {"output_torque": 0.1},
+        {"output_torque": 0.1, "phases": 200},
         {"output_torque": 20000.0},
     ],
 )
@@ -394,4 +394,26 @@ def test_what_is_only_unusual_is_calculated(changes: dict[str, float]) -> None:
 
 
 def test_a_torque_too_small_loads_one_pin() -> None:
-    assert worn(replace(PAPER, output_torque=0.1)).loaded_pins == 1
+    assert worn(replace(PAPER, output_torque=1e-6, phases=200)).loaded_pins == 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"reconstruction_depth": 5e-6}, ["reconstruction_depth", "3 %", "approach"]),  # deeper than the wear
+        ({"reconstruction_depth": 0.2e-6}, ["reconstruction_depth"]),
+        ({"output_torque": 500.0, "working_time": 6e4 * 3600, "reconstruction_depth": 0.06e-6}, ["approach"]),
+        ({"output_torque": 0.1}, ["phases", "loaded_pins"]),
+    ],
+)
+def test_steps_that_would_decide_the_wear_are_refused(changes: dict[str, float], words: list[str]) -> None:
+    with pytest.raises(InfeasibleError) as caught:
+        worn(replace(PAPER, **changes))
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_a_step_is_not_too_deep_for_a_wear_that_never_reaches_it() -> None:
+    """Within the first step wear grows evenly, whatever its size: new discs and short times are calculated."""
+    new = worn(replace(PAPER, working_time=np.array([0.0, 36.0]), reconstruction_depth=5e-6))
+    assert new.depth == pytest.approx(worn(replace(PAPER, working_time=np.array([0.0, 36.0]))).depth, rel=1e-12)
