@@ -19,7 +19,8 @@ def shaken_by_error(speed_ratio: Float, damping: Float) -> Float:
 
     One degree of freedom at N times its own frequency: m y'' + c y' + k y = -m e'' of the deflection y, with an error e
     of one harmonic. Nothing at rest, in proportion to N^2 below the resonance, 1/(2 zeta) at it, 1 far above it, where
-    the mass stands still and the error alone works the spring. Reference: Den Hartog, Mechanical vibrations, 2.8.
+    the mass stands still and the error alone works the spring.
+    Reference: Den Hartog, Mechanical vibrations, chapter 2, relative motion of a seismic instrument.
     """
     square = np.square(speed_ratio)
     return square / np.sqrt((1.0 - square) ** 2 + 4.0 * np.square(damping) * square)

@@ -21,7 +21,7 @@ from rv_gearing.quantities import Gearing
 from truing import Effect, Unknown
 
 FACE = "face load factor of ISO 6336-1, method C, for a misalignment that grows with the load"
-RESONANCE = "one degree of freedom shaken by an error of position, Den Hartog, Mechanical vibrations, 2.8"
+RESONANCE = "one degree of freedom shaken by an error of position: Den Hartog, Mechanical vibrations, ch. 2"
 HARMONIC = "first harmonic of an eccentricity; kinematics of the RV reducer with its housing fixed"
 STIFFNESS = "ISO 6336-1, clause 9: stiffness of a tooth pair, and its fall below a line load of 100 N/mm"
 PALMGREN = (
