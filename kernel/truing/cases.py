@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from truing.calculation import Calculation, calculate
@@ -37,12 +37,13 @@ DECIDE_CHANCES = (Allocation, Reliability)
 
 @dataclass(frozen=True)
 class CaseResult:
-    """One case, what it answers in SI and its checks, or why it failed."""
+    """One case, what it answers in SI and its checks, or why it failed; ``absent``: why a result does not exist."""
 
     case: Case
     answers: Mapping[str, Any]
     decided: Decided = UNDECIDED
     reason: str | None = None
+    absent: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def checks(self) -> tuple[Check, ...]:
@@ -168,13 +169,13 @@ def _one_by_one(setup: Setup, cases: Sequence[Case], executor: Executor, progres
         )
     done = []
     progress("cases", 0, FINE)
-    for case, (found, decided, reason) in zip(cases, answers, strict=True):
-        done.append(CaseResult(case, found, decided, reason))
+    for case, (found, decided, reason, absent) in zip(cases, answers, strict=True):
+        done.append(CaseResult(case, found, decided, reason, absent))
         progress("cases", round(FINE * len(done) / len(cases)), FINE)
     return done
 
 
-Answer = tuple[Mapping[str, Any], Decided, str | None]
+Answer = tuple[Mapping[str, Any], Decided, str | None, Mapping[str, str]]
 
 
 def _packed_case(packed: Packed) -> Answer:
@@ -193,15 +194,15 @@ def _case_answer(setup: Setup, executor: Executor, progress: Progress = silent) 
     try:
         found = calculate(setup, executor=executor, progress=progress)
     except UsageError as error:  # impossible, or a tolerance that its size outgrows
-        return {}, UNDECIDED, str(error)
-    return found.answers, found.decided, None
+        return {}, UNDECIDED, str(error), {}
+    return found.answers, found.decided, None, found.absent
 
 
 def _in_blocks(setup: Setup, cases: Sequence[Case], executor: Executor, progress: Progress) -> list[CaseResult]:
     """Calculate cases in array calls of fixed length: a block is the same wherever it is calculated."""
     blocks = [cases[start : start + BLOCK] for start in range(0, len(cases), BLOCK)]
     jobs = ([case.values for case in block] for block in blocks)
-    answers: Iterable[list[tuple[dict[str, Any], str | None]]]
+    answers: Iterable[list[Row]]
     if len(blocks) == 1 or isinstance(executor, SerialExecutor) or not travels(setup):
         answers = (_block_answer(setup, rows) for rows in jobs)
     else:
@@ -214,24 +215,33 @@ def _in_blocks(setup: Setup, cases: Sequence[Case], executor: Executor, progress
     return done
 
 
-def _packed_block(job: tuple[Packed, list[Mapping[str, Any]]]) -> list[tuple[dict[str, Any], str | None]]:
+Row = tuple[dict[str, Any], str | None, dict[str, str]]
+
+
+def _packed_block(job: tuple[Packed, list[Mapping[str, Any]]]) -> list[Row]:
     """Calculate one block in a worker."""
     return _block_answer(unpack(job[0]), job[1])
 
 
-def _block_answer(setup: Setup, block: list[Mapping[str, Any]]) -> list[tuple[dict[str, Any], str | None]]:
-    """Return what each case of a block answers, or why it failed."""
+def _block_answer(setup: Setup, block: list[Mapping[str, Any]]) -> list[Row]:
+    """Return what each case of a block answers, or why it failed, and why it lacks a result."""
     rows = evaluate_rows(setup, {name: [values[name] for values in block] for name in block[0]}, len(block))
     return [
-        ({name: _plain(values[place]) for name, values in rows.results.items()}, rows.reasons.get(place))
+        (
+            {name: _plain(values[place]) for name, values in rows.results.items()},
+            rows.reasons.get(place),
+            {name: lacking[place] for name, lacking in rows.absent.items() if place in lacking},
+        )
         for place in range(len(block))
     ]
 
 
-def _block_case(setup: Setup, case: Case, answers: Mapping[str, Any], reason: str | None) -> CaseResult:
+def _block_case(
+    setup: Setup, case: Case, answers: Mapping[str, Any], reason: str | None, absent: Mapping[str, str]
+) -> CaseResult:
     if reason is not None:
         return CaseResult(case, {}, reason=reason)
-    return _checked(case, case_setup(setup, case), answers)
+    return replace(_checked(case, case_setup(setup, case), answers), absent=absent)
 
 
 def _checked(case: Case, setup: Setup, answers: Mapping[str, Any]) -> CaseResult:

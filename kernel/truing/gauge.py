@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Shown:
-    """Results by name in the unit they are printed in, shape (rows,), NaN in failed rows; why rows failed."""
+    """Results by name in the unit they are printed in, shape (rows,), NaN where there is none; why, by row."""
 
     values: Mapping[str, NDArray[np.float64]]
     units: Mapping[str, str]
@@ -47,8 +47,17 @@ def shown_by_gauge(setup: Setup, rows: RowsFile) -> Shown:
         raise UsageError(f"every result of {machine.model.name} runs along {' or '.join(axes)}: give that column")
     units = {name: machine.print_unit(name) for name in evaluated.results}
     values = {name: from_si(value, units[name]) for name, value in evaluated.results.items()}
-    reasons = {**without_place(evaluated, machine, rows), **evaluated.reasons}
+    reasons = {**without_place(evaluated, machine, rows), **_lacking(evaluated), **evaluated.reasons}
     return Shown(values, units, dict(sorted(reasons.items())))
+
+
+def _lacking(evaluated: Rows) -> dict[int, str]:
+    """Say which results a row lacks, and why."""
+    said: dict[int, dict[str, list[str]]] = {}
+    for name, lacking in evaluated.absent.items():
+        for row, reason in lacking.items():
+            said.setdefault(row, {}).setdefault(reason, []).append(name)
+    return {row: "; ".join(f"no {', '.join(names)}: {why}" for why, names in of.items()) for row, of in said.items()}
 
 
 def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None = None) -> Rows:
@@ -57,8 +66,8 @@ def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None
     A result along an axis is read at the row's place on it (linear between points, NaN beyond its ends); without such a
     column it is left out. An axis that follows an input series is calculated just at the places of the rows. Where
     inputs run along an axis, the rows of one run are one record and one evaluation; else all rows are. Only ``wanted``
-    results are returned (all by default). Conditions that no effect needs are not looked at. ``machine`` is taken as it
-    is: see ``one_machine``.
+    results are returned (all by default), and a row that lacks one of them fails. Conditions that no effect needs are
+    not looked at. ``machine`` is taken as it is: see ``one_machine``.
     """
     seen = {need.name for item in machine.effects for need in item.effect.needs}
     seen |= {effect_column(item.effect.name, one.name) for item in machine.effects for one in item.effect.unknowns}
@@ -66,7 +75,8 @@ def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None
     columns = {name: values for name, values in rows.columns.items() if name in fields or name in seen}
     names = [name for name in _readable(machine, rows) if wanted is None or name in wanted]
     machine = _at_places(machine, rows)
-    return (_by_records if rows.series else _row_by_row)(machine, rows, columns, names)
+    found = (_by_records if rows.series else _row_by_row)(machine, rows, columns, names)
+    return found if wanted is None else found.complete()
 
 
 def _at_places(machine: Setup, rows: RowsFile) -> Setup:
@@ -97,9 +107,10 @@ def without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int, 
 
 
 def _row_by_row(machine: Setup, rows: RowsFile, columns: Mapping[str, Any], names: Sequence[str]) -> Rows:
-    found = evaluate_rows(machine, columns, len(rows), reading=True, wanted=_asked(names, machine)).complete()
+    found = evaluate_rows(machine, columns, len(rows), reading=True, wanted=_asked(names, machine))
     places = range(len(rows))
-    return Rows({name: _placed(name, found, machine, rows, places) for name in names}, found.failed, found.reasons)
+    values = {name: _placed(name, found, machine, rows, places) for name in names}
+    return Rows(values, found.failed, found.reasons, found.absent)
 
 
 def _by_records(machine: Setup, rows: RowsFile, columns: Mapping[str, Any], names: Sequence[str]) -> Rows:
@@ -112,18 +123,21 @@ def _by_records(machine: Setup, rows: RowsFile, columns: Mapping[str, Any], name
     values = {name: np.full(len(rows), np.nan) for name in names}
     asked = _asked(names, machine)
     reasons: dict[int, str] = {}
+    absent: dict[str, dict[int, str]] = {}
     for record in _records(rows):
         for places in _alike(record, machine, columns, rows):
             one = {name: _one_value(name, column, places, rows) for name, column in columns.items()}
             one |= {name: column[record] for name, column in rows.series.items()}
-            found = evaluate_rows(machine, one, 1, reading=True, wanted=asked).complete()
+            found = evaluate_rows(machine, one, 1, reading=True, wanted=asked)
             for name in names:
                 values[name][places] = _placed(name, found, machine, rows, places)
             if found.failed[0]:
                 reasons |= dict.fromkeys(places, found.reasons[0])
+            for name, lacking in found.absent.items():
+                absent.setdefault(name, {}).update(dict.fromkeys(places, lacking[0]))
     failed = np.zeros(len(rows), dtype=bool)
     failed[list(reasons)] = True
-    return Rows(values, failed, dict(sorted(reasons.items())))
+    return Rows(values, failed, dict(sorted(reasons.items())), absent)
 
 
 def _records(rows: RowsFile) -> Iterator[list[int]]:

@@ -394,3 +394,20 @@ def test_the_pair_is_answered_and_what_does_not_exist_says_why(
         assert value(found, name) == value(other, name) > 0
     assert reason in found.said
     assert found.sheet.count(reason.replace("_", "\\_")) >= len(lacking)
+
+
+def test_a_case_and_a_row_that_lack_the_torsion_keep_the_rest(calc: Calc, tmp_path: Path) -> None:
+    (tmp_path / "drive.toml").write_text(
+        'plugin = "harmonic_fractal"\n[inputs]\nconvention = "areal"\n[studies]\nrun = []\n', encoding="utf-8"
+    )
+    (tmp_path / "rows.csv").write_text("fractal_roughness [m]\n1e-11\n1e-8\n", encoding="utf-8")
+    words = ["harmonic_fractal", "--inputs", tmp_path / "drive.toml"]
+    found = ran(tmp_path / "run", "run", *words, "--cases", tmp_path / "rows.csv")
+    fine, rough = (case["results"] for case in found.found["cases"])
+    assert fine["torsion"]["value"] > 0
+    assert (rough["torsion"]["value"], "reference_torque" in rough["torsion"]["reason"]) == (None, True)
+    assert 0 < rough["stiffness"]["value"] < fine["stiffness"]["value"]
+    shown = calc("table", *words, "--rows", tmp_path / "rows.csv")
+    table = list(csv.DictReader(io.StringIO(shown.out)))
+    assert (table[1]["torsion [urad]"], float(table[1]["stiffness [N/m]"])) == ("", rough["stiffness"]["value"])
+    assert "rows.csv:3: no approach, closing_clearance, free_play, mesh_torsion, torsion" in shown.err

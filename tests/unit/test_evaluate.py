@@ -34,6 +34,7 @@ from truing.calculation import calculate
 from truing.errors import InfeasibleError, PluginError, UsageError
 from truing.evaluate import answered, evaluate, evaluate_rows
 from truing.setup import Setup, SwitchedOn, default_setup
+from truing.studies.verdicts import sentence_of
 
 CALLS: list[int] = []
 
@@ -139,11 +140,14 @@ def test_a_row_that_lacks_a_result_keeps_the_others() -> None:
 @pytest.mark.parametrize("limit", [False, True])
 def test_a_limit_on_a_result_that_does_not_exist_is_not_kept(limit: bool) -> None:
     done = calculate(still(-3.0, limit=limit))
-    assert not any(check.passed for check in done.checks if check.name == "torque")
-    assert any(check.passed for check in done.checks if check.name == "hold") or limit
+    of = {check.name: check for check in done.checks}
+    assert (of["torque"].state, done.verdict) == ("undecided", "undecided")
+    assert sentence_of(done.decided).startswith("1 of 2 checks is undecided: torque. Its result does not exist")
     if limit:
         assert set(done.outcomes["sensitivity"].derivatives) == {"hold"}  # type: ignore[attr-defined]
         assert any("'torque' has no probability: nothing turns it" in text for text in done.warnings)
+    else:
+        assert of["hold"].state == "passes"
 
 
 def test_a_name_that_is_no_result_is_the_plugins_fault() -> None:

@@ -34,7 +34,7 @@ from truing.report.context import (
 from truing.setup import Setup
 from truing.studies.bench import Check
 from truing.studies.checks import check_name, requirements
-from truing.studies.verdicts import NO_STUDY
+from truing.studies.verdicts import NO_RESULT, NO_STUDY
 from truing.units import unit_text
 
 PLACES = {"inputs": "on the inputs", "results": "on the results", "reading": "on the reading"}
@@ -219,8 +219,12 @@ def margin_value(check: Check, *, relative: bool) -> Value:
 
 def _remark(check: Check, require: Require | None, setup: Setup) -> str:
     """Say which study would decide a limit; else what the bound of a probability is called."""
+    if check.undecided == NO_RESULT:
+        return "not decided: the result does not exist"
+    if check.undecided == NO_STUDY:
+        return f"{NO_STUDY} decides it"
     if check.undecided:
-        return f"not decided: {check.undecided} would" if check.undecided != NO_STUDY else f"{NO_STUDY} decides it"
+        return f"not decided: {check.undecided} would"
     if require is None or not check.chance:
         return check.note if check.note and check.compared else ""
     known = require.limit in {*setup.model.input_fields, *setup.model.result_fields}

@@ -90,7 +90,9 @@ def _cases(calculation: Calculation, cases: CasesTable) -> list[dict[str, Any]]:
                 "name": case.name,
                 "governing": place == cases.governing,
                 "values": {name: _case_value(setup, name, value) for name, value in case.values.items()},
-                "results": {name: _value(value, setup.print_unit(name)) for name, value in single.items()},
+                "results": {
+                    name: _known(value, setup.print_unit(name), case.absent.get(name)) for name, value in single.items()
+                },
                 "verdict": case.verdict,
                 "proposal": _proposal(case.decided.proposal),
                 "checks": [_check(check) for check in case.checks],
@@ -194,5 +196,9 @@ def _result(calculation: Calculation, name: str) -> dict[str, Any]:
     value, unit = calculation.answers[name], calculation.setup.print_unit(name)
     if np.size(value) > LARGE:
         return {"value": None, "unit": unit, "array": name, "shape": list(np.shape(value))}
-    absent = calculation.absent.get(name)
+    return _known(value, unit, calculation.absent.get(name))
+
+
+def _known(value: Any, unit: str, absent: str | None) -> dict[str, Any]:
+    """Return a result, with the reason where it does not exist."""
     return {**_value(value, unit), **({"reason": absent} if absent else {})}

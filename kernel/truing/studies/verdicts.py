@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import nan
+from math import isnan, nan
 from typing import Any
 
 from truing.declare.goals import Require
@@ -20,6 +20,7 @@ from truing.studies.checks import (
     plain_checks,
     requirements,
 )
+from truing.studies.demands import exists
 from truing.studies.reliability import Reliability
 
 EXIT_CODES: Mapping[State, int] = {"passes": 0, "proposed": 0, "undecided": 1, "fails": 1}
@@ -38,6 +39,8 @@ SHORT: Mapping[State, str] = {
 }
 NO_STUDY = "no study of the model"
 """What would decide a limit that none of the model's studies decides."""
+NO_RESULT = "no study: the result does not exist"
+"""Likewise, of a limit on a result that does not exist, or one that is such a result."""
 
 
 @keepable
@@ -66,7 +69,8 @@ def decide(setup: Setup, answers: Mapping[str, Any], outcomes: Mapping[str, Outc
     Of a chance that two studies decide, the word of the first counts: it is asked as stated. One proposal is taken: the
     first among those that miss fewest limits and miss none that the stated design keeps.
     """
-    checks = {check.name: check for check in plain_checks(setup, dict(answers))}
+    plain = plain_checks(setup, dict(answers))
+    checks = {check.name: check for check in plain if not isnan(check.margin)}
     for outcome in outcomes.values():
         for check in outcome.checks():
             checks.setdefault(check.name, check)
@@ -113,6 +117,8 @@ def _single(amount: Any, unit: str) -> float:
 def _decider(require: Require, setup: Setup, answers: Mapping[str, Any]) -> str:
     """Name the study of the model that would decide a limit; empty where there is none."""
     model = setup.model
+    if not all(exists(answers[name]) for name in (require.result, require.limit) if name in answers):
+        return NO_RESULT
     for study, given in model.study_result_fields.items():
         if {require.result, require.limit} & (given.keys() - answers.keys()):
             return study
@@ -138,7 +144,7 @@ def sentence_of(decided: Decided) -> str:
         return {1: "The one check passes.", 2: "Both checks pass."}.get(len(checks), f"All {len(checks)} checks pass.")
     said = [
         _counted(of["fails"], checks, "fails", "fail") if of["fails"] else "",
-        _undecided_words(of["undecided"], checks) if of["undecided"] else "",
+        *_undecided_words(of["undecided"], checks),
         _proposed_words(of["proposed"], decided) if of["proposed"] else "",
     ]
     return " ".join(filter(None, said))
@@ -149,12 +155,20 @@ def _counted(some: Sequence[Check], checks: Sequence[Check], verb: str, verbs: s
     return f"{len(some)} of {len(checks)} checks {verb if len(some) == 1 else verbs}: {names}."
 
 
-def _undecided_words(some: Sequence[Check], checks: Sequence[Check]) -> str:
-    deciders = " and ".join(dict.fromkeys(check.undecided for check in some))
-    counted = _counted(some, checks, "is undecided", "are undecided")
+def _undecided_words(some: Sequence[Check], checks: Sequence[Check]) -> Iterator[str]:
+    lacking = [check for check in some if check.undecided == NO_RESULT]
+    left = [check for check in some if check.undecided != NO_RESULT]
+    deciders = " and ".join(dict.fromkeys(check.undecided for check in left))
     if deciders == NO_STUDY:
-        return f"{counted} No study of the model decides {'it' if len(some) == 1 else 'them'}."
-    return f"{counted} No study of this run decides {'it' if len(some) == 1 else 'them'}; {deciders} would."
+        way = f"No study of the model decides {'it' if len(left) == 1 else 'them'}."
+    else:
+        way = f"No study of this run decides {'it' if len(left) == 1 else 'them'}; {deciders} would."
+    if left:
+        yield f"{_counted(left, checks, 'is undecided', 'are undecided')} {way}"
+    if lacking:
+        counted = _counted(lacking, checks, "is undecided", "are undecided")
+        result, where = ("Its result does", "it") if len(lacking) == 1 else ("Their results do", "them")
+        yield f"{counted} {result} not exist; the reason stands beside {where}."
 
 
 def _proposed_words(some: Sequence[Check], decided: Decided) -> str:
