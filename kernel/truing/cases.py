@@ -12,7 +12,7 @@ from truing.declare.model import Study
 from truing.errors import Fault, InputError, UsageError
 from truing.evaluate import evaluate_rows
 from truing.executors import SerialExecutor, in_order, open_executor
-from truing.measurements import Case
+from truing.measurements import Case, CasesFile, RowCount
 from truing.packed import Packed, pack, travels, unpack
 from truing.prices import price_answers
 from truing.setup import Setup
@@ -83,10 +83,23 @@ class CaseResult:
 
 @dataclass(frozen=True)
 class CasesTable:
-    """All cases in the order of the file; ``governing`` is the place of the one with the smallest margin."""
+    """All cases in the order of the file; ``governing`` is the place of the one with the smallest margin.
+
+    ``read`` says how many rows the file holds, with those that are no cases.
+    """
 
     cases: tuple[CaseResult, ...]
     governing: int
+    read: RowCount
+
+    @property
+    def count(self) -> RowCount:
+        """The rows of the file: those of cases that cannot be calculated are left out, with the reason."""
+        lines: dict[str, list[int]] = {}
+        for case in self.cases:
+            if case.reason is not None:
+                lines.setdefault(f"cannot be calculated: {case.reason}", []).append(case.case.line)
+        return self.read.without_all(lines)
 
     @property
     def varied(self) -> tuple[str, ...]:
@@ -113,7 +126,7 @@ def case_setup(setup: Setup, case: Case) -> Setup:
 
 
 def run_cases(
-    setup: Setup, cases: Sequence[Case], *, executor: Executor, progress: Progress = silent
+    setup: Setup, read: CasesFile, *, executor: Executor, progress: Progress = silent
 ) -> tuple[Calculation, CasesTable]:
     """Calculate every case and, in full with its studies, the governing one.
 
@@ -122,7 +135,7 @@ def run_cases(
     ``executor``. Raises InputError with every reason and its line when no case
     can be calculated.
     """
-    cases = _completed(setup, cases)
+    cases = _completed(setup, read.cases)
     of_each = replace(setup, studies=_studies_of_each(setup))
     done = (_one_by_one if of_each.studies else _in_blocks)(of_each, cases, executor, progress)
     while alive := [place for place, case in enumerate(done) if case.reason is None]:
@@ -132,7 +145,7 @@ def run_cases(
         except UsageError as error:  # a study asks more than the calculation alone, a full turn for example
             done[governing] = CaseResult(cases[governing], {}, reason=str(error))
             continue
-        table = CasesTable(tuple(done), governing)
+        table = CasesTable(tuple(done), governing, read.count)
         return replace(full, failed=table.failed), table
     raise InputError([case.fault for case in done])
 

@@ -193,7 +193,8 @@ def test_rows_that_repeat_are_kept_once(desk: Path, press: Columns, plain: Diagn
     rows = [*range(10), 4, 4, 9, *range(10, 90), 0]
     found = diagnose_here(desk, "repeated", text_of(taken(press, rows)))
     assert said(found, "4 rows repeat an earlier one in every cell and are left out")
-    assert found.document["files"] == [{"file": "repeated.csv", "rows": 90, "runs": 1}]
+    left = [{"reason": "repeats an earlier row in every cell", "lines": [12, 13, 14, 95]}]
+    assert found.document["files"] == [{"file": "repeated.csv", "in_file": 94, "used": 90, "left_out": left, "runs": 1}]
     same_findings(found.document, plain.document)
 
 

@@ -235,7 +235,7 @@ def test_a_gauge_that_was_set_anew_for_each_file(sound: tuple[Path, Columns]) ->
     answer = calc_here(folder, *command)
     assert (answer.code, answer.err) == (0, "")
     document = read_document(folder / "runs" / "monday")
-    assert [(item["file"], item["rows"]) for item in document["files"]] == [("monday.csv", 60), ("friday.csv", 60)]
+    assert [(item["file"], item["used"]) for item in document["files"]] == [("monday.csv", 60), ("friday.csv", 60)]
     assert document["runs"] == 2
     (cause,) = document["causes"]
     assert cause["effect"] == "sensor_offset"

@@ -32,7 +32,7 @@ from truing.diagnosis.result import (
     Wrong,
 )
 from truing.kernel import Offer, Origin
-from truing.measurements import RowsFile
+from truing.measurements import RowCount, RowsFile
 from truing.setup import Setup, SwitchedOn, default_setup
 
 N = 160
@@ -123,6 +123,10 @@ def records_of(**more: Any) -> Records:
             "hall": Covariate("hall", np.full(N, 3.0), "", "other"),
         },
         "held_out": np.zeros(N, dtype=bool),
+        "counts": (
+            RowCount("data/press_record.csv", 82).without("repeats an earlier row in every cell", (82, 83)),
+            RowCount("data/second day.csv", 80),
+        ),
         "notes": ("press_record.csv: 2 rows are the same as others and kept once", "hall never changes"),
     }
     return Records(**{**made, **more})

@@ -16,7 +16,7 @@ from truing.cases import CaseResult, CasesTable, case_setup, run_cases
 from truing.errors import InputError
 from truing.executors import Place, SerialExecutor, open_executor
 from truing.kernel import Origin
-from truing.measurements import Case
+from truing.measurements import Case, CasesFile, RowCount
 from truing.setup import Setup, default_setup
 from truing.studies.bench import Check, Proposal
 from truing.studies.verdicts import Decided
@@ -49,11 +49,16 @@ GIVEN = replace(
 )
 
 
+def cases_file(cases: list[Case]) -> CasesFile:
+    """Return cases as read from a file with two lines of remarks."""
+    return CasesFile(tuple(cases), RowCount("cases.csv", len(cases) + 2).without("begins with '#'", (97, 98)))
+
+
 def run(model: Model[Any, Any], *cases: dict[str, Any], setup: Setup | None = None) -> CasesTable:
     """Run cases given in SI."""
     rows = [Case(place, place + 1, f"case {place}", values, "cases.csv") for place, values in enumerate(cases, start=1)]
     with open_executor("serial") as executor:
-        calculation, table = run_cases(setup or default_setup(model), rows, executor=executor)
+        calculation, table = run_cases(setup or default_setup(model), cases_file(rows), executor=executor)
     governing = table.cases[table.governing]
     shown = calculation.setup.model.read_inputs(calculation.setup.inputs)
     assert all(shown[name] == value for name, value in governing.values.items() if name in shown)
@@ -87,6 +92,8 @@ def test_a_case_that_is_impossible_keeps_its_reason(model: Model[Any, Any]) -> N
     table = run(model, {"load": 5e5}, {"load": 140.0}, {"speed": 1.0})
     reason = "the contact flows: load exceeds hardness times area"
     assert table.failed == ((1, reason),)
+    left = f"line 2 (cannot be calculated: {reason})"
+    assert table.count.sentence() == f"5 rows, 2 used; 3 left out: lines 97, 98 (begins with '#'), {left}"
     assert table.cases[0].answers == {}
     assert str(table.cases[0].fault) == f"cases.csv:2: {reason}"
     assert table.verdict == "fails"
@@ -161,9 +168,9 @@ def test_cases_are_shared_out_where_they_are_many(count: int, studies: bool, ask
     setup = replace(setup, studies=(Reliability(draws=2000, gives=PIN_WEAR.studies[-1].gives),) if studies else ())
     rows = [Case(place, place + 1, str(place), {"load": 100.0 + place}, "cases.csv") for place in range(1, count + 1)]
     there = Counting()
-    _, shared = run_cases(setup, rows, executor=there)
+    _, shared = run_cases(setup, cases_file(rows), executor=there)
     assert there.asked == asked
-    _, alone = run_cases(setup, rows, executor=SerialExecutor())
+    _, alone = run_cases(setup, cases_file(rows), executor=SerialExecutor())
     assert shared == alone
 
 

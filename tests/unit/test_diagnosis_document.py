@@ -104,8 +104,14 @@ def test_files_rows_runs_and_slips_are_counted() -> None:
     document = written(ambiguous())
     assert (document["rows"], document["runs"], document["held_out"]) == (160, 3, 0)
     assert document["files"] == [
-        {"file": "press_record.csv", "rows": 80, "runs": 1},
-        {"file": "second day.csv", "rows": 80, "runs": 2},
+        {
+            "file": "press_record.csv",
+            "in_file": 82,
+            "used": 80,
+            "left_out": [{"reason": "repeats an earlier row in every cell", "lines": [82, 83]}],
+            "runs": 1,
+        },
+        {"file": "second day.csv", "in_file": 80, "used": 80, "left_out": [], "runs": 2},
     ]
     assert document["unit_slips"][0]["factor"] == 1000
     assert document["wrong"]["slide_position"]["noise"]["outliers"] == [{"file": "second day.csv", "line": 17}]

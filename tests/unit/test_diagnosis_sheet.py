@@ -313,7 +313,7 @@ def test_the_report_answers_the_five_questions(name: str) -> None:
     text = "\n".join(report(SAMPLES[name](), Path("runs/x")))
     titles = re.findall(r"^(\d [A-Z][a-z ]+?)  ", text, re.MULTILINE)
     assert titles == ["1 What is wrong", "2 Cause", "3 Extended model", "4 Gain", "5 Next"]
-    assert text.startswith("DIAGNOSIS  press_record.csv, second day.csv: 160 rows, 3 runs, 4 h; slide: ")
+    assert text.startswith("DIAGNOSIS  press_record.csv, second day.csv: 160 of 162 rows, 3 runs, 4 h; slide: ")
     assert [words for words in SAID[name] if words not in text] == []
     assert ("extended model: " in text) == (name in {"named", "ambiguous", "remainder"})
     assert ("new_effect.py" in text) == (name in {"unknown", "remainder"})
@@ -371,7 +371,7 @@ def test_the_verb_prints_the_report_and_writes_the_folder(
     assert answer.out.startswith("DIAGNOSIS  press_record.csv")
     assert answer.out.endswith("extended model: runs/press record/extended.toml\n")
     said = [line.split(":")[0] for line in answer.err.splitlines()]
-    assert said == ["no --inputs", "warning", "warning", "note", "note"]
+    assert said == ["no --inputs", "warning", "warning", "data/press_record.csv", "note", "note"]
     assert "warning: suspected unit slip: load lies" in answer.err
     names = {path.name for path in (tmp_path / "runs" / "press record").iterdir()}
     assert names >= {"diagnosis.json", "extended.toml", "sheet.html", "sheet.md", "inputs.toml", "run.json"}

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from sample_models import PIN_OFFER, PIN_WEAR, STAGE, STAGE_OFFER, Surface
 
 from truing.errors import InputError, OutputError
-from truing.measurements import Case, DataTable, read_cases, read_rows, read_table, write_table
+from truing.measurements import Case, DataTable, LeftOut, RowCount, read_cases, read_rows, read_table, write_table
 from truing.setup import Setup, default_setup
 
 KNOWN = {"time": "h", "depth": "um", "probe_temperature": "degC", "rate": "", "slope": "um/K"}
@@ -294,8 +294,10 @@ def test_cases_override_inputs_and_conditions(table: Write) -> None:
     content = (
         "case;load [kN];rate;probe_temperature [degC];note\nlight;0,1;3e-8;30;as built\n;;;;\nheavy;3;;;x\n;2;;;\n"
     )
-    cases = read_cases(table(content), PIN_OFFER, pin_setup())
-    assert cases == [
+    path = table(content)
+    cases = read_cases(path, PIN_OFFER, pin_setup())
+    assert cases.count == RowCount(str(path), 4, (LeftOut("holds nothing", (3,)),))
+    assert list(cases.cases) == [
         Case(1, 2, "light", {"load": 100.0, "rate": 3e-8, "probe_temperature": 303.15}),
         Case(2, 4, "heavy", {"load": 3000.0}),
         Case(3, 5, "3", {"load": 2000.0}),
@@ -306,7 +308,7 @@ def test_cases_of_every_kind_of_input(table: Write) -> None:
     setup = default_setup(STAGE, surface=Surface((1.0,), "1 um"))
     content = "name,reading,is_hardened,planets,teeth_sun\nA,printed,no,4,19\nB,complete,TRUE,3,\n"
     cases = read_cases(table(content), STAGE_OFFER, setup)
-    assert [case.values for case in cases] == [
+    assert [case.values for case in cases.cases] == [
         {"reading": "printed", "is_hardened": False, "planets": 4, "teeth_sun": 19.0},
         {"reading": "complete", "is_hardened": True, "planets": 3},
     ]
@@ -443,6 +445,7 @@ def test_any_text_is_a_table_or_an_input_error(tmp_path_factory: pytest.TempPath
             found = read()
         except InputError:
             continue
-        assert len(found) > 0
+        lines = found.lines if isinstance(found, DataTable) else [case.line for case in found.cases]
+        assert len(lines) == found.count.used > 0
         if isinstance(found, DataTable):
             assert all(len(values) == len(found) for values in found.columns.values())

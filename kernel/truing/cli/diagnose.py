@@ -73,6 +73,8 @@ def _say_beside(done: Diagnosed, settings: Settings) -> None:
         settings.say(f"warning: suspected unit slip: {one_line(slip.text)} (nothing was changed)")
     for warning in done.diagnosis.warnings:
         settings.say(f"warning: {one_line(warning)}")
+    for count in (count for count in records.counts if count.unused):
+        settings.say(f"{one_line(count.file)}: {one_line(count.sentence())}")
     for note in records.notes:
         (say if MISSPELT in note else settings.say)(f"note: {one_line(note)}")
     if done.note:

@@ -62,6 +62,8 @@ def _cases_lines(cases: CasesTable, setup: Setup) -> Iterator[str]:
     yield columns([("row", "case", *heads, "margin", ""), *rows], right=(0, *range(2, len(heads) + 3)))
     if len(shown) < len(cases.cases):
         yield f"{len(cases.cases) - len(shown)} further cases stand in results.json"
+    if cases.count.unused:
+        yield f"{one_line(cases.read.file)}: {one_line(cases.count.sentence())}"
 
 
 def _case_row(case: CaseResult, setup: Setup, *, governs: bool) -> tuple[str, ...]:

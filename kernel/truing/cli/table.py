@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from truing.cli.console import Settings, out, say, settings_of, verb
+from truing.cli.console import Settings, one_line, out, say, settings_of, verb
 from truing.cli.load import find_offer
 from truing.cli.words import Changed, Excel, OutputFile, Plugin
 from truing.errors import OutputError, UsageError
@@ -54,6 +54,8 @@ def table(
         write_table(output, headers, columns, form=EXCEL if excel else PLAIN)
     for row, reason in shown.reasons.items():
         say(f"{rows}:{read.lines[row]}: {reason}")
+    if read.count.unused:
+        settings.say(f"{one_line(rows)}: {one_line(read.count.sentence())}")
     if output is not None:
         settings.say(f"wrote {output}: {len(read)} rows, {len(shown.reasons)} of them failed")
     return 0

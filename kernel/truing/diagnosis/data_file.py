@@ -16,6 +16,7 @@ from truing.inputs_file.values import broken_bound
 from truing.kernel import Offer
 from truing.measurements.csv_text import Faults
 from truing.measurements.overriding import WORDS, read_word, word_header_fault
+from truing.measurements.row_count import UNCOUNTED, RowCount
 from truing.measurements.table import RUN, SIGMA, DataTable, gather_table
 from truing.units.grammar import shown
 
@@ -31,6 +32,7 @@ class DataFile:
     """Rows of one file: columns by name, shape (n,), in SI, NaN (words: None) where a cell is empty.
 
     ``parts`` says what each column is; words and labels are arrays of objects. ``units`` are those of the header.
+    ``count`` says how many rows the file holds, with those left out.
     """
 
     file: str
@@ -39,6 +41,7 @@ class DataFile:
     units: Mapping[str, str]
     lines: NDArray[np.intp]
     runs: NDArray[Any]
+    count: RowCount = UNCOUNTED
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -51,6 +54,10 @@ class DataFile:
         """Return some of the rows, in this order."""
         columns = {name: values[rows] for name, values in self.columns.items()}
         return replace(self, columns=columns, lines=self.lines[rows], runs=self.runs[rows])
+
+    def without(self, rows: NDArray[np.bool_], reason: str) -> DataFile:
+        """Leave out the rows that a mask names, for a reason that the count keeps."""
+        return replace(self.taken(~rows), count=self.count.without(reason, self.lines[rows].tolist()))
 
 
 def read_data_file(path: Path, offer: Offer) -> tuple[DataFile, Faults]:
@@ -78,7 +85,7 @@ def read_data_file(path: Path, offer: Offer) -> tuple[DataFile, Faults]:
     runs = table.columns.get(RUN, ()) if RUN not in model.input_fields else ()
     units = {name: table.units[name] for name in columns}
     lines = np.array(table.lines, dtype=np.intp)
-    return DataFile(str(path), columns, parts, units, lines, objects(runs or ("",) * len(table))), faults
+    return DataFile(str(path), columns, parts, units, lines, objects(runs or ("",) * len(table)), table.count), faults
 
 
 def objects(values: Iterable[Any]) -> NDArray[Any]:

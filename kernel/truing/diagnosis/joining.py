@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from truing.diagnosis.data_file import DataFile, Part, objects
 from truing.diagnosis.tidying import counted
 from truing.errors import Fault, InputError
-from truing.measurements import RowsFile
+from truing.measurements import RowCount, RowsFile
 from truing.setup import Setup
 from truing.units.grammar import shown
 from truing.units.names import PURE
@@ -26,12 +26,14 @@ MOST_MISSING = 0.5
 class Joined:
     """All rows: ``data`` as one file whose runs are unique, the number of the file of each row, and its files.
 
-    ``absent`` names the conditions that are not measured.
+    ``counts`` says of each file how many rows it holds, with those left out. ``absent`` names the conditions that are
+    not measured.
     """
 
     data: DataFile
     file_of: NDArray[np.intp]
     files: tuple[str, ...]
+    counts: tuple[RowCount, ...]
     absent: frozenset[str] = frozenset()
 
     def __len__(self) -> int:
@@ -40,6 +42,12 @@ class Joined:
     def taken(self, rows: NDArray[Any]) -> Joined:
         """Return some of the rows, in this order."""
         return replace(self, data=self.data.taken(rows), file_of=self.file_of[rows])
+
+    def without(self, rows: NDArray[np.bool_], reason: str) -> Joined:
+        """Leave out the rows that a mask names, for a reason that the counts keep."""
+        lines = [self.data.lines[rows & (self.file_of == place)].tolist() for place in range(len(self.counts))]
+        counts = tuple(count.without(reason, taken) for count, taken in zip(self.counts, lines, strict=True))
+        return replace(self.taken(~rows), counts=counts)
 
     def place(self, row: int) -> str:
         """Return "FILE:LINE" of a row."""
@@ -70,7 +78,7 @@ def join(files: Sequence[DataFile], setup: Setup) -> Joined:
         runs=np.concatenate([_runs(file, alone=len(files) == 1) for file in files]),
     )
     file_of = np.repeat(np.arange(len(files)), [len(file) for file in files])
-    return Joined(data, file_of, tuple(file.file for file in files))
+    return Joined(data, file_of, tuple(file.file for file in files), tuple(file.count for file in files))
 
 
 def _contradictions(files: Sequence[DataFile]) -> Iterator[Fault]:
@@ -177,24 +185,32 @@ def complete_rows(joined: Joined, setup: Setup) -> tuple[Joined, list[str]]:
     """
     import numpy as np
 
-    data, notes = joined.data, []
-    kept = np.ones(len(joined), dtype=bool)
-    for name in data.named("input", "word", "series", "condition"):
+    notes: list[str] = []
+    for name in joined.data.named("input", "word", "series", "condition"):
         item = setup.model.input_fields.get(name)
-        missing = _is_missing(data.columns[name]) & kept
+        missing = _is_missing(joined.data.columns[name])
         if missing.any() and not (item is not None and item.is_optional):
-            kept &= ~missing
+            joined = joined.without(missing, f"'{name}' is empty")
             notes.append(f"{counted(int(missing.sum()), 'row is', 'rows are')} left out where '{name}' is empty")
-    measured = data.named("measured")
-    nothing = kept & np.logical_and.reduce([np.isnan(data.columns[name]) for name in measured])
-    if nothing.any() and not data.named("series"):
-        kept &= ~nothing
-        notes.append(f"{counted(int(nothing.sum()), 'row is', 'rows are')} left out where nothing was measured")
-    for name in measured:
-        missing = kept & np.isnan(data.columns[name])
+    joined, left = measured_rows(joined)
+    if left.any():
+        notes.append(f"{counted(int(left.sum()), 'row is', 'rows are')} left out where nothing was measured")
+    for name in joined.data.named("measured"):
+        missing = np.isnan(joined.data.columns[name])
         if missing.any():
-            notes.append(f"'{name}' is missing in {int(missing.sum())} of {int(kept.sum())} rows")
-    return (joined if kept.all() else joined.taken(kept)), notes
+            notes.append(f"'{name}' is missing in {int(missing.sum())} of {len(joined)} rows")
+    return joined, notes
+
+
+def measured_rows(joined: Joined) -> tuple[Joined, NDArray[np.bool_]]:
+    """Leave out rows in which nothing that is used was measured, and say which; the rows of a record stay."""
+    import numpy as np
+
+    data = joined.data
+    nothing = np.full(len(joined), not data.named("series"))
+    for name in data.named("measured"):
+        nothing &= np.isnan(data.columns[name])
+    return (joined.without(nothing, "nothing was measured that is used") if nothing.any() else joined), nothing
 
 
 def _is_missing(values: NDArray[Any]) -> NDArray[np.bool_]:

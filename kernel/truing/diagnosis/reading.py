@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.covariates import covariates_of, held_out_rows
 from truing.diagnosis.data_file import DataFile, read_data_file
-from truing.diagnosis.joining import Joined, complete_rows, join, rows_of, settle_conditions
+from truing.diagnosis.joining import Joined, complete_rows, join, measured_rows, rows_of, settle_conditions
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.slips import Answers, factor_that_works, suspected_slips
 from truing.diagnosis.tidying import counted, numbered, tidy
@@ -52,23 +52,24 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup) -> Records:
     _demand_rows(int((~held_out).sum()), joined, notes)
     joined, said = _enough_values(joined, ~held_out, notes)
     notes += said
+    joined, held_out, answers = _without_idle(joined, held_out, answers)
     slips = suspected_slips(joined, answers, setup)
     covariates, said = covariates_of(joined, setup)
     sigma, unused = _sigma(joined)
-    data = joined.data
     return Records(
         files=joined.files,
         rows=rows_of(joined),
         file_of=joined.file_of,
-        run_of=numbered(data.runs.tolist())[0],
-        lines=data.lines,
-        measured={name: data.columns[name] for name in data.named("measured")},
+        run_of=numbered(joined.data.runs.tolist())[0],
+        lines=joined.data.lines,
+        measured={name: joined.data.columns[name] for name in joined.data.named("measured")},
         sigma=sigma,
         covariates=covariates,
         held_out=held_out,
         notes=(*notes, *said, *unused),
         slips=slips,
         absent=joined.absent,
+        counts=joined.counts,
     )
 
 
@@ -157,7 +158,7 @@ def _answered(joined: Joined, setup: Setup) -> tuple[Joined, Answers, list[str]]
         notes.append(f"{rows} left out where the model fails; the first is {joined.place(first)}: {reason}")
         hint = factor_that_works(joined, setup) if found.failed.mean() > MOST_FAILED else ""
         notes += [hint] if hint else []
-        joined = joined.taken(~found.failed)
+        joined = _without_failed(joined, found.failed, found.reasons)
         answers = {name: values[~found.failed] for name, values in answers.items()}
     columns = dict(joined.data.columns)
     for name in measured:
@@ -167,3 +168,21 @@ def _answered(joined: Joined, setup: Setup) -> tuple[Joined, Answers, list[str]]
             notes.append(f"'{name}' is not used in {counted(int(lost.sum()))} that its axis does not reach")
     joined = replace(joined, data=replace(joined.data, columns=columns))
     return joined, answers, notes
+
+
+def _without_idle(
+    joined: Joined, held_out: NDArray[np.bool_], answers: Answers
+) -> tuple[Joined, NDArray[np.bool_], Answers]:
+    """Leave out the rows in which only results were measured that are not used."""
+    joined, idle = measured_rows(joined)
+    return joined, held_out[~idle], {name: values[~idle] for name, values in answers.items()}
+
+
+def _without_failed(joined: Joined, failed: NDArray[np.bool_], reasons: Mapping[int, str]) -> Joined:
+    """Leave out the rows in which the model fails, each for its own reason."""
+    lines: list[dict[str, list[int]]] = [{} for _ in joined.counts]
+    for row in failed.nonzero()[0].tolist():
+        of_file = lines[int(joined.file_of[row])]
+        of_file.setdefault(f"the model fails: {reasons[row]}", []).append(int(joined.data.lines[row]))
+    counts = tuple(count.without_all(taken) for count, taken in zip(joined.counts, lines, strict=True))
+    return replace(joined.taken(~failed), counts=counts)

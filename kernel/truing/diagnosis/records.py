@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from truing.measurements.row_count import RowCount
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -74,6 +76,8 @@ class Records:
     slips: tuple[Slip, ...] = ()
     absent: frozenset[str] = field(default_factory=frozenset)
     """Conditions of effects that no column gives: not measured."""
+    counts: tuple[RowCount, ...] = ()
+    """What became of every row of each file, in the order of ``files``."""
 
     @property
     def readings(self) -> int:

@@ -70,7 +70,9 @@ def each_row_once(data: DataFile) -> Tidied:
     if not is_again.any():
         return data, []
     again = counted(int(is_again.sum()), "row repeats", "rows repeat")
-    return data.taken(~is_again), [f"{again} an earlier one in every cell and {_is(is_again)} left out"]
+    return data.without(is_again, "repeats an earlier row in every cell"), [
+        f"{again} an earlier one in every cell and {_is(is_again)} left out"
+    ]
 
 
 def _is(rows: NDArray[np.bool_]) -> str:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from truing.measurements.overriding import Case, RowsFile, read_cases, read_rows
+from truing.measurements.overriding import Case, CasesFile, RowsFile, read_cases, read_rows
+from truing.measurements.row_count import LeftOut, RowCount
 from truing.measurements.table import DataTable, read_table
 from truing.measurements.writing import EXCEL, PLAIN, Form, table_text, write_table
 
 __all__ = [
-    "EXCEL", "PLAIN", "Case", "DataTable", "Form", "RowsFile", "read_cases", "read_rows", "read_table", "table_text",
-    "write_table",
+    "EXCEL", "PLAIN", "Case", "CasesFile", "DataTable", "Form", "LeftOut", "RowCount", "RowsFile", "read_cases",
+    "read_rows", "read_table", "table_text", "write_table",
 ]  # fmt: skip

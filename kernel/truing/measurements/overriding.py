@@ -16,6 +16,7 @@ from truing.kernel import Offer
 from truing.measurements.cells import column_in_si, header_fault, read_cell, read_cells
 from truing.measurements.csv_text import CsvFile, Header, opened
 from truing.measurements.derived import derive
+from truing.measurements.row_count import UNCOUNTED, RowCount
 from truing.setup import Setup
 from truing.units.grammar import shown
 from truing.units.names import PURE
@@ -42,6 +43,14 @@ class Case:
 
 
 @dataclass(frozen=True)
+class CasesFile:
+    """The cases of a file, and how many rows it holds."""
+
+    cases: tuple[Case, ...]
+    count: RowCount
+
+
+@dataclass(frozen=True)
 class RowsFile:
     """Rows to calculate: ``columns`` that override inputs and conditions, in SI, and everything as it was written.
 
@@ -49,7 +58,7 @@ class RowsFile:
     the value of the inputs file stands. ``series`` holds columns of inputs that run along an axis, ``axes`` where each
     row lies on an axis of the results. ``cells`` are all columns as written (a decimal comma becomes a point), by the
     header as written; ``others`` names the columns that override nothing. ``runs`` names the run of each row; nothing
-    where there is no such column.
+    where there is no such column. ``count`` says how many rows the file holds, with those left out.
     """
 
     file: str
@@ -60,6 +69,7 @@ class RowsFile:
     others: tuple[str, ...] = ()
     axes: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     runs: tuple[str, ...] = ()
+    count: RowCount = UNCOUNTED
 
     @property
     def headers(self) -> tuple[str, ...]:
@@ -95,7 +105,7 @@ def _read_texts(table: CsvFile) -> _Texts:
     return texts
 
 
-def read_cases(path: Path, offer: Offer, setup: Setup) -> list[Case]:
+def read_cases(path: Path, offer: Offer, setup: Setup) -> CasesFile:
     """Read cases: every row overrides inputs and conditions; an empty cell keeps what the inputs file says.
 
     A column ``case`` or ``name`` names the cases; ``note`` may hold remarks. Raises InputError with every fault.
@@ -115,10 +125,11 @@ def read_cases(path: Path, offer: Offer, setup: Setup) -> list[Case]:
             table.faults.add(_unknown(header, setup, offer), table.header_line)
     table.marks.judge(table.faults)
     table.faults.raise_any()
-    return [
+    cases = [
         Case(row, line, name or f"{row}", found, str(path))
         for row, (line, name, found) in enumerate(zip(texts.lines, names, values, strict=True), start=1)
     ]
+    return CasesFile(tuple(cases), table.count())
 
 
 def read_rows(path: Path, offer: Offer, setup: Setup) -> RowsFile:
@@ -139,7 +150,9 @@ def read_rows(path: Path, offer: Offer, setup: Setup) -> RowsFile:
     _judge_marks(texts, others)
     table.faults.raise_any()
     written = {header.text: _written(cells, table) for header, cells in zip(table.headers, texts.cells, strict=True)}
-    return RowsFile(str(path), read.columns, read.series, written, tuple(texts.lines), others, read.axes, read.runs)
+    return RowsFile(
+        str(path), read.columns, read.series, written, tuple(texts.lines), others, read.axes, read.runs, table.count()
+    )
 
 
 def _judge_marks(texts: _Texts, others: Sequence[str]) -> None:

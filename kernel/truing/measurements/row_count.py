@@ -1,12 +1,18 @@
-"""What became of every row of a file: rows in the file = rows used + rows left out, each with its reason."""
+"""What became of every row of a file: rows in the file = rows used + rows left out, each with its reason.
+
+A row is a line behind the header that is not blank.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 MOST_LINES = 8
 """How many lines are named for one reason where people read; files of data hold all."""
+MOST_REASONS = 12
+"""How many reasons are named where people read."""
 
 
 @dataclass(frozen=True)
@@ -19,36 +25,58 @@ class LeftOut:
 
 @dataclass(frozen=True)
 class RowCount:
-    """The rows of one file: how many it holds, and which are left out. A row is a line behind the header, not blank."""
+    """The rows of one file: how many it holds, and which are left out."""
 
     file: str
     in_file: int
     left_out: tuple[LeftOut, ...] = ()
 
     @property
+    def unused(self) -> int:
+        """Rows that are left out."""
+        return sum(len(item.lines) for item in self.left_out)
+
+    @property
     def used(self) -> int:
         """Rows that are not left out."""
-        return self.in_file - sum(len(item.lines) for item in self.left_out)
+        return self.in_file - self.unused
 
     def without(self, reason: str, lines: Iterable[int]) -> RowCount:
-        """Return the count with further rows left out."""
+        """Return the count with further rows left out, joined to those that are left out for the same reason."""
         taken = tuple(int(line) for line in lines)
-        return replace(self, left_out=(*self.left_out, LeftOut(reason, taken))) if taken else self
+        if not taken:
+            return self
+        before = {item.reason: item.lines for item in self.left_out}
+        found = {**before, reason: tuple(sorted((*before.get(reason, ()), *taken)))}
+        return replace(self, left_out=tuple(LeftOut(*item) for item in found.items()))
 
-    def sentences(self) -> list[str]:
-        """Say what is left out, one sentence for each reason; nothing where every row is used."""
+    def without_all(self, lines: Mapping[str, Iterable[int]]) -> RowCount:
+        """Return the count with rows left out for several reasons."""
+        count = self
+        for reason, taken in lines.items():
+            count = count.without(reason, taken)
+        return count
+
+    def sentence(self) -> str:
+        """Say how many rows there are, and what became of those that are left out: "5 rows, 4 used; left out: ..."."""
+        rows = "1 row" if self.in_file == 1 else f"{self.in_file} rows"
         if not self.left_out:
-            return []
-        total = f"{_rows(self.in_file)} in the file, {self.used} used"
-        return [
-            f"{total}; {_rows(len(item.lines))} left out: {_where(item.lines)}: {item.reason}" for item in self.left_out
-        ]
+            return f"{rows}, all used"
+        named = [f"{_where(item.lines)} ({item.reason})" for item in self.left_out[:MOST_REASONS]]
+        more = sum(len(item.lines) for item in self.left_out[MOST_REASONS:])
+        named += [f"{more} more for other reasons"] if more else []
+        return f"{rows}, {self.used} used; {self.unused} left out: {', '.join(named)}"
 
-
-def _rows(count: int) -> str:
-    return "1 row" if count == 1 else f"{count} rows"
+    def as_json(self) -> dict[str, Any]:
+        """Return the count as data."""
+        left = [{"reason": item.reason, "lines": list(item.lines)} for item in self.left_out]
+        return {"in_file": self.in_file, "used": self.used, "left_out": left}
 
 
 def _where(lines: tuple[int, ...]) -> str:
     more = f" and {len(lines) - MOST_LINES} more" if len(lines) > MOST_LINES else ""
     return f"line{'' if len(lines) == 1 else 's'} {', '.join(map(str, lines[:MOST_LINES]))}{more}"
+
+
+UNCOUNTED = RowCount("", 0)
+"""The count of rows that come from no file."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from truing.errors import UnitError
 from truing.measurements.cells import column_in_si, header_fault, read_cell, read_cells
 from truing.measurements.csv_text import Chunk, CsvFile, Faults, Header, opened
+from truing.measurements.row_count import UNCOUNTED, RowCount
 from truing.units.names import PURE
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ class DataTable:
     """A table of measured data: numbers in SI, shape (n,), NaN where a cell is empty; text columns are labels.
 
     ``units`` holds what the header says ("" for pure numbers), ``lines`` the line of the file each row begins in and
-    ``header_line`` that of the header.
+    ``header_line`` that of the header. ``count`` says how many rows the file holds, with those left out.
     """
 
     file: str
@@ -34,6 +35,7 @@ class DataTable:
     lines: tuple[int, ...]
     labels: frozenset[str]
     header_line: int = 1
+    count: RowCount = UNCOUNTED
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -77,6 +79,7 @@ def gather_table(
         lines=tuple(lines),
         labels=frozenset(name for name, values in made.items() if isinstance(values, tuple)),
         header_line=table.header_line,
+        count=table.count(),
     )
     return found, table.faults
 

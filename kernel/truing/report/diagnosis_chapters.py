@@ -362,10 +362,14 @@ def _data(diagnosis: Diagnosis) -> Iterator[BlockView]:
     rows = []
     for place, label in enumerate(file_labels(records.files)):
         of_file = records.file_of == place
-        rows.append((label, str(int(of_file.sum())), str(len(set(records.run_of[of_file].tolist())))))
+        count, runs = records.counts[place], len(set(records.run_of[of_file].tolist()))
+        rows.append((label, str(count.in_file), str(count.used), str(count.unused), str(runs)))
     held = int(records.held_out.sum())
     note = f"{held} rows were held out: they judge and were not fitted." if held else ""
-    yield _table("Files", ("File", "Rows", "Runs"), rows, (1, 2), note)
+    yield _table("Files", ("File", "Rows in the file", "Used", "Left out", "Runs"), rows, (1, 2, 3, 4), note)
+    for label, count in zip(file_labels(records.files), records.counts, strict=True):
+        if count.unused:
+            yield Words(f"{label}: {count.sentence()}.")
     yield _table("Covariates", ("Name", "From", "To", "Role", "Remark"), list(_covariates(diagnosis)), (1, 2))
     for sentence in records.notes:
         yield Words(sentence.rstrip(".") + ".")

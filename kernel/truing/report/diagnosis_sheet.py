@@ -69,7 +69,9 @@ def data_words(diagnosis: Diagnosis) -> str:
     """Say what was measured, in a line."""
     records = diagnosis.records
     runs = len(set(records.run_of.tolist()))
-    counted = f"{len(records)} rows, {runs} run{'' if runs == 1 else 's'}"
+    in_files = sum(count.in_file for count in records.counts)
+    of_all = f" of {in_files}" if in_files > len(records) else ""
+    counted = f"{len(records)}{of_all} rows, {runs} run{'' if runs == 1 else 's'}"
     return f"{', '.join(file_labels(records.files))}: {counted}"
 
 

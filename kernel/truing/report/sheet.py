@@ -242,6 +242,7 @@ def cases_table(calculation: Calculation, cases: CasesTable, most: int) -> Table
     left = len(cases.cases) - len(places)
     note = f"The governing case ({case_name(cases.cases[cases.governing])}) is the one calculated in full below."
     note += f" {left} further cases are not printed." if left else ""
+    note += f" In the file: {cases.count.sentence()}."
     numeric = (False, *(True,) * (len(titles) - 2), False)
     marked = places.index(cases.governing)
     return TableView("All cases", tuple(titles), tuple(units), tuple(rows), numeric, note, marked)

@@ -80,7 +80,8 @@ def _data(diagnosis: Diagnosis) -> dict[str, Any]:
     files = []
     for place, label in enumerate(file_labels(records.files)):
         of_file = records.file_of == place
-        files.append({"file": label, "rows": int(of_file.sum()), "runs": len(set(records.run_of[of_file].tolist()))})
+        runs = len(set(records.run_of[of_file].tolist()))
+        files.append({"file": label, **records.counts[place].as_json(), "runs": runs})
     return {
         "measured": list(diagnosis.measured),
         "rows": len(records),

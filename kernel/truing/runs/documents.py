@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from truing.calculation import Calculation
@@ -50,7 +51,7 @@ def results_document(
         "failed": [{"row": int(row), "reason": reason} for row, reason in calculation.failed],
         "added": [{"what": what, "plugin": plugin, "version": version} for what, plugin, version in provenance.added],
         "warnings": list(calculation.warnings),
-        **({} if cases is None else {"cases": _cases(calculation, cases)}),
+        **({} if cases is None else {"rows": _rows(cases), "cases": _cases(calculation, cases)}),
     }
 
 
@@ -76,6 +77,11 @@ def _proposal(proposal: Proposal | None) -> dict[str, Any] | None:
         return None
     changes = [{"name": name, "from": stated, "to": proposed} for name, stated, proposed in proposal.changes]
     return {"study": proposal.study, "what": proposal.what, "changes": changes}
+
+
+def _rows(cases: CasesTable) -> dict[str, Any]:
+    """Return what became of every row of the file of cases; its folder is no part of the results."""
+    return {"file": PurePath(cases.read.file.replace("\\", "/")).name, **cases.count.as_json()}
 
 
 def _cases(calculation: Calculation, cases: CasesTable) -> list[dict[str, Any]]:
