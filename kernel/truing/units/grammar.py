@@ -105,6 +105,8 @@ def split(text: str) -> Quantity:
         raise UnitError(f"{shown(text)} is not a number followed by a unit")
     if rest[:1] in ("*", "·"):
         rest = rest[1:].lstrip()
+        if not rest or rest[:1] == "/":
+            raise UnitError(f"{shown(text)} is not a number followed by a unit")
     if rest[:1] == "/":
         rest = "1" + rest
     if _NUMBER.match(rest) and not _UNIT_WITH_NUMBER.match(rest):
@@ -195,7 +197,7 @@ def _leading_power(unit: str, plain: str) -> tuple[int, str]:
     if found is None:
         return 0, plain
     rest = plain[found.end() :].lstrip()
-    if found[0][-1:] in "*·" and not rest:
+    if found[0][-1:] in "*·" and (not rest or rest[:1] == "/"):
         raise _no_unit(unit)
     return _power_of_ten(unit, found), "1" + rest if rest[:1] == "/" else rest
 
@@ -290,6 +292,8 @@ def _exponent_of(unit: str, text: str | None) -> Fraction:
         return Fraction(plain)
     except ZeroDivisionError:
         raise UnitError(f"{shown(unit)} is not a unit: an exponent divides by zero") from None
+    except ValueError:
+        raise _no_unit(unit) from None
 
 
 def _power_of_ten(unit: str, found: re.Match[str]) -> int:
