@@ -79,7 +79,7 @@ REFUSED: dict[str, tuple[Change, Sequence[str]]] = {
     ),
     "a header that moves the cursor": (
         lambda press: text_of(renamed(press, FORCE, "\x1b[31mforce [kN]")),
-        ["m.csv:1: the header '?[31mforce [kN]' cannot be read; write it like 'load [N]'"],
+        ["m.csv:1: the header '\\x1b[31mforce [kN]' cannot be read; write it like 'load [N]'"],
     ),
     "a column twice": (
         lambda press: text_of({**press, "slider_position [um]": press[HEIGHT]}),

@@ -6,6 +6,7 @@ It shares no code with Truing. Factors are those of the SI Brochure (9th edition
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from fractions import Fraction
 
 PI = math.pi
@@ -20,13 +21,14 @@ TABLE: dict[str, tuple[float, tuple[int, int, int, int, int]]] = {
     "Pa": (1, (-1, 1, -2, 0, 0)), "MPa": (1e6, (-1, 1, -2, 0, 0)), "bar": (1e5, (-1, 1, -2, 0, 0)),
     "J": (1, (2, 1, -2, 0, 0)), "W": (1, (2, 1, -3, 0, 0)), "kW": (1e3, (2, 1, -3, 0, 0)),
     "K": (1, (0, 0, 0, 1, 0)), "mK": (1e-3, (0, 0, 0, 1, 0)), "delta_degC": (1, (0, 0, 0, 1, 0)),
-    "degC": (1, (0, 0, 0, 1, 0)), "°C": (1, (0, 0, 0, 1, 0)), "degF": (5 / 9, (0, 0, 0, 1, 0)),
+    "degC": (1, (0, 0, 0, 1, 0)), "°C": (1, (0, 0, 0, 1, 0)), "°F": (5 / 9, (0, 0, 0, 1, 0)),
+    "degF": (5 / 9, (0, 0, 0, 1, 0)),
     "rad": (1, (0, 0, 0, 0, 1)), "deg": (PI / 180, (0, 0, 0, 0, 1)), "°": (PI / 180, (0, 0, 0, 0, 1)),
     "rpm": (1 / 60, (0, 0, -1, 0, 0)), "Hz": (1, (0, 0, -1, 0, 0)),
     "%": (0.01, (0, 0, 0, 0, 0)), "ppm": (1e-6, (0, 0, 0, 0, 0)), "rev": (1, (0, 0, 0, 0, 0)),
 }  # fmt: skip
 PRODUCTS = {"Nm": ("N", "m"), "kNm": ("kN", "m")}
-LEVELS = {"degC": 273.15, "°C": 273.15, "degF": 459.67 * 5 / 9}
+LEVELS = {"degC": 273.15, "°C": 273.15, "degF": 459.67 * 5 / 9, "°F": 459.67 * 5 / 9}
 COUNTS = {"%", "ppm", "rev"}
 SIGNS = {"°", "%"}
 SMALL = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺", "0123456789-+", strict=True))
@@ -43,7 +45,29 @@ class RefusedError(Exception):
 
 def normalised(text: str) -> str:
     """Return a text in which characters that look the same are one."""
-    return "".join(SAME.get(character, character) for character in text).replace("**", "^").strip()
+    plain = "".join(SAME.get(character, character) for character in text).replace("**", "^").strip()
+    return "".join(scales_joined(plain))
+
+
+def scales_joined(text: str) -> Iterator[str]:
+    """Give the pieces of a text in which "deg C" and "° F" are one word, as they are spoken."""
+    place = 0
+    while place < len(text):
+        for word, blanks_needed in (("degrees", 0), ("degree", 0), ("deg", 0), ("°", 1)):
+            is_word = word == "°" or not (place and (text[place - 1].isalnum() or text[place - 1] == "_"))
+            rest = text[place + len(word) :]
+            rest = rest.removeprefix(".") if word != "°" else rest
+            blanks = len(rest) - len(rest.lstrip(" "))
+            after = rest[blanks + 1 : blanks + 2]
+            ends = not (after.isalnum() or after == "_")
+            is_scale = rest[blanks : blanks + 1] in {"C", "F"} and ends and blanks >= blanks_needed
+            if text.startswith(word, place) and is_word and is_scale:
+                yield "deg" + rest[blanks]
+                place = len(text) - len(rest) + blanks + 1
+                break
+        else:
+            yield text[place]
+            place += 1
 
 
 class Reader:
@@ -246,13 +270,8 @@ def factor(reader: Reader, depth: int) -> list[Factor]:
             raise RefusedError("open")
         power, _ = exponent(reader, behind_letters=False)
         return raised(inner, power)
-    name = (
-        "°C"
-        if reader.take("°C")
-        else reader.peek()
-        if reader.peek() in SIGNS and reader.peek()
-        else reader.run(LETTERS)
-    )
+    scale = next((scale for scale in ("°C", "°F") if reader.take(scale)), "")
+    name = scale or (reader.peek() if reader.peek() in SIGNS else reader.run(LETTERS))
     if name in SIGNS:
         reader.at += 1
     power, is_bare = exponent(reader, behind_letters=name not in SIGNS)

@@ -463,3 +463,67 @@ def test_the_page_of_hooks_says_when_and_what() -> None:
         "truing_reports",
     ]
     assert all(hook.__doc__ and hook.__annotations__["return"] for hook in hooks_page())
+
+
+DECLARED = '''"""A bar under load."""
+from truing import Float, Model, Price, Require, Tolerance, Vary, found, given, hookimpl, inputs, normal, results
+
+
+@inputs
+class Bar:
+    """What is known."""
+
+    load: Float = given(120.0, "N", note="load", above=0)
+
+
+@results
+class Stress:
+    """What is asked."""
+
+    double: Float = found("N", note="twice the load", formula="2 * load")
+
+
+def bar(given_: Bar) -> Stress:
+    """Return twice the load."""
+    return Stress(double=2 * given_.load)
+
+
+PRICE = Price("40 / width", width="N", unit="EUR")
+MODEL = Model(
+    name="bar", title="Bar", function=bar,
+    errors=[Tolerance("load", normal(sd="3 N"), why="scatter", price=PRICE)],
+    objectives=[Vary("load", "50 N", "200 N"), Require("double", at_most="80 N")],
+)
+
+
+@hookimpl
+def truing_models() -> list[Model[Bar, Stress]]:
+    """Offer the bar."""
+    return [MODEL]
+'''
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "line", "sentence"),
+    [
+        ('given(120.0, "N"', 'given(120.0, "W/m/k"', 9, "'load' is declared in 'W/m/k': unknown unit 'k'; "),
+        ('given(120.0, "N"', "given(120.0, 5", 9, "'load' is declared in 5; a unit is a text such as 'mm'"),
+        ("above=0", 'above="x"', 9, "'load' has the bound above='x'; it is a number in its unit"),
+        ('found("N"', 'found("Mlbf"', 16, "'double' is declared in 'Mlbf': unknown unit 'Mlbf'; 'lbf' takes no "),
+        ('"80 N"', '"80 mm"', 28, "Require('double'): '80 mm' is a length (mm), expected a force (N)"),
+        ('"50 N"', '"50 Pa"', 28, "Vary('load'): '50 Pa' is a pressure or stress (Pa), expected a force (N)"),
+        ('"3 N"', '"3 mm"', 27, "tolerance 'load': '3 mm' is a length (mm), expected a force (N)"),
+        ("price=PRICE", 'price=Price("1 / width", width="mm", unit="EUR")', 27, "the width of tolerance 'load' "),
+    ],
+)  # fmt: skip
+def test_a_quantity_that_is_declared_wrongly_is_told_with_its_line(
+    tmp_path: Path, before: str, after: str, line: int, sentence: str
+) -> None:
+    file = tmp_path / "bar.py"
+    file.write_text(DECLARED.replace(before, after, 1), encoding="utf-8")
+    kernel = Kernel()
+    kernel.add_file(file)
+    with pytest.raises(PluginError) as caught:
+        kernel.offer("bar")
+    said = str(caught.value).splitlines()
+    assert f"{file}:{line}: plugin 'bar': DeclarationError: {sentence}" in "\n".join(said), said

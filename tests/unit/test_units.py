@@ -236,6 +236,8 @@ REFUSED = [
     ("5 degC*m/m", "degC", "'degC*m/m' may be a temperature level or a difference; write degC alone, or K"),
     ("5 degC*m/m", "K", "'degC*m/m' may be a temperature level or a difference; write degC alone, or K"),
     ("5 K*m/m", "degC", "'5 K*m/m' is a temperature difference; a level is written 5 degC"),
+    ("5 kcycles", "", "unknown unit 'kcycles'; 'cycles' takes no prefix 'k': write '10^3 cycles'"),
+    ("5 Mlbf", "N", "unknown unit 'Mlbf'; 'lbf' takes no prefix 'M': write '10^6 lbf'"),
     ("5 byte", "", "unknown unit 'byte'"),
     ("5 alpha", "", "unknown unit 'alpha'"),
     ("1,050 mm", "mm", "'1,050 mm' holds a comma; write '1.050 mm' or '1050 mm'"),

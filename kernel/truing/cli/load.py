@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from truing.cli.console import Settings
 from truing.errors import UnknownPluginError
-from truing.kernel import Kernel, Offer
+from truing.kernel import Kernel, Offer, demand_readable
 
 if TYPE_CHECKING:
     from truing.setup import Setup
@@ -32,6 +32,7 @@ def find_offer(word: str, settings: Settings, *, strict: bool = False) -> Offer:
     if word.endswith(".py"):
         own_models = [offer for offer in offers.values() if offer.origin.name == wanted]
         if len(own_models) == 1:
+            demand_readable(own_models[0])
             return own_models[0]
         if len(own_models) > 1:
             names = ", ".join(offer.model.name for offer in own_models)

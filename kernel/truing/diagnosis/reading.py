@@ -53,7 +53,6 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup) -> Records:
     joined, said = _enough_values(joined, ~held_out, notes)
     notes += said
     joined, held_out, answers = _without_idle(joined, held_out, answers)
-    slips = suspected_slips(joined, answers, setup)
     covariates, said = covariates_of(joined, setup)
     sigma, unused = _sigma(joined)
     return Records(
@@ -67,7 +66,7 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup) -> Records:
         covariates=covariates,
         held_out=held_out,
         notes=(*notes, *said, *unused),
-        slips=slips,
+        slips=suspected_slips(joined, answers, setup),
         absent=joined.absent,
         counts=joined.counts,
     )

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from truing.declare.model import Model, Section
 from truing.declare.near_miss import near_miss
+from truing.declare.quantities import unread_quantities
 from truing.declare.sources import Effect, Tolerance
 from truing.errors import DeclarationError, PluginError, UnknownPluginError
-from truing.kernel.blame import Place, line_of, place_of
+from truing.kernel.blame import Place, home_of, line_of, line_of_words, place_of
 from truing.kernel.loading import check_hooks, load_file
 
 if TYPE_CHECKING:
@@ -141,6 +142,11 @@ class Kernel:
 
     def offer(self, name: str) -> Offer:
         """Return one model by name; raises UnknownPluginError, saying why where it was left out."""
+        offer = self._named(name)
+        demand_readable(offer)
+        return offer
+
+    def _named(self, name: str) -> Offer:
         offers = self.offers
         full = [offer for offer in offers.values() if name in {offer.name, f"{offer.origin.name}.{offer.model.name}"}]
         if full:
@@ -227,6 +233,25 @@ class Kernel:
                     if origin != owner:
                         added.append(Added(_name_of(item), origin.name, origin.version))
         return model, tuple(added)
+
+
+def demand_readable(offer: Offer) -> None:
+    """Raise PluginError, with file and line of each, where the model declares a unit or quantity that cannot be read.
+
+    This is asked when a model is used, for it needs the table of units; what guests add is not held against the model.
+    """
+    guests = {added.what for added in offer.added}
+    unread = [item for item in unread_quantities(offer.model) if item.owner not in guests]
+    if not unread:
+        return
+    homes = [*_homes(offer.origin), *filter(None, [home_of(offer.model.function)])]
+    said = []
+    for item in dict.fromkeys(unread):
+        file, line = line_of_words(dict.fromkeys(homes), item.owner, item.written)
+        place = (file, line) if file else line_of(offer.model.function)
+        origin = offer.origin
+        said.append(str(Broken(origin.name, origin.version, *place, f"DeclarationError: {item.sentence}")))
+    raise PluginError("\n".join(said))
 
 
 def _giving(plugin: ModuleType) -> Callable[[], ModuleType]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
 import traceback
 from collections.abc import Callable, Iterable
@@ -45,6 +46,41 @@ def line_of(function: Callable[..., Any]) -> Place:
     """Return file and line where a function is written."""
     code = getattr(inspect.unwrap(function), "__code__", None)
     return (code.co_filename, code.co_firstlineno) if code is not None else ("", None)
+
+
+def line_of_words(homes: Iterable[Path], owner: str, written: Any) -> Place:
+    """Return file and line where *owner* is declared with the text or number *written*; ("", None) where nowhere is.
+
+    The innermost call or field that names both decides.
+    """
+    best: tuple[int, str, int] | None = None
+    for file in (file for home in homes for file in (sorted(home.rglob("*.py")) if home.is_dir() else [home])):
+        try:
+            tree = ast.parse(file.read_text(encoding="utf-8"))
+        except (OSError, SyntaxError, ValueError):
+            continue
+        for node in ast.walk(tree):
+            if isinstance(node, (ast.Call, ast.AnnAssign)) and (lines := _lines_of(node, owner, written)):
+                size = (node.end_lineno or node.lineno) - node.lineno
+                best = min(best, (size, str(file), lines[0])) if best else (size, str(file), lines[0])
+    return (best[1], best[2]) if best else ("", None)
+
+
+def _lines_of(node: ast.AST, owner: str, written: Any) -> list[int]:
+    """Return the lines in a call or a field where *written* stands, if it names *owner* too."""
+    inner = list(ast.walk(node))
+    constants = [item for item in inner if isinstance(item, ast.Constant)]
+    names = {item.value for item in constants if isinstance(item.value, str)}
+    names |= {item.id for item in inner if isinstance(item, ast.Name)}
+    names |= {item.arg for item in inner if isinstance(item, ast.keyword) and item.arg}
+    return [item.lineno for item in constants if _is_part(item.value, written)] if owner in names else []
+
+
+def _is_part(value: Any, written: Any) -> bool:
+    """Tell whether a constant is what was written, or the quantity in it: "3 mm" in "sd 3 mm"."""
+    if isinstance(value, str) and isinstance(written, str) and any(sign.isdigit() for sign in value):
+        return value in written
+    return type(value) is type(written) and bool(value == written)
 
 
 def _inside(filename: str, home: Path) -> bool:

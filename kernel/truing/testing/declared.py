@@ -10,22 +10,20 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from truing.declare.fields import InputField, ResultField
-from truing.declare.goals import Require, Vary, prices_in
+from truing.declare.goals import Vary
+from truing.declare.quantities import unread_goals, unread_units
 from truing.declare.specs import Given
 from truing.errors import InputError, TruingError
 from truing.testing.subject import Subject, fail
+from truing.units import read_quantity
 
 SAME = 1e-12
 
 
 def units_are_known(subject: Subject) -> None:
     """Every unit that is declared is one that Truing knows; history is in a unit of what it is made from."""
-    from truing.units import check_unit
-
-    for owner, unit in _units(subject):
-        with _stating(subject, f"{owner} in '{unit}'"):
-            check_unit(unit)
+    for unread in unread_units(subject.model):
+        fail(f"{subject.model.name}: {unread.sentence}")
     _check_histories(subject)
 
 
@@ -43,22 +41,6 @@ def _check_histories(subject: Subject) -> None:
             fail(f"{model.name}: condition '{name}' is in '{condition.unit}', but it is {what}")
 
 
-def _units(subject: Subject) -> Iterator[tuple[str, str]]:
-    model = subject.model
-    known: dict[str, InputField | ResultField] = {**model.input_fields, **model.result_fields}
-    for name, field in known.items():
-        yield f"'{name}'", field.unit
-    for condition in model.conditions.values():
-        yield f"condition '{condition.name}'", condition.unit
-    for effect in model.effects.values():
-        for unknown in effect.unknowns:
-            yield f"unknown '{unknown.name}' of effect '{effect.name}'", unknown.unit
-    for tolerance in model.tolerances.values():
-        for price in prices_in(tolerance.price):
-            yield f"the width of tolerance '{tolerance.name}'", price.width
-            yield f"the price of tolerance '{tolerance.name}'", price.unit
-
-
 def defaults_keep_their_bounds(subject: Subject) -> None:
     """No default lies outside the bounds that are declared beside it."""
     from truing.inputs_file.values import broken_bound
@@ -72,33 +54,14 @@ def defaults_keep_their_bounds(subject: Subject) -> None:
 
 def goals_can_be_read(subject: Subject) -> None:
     """Bounds of variables and limits of requirements are quantities of the right dimension, in the right order."""
-    from truing.units import read_quantity
-
     model = subject.model
-    known: dict[str, InputField | ResultField] = {**model.input_fields, **model.result_fields}
+    for unread in unread_goals(model):
+        fail(f"{model.name}: {unread.sentence}")
     for objective in model.objectives:
         if isinstance(objective, Vary) and not objective.by:
-            unit = known[objective.input].unit
-            with _stating(subject, f"Vary('{objective.input}')"):
-                low, high = (read_quantity(text, unit) for text in (objective.low, objective.high))
-            if not low < high:
+            unit = model.input_fields[objective.input].unit
+            if not read_quantity(objective.low, unit) < read_quantity(objective.high, unit):
                 fail(f"{model.name}: Vary('{objective.input}') runs from {objective.low} to {objective.high}: nowhere")
-        elif isinstance(objective, Require) and objective.result in known:
-            _check_limit(subject, objective, known)
-
-
-def _check_limit(subject: Subject, require: Require, known: dict[str, InputField | ResultField]) -> None:
-    from truing.units import read_quantity, same_dimension
-
-    unit, limit = known[require.result].unit, require.limit
-    if limit not in known:
-        with _stating(subject, f"Require('{require.result}')"):
-            read_quantity(limit, unit)
-    elif not same_dimension(known[limit].unit, unit):
-        fail(
-            f"{subject.model.name}: Require('{require.result}') compares {unit or 'a pure number'} with '{limit}' "
-            f"in {known[limit].unit or 'pure numbers'}"
-        )
 
 
 def printed_numbers_are_of_results(subject: Subject) -> None:

@@ -179,6 +179,10 @@ def _near(name: str) -> str:
     """Find the known unit that a misspelt name is nearest to; wrong case first."""
     for variant in case_variants(name):
         return f"; did you mean {shown(variant)}?"
+    for prefix, power in names.PREFIXES.items():
+        bare = name.removeprefix(prefix)
+        if bare != name and len(bare) > 1 and (bare in names.SYMBOLS or bare in names.SPELLINGS):
+            return f"; {shown(bare)} takes no prefix {shown(prefix)}: write {shown(f'10^{power} {bare}')}"
     scored = [
         (difflib.SequenceMatcher(None, name, known).ratio() - 0.001 * abs(len(known) - len(name)), -place, known)
         for place, known in enumerate(_suggestions())
