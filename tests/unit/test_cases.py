@@ -195,7 +195,7 @@ def test_cases_that_pass_with_different_changes_only_do_not_pass() -> None:
     )
     case = Case(1, 2, "", {}, "cases.csv")
     verdicts = [
-        CasesTable(tuple(CaseResult(case, {}, decided) for decided in pair), 0).verdict
+        CasesTable(tuple(CaseResult(case, {}, decided) for decided in pair), 0, RowCount("cases.csv", 2)).verdict
         for pair in ((fine, fine), (fine, finest))
     ]
     assert verdicts == ["proposed", "fails"]
