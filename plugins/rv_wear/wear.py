@@ -65,7 +65,7 @@ def worn(reducer: Reducer) -> Worn:
     feasible(pins**2 * reducer.phases >= FEWEST_POSITIONS, TOO_FEW)
     duty = other_flank(reducer)
     other = depth if np.ndim(duty) == 0 and duty == 1.0 else depth_at(meshes, new, exposure * duty)[0]
-    beside = reducer.extra_wear * (1.0 + (np.asarray(duty) > 0.0)) / 2.0
+    beside = reducer.extra_wear * np.where(np.asarray(duty) > 0.0, 1.0, 0.5)
     share = reducer.lost_motion_share * (1.0 + reducer.pin_wear_ratio)
     return Worn(
         disc_torque=reducer.torque_share * reducer.output_torque,

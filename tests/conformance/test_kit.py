@@ -220,7 +220,7 @@ WRONG: dict[str, tuple[Callable[[], Model[Any, Any]], str]] = {
     "batch equals loop": (branching, "write np.where, not if"),
     "steps may be halved": (
         lambda: with_input(lambda it: 1.0 + it * 1e3, default=1.0, halving=0.3),
-        "a finer 'it' moves 'out' from 2 to 1.5 (SI), which is more than 30 %",
+        "a finer 'it' moves 'out' from 2 to 1.5 (SI): more than 30 %",
     ),
     "inputs untouched": (lambda: with_function(writing), "the function writes to the input 'coils'"),
     "seeds decide": (
@@ -325,12 +325,12 @@ MORE_WRONG: list[tuple[str, Callable[[], Model[Any, Any]], str]] = [
     (
         "steps may be halved",
         lambda: with_input(lambda it: 1.0 + 1 / it, default=2, unit="", whole=True, at_least=1, halving=0.1),
-        "from 1.5 to 1.25 (SI), which is more than 10 %",
+        "from 1.5 to 1.25 (SI): more than 10 %",
     ),
     (
         "steps may be halved",
         lambda: with_input(lambda it: 1.0 + it * 1e3, default=1.0, halving=0.9, halving_but={"out": "0.4"}),
-        "which is more than 0.4",
+        ": more than 0.4",
     ),
     ("formulas have the unit", lambda: with_result("N", "rate + travel", lambda it: it.rate), "formula of 'it'"),
     (
@@ -479,3 +479,33 @@ def test_conformance_is_a_parametrised_test() -> None:
         broken(BY_NAME["batch equals loop"])
     with pytest.raises(pytest.skip.Exception, match="no other process could find the model"):
         conformance(good())(BY_NAME["serial equals parallel"])
+
+
+@pytest.mark.parametrize(
+    ("declared", "sentence"),
+    [
+        ({"halving": 1.5}, "the input 'it' has the halving 1.5; it is a share from 0 to 1"),
+        ({"halving": 0.1, "default": "a", "unit": None, "annotation": Literal["a", "b"]}, "of a number or count"),
+        ({"halving_but": {"out": "1"}}, "a halving_but without a halving"),
+        ({"halving": 0.1, "halving_but": {"aut": "1"}}, "names 'aut', which is no result. Did you mean 'out'?"),
+    ],
+)
+def test_a_numerical_step_is_a_number_that_promises_something(declared: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(DeclarationError) as caught:
+        with_input(**declared)
+    assert sentence in str(caught.value)
+
+
+def test_what_halving_changes_stands_where_a_user_looks() -> None:
+    """On the sheet, in describe and in the schema; of a count it is doubling."""
+    step = with_input(halving=0.03, halving_but={"out": "1 deg"}, note="a step")
+    words = "numerical: halving it changes no result by more than 3 %; out by at most 1 deg"
+    (said,) = description(Subject(step).offer)["inputs"]
+    assert said["bounds"] == words
+    setup = default_setup(step)
+    sheet = make_sheet(calculate(setup), provenance=provenance_of(setup))
+    assert words in " ".join(markdown_of(sheet).split())
+    assert (
+        "doubling it"
+        in description(Subject(with_input(default=2, unit="", whole=True, halving=0.1)).offer)["inputs"][0]["bounds"]
+    )

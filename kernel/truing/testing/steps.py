@@ -48,19 +48,15 @@ def halved(setup: Setup, item: InputField) -> Any:
 
 def moved(setup: Setup, finer: Any, item: InputField) -> Iterator[str]:
     """Say of every result that a finer step moves further than declared by how much it does."""
-    assert isinstance(item.spec, Given)
-    model = setup.model
+    spec, model = item.spec, setup.model
+    assert isinstance(spec, Given)
+    assert spec.halving is not None
     before, after = model.read_results(evaluate(setup)), model.read_results(finer)
     for name, value in before.items():
         there, here = np.asarray(value, dtype=float), np.asarray(after[name], dtype=float)
-        unit = model.own_result_fields[name].unit
         size = np.max(np.abs(here), initial=0.0)
-        most = item.spec.halving_but.get(name)
-        limit = item.spec.halving * size if most is None else read_quantity(most, unit)
+        most = spec.halving_but.get(name)
+        limit = read_quantity(most, model.own_result_fields[name].unit) if most else spec.halving * size
         if there.shape != here.shape or np.any(np.abs(here - there) > limit + ROUNDING * size):
-            yield (
-                f"a finer '{item.name}' moves '{name}' from {there:.6g} to {here:.6g} (SI), which is more than "
-                f"{most or f'{100 * item.spec.halving:g} %'}"
-                if there.ndim == here.ndim == 0
-                else f"a finer '{item.name}' moves '{name}' by more than {most or f'{100 * item.spec.halving:g} %'}"
-            )
+            numbers = "" if there.ndim or here.ndim else f" from {there:.6g} to {here:.6g} (SI)"
+            yield f"a finer '{item.name}' moves '{name}'{numbers}: more than {most or f'{100 * spec.halving:g} %'}"
