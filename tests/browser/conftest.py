@@ -23,7 +23,7 @@ from truing.report.sheet import make_sheet
 from truing.runs.provenance import provenance_of
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, BrowserContext, Page
+    from playwright.sync_api import Browser, Page, ViewportSize
 
 DATA = Path(__file__).parents[1] / "data"
 QUIET = [
@@ -82,7 +82,7 @@ def fonts(browser: Browser) -> dict[str, str]:
     if missing:
         missed(f"the fonts {', '.join(missing)} are not on this machine (Debian: fonts-dejavu-core, fonts-liberation)")
     rules = {name: [f'--{use}: "{family}";' for use, family in families.items()] for name, families in FONTS.items()}
-    return {"the machine's": "", **{name: f":root {{ {' '.join(lines)} }}" for name, lines in rules.items()}}
+    return {"the machine's": ":root { }", **{name: f":root {{ {' '.join(lines)} }}" for name, lines in rules.items()}}
 
 
 @pytest.fixture(scope="session")
@@ -95,6 +95,7 @@ def browser(chromium: Path) -> Iterator[Browser]:
         running.close()
 
 
+SCREEN: ViewportSize = {"width": 1200, "height": 900}
 GALLERY = tomllib.loads((ROOT / "docs" / "gallery" / "sheets.toml").read_text(encoding="utf-8"))
 SHIPPED = [name for name, item in GALLERY.items() if "data" not in item]
 """Sheets of shipped examples: those of the gallery, with the budgets of its quick build."""
@@ -119,22 +120,41 @@ def sheet(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     return file
 
 
+def opened(browser: Browser, sheet: Path) -> Page:
+    """Return the sheet in a context of its own; what it asks for and complains of is written down."""
+    page: Any = browser.new_context().new_page()
+    page.requested, page.failed, page.said = [], [], []
+    page.on("request", lambda request: page.requested.append(request.url))
+    page.on("requestfailed", lambda request: page.failed.append((request.url, request.failure)))
+    page.on("console", lambda message: page.said.append(f"{message.type}: {message.text}"))
+    page.on("pageerror", lambda error: page.said.append(f"error: {error}"))
+    page.set_viewport_size(SCREEN)
+    page.goto(sheet.as_uri())
+    return page  # type: ignore[no-any-return]
+
+
+@pytest.fixture(scope="session")
+def shown(browser: Browser) -> dict[Path, Page]:
+    """The page that is open, by its sheet."""
+    return {}
+
+
 @pytest.fixture
-def context(browser: Browser) -> Iterator[BrowserContext]:
-    made = browser.new_context()
+def page(browser: Browser, shown: dict[Path, Page], sheet: Path) -> Page:
+    """The sheet on a wide screen, one page for all tests that only look at it."""
+    if sheet not in shown:
+        for other in shown.values():
+            other.context.close()
+        shown.clear()
+        shown[sheet] = opened(browser, sheet)
+    shown[sheet].set_viewport_size(SCREEN)
+    shown[sheet].emulate_media(media="screen", color_scheme="light")
+    return shown[sheet]
+
+
+@pytest.fixture
+def own_page(browser: Browser, sheet: Path) -> Iterator[Page]:
+    """The sheet on a wide screen, for a test that changes the page."""
+    made = opened(browser, sheet)
     yield made
-    made.close()
-
-
-@pytest.fixture
-def page(context: BrowserContext, sheet: Path) -> Page:
-    """The sheet, opened on a wide screen; what it asks for and complains of is written down."""
-    opened: Any = context.new_page()
-    opened.requested, opened.failed, opened.said = [], [], []
-    opened.on("request", lambda request: opened.requested.append(request.url))
-    opened.on("requestfailed", lambda request: opened.failed.append((request.url, request.failure)))
-    opened.on("console", lambda message: opened.said.append(f"{message.type}: {message.text}"))
-    opened.on("pageerror", lambda error: opened.said.append(f"error: {error}"))
-    opened.set_viewport_size({"width": 1200, "height": 900})
-    opened.goto(sheet.as_uri())
-    return opened  # type: ignore[no-any-return]
+    made.context.close()

@@ -63,59 +63,59 @@ def press(page: Any, title: str) -> None:
     page.get_by_role("button", name=title, exact=True).click(timeout=3000)
 
 
-def test_dates_sort_as_moments_and_none_comes_last(page: Any) -> None:
-    assert names(page) == ["calm", *BY_DATE, "hostile"]
-    assert sorted_by(page) == {"Date": "descending"}
-    press(page, "Date")
-    assert sorted_by(page) == {"Date": "ascending"}
-    assert names(page) == [*reversed(BY_DATE), "calm", "hostile"]
+def test_dates_sort_as_moments_and_none_comes_last(own_page: Any) -> None:
+    assert names(own_page) == ["calm", *BY_DATE, "hostile"]
+    assert sorted_by(own_page) == {"Date": "descending"}
+    press(own_page, "Date")
+    assert sorted_by(own_page) == {"Date": "ascending"}
+    assert names(own_page) == [*reversed(BY_DATE), "calm", "hostile"]
 
 
-def test_numbers_sort_as_numbers_and_none_comes_last(page: Any) -> None:
+def test_numbers_sort_as_numbers_and_none_comes_last(own_page: Any) -> None:
     """As texts −20 % would stand behind 5 %, and 50 % before 5 %."""
-    press(page, "Least margin")
-    assert names(page)[:3] == ["later/deep", "first", "hostile"]
-    press(page, "Least margin")
-    assert names(page)[:3] == ["hostile", "first", "later/deep"]
-    assert sorted_by(page) == {"Least margin": "descending"}
-    assert sorted(names(page)[3:]) == ["calm", "found", "no_limits"]
-    press(page, "Warnings")
-    assert names(page)[:2] == ["later/deep", "calm"]
+    press(own_page, "Least margin")
+    assert names(own_page)[:3] == ["later/deep", "first", "hostile"]
+    press(own_page, "Least margin")
+    assert names(own_page)[:3] == ["hostile", "first", "later/deep"]
+    assert sorted_by(own_page) == {"Least margin": "descending"}
+    assert sorted(names(own_page)[3:]) == ["calm", "found", "no_limits"]
+    press(own_page, "Warnings")
+    assert names(own_page)[:2] == ["later/deep", "calm"]
 
 
-def test_the_keyboard_sorts_and_shows_where_it_is(page: Any) -> None:
-    page.get_by_role("button", name="Name", exact=True).focus(timeout=3000)
-    page.keyboard.press("Enter")
-    assert sorted_by(page) == {"Name": "ascending"}
-    assert names(page)[1:] == ["calm", "first", "found", "later/deep", "no_limits"]
-    page.keyboard.press("Space")
-    assert sorted_by(page) == {"Name": "descending"}
-    page.keyboard.press("Tab")
-    assert page.evaluate("document.activeElement.textContent") == "Date"
-    assert page.evaluate("getComputedStyle(document.activeElement).outlineStyle") == "solid"
+def test_the_keyboard_sorts_and_shows_where_it_is(own_page: Any) -> None:
+    own_page.get_by_role("button", name="Name", exact=True).focus(timeout=3000)
+    own_page.keyboard.press("Enter")
+    assert sorted_by(own_page) == {"Name": "ascending"}
+    assert names(own_page)[1:] == ["calm", "first", "found", "later/deep", "no_limits"]
+    own_page.keyboard.press("Space")
+    assert sorted_by(own_page) == {"Name": "descending"}
+    own_page.keyboard.press("Tab")
+    assert own_page.evaluate("document.activeElement.textContent") == "Date"
+    assert own_page.evaluate("getComputedStyle(document.activeElement).outlineStyle") == "solid"
 
 
-def test_the_filter_takes_words_and_says_how_many(page: Any) -> None:
-    box = page.get_by_role("searchbox")
+def test_the_filter_takes_words_and_says_how_many(own_page: Any) -> None:
+    box = own_page.get_by_role("searchbox")
     box.fill("DIAGNOSIS")
-    assert names(page) == ["calm", "found"]
-    assert page.get_by_role("status").text_content() == "2 of 6"
+    assert names(own_page) == ["calm", "found"]
+    assert own_page.get_by_role("status").text_content() == "2 of 6"
     box.fill("diagnosis joint")
-    assert names(page) == ["found"]
+    assert names(own_page) == ["found"]
     box.fill("nothing has this")
-    assert names(page) == []
+    assert names(own_page) == []
     box.fill("")
-    assert len(names(page)) == 6
-    assert page.get_by_role("status").text_content() == ""
+    assert len(names(own_page)) == 6
+    assert own_page.get_by_role("status").text_content() == ""
     box.fill("run")
-    press(page, "Name")
-    assert names(page)[1:] == ["first", "later/deep", "no_limits"]
+    press(own_page, "Name")
+    assert names(own_page)[1:] == ["first", "later/deep", "no_limits"]
 
 
-def test_a_link_leads_to_its_sheet(page: Any, sheet: Path) -> None:
-    page.get_by_role("link", name="later/deep").click()
-    assert page.url == (sheet.parent / "later" / "deep" / "sheet.html").as_uri()
-    assert page.title() == "a sheet"
+def test_a_link_leads_to_its_sheet(own_page: Any, sheet: Path) -> None:
+    own_page.get_by_role("link", name="later/deep").click()
+    assert own_page.url == (sheet.parent / "later" / "deep" / "sheet.html").as_uri()
+    assert own_page.title() == "a sheet"
 
 
 def test_it_can_be_read_without_a_script(browser: Browser, sheet: Path) -> None:
@@ -131,12 +131,12 @@ def test_it_can_be_read_without_a_script(browser: Browser, sheet: Path) -> None:
         context.close()
 
 
-def test_on_a_phone_every_row_is_a_card_with_named_values(page: Any) -> None:
-    page.set_viewport_size({"width": 390, "height": 844})
-    cells = page.evaluate("""() => [...document.querySelector('tbody tr').cells]
+def test_on_a_phone_every_row_is_a_card_with_named_values(own_page: Any) -> None:
+    own_page.set_viewport_size({"width": 390, "height": 844})
+    cells = own_page.evaluate("""() => [...document.querySelector('tbody tr').cells]
         .filter(cell => cell.getClientRects().length)
         .map(cell => [cell.getBoundingClientRect().left, getComputedStyle(cell, '::before').content])""")
     assert len({left for left, _ in cells}) == 1
     assert all(label not in {"none", '""'} for _, label in cells[1:])
-    press(page, "Name")
-    assert sorted_by(page) == {"Name": "ascending"}
+    press(own_page, "Name")
+    assert sorted_by(own_page) == {"Name": "ascending"}

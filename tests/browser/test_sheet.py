@@ -83,9 +83,9 @@ def test_nothing_on_the_sheet_can_run(page: Any) -> None:
     assert page.evaluate("document.querySelectorAll('iframe, object, embed, form, link, base').length") == 0
 
 
-def test_the_policy_stops_what_a_later_hand_adds(page: Any) -> None:
+def test_the_policy_stops_what_a_later_hand_adds(own_page: Any) -> None:
     """A script or picture put into the file by somebody else is refused by the page itself."""
-    page.evaluate("""() => {
+    own_page.evaluate("""() => {
         const script = document.createElement('script');
         script.textContent = 'document.title = "run"';
         document.body.append(script);
@@ -93,10 +93,10 @@ def test_the_policy_stops_what_a_later_hand_adds(page: Any) -> None:
         picture.src = 'https://evil.example/x.png';
         document.body.append(picture);
     }""")
-    page.wait_for_timeout(200)
-    assert page.title() != "run"
-    assert page.failed == [("https://evil.example/x.png", "csp")]
-    assert len([text for text in page.said if "Content Security Policy" in text]) >= 2
+    own_page.wait_for_timeout(200)
+    assert own_page.title() != "run"
+    assert own_page.failed == [("https://evil.example/x.png", "csp")]
+    assert len([text for text in own_page.said if "Content Security Policy" in text]) >= 2
 
 
 def test_fractions_are_taller_than_a_line(page: Any) -> None:
@@ -134,20 +134,20 @@ def test_what_is_wide_scrolls_in_its_own_box_on_a_phone(page: Any) -> None:
     assert max(right for _, _, right in boxes) <= 390
 
 
-def test_nothing_is_cut_off_on_paper(page: Any, fonts: dict[str, str]) -> None:
+def test_nothing_is_cut_off_on_paper(own_page: Any, fonts: dict[str, str]) -> None:
     """In print nothing scrolls, so every element must end within the text width, whatever the font."""
-    page.emulate_media(media="print")
+    own_page.emulate_media(media="print")
     beyond = {}
     for name, style in fonts.items():
-        page.add_style_tag(content=style)
+        own_page.add_style_tag(content=style)
         for paper, millimetres in PAPERS.items():
             width = int(millimetres * MILLIMETRE)
-            page.set_viewport_size({"width": width, "height": 1000})
-            beyond[name, paper] = page.evaluate(BEYOND, width)
+            own_page.set_viewport_size({"width": width, "height": 1000})
+            beyond[name, paper] = own_page.evaluate(BEYOND, width)
     assert {key: nodes for key, nodes in beyond.items() if nodes} == {}
 
 
-def test_every_character_is_drawn(page: Any, fonts: dict[str, str]) -> None:
+def test_every_character_is_drawn(own_page: Any, fonts: dict[str, str]) -> None:
     """No letter is an empty box, and every index of a formula stands below the line.
 
     The italic letters of mathematics, which few fonts have, are not asked for. Titles in Chinese need their own font.
@@ -155,12 +155,12 @@ def test_every_character_is_drawn(page: Any, fonts: dict[str, str]) -> None:
     transformed = (
         "[...document.querySelectorAll('mi')].filter(n => getComputedStyle(n).textTransform !== 'none').length"
     )
-    assert page.evaluate(transformed) == 0
+    assert own_page.evaluate(transformed) == 0
     boxes = {}
     for name, style in fonts.items():
-        page.add_style_tag(content=style)
-        boxes[name] = page.evaluate(BOXES)
-        assert page.evaluate(LEVEL) == [], name
+        own_page.add_style_tag(content=style)
+        boxes[name] = own_page.evaluate(BOXES)
+        assert own_page.evaluate(LEVEL) == [], name
     assert {name: found for name, found in boxes.items() if found} == {}
 
 
