@@ -20,6 +20,7 @@ from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Kernel, Offer
 from truing.measurements import read_cases
 from truing.published import compare_published
+from truing.report.columns import with_room
 from truing.report.render import css_text, html_of, markdown_of
 from truing.report.sheet import logo_of, make_sheet
 from truing.report.templates import template_folder
@@ -140,6 +141,15 @@ def test_headings_descend_in_order_and_tables_are_labelled(html: str) -> None:
     assert next(attributes for tag, attributes in page.tags if tag == "html")["lang"] == "en"
     assert all("scope" in attributes for tag, attributes in page.tags if tag == "th")
     assert sum(tag == "caption" for tag, _ in page.tags) == sum(tag == "table" for tag, _ in page.tags)
+
+
+def test_columns_say_how_many_characters_they_need() -> None:
+    """The longest word and the gap; a number stands on one line, a name may break behind its underscores."""
+    rows = '<tr><td>well_<wbr>named thing</td><td class="number">1.5 &lt; 2 mm</td><td>{}</td></tr>'.format("x" * 90)
+    head = '<thead><tr><th>Name</th><th class="number">Least margin</th><th>Remark</th></tr></thead>'
+    page = with_room(f'<p>a</p><table class="grid narrow">{head}{rows}<tr><td>short row</td></tr></table>')
+    assert re.findall(r"--(own|room): (\d+)", page) == [("room", "45"), ("own", "7"), ("own", "12"), ("own", "26")]
+    assert re.sub(r' style="[^"]*"', "", page).count("<th>") == 2
 
 
 def test_markdown_holds_no_html_and_no_template_mark(markdown: str) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from html import unescape
+from itertools import zip_longest
 from typing import Final
 
 TABLE: Final = re.compile(r'<table class="grid.*?</table>', re.DOTALL)
@@ -32,10 +33,10 @@ def with_room(page: str) -> str:
 
 def _measured(table: str) -> str:
     rows = [[_longest(*cell) for cell in CELL.findall(row)] for row in ROW.findall(table)]
-    needs = [max(column) + PADDING for column in zip(*rows, strict=True)]
+    needs = [max(column) + PADDING for column in zip_longest(*rows, fillvalue=0)]
     head, tail = table.split("</tr>", 1)
     widths = iter(needs)
-    head = re.sub(r"<th\b", lambda start: f'{start[0]} style="--own: {next(widths)}"', head)
+    head = re.sub(r"<th\b", lambda start: f'{start[0]} style="--own: {next(widths, PADDING)}"', head)
     return head.replace("<table", f'<table style="--room: {sum(needs)}"', 1) + "</tr>" + tail
 
 
