@@ -171,7 +171,7 @@ PUBLISHED = [
         unit="lbf",
         where=BOOK,
         settings=SPRING_OF_THE_BOOK,
-        agrees_to=4e-3,
+        verdict="differs",
         why="the book prints the compression with three digits",
     ),
     Published(
@@ -181,7 +181,6 @@ PUBLISHED = [
         unit="ksi",
         where=BOOK,
         settings=SPRING_OF_THE_BOOK,
-        agrees_to=4e-3,
     ),
 ]
 

@@ -24,8 +24,7 @@ TASK = "published numbers"
 class ComparedRow:
     """One printed number and ours in its unit; ``ratio`` is ours over the paper's, None where there is none.
 
-    ``matches``: the relative difference is at most ``published.agrees_to`` (the difference itself, where the paper
-    prints 0). ``as_stated``: that is also what the plugin states of it.
+    ``matches``: by the rule of its kind (``Published.agrees``). ``as_stated``: that is also what the plugin states.
     """
 
     published: Published
@@ -104,8 +103,7 @@ def compare_one(item: Published, calculation: Calculation) -> ComparedRow:
     if getattr(answer, "ndim", 0):
         raise DeclarationError(f"the published number '{item.name}' names '{item.result}', which is no single number")
     value = float(from_si(float(answer), item.unit))
-    distance = abs(value - item.value)
-    matches = distance <= item.agrees_to * (abs(item.value) or 1.0)
+    matches = item.agrees(value)
     ratio = value / item.value if item.value and math.isfinite(value) else None
     return ComparedRow(item, value, ratio, matches, matches == (item.verdict == "matches"))
 

@@ -64,15 +64,17 @@ ISO_ROWS: tuple[tuple[str, str, float, str], ...] = (
 )
 ROOT_FORMS = {17: (2.97, 1.52), 20: (2.80, 1.55), 25: (2.62, 1.59), 35: (2.45, 1.65), 50: (2.32, 1.70),
               80: (2.22, 1.77), 200: (2.12, 1.865)}  # fmt: skip
+OFF = {("form_factor", teeth) for teeth in (17, 25, 35, 50, 80, 200)} | {("stress_correction", 200)}
+"""What differs by more than rounding: up to 0.6 % of the form factor."""
 PAIRS = ((17, 200), (20, 80), (25, 50), (35, 80))  # every number of teeth of the handbook in some pair
 
 
 def iso_example() -> Iterator[Published]:
-    """The helical pair of the standard's technical report, within 0.1 %."""
+    """The helical pair of the standard's technical report."""
     for name, result, value, unit in ISO_ROWS:
         why = {"centre_distance": QUOTED, "dynamic_factor": FACE}.get(result, "")
         yield Published(
-            name=name, result=result, value=value, unit=unit, where=EXAMPLE, settings=ISO_SETTINGS, agrees_to=1e-3,
+            name=name, result=result, value=value, unit=unit, where=EXAMPLE, settings=ISO_SETTINGS, kind="worked",
             why=why,
         )  # fmt: skip
 
@@ -91,7 +93,8 @@ def handbook() -> Iterator[Published]:
             ):
                 yield Published(
                     name=f"{short} of {teeth} teeth", result=f"{word}_{gear}", value=value, where=HANDBOOK,
-                    settings=settings, agrees_to=7e-3, why=TABLE if len(seen) == 1 else "",
+                    settings=settings, verdict="differs" if (word, teeth) in OFF else "matches",
+                    why=TABLE if (word, teeth) in OFF else "",
                 )  # fmt: skip
 
 
@@ -103,7 +106,7 @@ def textbook() -> Iterator[Published]:
         ("contact ratio factor of 24/77", "contact_ratio_factor", 0.873),
         ("zone factor of 24/77", "zone_factor", 2.5),
     ):
-        yield Published(name=name, result=result, value=value, where=TEXTBOOK, settings=settings, agrees_to=3e-3)
+        yield Published(name=name, result=result, value=value, where=TEXTBOOK, settings=settings)
 
 
 def catalogue() -> Iterator[Published]:
@@ -115,16 +118,16 @@ def catalogue() -> Iterator[Published]:
         }  # fmt: skip
         yield Published(
             name=f"catalogue ratio {ratio:g}, as {sun}/{planet}/{PINS}", result="ratio", value=ratio, where=CATALOGUE,
-            settings=settings, agrees_to=5e-4, obtained="calibrated", why=INFERRED if ratio == RATIOS[0][0] else "",
+            settings=settings, obtained="calibrated", why=INFERRED if ratio == RATIOS[0][0] else "",
         )  # fmt: skip
 
 
 PUBLISHED = [
     Published(name="groups in its table, at least", result="group_count", value=22.0, where="text below Table 1",
-              settings={"studies.run": '["search"]'}, agrees_to=1e-2, verdict="differs", why=LOST_TABLE),
+              settings={"studies.run": '["search"]'}, kind="at_least", why=LOST_TABLE),
     *catalogue(),
     Published(name="torque of the catalogue", result="output_torque", value=TORQUE, unit="N*m", where=CATALOGUE,
-              settings={"studies.run": "[]"}, agrees_to=1e-2, verdict="differs", why=LOSSES),
+              settings={"studies.run": "[]"}, verdict="differs", why=LOSSES),
     *iso_example(),
     *textbook(),
     *handbook(),

@@ -48,7 +48,7 @@ def test_json_is_one_document_and_the_same_as_in_the_folder(calc: Calc, tmp_path
 def test_a_failing_check_is_named_and_exits_with_1(calc: Calc, tmp_path: Path) -> None:
     answer = calc("run", PIN, "--set", "load=2300 N")
     assert answer.code == 1
-    assert "Fails: 1 of 1 checks fails: pressure. (exit code 1)" in answer.out
+    assert "Fails. 1 of 1 checks fails: pressure. (exit code 1)" in answer.out
     assert (tmp_path / "runs/pin_wear/sheet.html").is_file()
 
 

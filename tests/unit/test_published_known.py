@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from truing import Float, Model, Published, Sweep, found, given, inputs, results
 from truing.calculation import calculate
+from truing.errors import DeclarationError
 from truing.kernel import Offer, Origin
 from truing.published import compare_published
 from truing.setup import default_setup
@@ -78,3 +80,35 @@ def test_a_run_without_a_study_does_not_serve_for_it() -> None:
     CALLS.clear()
     compare_published(Offer("bar", model, origin), known=known)
     assert CALLS
+
+
+@pytest.mark.parametrize(
+    ("stated", "ours", "matches"),
+    [
+        ({"value": 1.04, "printed": "1.040"}, 1.0404, True),  # half a unit of the last digit is 0.0005
+        ({"value": 1.04, "printed": "1.040"}, 1.0406, False),
+        ({"value": 1.04}, 1.0406, True),  # and 0.005 where two digits are printed
+        ({"value": 9.0}, 10.0, False),
+        ({"value": 1206.582, "kind": "worked"}, 1206.4226, True),
+        ({"value": 1206.582}, 1206.4226, False),
+        ({"value": 3.127, "obtained": "calibrated"}, 3.1288, True),
+        ({"value": -0.053, "obtained": "calibrated"}, -0.05375, False),
+        ({"value": 100.0, "unit": "%", "kind": "probability"}, 99.67, False),  # 0.33 % of failures are none
+        ({"value": 100.0, "unit": "%", "kind": "probability"}, 100.0, True),
+        ({"value": 0.857, "kind": "probability"}, 0.8562, True),  # 14.4 % fail instead of 14.3 %
+        ({"value": 0.9973, "kind": "probability"}, 0.99707, False),  # 0.29 % instead of 0.27 %
+        ({"value": 22.0, "kind": "at_least"}, 25.0, True),
+        ({"value": 22.0, "kind": "at_least"}, 21.0, False),
+        ({"value": 22.0, "kind": "at_most"}, 25.0, False),
+        ({"value": 0.5, "kind": "words", "within": 0.05}, 0.54, True),
+        ({"value": 0.5, "kind": "words", "within": 0.05}, 0.56, False),
+        ({"value": 0.5}, float("nan"), False),
+    ],
+)
+def test_one_rule_for_each_kind_of_figure(stated: dict[str, Any], ours: float, matches: bool) -> None:
+    assert Published(name="x", result="x", **stated).agrees(ours) is matches
+
+
+def test_a_number_is_printed_as_it_is() -> None:
+    with pytest.raises(DeclarationError, match=r"'x' is 1\.04, printed as '1\.05'"):
+        Published(name="x", result="x", value=1.04, printed="1.05")

@@ -48,7 +48,7 @@ def _verdict_lines(decided: Decided) -> Iterator[str]:
     if decided.verdict == "passes":
         return
     code = EXIT_CODES[decided.verdict]
-    yield one_line(f"{HEADLINES[decided.verdict]}: {sentence_of(decided)} (exit code {code})")
+    yield one_line(f"{HEADLINES[decided.verdict]}. {sentence_of(decided)} (exit code {code})")
     if decided.verdict == "proposed" and decided.proposal is not None:
         yield one_line(f"changed: {change_words(decided.proposal)}")
 

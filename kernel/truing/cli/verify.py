@@ -11,11 +11,12 @@ import typer
 from truing.cli.console import aligned, one_line, out, out_json, progress_bar, settings_of, verb
 from truing.cli.load import find_offer
 from truing.cli.words import AsJson, Plugin
+from truing.declare.published import rules_of
 
 if TYPE_CHECKING:
     from truing.published import ComparedRow
 
-HEAD = ("quantity", "where", "unit", "paper", "ours", "ratio", "verdict", "obtained", "why")
+HEAD = ("quantity", "where", "unit", "paper", "ours", "ratio", "verdict", "obtained", "kind", "why")
 
 
 @verb
@@ -32,7 +33,14 @@ def verify(
     with progress_bar(settings) as progress:
         rows = compare_published(offer, progress=progress)
     if as_json:
-        out_json({"rows": [_plain(row) for row in rows], "findings": [asdict(item) for item in offer.model.findings]})
+        findings = [asdict(item) for item in offer.model.findings]
+        out_json(
+            {
+                "rows": [_plain(row) for row in rows],
+                "rules": rules_of(row.published for row in rows),
+                "findings": findings,
+            }
+        )
     else:
         out("\n".join(_lines(offer.model, rows)))
     return 0 if all(row.as_stated for row in rows) else 1
@@ -48,6 +56,7 @@ def _plain(row: ComparedRow) -> dict[str, Any]:
         "paper": printed.value,
         "ours": row.value,
         "ratio": row.ratio,
+        "kind": printed.rule,
         "verdict": "matches" if row.matches else "differs",
         "as_stated": row.as_stated,
         "obtained": printed.obtained,
@@ -72,6 +81,8 @@ def _lines(model: Any, rows: Sequence[ComparedRow]) -> Iterator[str]:
     if numbers:
         yield ""
     yield from (f"{number} {reason}" for reason, number in numbers.items())
+    yield ""
+    yield from (f"{kind}: {rule}" for kind, rule in rules_of(row.published for row in rows).items())
     for finding in model.findings:
         yield f"\nFinding: {one_line(finding.title)}\n  {one_line(finding.text)}"
     yield f"\n{_summary(rows)}"
@@ -88,7 +99,7 @@ def _cells(row: ComparedRow, numbers: Mapping[str, str]) -> tuple[str, ...]:
     ratio = "-" if row.ratio is None else f"{row.ratio:.4f}"
     values = (unit_text(printed.unit), format_number(printed.value, 5), format_number(row.value, 5), ratio)
     why = numbers.get(one_line(printed.why), "")
-    return (one_line(printed.name), one_line(printed.where), *values, verdict, printed.obtained, why)
+    return (one_line(printed.name), one_line(printed.where), *values, verdict, printed.obtained, printed.rule, why)
 
 
 def _summary(rows: Sequence[ComparedRow]) -> str:

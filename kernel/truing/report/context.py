@@ -230,6 +230,8 @@ class Sheet:
     changed: tuple[ChangedInput, ...]
     compared: tuple[ComparedRow, ...]
     compared_elsewhere: tuple[ComparedRow, ...]
+    rules: tuple[str, ...]
+    """By which the printed numbers are judged."""
     findings: tuple[Finding, ...]
     warnings: tuple[str, ...]
     references: tuple[str, ...]

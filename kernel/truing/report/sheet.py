@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from truing.calculation import Calculation
+from truing.declare.published import rules_of
 from truing.numbers import STATED_DIGITS, format_number, format_value
 from truing.published import ComparedRow, parted
 from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
@@ -81,6 +82,7 @@ def make_sheet(
         changed=tuple(changed_inputs(setup)),
         compared=tuple(own),
         compared_elsewhere=tuple(elsewhere),
+        rules=tuple(rules_of(row.published for row in verified).values()),
         findings=tuple(setup.model.findings),
         warnings=tuple(_warnings(calculation, cases, figures.failures)),
         references=tuple(references(calculation)),
