@@ -53,4 +53,4 @@ def test_a_plugin_without_printed_numbers(calc: Calc, tmp_path: Path) -> None:
     write_block(tmp_path)
     answer = calc("verify", "./block.py")
     assert (answer.code, answer.out) == (0, "block states no published numbers\n")
-    assert json.loads(calc("verify", "./block.py", "--json").out) == {"rows": [], "findings": []}
+    assert json.loads(calc("verify", "./block.py", "--json").out) == {"rows": [], "rules": {}, "findings": []}

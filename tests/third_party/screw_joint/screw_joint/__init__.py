@@ -67,8 +67,8 @@ SCREW_JOINT = Model(
         Section("In service", "clamp_left", "alternating_stress", "tight_share"),
     ],
     published=[
-        Published(name="Preload", result="preload", value=43.0, printed="43.0", unit="kN", where=TABLE, verdict="differs",
-                  why="1 % above the table; the reason is not known"),
+        Published(name="Preload", result="preload", value=43.0, printed="43.0", unit="kN", where=TABLE,
+                  verdict="differs", why="1 % above the table; the reason is not known"),
         Published(name="Stress area of M12", result="stress_area", value=84.3, unit="mm^2", where="ISO 898-1, Table 4"),
     ],
     cites=["VDI 2230-1, Systematic calculation of highly stressed bolted joints.", "ISO 898-1."],
