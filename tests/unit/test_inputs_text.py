@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -109,6 +110,36 @@ def test_a_folder_and_a_missing_file(tmp_path: Path) -> None:
         read_setup(tmp_path, PIN_OFFER)
     with pytest.raises(InputError, match=r"no such file\. Did you mean 'wear.toml'\?"):
         read_setup(tmp_path / "waer.toml", PIN_OFFER)
+
+
+def test_a_link_that_leads_nowhere_is_told_as_one(tmp_path: Path) -> None:
+    (tmp_path / "loop.toml").symlink_to("loop.toml")
+    (tmp_path / "gone.toml").symlink_to("was_here.toml")
+    for name, sentence in {
+        "loop.toml": "is a symbolic link that leads back to itself; name the file",
+        "gone.toml": "is a symbolic link to 'was_here.toml', which is not there",
+    }.items():
+        with pytest.raises(InputError) as caught:
+            read_setup(tmp_path / name, PIN_OFFER)
+        assert str(caught.value) == f"{tmp_path / name}: {sentence}"
+
+
+LONG, CONTROL = "q" * 100_000, "a\x1b[31mb\u202ec"
+
+
+@pytest.mark.parametrize("word", [LONG, CONTROL], ids=["long", "control characters"])
+def test_what_a_user_wrote_is_quoted_short_and_in_one_line(word: str) -> None:
+    key = json.dumps(word)
+    texts = [
+        f'[tolerances]\n{key} = "±1 N"', f"[tolerances]\nload = {key}", f"[tolerances]\nload = {{ {key} = 1 }}",
+        f"[inputs]\n{key} = 1", f"[inputs]\nload = {key}", f"[inputs.load]\n{key} = 1", f"[{key}]\nx = 1", f"[{key}",
+        f"plugin = {key}", f"[studies]\nrun = [{key}]", f"[studies.{key}]\nx = 1", f"[studies.census]\nmethod = {key}",
+        f"[units]\ndepth = {key}", f'[conditions]\n{key} = "1 K"', f"[effects.warm_probe]\nslope = {key}",
+        f"[inputs]\n{key} = 1\n{key} = 2", f"[inputs]\nload = {{ file = {key} }}", f"[inputs]\n{word} = 5 mm", word,
+        f"[inputs]\nload = {word}", f'[inputs]\nload = "{word}', f"[{key}]\n[{key}]",
+    ]  # fmt: skip
+    for text in texts:
+        assert all(len(sentence) < 500 and sentence.isprintable() for sentence in faults(text)), text[:60]
 
 
 HOSTILE: dict[str, Callable[[int], str]] = {

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, overload
 
 from truing.declare.goals import Price, PriceByChoice
 from truing.errors import DeclarationError, UnitError
+from truing.units.grammar import shown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -335,7 +336,7 @@ def difference(text: str, unit: str) -> float:
 
 def _positive(value: float, text: str) -> float:
     if value < 0:
-        raise UnitError(f"'{text}' is negative; a spread is written as its size")
+        raise UnitError(f"{shown(text)} is negative; a spread is written as its size")
     return value
 
 
@@ -350,7 +351,7 @@ def read_spread(text: str | Mapping[str, Any], declared: Spread) -> Spread:
     words = text.replace("+/-", "±").replace("+-", "±").strip()
     if words == "off":
         return Off()
-    if words.upper().startswith("IT") and words[2:].strip().isdigit():
+    if words.upper().startswith("IT") and words.isascii() and words[2:].strip().isdigit():
         from truing.fits import tolerance
 
         tolerance(name := "IT" + words[2:].strip(), 0.1)  # refuses IT19 at once; every grade exists at 100 mm
@@ -377,7 +378,7 @@ def _band(words: str, text: str, declared: Spread) -> Band:
             split_quantity(amount)
             return Band(amount, word, shape, _settled(declared, "at_radius"))
     raise UnitError(
-        f"'{text}' is no tolerance; write '±0.05 mm', 'sd 3 %', 'band 0.125 mm', 'IT6', "
+        f"{shown(text)} is no tolerance; write '±0.05 mm', 'sd 3 %', 'band 0.125 mm', 'IT6', "
         '{zone = ["0 um", "6 um"]} or \'off\''
     )
 

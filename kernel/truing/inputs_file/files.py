@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 from pathlib import Path
 
 from truing.errors import Fault, InputError
+from truing.units.grammar import shown
 
 LARGEST_INPUTS = 2_000_000
 _SPREADSHEETS = {".xlsx", ".xls", ".xlsm", ".xlsb", ".ods", ".numbers"}
@@ -35,7 +37,7 @@ def _refusal(path: Path, largest: int, instead: str, is_table: bool) -> str:
         if path.is_dir():
             return "is a folder; name a file"
         if not path.exists():
-            return "no such file" + _nearby(path)
+            return _broken_link(path) or "no such file" + _nearby(path)
         if not path.is_file():
             return "is no ordinary file but a pipe or a device; save it in a file first"
         size = path.stat().st_size
@@ -60,11 +62,23 @@ def _refusal_of_bytes(path: Path, start: bytes, instead: str, is_table: bool) ->
     return ""
 
 
+def _broken_link(path: Path) -> str:
+    """Say where a symbolic link leads that leads to no file; nothing where the path is no link."""
+    if not path.is_symlink():
+        return ""
+    try:
+        path.stat()
+    except OSError as error:
+        if error.errno == errno.ELOOP:
+            return "is a symbolic link that leads back to itself; name the file"
+    return f"is a symbolic link to {shown(str(path.readlink()))}, which is not there"
+
+
 def _nearby(path: Path) -> str:
     from truing.declare.near_miss import near_miss
 
     try:
-        names = [item.name for _, item in zip(range(1000), path.parent.iterdir(), strict=False)]
+        names = [item.name for _, item in zip(range(1000), path.parent.iterdir(), strict=False) if item != path]
     except OSError:
         return ""
     meant = near_miss(path.name, names)

@@ -16,6 +16,7 @@ from truing.declare.sources import Effect, Tolerance
 from truing.errors import DeclarationError, PluginError, UnknownPluginError
 from truing.kernel.blame import Place, home_of, line_of, line_of_words, place_of
 from truing.kernel.loading import check_hooks, load_file
+from truing.units.grammar import shown
 
 if TYPE_CHECKING:
     from pluggy import HookImpl
@@ -163,7 +164,7 @@ class Kernel:
             if broken.plugin == name.partition(".")[0]:
                 raise PluginError(str(broken))
         known = ", ".join(sorted(offers)) or "none"
-        raise UnknownPluginError(f"no plugin offers '{name}'.{near_miss(name, offers)} Installed: {known}.")
+        raise UnknownPluginError(f"no plugin offers {shown(name)}.{near_miss(name[:80], offers)} Installed: {known}.")
 
     def _note(self, where: list[Broken], origin: Origin, error: BaseException, place: Place | None = None) -> None:
         reason = f"{type(error).__name__}: {error}"
