@@ -22,7 +22,7 @@ from truing.units import to_si
 
 ROWS = 5
 REACHES = (0.5, 0.2, 0.05, 0.01)  # of a value, by which a random point lies away from the defaults
-MODEST, FULL = 1, 400  # random batches of a model
+MODEST, FULL = 1, 100  # random batches of a model
 TESTS = Path(__file__).parents[1]
 
 
