@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, overload
 
 from truing.declare.goals import Price, PriceByChoice
 from truing.errors import DeclarationError, UnitError
-from truing.units.grammar import shown
+from truing.units.grammar import shown, split
 
 if TYPE_CHECKING:
     import numpy as np
@@ -363,8 +363,6 @@ def read_spread(text: str | Mapping[str, Any], declared: Spread) -> Spread:
 
 
 def _band(words: str, text: str, declared: Spread) -> Band:
-    from truing.units import split_quantity
-
     shape: Shape = "normal"
     shapes: tuple[Shape, ...] = ("uniform", "lognormal", "normal")
     for other in shapes:
@@ -375,7 +373,7 @@ def _band(words: str, text: str, declared: Spread) -> Band:
     for word in says:
         if words.startswith(word):
             amount = words[len(word) :].strip()
-            split_quantity(amount)
+            split(amount)
             return Band(amount, word, shape, _settled(declared, "at_radius"))
     raise UnitError(
         f"{shown(text)} is no tolerance; write '±0.05 mm', 'sd 3 %', 'band 0.125 mm', 'IT6', "
