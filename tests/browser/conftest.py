@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
+import sys
 import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
@@ -89,6 +91,9 @@ def fonts(browser: Browser) -> dict[str, str]:
 def browser(chromium: Path) -> Iterator[Browser]:
     from playwright.sync_api import sync_playwright
 
+    driver = Path(sys.executable).with_name("playwright")
+    if driver.exists() and subprocess.run([driver, "--version"], capture_output=True).returncode:
+        missed("Playwright does not start on this machine (Debian: libatomic1): the sheet was not looked at")
     with sync_playwright() as play:
         running = play.chromium.launch(executable_path=chromium, args=[*QUIET, *sandbox_arguments()])
         yield running

@@ -36,8 +36,8 @@ def _measured(table: str) -> str:
     needs = [max(column) + PADDING for column in zip_longest(*rows, fillvalue=0)]
     head, tail = table.split("</tr>", 1)
     widths = iter(needs)
-    head = re.sub(r"<th\b", lambda start: f'{start[0]} style="--own: {next(widths, PADDING)}"', head)
-    return head.replace("<table", f'<table style="--room: {sum(needs)}"', 1) + "</tr>" + tail
+    head = re.sub(r"<th\b[^>]*", lambda start: f'{start[0]} style="--own: {next(widths, PADDING)}"', head)
+    return head.replace(">", f' style="--room: {sum(needs)}">', 1) + "</tr>" + tail
 
 
 def _longest(tag: str, markup: str) -> int:
