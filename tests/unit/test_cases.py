@@ -17,6 +17,7 @@ from truing.errors import InputError
 from truing.executors import Place, SerialExecutor, open_executor
 from truing.kernel import Origin
 from truing.measurements import Case, CasesFile, RowCount
+from truing.report.content import least_margin
 from truing.setup import Setup, default_setup
 from truing.studies.bench import Check, Proposal
 from truing.studies.verdicts import Decided
@@ -199,3 +200,15 @@ def test_cases_that_pass_with_different_changes_only_do_not_pass() -> None:
         for pair in ((fine, fine), (fine, finest))
     ]
     assert verdicts == ["proposed", "fails"]
+
+
+@pytest.mark.parametrize(
+    ("limits", "words"),
+    [((10.0, 4.0), ("-25", "%")), ((10.0, 0.0), ("-5", "mm"))],  # where one limit is 0, each margin is a distance
+)
+def test_the_smallest_margin_of_a_case_says_what_it_is(limits: tuple[float, float], words: tuple[str, str]) -> None:
+    checks = [Check("a", 8.0, limits[0], "mm", 0.2, passed=True)]
+    margin = (limits[1] - 5.0) / (limits[1] or 1.0)
+    checks.append(Check("b", 5.0, limits[1], "mm", margin, passed=False))
+    least = least_margin(checks)
+    assert (least.text, least.unit) == words

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import islice
-from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -67,13 +66,14 @@ def _cases_lines(cases: CasesTable, setup: Setup) -> Iterator[str]:
 
 
 def _case_row(case: CaseResult, setup: Setup, *, governs: bool) -> tuple[str, ...]:
-    from truing.numbers import format_number, format_value
+    from truing.numbers import format_value
+    from truing.report.content import least_margin
 
     values = [
         one_line(value) if isinstance(value, (str, bool)) else format_value(value, setup.print_unit(name))[0]
         for name, value in case.values.items()
     ]
-    margin = f"{format_number(100 * case.margin, 3)} %" if isfinite(case.margin) else "–"
+    margin = _written(least_margin(case.checks))
     verdict = "failed" if case.reason else SHORT[case.verdict]
     return (str(case.row), one_line(case.name), *values, margin, verdict + ", governing" * governs)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import PurePath
 from typing import Any
 
@@ -215,6 +215,14 @@ def margin_value(check: Check, *, relative: bool) -> Value:
         if check.chance
         else Value(format_number(distance, 3), unit_text(check.unit))
     )
+
+
+def least_margin(checks: Sequence[Check]) -> Value:
+    """Write the smallest margin of the checks that are decided, as ``margin_value`` does."""
+    decided = [check for check in checks if not check.undecided]
+    if not decided:
+        return Value(ABSENT)
+    return margin_value(min(decided, key=lambda check: check.margin), relative=relative_margins(checks))
 
 
 def _remark(check: Check, require: Require | None, setup: Setup) -> str:

@@ -5,13 +5,12 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from truing.calculation import Calculation
 from truing.declare.published import rules_of
-from truing.numbers import STATED_DIGITS, format_number, format_value
+from truing.numbers import STATED_DIGITS, format_value, with_unit
 from truing.published import ComparedRow, parted
 from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
 from truing.report.content import (
@@ -22,6 +21,7 @@ from truing.report.content import (
     condition_rows,
     effect_rows,
     input_rows,
+    least_margin,
     margins_words,
     tolerance_rows,
 )
@@ -236,7 +236,7 @@ def cases_table(calculation: Calculation, cases: CasesTable, most: int) -> Table
     checks = list(dict.fromkeys(check.name for case in cases.cases for check in case.checks))
     titles = ["Case", *(name.replace("_", " ") for name in (*cases.varied, *checks)), "Smallest margin", "Verdict"]
     units = ["", *(format_value(0.0, setup.unit_of(name))[1] for name in cases.varied)]
-    units += [_check_unit(cases, name) for name in checks] + ["%", ""]
+    units += [_check_unit(cases, name) for name in checks] + ["", ""]
     places = list(range(min(len(cases.cases), most)))
     if cases.governing not in places:
         places = [*places[:-1], cases.governing]
@@ -264,8 +264,14 @@ def _case_row(setup: Setup, case: CaseResult, varied: Sequence[str], checks: Seq
     found = {check.name: check_value(check, check.value).text for check in case.checks}
     broken = [check.name.replace("_", " ") for check in case.checks if check.state == case.verdict]
     verdict_text = case.verdict if case.verdict == "passes" else f"{SHORT[case.verdict]}: {', '.join(broken)}"
-    margin = format_number(100 * case.margin, 3) if isfinite(case.margin) else "–"
-    return (case_name(case), *values, *(found.get(name, "–") for name in checks), margin, verdict_text)
+    margin = least_margin(case.checks)
+    return (
+        case_name(case),
+        *values,
+        *(found.get(name, "–") for name in checks),
+        with_unit(margin.text, margin.unit),
+        verdict_text,
+    )
 
 
 def _case_value(setup: Setup, values: Mapping[str, Any], name: str) -> str:
