@@ -26,6 +26,7 @@ from truing.diagnosis.records import Records
 from truing.diagnosis.result import NextPoint
 from truing.diagnosis.rival_twins import TwinTerm, is_physical, twins_of
 from truing.setup import SwitchedOn
+from truing.units import read_quantity
 from truing.units.names import PURE
 
 if TYPE_CHECKING:
@@ -202,12 +203,20 @@ def _gap(there: Machine, name: str, names: tuple[str, str], apart: Matrix) -> _G
     slopes = there.slopes[name] if there.together is None else there.slopes[name] @ there.together
     scatter = np.sqrt(np.sum(slopes**2, axis=1))
     least = LEAST_SHARE * float(np.nanmax(np.abs(there.base[name]), initial=0.0))
+    least = max(least, _resolution(there.start.model, name))
     seen = np.isfinite(apart) & (apart > least) & (apart > CLEAR * scatter)
     if not seen.any():
         return None
     worth = np.where(seen, apart, 0.0) / np.maximum(scatter, np.where(seen, 1e-6 * apart, 1e-300))
     place = int(np.argmax(np.where(worth > NEARLY * worth.max(), apart, -1.0)))
     return _Gap(name, names, float(apart[place]), float(scatter[place]))
+
+
+def _resolution(model: Any, name: str) -> float:
+    """Return how far a numerical step alone moves a result that jumps, SI: a smaller difference is none."""
+    said = [getattr(item.spec, "halving_but", {}).get(name) for item in model.input_fields.values()]
+    unit = model.own_result_fields[name].unit
+    return max((read_quantity(most, unit) for most in said if most), default=0.0)
 
 
 def _point(start: Any, gap: _Gap) -> NextPoint:
