@@ -155,7 +155,7 @@ def _is_number(cell: str, separator: str | None) -> bool:
         float(cell if separator == "," else cell.replace(",", "."))
     except ValueError:
         return False
-    return "_" not in cell
+    return "_" not in cell and cell.isascii()
 
 
 def _values(rows: list[tuple[int, str]], separator: str | None) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -172,6 +172,8 @@ def _values(rows: list[tuple[int, str]], separator: str | None) -> tuple[NDArray
         try:
             found = [float(cell or "nan") for cell in cells]
         except ValueError:
+            found = []
+        if not found or not line.isascii():
             found = [_number(cell, number) for cell in cells]
         numbers.extend(found)
     values = np.frombuffer(numbers, dtype=np.float64).reshape(len(rows), width)
@@ -189,12 +191,11 @@ def _cells(line: str, separator: str | None) -> list[str]:
 
 
 def _number(cell: str, line: int) -> float:
-    if HOLES.fullmatch(cell.strip()):
+    if not cell or HOLES.fullmatch(cell.strip()):
         return float("nan")
-    try:
-        return float(cell)
-    except ValueError:
-        raise ValueError(f"line {line}: {cell.strip()[:40]!r} is no number; holes are empty, nan or ***") from None
+    if not _is_number(cell, ","):
+        raise ValueError(f"line {line}: {cell.strip()[:40]!r} is no number; holes are empty, nan or ***")
+    return float(cell)
 
 
 def _stated(header: tuple[str, ...]) -> dict[str, str]:

@@ -140,6 +140,7 @@ def test_a_million_numbers_with_a_header_of_words(tmp_path: Path) -> None:
         ("# only\n# comments\n", "no line of the file holds numbers"), ("1,2,3,4\n1,2,3\n", "line 2 has 3 cells"),
         ("1,2,3,4\n1,x7,3,4\n", "line 2: 'x7' is no number"), ("1;2;3;4\n1;1.234,5;3;4\n", "line 2"),
         ("1,2,3,4\n1,inf,3,4\n", "line 2: infinite"), ("1,2,3,4\n1,1_0,3,4\n", "line 2"),
+        ("1,2,3,4\n1,\u0665,3,4\n", "line 2: '\u0665' is no number"),
         ("1,2\n3,4\n5,6\n7,8\n9,10\n", "without names"), (",,,\n,,,\n", "no point of the surface is measured"),
     ],
 )  # fmt: skip
