@@ -26,6 +26,7 @@ def test_cases_on_stdout_in_results_and_on_the_sheet(calc: Calc, tmp_path: Path)
     assert lines[4].endswith(" FAILS, governing")
     assert lines[5].startswith("3 normal 84 30 ")
     assert lines[5].endswith(" pass")
+    assert "Fails. 1 of 3 cases fail; the governing case is heavy. (exit code 1)" in lines
     found = json.loads((tmp_path / "runs/wear/results.json").read_text(encoding="utf-8"))
     assert [case["name"] for case in found["cases"]] == ["light", "heavy", "normal"]
     assert [case["governing"] for case in found["cases"]] == [False, True, False]

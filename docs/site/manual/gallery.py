@@ -134,5 +134,5 @@ def _lines(folder: Path) -> list[str]:
         return [f"{found['rows']} measured rows", f"verdict: {found['verdict']}" + (f" ({causes})" if causes else "")]
     checks = json.loads((folder / "results.json").read_text(encoding="utf-8"))["checks"]
     failed = [check["name"] for check in checks if not check["passed"]]
-    held = f"{len(checks) - len(failed)} of {len(checks)} checks hold" if checks else "no limits are stated"
-    return [held + (f"; missed: {', '.join(failed)}" if failed else "")]
+    held = f"{len(checks) - len(failed)} of {len(checks)} checks hold as stated" if checks else "no limits are stated"
+    return [held + (f"; not: {', '.join(failed)}" if failed else "")]

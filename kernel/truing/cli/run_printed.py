@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from truing.report.context import Value
     from truing.report.run import Done
     from truing.setup import Setup
-    from truing.studies.verdicts import Decided
 
 MOST_CASES = 40
 
@@ -36,19 +35,22 @@ def lines_of(done: Done, folder: Path, *, with_titles: bool) -> Iterator[str]:
         yield ""
         yield _checks(calculation)
     yield ""
-    yield from _verdict_lines(calculation.decided)
+    yield from _verdict_lines(done)
     yield f"sheet: {folder / 'sheet.html'}"
     for outcome in calculation.outcomes.values():
         yield from (f"beside it: {folder / name}" for name in files_of(outcome))
 
 
-def _verdict_lines(decided: Decided) -> Iterator[str]:
-    """Say which limits are not kept as stated, and what would have to change."""
-    if decided.verdict == "passes":
+def _verdict_lines(done: Done) -> Iterator[str]:
+    """Say which limits, or which cases, are not kept as stated, and what would have to change."""
+    from truing.report.sheet import sentence_of_cases
+
+    decided, verdict = done.calculation.decided, done.verdict
+    if verdict == "passes":
         return
-    code = EXIT_CODES[decided.verdict]
-    yield one_line(f"{HEADLINES[decided.verdict]}. {sentence_of(decided)} (exit code {code})")
-    if decided.verdict == "proposed" and decided.proposal is not None:
+    said = sentence_of(decided) if done.cases is None else sentence_of_cases(done.cases)
+    yield one_line(f"{HEADLINES[verdict]}. {said} (exit code {EXIT_CODES[verdict]})")
+    if verdict == "proposed" and decided.proposal is not None:
         yield one_line(f"changed: {change_words(decided.proposal)}")
 
 

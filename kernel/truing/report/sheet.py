@@ -143,7 +143,7 @@ def logo_of(setup: Setup) -> tuple[str, str]:
 def _banner(calculation: Calculation, cases: CasesTable | None) -> Banner:
     """Say the verdict, of all cases where there are some."""
     state = calculation.verdict if cases is None else cases.verdict
-    text = sentence_of(calculation.decided) if cases is None else _verdict_of_cases(cases)
+    text = sentence_of(calculation.decided) if cases is None else sentence_of_cases(cases)
     proposal = _proposal(calculation, cases)
     if not calculation.checks and state == "passes":
         return Banner("none", NO_LIMITS, text, proposal)
@@ -158,7 +158,7 @@ def _proposal(calculation: Calculation, cases: CasesTable | None) -> Proposal | 
     return next(needing, calculation.decided.proposal)
 
 
-def _verdict_of_cases(cases: CasesTable) -> str:
+def sentence_of_cases(cases: CasesTable) -> str:
     """Say in one sentence how many cases keep every limit."""
     governing, count = case_name(cases.cases[cases.governing]), len(cases.cases)
     verdicts = [case.verdict for case in cases.cases]
