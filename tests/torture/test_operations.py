@@ -285,7 +285,7 @@ def judge(prepared: Prepared, name: str, inject: Callable[[], None], what: str) 
     is_new = found != before and is_whole(found, after)
     assert found == before or is_new or (died and case.is_filled and found.items() <= after.items()), told
     if not died:
-        _judge_words(end, is_new=is_new or not case.results, told=told)
+        _judge_words(end, is_new=is_new or not case.results, told=told, is_watch=case.words.startswith("watch"))
     if died or leftovers(place):
         assert died or is_new or "--resume" in case.words, (told, leftovers(place))
         if not (case.is_filled and found) and (found == before or "new" not in name):
@@ -303,11 +303,16 @@ def _recover(place: Path, case: Case) -> None:
         recover(place / name)
 
 
-def _judge_words(end: End, *, is_new: bool, told: str) -> None:
-    """One sentence, which is true; 0 only where the new is there."""
+def _judge_words(end: End, *, is_new: bool, told: str, is_watch: bool) -> None:
+    """One sentence, which is true; 0 only where the new is there. A watch goes on until it is ended, then with 1."""
     assert "Traceback" not in end.err, told
     if end.code == 0:
         assert is_new, told
+        return
+    if is_watch:
+        assert end.code in {1, 2, 130}, told
+        assert end.err.count("\n") <= 1, told
+        assert end.code != 130 or ("complete" in end.err) == is_new, told
         return
     assert end.err.count("\n") == 1, told
     assert end.err.strip(), told
