@@ -72,6 +72,7 @@ def writings() -> int:
 def write_files(files: Mapping[Path, str | bytes]) -> None:
     """Write files so that each appears whole, and all of them or none; those that are there are replaced.
 
+    A death (no error, no interrupt) in the middle of several leaves the first of them new, each of them whole.
     A link is followed. What is no file (a device, a pipe) is written to as it stands. Raises OutputError.
     """
     path = Path()

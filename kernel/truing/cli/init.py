@@ -40,7 +40,7 @@ def init(
         files = {output: with_schema_line(text, schema.name), schema: json_text(json_schema(offer), indent=None) + "\n"}
     if not force:
         _demand_new(output, files)
-    write_files(files)
+    write_files(dict(reversed(files.items())))  # after a death between the two the same command goes on
     settings.say(f"wrote {' and '.join(map(str, files))}; now: calc run {plugin} --inputs {output}")
     return 0
 
