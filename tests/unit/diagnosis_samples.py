@@ -21,6 +21,7 @@ from truing.diagnosis.result import (
     Cause,
     Curves,
     Diagnosis,
+    Fact,
     Finding,
     FittedUnknown,
     Gain,
@@ -29,6 +30,7 @@ from truing.diagnosis.result import (
     Remainder,
     Seen,
     ShapeTerm,
+    Tie,
     Wrong,
 )
 from truing.kernel import Offer, Origin
@@ -183,13 +185,21 @@ HEATING = Cause(
     "rod_heating",
     (FittedUnknown("expansion", 11.8e-6, 11.42e-6, 12.18e-6, "um/(m*K)"),),
     covariance=((3.7e-14,),),
-    same_as=("warm_up",),
 )
 TREND = Finding("trend", "rod_temperature", 0.0033, "rises with rod_temperature: 3.8 µm per K")
 ORDER = Finding("order", "crank_angle", 0.0033, "order 7 of crank_angle, amplitude 14 µm")
 DRIFTING = Alternative(("sensor_drift",), 2.1, 6.3, unknowns={"sensor_drift": (
     FittedUnknown("slope", 4.1e-9, 3.8e-9, None, "um/h"),
 )})  # fmt: skip
+
+
+TIE = Tie(
+    ("rod_heating", "warm_up"),
+    (
+        Fact("rod_heating", "rod_heating.expansion", Amount(11.8e-6, "um/(m*K)"), "of the rod"),
+        Fact("warm_up", "warm_up.size", Amount(3.1e-6, "um")),
+    ),
+)
 
 
 def _diagnosis(**more: Any) -> Diagnosis:
@@ -201,9 +211,7 @@ def _diagnosis(**more: Any) -> Diagnosis:
         "measured": ("slide_position", "slide_tilt"),
         "units": UNITS,
         "wrong": wrong_of(6.1 * UM, 0.02),
-        "verdict": "none",
         "causes": (),
-        "unique": True,
         "alternatives": (),
         "remainder": None,
         "seen": SEEN,
@@ -250,7 +258,7 @@ def named() -> Diagnosis:
         Alternative((), 180.3, 210.0),
     )
     made = _diagnosis(
-        verdict="named", wrong=wrong_of(41 * UM, 0.98, TREND), causes=(HEATING,), ranking=ranking,
+        wrong=wrong_of(41 * UM, 0.98, TREND), causes=(HEATING,), ranking=ranking,
         calibrated=CALIBRATED, gain=gain_of(41.2 * UM, 6.12 * UM, 0.001), p_any=0.0033, p_second=0.6,
         curves=curves_of(records_of(), 0.98),
         warnings=("the linear ranking and the full fit name different winners; the full fit is shown",),
@@ -259,7 +267,7 @@ def named() -> Diagnosis:
 
 
 def ambiguous() -> Diagnosis:
-    """Verdict named, with an alternative that this data does not exclude, and a unit slip."""
+    """Verdict one of three: another name of the same curve, a rival, a tie that a fact decides; and a unit slip."""
     point = NextPoint(
         {"rod_temperature": Amount(323.15, "degC"), "load": Amount(-5e4, "kN"), "crank_angle": Amount(0.5, "deg")},
         ("rod_heating", "sensor_drift"), "warm at once: heat follows the temperature, a drift follows the clock", 27.5,
@@ -267,11 +275,21 @@ def ambiguous() -> Diagnosis:
     slip = Slip("load", 1000.0, "load lies between 0 and 0.06 kN: was it written in MN?")
     made = named()
     return replace(
-        made, unique=False, alternatives=(DRIFTING,), ranking=(made.ranking[0], DRIFTING, *made.ranking[1:]),
+        made, causes=(replace(HEATING, same_as=("warm_up",)),), alternatives=(DRIFTING,), ties=(TIE,),
+        ranking=(made.ranking[0], DRIFTING, *made.ranking[1:]),
         next=(point, replace(point, settings={"load": Amount(5e4, "kN")}, separation=34.0)),
         records=replace(made.records, slips=(slip,)), stability=0.8,
         inseparable=("time and rod_temperature rise together in every run: their effects cannot be separated here",),
     )  # fmt: skip
+
+
+def undecided() -> Diagnosis:
+    """Verdict undecided: nothing is named, but a wave is left, and chance is no good word for the best explanation."""
+    wave = Finding("wave", "crank_angle", 0.0002, "12 waves over the range of crank_angle, with 31 % of what is left")
+    best = Alternative(("sensor_drift",), 0.0, 4.2)
+    return replace(
+        none_found(), p_any=0.06, wrong=wrong_of(6.1 * UM, 0.02, wave), ranking=(Alternative((), 0, 0), best)
+    )
 
 
 def shape_of(records: Records) -> NDArray[np.float64]:
@@ -305,7 +323,7 @@ def unknown() -> Diagnosis:
         Alternative((), 95.0, 120.0),
     )
     return _diagnosis(
-        verdict="unknown", wrong=wrong_of(12 * UM, 0.75, ORDER), remainder=REMAINDER, ranking=ranking,
+        wrong=wrong_of(12 * UM, 0.75, ORDER), remainder=REMAINDER, ranking=ranking,
         gain=gain_of(12.1 * UM, 6.3 * UM, 0.002), p_any=0.0033, calibrated=CALIBRATED, **_waved(1.0),
     )  # fmt: skip
 
@@ -317,5 +335,6 @@ def named_with_remainder() -> Diagnosis:
 
 
 SAMPLES = {
-    "none": none_found, "named": named, "ambiguous": ambiguous, "unknown": unknown, "remainder": named_with_remainder,
+    "none": none_found, "undecided": undecided, "named": named, "ambiguous": ambiguous, "unknown": unknown,
+    "remainder": named_with_remainder,
 }  # fmt: skip

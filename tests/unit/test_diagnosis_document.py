@@ -186,7 +186,8 @@ def test_the_extended_inputs_say_where_they_come_from() -> None:
         "# slide as measured: what calc diagnose made of press_record.csv, second day.csv (160 rows)."
     )
     for words in (
-        "# Named: rod_heating; this data does not exclude other causes.",
+        "# Named: rod_heating, one of 3 explanations; the record cannot say which.",
+        "# The same curve as rod_heating on this data: warm_up.",
         "# Not excluded: sensor_drift, 2.1 score units behind.",
         "# expansion: 95 % interval from 11.42 to 12.18 um/(m*K).",
         "# radius: moved by +0.60 of its standard deviation.",
@@ -392,7 +393,7 @@ ALWAYS = {"arrays.npz", "diagnosis.json", "inputs.toml", "run.json", "sheet.html
 @pytest.mark.parametrize(
     ("sample", "more"),
     [
-        ("none", set()), ("named", {"extended.toml"}), ("ambiguous", {"extended.toml"}),
+        ("none", set()), ("undecided", set()), ("named", {"extended.toml"}), ("ambiguous", {"extended.toml"}),
         ("unknown", {"extended.toml", "new_effect.py"}), ("remainder", {"extended.toml", "new_effect.py"}),
     ],
 )  # fmt: skip

@@ -16,12 +16,12 @@ from scipy.stats import binom, kstest, norm
 from scipy.stats import t as student
 
 from truing.diagnosis.contest import Contest
-from truing.diagnosis.design import POINTS, SEPARATED, _with_count, next_points
+from truing.diagnosis.design import MOST_POINTS, POINTS, Proposal, next_points
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.gain import FOLDS, SHORTEST_BLOCK, _log_density, blocks_of, nested, sign_flip_p
 from truing.diagnosis.noise import SETTINGS
-from truing.diagnosis.result import Amount, NextPoint
 from truing.diagnosis.search import first_noise, residuals_of
+from truing.diagnosis.verdict import APART
 from truing.diagnosis.visibility import needed, smallest_visible
 from truing.setup import DiagnoseOptions
 
@@ -223,13 +223,13 @@ def test_a_bound_below_the_smallest_visible_size_is_not_excited(tmp_path: Path, 
     assert seen["clearance"].sight == sight
 
 
-def one_sign(folder: Path, box: dict[str, tuple[float, float]]) -> tuple[Contest, int, Array]:
+def one_sign(folder: Path, box: dict[str, tuple[float, float]], noise: float = 1.0) -> tuple[Contest, int, Array]:
     """A clearance of 3 um under a load of one sign: the offset is the same curve."""
     bench = wide(40, seed=36)
     bench = replace(bench, load=np.abs(bench.load) + 1)
     asked = Asked(drive_model(("clearance",), {}))
     columns = bench.columns(gauge(bench.load, bench.travel) + 3 + 0.1 * np.random.default_rng(36).normal(size=40))
-    full = plain_contest(asked, asked.records(folder, columns), UM)
+    full = plain_contest(asked, asked.records(folder, columns), noise * UM)
     start = replace(full.problem.machine.start, diagnose=DiagnoseOptions(box=box))
     full = replace(full, problem=replace(full.problem, machine=replace(full.problem.machine, start=start)))
     return full, full.found.best(lambda item: item.kind == "one" and _named(full, item) == "sensor_offset"), bench.load
@@ -238,7 +238,7 @@ def one_sign(folder: Path, box: dict[str, tuple[float, float]]) -> tuple[Contest
 def test_the_separation_that_is_promised_is_that_of_a_refit_with_the_points_added(tmp_path: Path) -> None:
     full, winner, _ = one_sign(tmp_path, {"load": (-10e3, 20e3)})
     size = float(full.solution(winner).coefficients[0]) * full.problem.columns[0].per / UM
-    points = next_points(full, winner, [])
+    points = next_points(full, winner, []).points
     assert len(points) == POINTS
     for count, point in enumerate(points, start=1):
         assert set(point.separates) == {"sensor_offset", "clearance"}
@@ -252,7 +252,7 @@ def test_the_separation_that_is_promised_is_that_of_a_refit_with_the_points_adde
 def test_where_no_setting_separates_two_causes_none_is_proposed(tmp_path: Path) -> None:
     full, winner, load = one_sign(tmp_path, {"load": (1e3, 20e3)})
     assert load.min() > 0
-    assert next_points(full, winner, []) == []
+    assert next_points(full, winner, []) == Proposal((), (("sensor_offset", "clearance"),))
 
 
 def test_rivals_are_separated_inside_the_box(tmp_path: Path) -> None:
@@ -267,7 +267,7 @@ def test_rivals_are_separated_inside_the_box(tmp_path: Path) -> None:
         full.found.best(lambda item, name=name: item.kind == "one" and _named(full, item) == name)
         for name in ("lead_error", "sensor_offset")
     )
-    points = next_points(full, winner, [rival])
+    points = next_points(full, winner, [rival]).points
     assert points
     travel = [point.settings["travel"].value for point in points]
     assert all(-1e-12 <= value <= 0.3 + 1e-12 for value in travel)
@@ -276,16 +276,14 @@ def test_rivals_are_separated_inside_the_box(tmp_path: Path) -> None:
     assert [point.separation for point in points] == sorted(point.separation for point in points)
 
 
-def point(separation: float) -> NextPoint:
-    return NextPoint({"load": Amount(-1e3, "kN")}, ("one", "other"), "because", separation)
-
-
-@pytest.mark.parametrize(
-    ("last", "words"),
-    [(SEPARATED + 1, "because"), (4.0, "about 6 points like these"), (1e-5, "no setting within reach separates")],
-)
-def test_it_is_said_how_many_points_would_be_needed(last: float, words: str) -> None:
-    found = _with_count([point(last / 2), point(last)])
-    assert words in found[-1].why
-    assert found[0].why == "because"
-    assert _with_count([]) == []
+@pytest.mark.parametrize("size", [3.0, 0.8, 0.3, 0.05])
+def test_it_is_said_how_many_points_would_be_needed(tmp_path: Path, size: float) -> None:
+    """After 40 rows of one sign c rows of the other leave 4 * 40 c / (40 + c) of an offset as large as the noise."""
+    full, winner, _ = one_sign(tmp_path, {"load": (-10e3, 20e3)}, noise=3.0 / size)
+    proposal = next_points(full, winner, [])
+    counts = [*range(1, POINTS + 1), *range(2 * POINTS, MOST_POINTS + 1, POINTS)]
+    enough = [count for count in counts if 4 * size**2 * 40 * count / (40 + count) >= APART]
+    assert {point.needed for point in proposal.points} == set(enough[:1])
+    assert bool(proposal.tied) is not bool(enough)
+    is_said = bool(proposal.points) and "points like these would be needed" in proposal.points[-1].why
+    assert is_said is (bool(enough) and enough[0] > POINTS)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from truing.cli.console import broken, one_line
+from truing.diagnosis.verdict import explanations_of
 from truing.numbers import format_number, pretty
 from truing.report.diagnosis_words import (
     amount_text,
@@ -18,12 +19,15 @@ from truing.report.diagnosis_words import (
     headline,
     listed,
     p_text,
+    pair_text,
     percent,
     prose,
     readable,
+    reasons,
     score_text,
     settings_text,
     spoken,
+    tie_text,
     verdict_word,
 )
 
@@ -112,11 +116,12 @@ def _cause(diagnosis: Diagnosis) -> Iterator[str]:
         yield f"shares of the correction: {', '.join(shares)}"
     for cause in diagnosis.causes:
         if cause.same_as:
-            yield f"the same curve on this data: {listed([spoken(name) for name in cause.same_as])}"
+            names = listed([spoken(name) for name in cause.same_as])
+            yield f"the same curve as {spoken(cause.effect)} on this data: {names}"
     for item in diagnosis.alternatives:
         yield f"not excluded: {explanation(item)}{_distance(item)}"
     rivals = _rivals(diagnosis)
-    if rivals and diagnosis.verdict != "none":
+    if rivals and explanations_of(diagnosis):
         yield f"next best: {explanation(rivals[0])}{_distance(rivals[0])}"
     yield from map(prose, diagnosis.inseparable)
     yield from _sight(diagnosis)
@@ -131,14 +136,15 @@ def _rivals(diagnosis: Diagnosis) -> list[Alternative]:
 
 
 def _named(diagnosis: Diagnosis) -> str:
-    if diagnosis.verdict == "none":
-        return f"none ({p_text(diagnosis.p_any)})"
+    if not explanations_of(diagnosis):
+        said = "none" if diagnosis.verdict == "none" else f"undecided: {listed(list(reasons(diagnosis)))}"
+        return f"{said} ({p_text(diagnosis.p_any)})"
     parts = [spoken(cause.effect) for cause in diagnosis.causes]
     if diagnosis.remainder is not None:
         parts.append(f"unregistered: {prose(diagnosis.remainder.shape)}")
     second = f", of a second cause {p_text(diagnosis.p_second)}" if diagnosis.p_second is not None else ""
-    unique = {True: "; unique", False: "; not unique"}[diagnosis.unique] if diagnosis.verdict == "named" else ""
-    return f"{' + '.join(parts)} ({p_text(diagnosis.p_any)}{second}{unique})"
+    open_ones = {"named": "; unique", "one_of": f"; one of {len(explanations_of(diagnosis))}"}
+    return f"{' + '.join(parts)} ({p_text(diagnosis.p_any)}{second}{open_ones.get(diagnosis.verdict, '')})"
 
 
 def _distance(item: Alternative) -> str:
@@ -206,10 +212,10 @@ def _gain(diagnosis: Diagnosis) -> Iterator[str]:
 
 
 def _next(diagnosis: Diagnosis) -> Iterator[str]:
-    if not diagnosis.next:
-        yield "nothing to separate"
     for place, point in enumerate(diagnosis.next, start=1):
-        pair = listed([spoken(name) for name in point.separates])
-        yield f"{place}. {settings_text(point)}: separates {pair} (λ then {score_text(point.separation)})"
+        yield f"{place}. {settings_text(point)}: {pair_text(point)} (λ then {score_text(point.separation)})"
     for reason in dict.fromkeys(point.why for point in diagnosis.next if point.why):
         yield f"   {reason}"
+    yield from map(tie_text, diagnosis.ties)
+    if not diagnosis.next and not diagnosis.ties:
+        yield "nothing to separate" if diagnosis.unique else "no setting is proposed"

@@ -20,6 +20,7 @@ from truing.diagnosis.search import (
     search,
     solve,
 )
+from truing.diagnosis.verdict import OUTSIDE, UNKNOWN
 from truing.studies.bench import Done, unheard
 
 if TYPE_CHECKING:
@@ -30,8 +31,6 @@ ROUNDS = 3
 FAVOURITES = 8
 REFINED = 4
 SHARPENED = 3
-OUTSIDE = 3.0
-"""An input is off its band beyond this many standard deviations of its tolerance."""
 SURELY = 3.0
 
 
@@ -183,7 +182,7 @@ def _name(problem: Problem, piece: Piece) -> str:
         return problem.candidates[piece.owner].name
     if piece.kind == "input":
         return f"input:{problem.machine.inputs[piece.owner].name}"
-    return "unknown"
+    return UNKNOWN
 
 
 def curve_space(contest: Contest, hypothesis: Hypothesis) -> Mapping[str, NDArray[np.float64]]:

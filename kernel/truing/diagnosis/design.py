@@ -6,7 +6,7 @@ then still gets wrong (greedy T-optimal design). The raw distance of two predict
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import pi
 from typing import TYPE_CHECKING
@@ -22,6 +22,7 @@ from truing.diagnosis.records import Covariate, Records
 from truing.diagnosis.result import Amount, NextPoint
 from truing.diagnosis.rival_twins import TwinTerm, believed, is_physical, twins_of
 from truing.diagnosis.search import Solution
+from truing.diagnosis.verdict import APART
 from truing.measurements import RowsFile
 from truing.numbers import format_number
 from truing.units import from_si, same_dimension, to_si
@@ -33,10 +34,11 @@ if TYPE_CHECKING:
     Matrix = NDArray[np.float64]
 
 POINTS = 4
+MOST_POINTS = 100
+"""Nobody measures more: explanations that so many points do not tell apart are told apart by a fact, or not at all."""
 TRIED = 512
 RIVALS = 4
 FEW_VALUES = 3
-SEPARATED = 10.0
 FAINTEST = 0.01
 """Curves that no setting sets apart by more, in units of the noise squared, are the same curve everywhere."""
 
@@ -67,6 +69,26 @@ class _Duel:
             total += (signal - rows @ self.coefficients) ** 2 / (1 + leverage)
         return total
 
+    def needed(self, places: Sequence[int]) -> int | None:
+        """Return how many points at these settings, each as often as the others, tell the two apart; None: too many.
+
+        ``times`` readings at every setting leave the rival ``left' (1 / times + R inverse R')^-1 left`` more than now,
+        R its rows there and ``left`` what it gets wrong before it is fitted to them.
+        """
+        import numpy as np
+
+        rows = np.concatenate([rows[list(places)] for rows in self.rows.values()])
+        signal = np.concatenate([signal[list(places)] for signal in self.signal.values()])
+        left, carried = signal - rows @ self.coefficients, rows @ self.inverse @ rows.T
+        point = np.arange(len(rows)) % max(len(places), 1)
+        counts: list[int] = [*range(1, len(places)), *range(len(places), MOST_POINTS + 1, len(places) or MOST_POINTS)]
+        for count in counts:
+            few = np.flatnonzero(point < count)
+            normal = carried[np.ix_(few, few)] + np.eye(len(few)) / max(count // max(len(places), 1), 1)
+            if self.separation + float(left[few] @ np.linalg.solve(normal, left[few])) >= APART:
+                return count
+        return None
+
     def measure(self, place: int) -> None:
         """Add one setting to the data: the rival refits (exact rank-one update)."""
         for name, signal in self.signal.items():
@@ -79,61 +101,106 @@ class _Duel:
             self.inverse = self.inverse - carried[:, None] * carried[None, :] / scale
 
 
-def next_points(full: Contest, winner: int, rivals: Sequence[int]) -> list[NextPoint]:
+@dataclass(frozen=True)
+class Proposal:
+    """Settings to measure, and the pairs of explanations that they do not tell apart, however often measured."""
+
+    points: tuple[NextPoint, ...] = ()
+    tied: tuple[tuple[str, str], ...] = ()
+
+
+def next_points(full: Contest, winner: int, rivals: Sequence[int]) -> Proposal:
     """Return up to four settings that separate the winner and its rivals, with the reason for each.
 
     Shapes that nobody registered say nothing beyond the rows they were fitted to, so they are no rivals here. Of
     results along an axis nothing is proposed: what could be set there is a whole record.
     """
-    import numpy as np
-
-    fields = full.problem.machine.start.model.own_result_fields
-    if any(fields[name].along for name in full.problem.machine.records.measured):
-        return []
     places = [place for place in (winner, *rivals) if is_physical(full.found.hypotheses[place])][: RIVALS + 1]
     chosen = full.found.hypotheses[winner]
     twins = twins_of(full, chosen, full.solution(winner).coefficients.tolist()) if is_physical(chosen) else []
-    settings = _settings(full) if len(places) > 1 or twins else {}
-    if not settings:
+    if len(places) < 2 and not twins:
+        return Proposal()
+    fields = full.problem.machine.start.model.own_result_fields
+    is_along = any(fields[name].along for name in full.problem.machine.records.measured)
+    settings = {} if is_along else _settings(full)
+    named = [(twin, (_name_of(full, winner), _twin_name(full, winner, twin))) for twin in twins]
+    duels: list[_Duel] = []
+    if settings:
+        there = _machine_there(full, settings)
+        duels = [_duel(full, there, a, b) for a in places for b in places if not _is_part(full, a, b)]
+        duels += [
+            duel for twin, names in named for duel in _twin_duels(full, there, full.solution(winner), twin, names)
+        ]
+    live = _live(_live(duels))  # what cannot be told apart chooses no setting for the others
+    every = [*_pairs(full, winner, places), *(names for _, names in named)]
+    apart = {frozenset(duel.names) for duel in live}
+    tied = tuple(pair for pair in dict.fromkeys(every) if frozenset(pair) not in apart)
+    return Proposal(tuple(_points(full, settings, live)), tied)
+
+
+def _live(duels: Sequence[_Duel]) -> list[_Duel]:
+    """Return the duels of the pairs that the settings best for all of them tell apart, whichever is believed."""
+    taken = _greedy(duels)
+    tied = {frozenset(duel.names) for duel in duels if duel.needed(taken) is None}
+    return [duel for duel in duels if frozenset(duel.names) not in tied]
+
+
+def _pairs(full: Contest, winner: int, places: Sequence[int]) -> list[tuple[str, str]]:
+    """Return the winner beside every rival, by name; where the winner has no name nothing is paired with it."""
+    if winner not in places:
         return []
-    there = _machine_there(full, settings)
-    duels = [_duel(full, there, a, b) for a in places for b in places if not _is_part(full, a, b)]
-    duels += [duel for twin in twins for duel in _twin_duels(full, there, full.solution(winner), twin)]
+    return [(_name_of(full, winner), _name_of(full, place)) for place in places if place != winner]
+
+
+def _name_of(full: Contest, place: int) -> str:
+    return " + ".join(names_of(full.problem, full.found.hypotheses[place]))
+
+
+def _twin_name(full: Contest, winner: int, twin: TwinTerm) -> str:
+    """Return what the winner is called with one of its causes under its other name."""
+    hypothesis = full.found.hypotheses[winner]
+    replaced = full.problem.candidates[hypothesis.pieces[twin.piece].owner].name
+    return " + ".join(twin.name if name == replaced else name for name in names_of(full.problem, hypothesis))
+
+
+def _greedy(duels: Sequence[_Duel]) -> list[int]:
+    """Return the places of the settings that separate most, one after another, none twice."""
+    import numpy as np
+
     if not duels:
         return []
-    found: list[NextPoint] = []
-    taken = np.zeros(len(there.records), dtype=bool)
+    now = [replace(duel) for duel in duels]
+    found: list[int] = []
     for _ in range(POINTS):
-        worth = sum((np.log1p(duel.separation + duel.gains()) for duel in duels), np.zeros(len(there.records)))
-        worth = np.where(np.isfinite(worth) & ~taken, worth, -np.inf)
-        place = int(np.argmax(worth))
+        worth = np.sum([np.log1p(duel.separation + duel.gains()) for duel in now], axis=0)
+        worth[found] = -np.inf
+        place = int(np.argmax(np.where(np.isfinite(worth), worth, -np.inf)))
         if not np.isfinite(worth[place]):
             break
-        weakest = min(duels, key=lambda duel: duel.separation)
-        why = _why(full, settings, place, weakest)
-        taken[place] = True
-        for duel in duels:
+        found.append(place)
+        for duel in now:
             duel.measure(place)
-        least = min(duel.separation for duel in duels)
-        found.append(NextPoint(_amounts(full, settings, place), weakest.names, why, least))
-    return _with_count(found)
+    return found
+
+
+def _points(full: Contest, settings: Mapping[str, Matrix], live: Sequence[_Duel]) -> Iterator[NextPoint]:
+    """Give the settings with what they are for, and how many like them are needed to tell all pairs apart."""
+    taken = _greedy(live)
+    needed = max((duel.needed(taken) or MOST_POINTS for duel in live), default=0)
+    for count, place in enumerate(taken, start=1):
+        weakest = min(live, key=lambda duel: duel.separation)
+        why = _why(full, settings, place, weakest)
+        for duel in live:
+            duel.measure(place)
+        if count == len(taken) < needed:
+            why += f"; {needed} points like these would be needed to tell them apart"
+        least = min(duel.separation for duel in live)
+        yield NextPoint(_amounts(full, settings, place), weakest.names, why, least, needed=needed)
 
 
 def _is_part(full: Contest, believed: int, rival: int) -> bool:
     """Whether a rival is the believed explanation itself, or that with something added: it is never wrong then."""
     return set(full.found.hypotheses[believed].key) <= set(full.found.hypotheses[rival].key)
-
-
-def _with_count(found: list[NextPoint]) -> list[NextPoint]:
-    """Say at the last point how many would be needed where these do not suffice."""
-    if not found or found[-1].separation >= SEPARATED:
-        return found
-    last = found[-1]
-    if last.separation < 1e-3:
-        words = "; no setting within reach separates these two"
-    else:
-        words = f"; about {round(SEPARATED / last.separation * len(found)) + 1} points like these would be needed"
-    return [*found[:-1], replace(last, why=last.why + words)]
 
 
 def _settings(full: Contest) -> dict[str, Matrix]:
@@ -263,7 +330,9 @@ def _duel(full: Contest, there: Machine, believed: int, rival: int) -> _Duel:
     )
 
 
-def _twin_duels(full: Contest, there: Machine, solution: Solution, twin: TwinTerm) -> list[_Duel]:
+def _twin_duels(
+    full: Contest, there: Machine, solution: Solution, twin: TwinTerm, names: tuple[str, str]
+) -> list[_Duel]:
     """Set up a named cause against one of the same curve here; none where no setting within reach tells them apart."""
     import numpy as np
 
@@ -290,7 +359,6 @@ def _twin_duels(full: Contest, there: Machine, solution: Solution, twin: TwinTer
         rows[channel.name] = np.concatenate([u, new], axis=1) / spread
     prior = np.diag([1.0] * k + [0.0] * len(curves)) + 1e-9 * np.diag(np.diag(normal))
     inverse: Matrix = np.asarray(np.linalg.inv(normal + prior), dtype=np.float64)
-    names = (" + ".join(names_of(full.problem, solution.hypothesis)), twin.name)
     start = inverse @ cross
     duel = _Duel(names, max(0.0, size - float(cross @ start)), start, inverse, signal, rows)
     return [duel] if float(np.nanmax(duel.gains(), initial=0.0)) > FAINTEST else []

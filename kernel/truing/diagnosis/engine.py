@@ -18,7 +18,7 @@ from truing.diagnosis.machine import machine_of
 from truing.diagnosis.naming import alternative_of, causes_of, extended_setup, remainder_of
 from truing.diagnosis.problem import Problem, problem_of
 from truing.diagnosis.records import FEWEST_READINGS, Records
-from truing.diagnosis.result import Alternative, Amount, Calibrated, Curves, Diagnosis, Gain, Verdict
+from truing.diagnosis.result import Alternative, Amount, Calibrated, Curves, Diagnosis, Gain
 from truing.diagnosis.search import NoiseModel, first_noise, moved_to
 from truing.diagnosis.second_look import second_look
 from truing.diagnosis.shares import by_share
@@ -160,16 +160,15 @@ def _answer(full: Contest, decision: Decision, best: Fit, raw: NoiseModel, *, do
     rivals = [place for place in alternatives(full, decision.winner) if not _adds_nothing(full, decision.winner, place)]
     judged = nested(full, decision.winner, decision.thresholds, raw, done=done)
     wrong = wrong_of(full, best, decision.null, units)
-    verdict: Verdict = "named" if causes else "unknown" if remainder else "none"
+    has_cause = bool(causes or remainder)
+    points, ties = with_results(full, best, rivals, next_points(full, decision.winner, rivals))
     return Diagnosis(
         setup=machine.start,
         records=records,
         measured=tuple(records.measured),
         units=units,
         wrong=wrong,
-        verdict=verdict,
         causes=causes,
-        unique=not rivals,
         alternatives=tuple(
             alternative_of(full, decision.winner, rival, fitted=rank < FITTED) for rank, rival in enumerate(rivals)
         ),
@@ -177,15 +176,16 @@ def _answer(full: Contest, decision: Decision, best: Fit, raw: NoiseModel, *, do
         seen=tuple(smallest_visible(full, setting)),
         not_measured=_not_measured(problem),
         calibrated=_calibrated(full, best),
-        gain=tuple(_gains(full, best, judged, units, has_cause=verdict != "none")),
+        gain=tuple(_gains(full, best, judged, units, has_cause=has_cause)),
         stability=judged.stability,
-        next=tuple(with_results(full, best, rivals, next_points(full, decision.winner, rivals))),
+        next=tuple(points),
+        ties=tuple(ties),
         curves=tuple(_curves(full, best)),
         p_any=decision.p_any,
         p_second=decision.p_second,
         ranking=_ranking(full, decision.winner),
         inseparable=tuple(inseparable(full, setting)),
-        extended=extended_setup(full, best, causes) if verdict != "none" else None,
+        extended=extended_setup(full, best, causes) if has_cause else None,
     )
 
 

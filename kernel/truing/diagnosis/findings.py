@@ -33,6 +33,12 @@ BIASED = 3.0
 SHOWN_DIGITS = 2
 BETTER = 6.0
 SHADOW = 0.3
+WAVE_LEVEL = 0.001
+"""Significance from which on a wave in what is left is visible, all frequencies and covariates paid for."""
+FEWEST_PERIODS = 2
+"""What turns more slowly in the whole record is a wander, which the noise filter has taken."""
+FEWEST_OF_WAVE = 20
+"""Readings below which any scatter looks like some wave."""
 
 
 def in_unit(value: float, unit: str) -> str:
@@ -63,6 +69,7 @@ def _wrong(full: Contest, best: Fit, null: Null, place: int, units: Mapping[str,
         *_bias(full, place, raw[rows], unit),
         *_with_named(full, best, null, place, list(_structure(full, null, place, unit))),
         *_of_noise(full, best, place),
+        *_wave(full, best, place),
     ]
     noise = _noise(full, best, after, place, floor=floor, unit=unit)
     if noise.outliers:
@@ -83,11 +90,12 @@ def _bias(full: Contest, place: int, residual: Matrix, unit: str) -> Iterator[Fi
     error = channel.scale / np.sqrt(len(residual) * SETTINGS[full.found.setting[0][place]].independent_share)
     if abs(mean) <= BIASED * error:
         return
-    if abs(mean) <= BIASED * spread:
+    is_allowed = abs(mean) <= BIASED * spread
+    if is_allowed:
         words = f"within what the tolerances allow ({in_unit(spread, unit)} standard deviation)"
     else:
         words = "more than the tolerances allow" if spread > 0 else "and no tolerance allows for it"
-    yield Finding("bias", "", None, f"on average {in_unit(mean, unit)} off the nominal model, {words}")
+    yield Finding("bias", "", None, f"on average {in_unit(mean, unit)} off the nominal model, {words}", is_allowed)
 
 
 def _structure(full: Contest, null: Null, place: int, unit: str) -> Iterator[Finding]:
@@ -265,6 +273,33 @@ def _of_noise(full: Contest, best: Fit, place: int) -> Iterator[Finding]:
         yield Finding("autocorrelation", "", None, words)
 
 
+def _wave(full: Contest, best: Fit, place: int) -> Iterator[Finding]:
+    """Say which wave is left over that no explanation drew, by Fisher's test of the largest ordinate of a periodogram.
+
+    The innovations of the best explanation are put in the order of each covariate, so that a wave over it is one over
+    the row. Of m ordinates that are chance, the share of the largest is above g with a probability of at most
+    ``m (1 - g)^(m - 1)`` (Fisher, Proc. R. Soc. A 125, 1929, the first term of his sum).
+    """
+    import numpy as np
+
+    channel, left = full.evidence.channels[place], best.innovations[place]
+    moved = [item for item in full.problem.machine.records.covariates.values() if not item.is_constant]
+    periods = np.arange(FEWEST_PERIODS, (len(left) - 1) // 2 + 1)
+    if len(left) < FEWEST_OF_WAVE or not moved or not np.ptp(left):
+        return
+    found: list[tuple[float, str, int, float]] = []
+    for item in moved:
+        ordered = left[np.argsort(item.values[channel.rows], kind="stable")]
+        power = np.abs(np.fft.rfft(ordered - ordered.mean()))[periods] ** 2
+        share = float(power.max() / power.sum())
+        p_value = min(1.0, len(moved) * len(periods) * (1 - share) ** (len(periods) - 1))
+        found.append((p_value, item.name, int(periods[np.argmax(power)]), share))
+    p_value, name, count, share = min(found)
+    if p_value <= WAVE_LEVEL:
+        words = f"{count} waves over the range of {name}, with {100 * share:.0f} % of what is left after all"
+        yield Finding("wave", name, p_value, words)
+
+
 def _noise(full: Contest, best: Fit, after: Matrix, place: int, *, floor: float, unit: str) -> Noise:
     """Describe the noise of one result, with the rows that lie beyond four standard deviations of it."""
     import numpy as np
@@ -277,7 +312,8 @@ def _noise(full: Contest, best: Fit, after: Matrix, place: int, *, floor: float,
     far = channel.rows[np.abs(size) > FAR * sd]
     outliers = tuple((records.files[int(records.file_of[row])], int(records.lines[row])) for row in far)
     spread = noise.spreads[channel.name].words
-    return Noise(Amount(floor, unit), setting.neighbours, noise.tails[channel.name].words, spread, outliers)
+    tails = noise.tails[channel.name].words
+    return Noise(Amount(floor, unit), setting.neighbours, tails, spread, outliers, setting.rho)
 
 
 def amplitude_of(sine: float, cosine: float) -> float:

@@ -210,4 +210,18 @@ def alternative_of(full: Contest, winner: int, rival: int, *, fitted: bool = Fal
         separation(full, true, hypothesis),
         depends,
         {cause.effect: cause.unknowns for cause in causes_of(full, fit(full, rival))} if fitted else {},
+        _same_as(full, full.solution(rival)),
     )
+
+
+def _same_as(full: Contest, solution: Solution) -> dict[str, tuple[str, ...]]:
+    """Return by cause the names of all that draw the same curve on this data, at the signs of a solution."""
+    found: dict[str, tuple[str, ...]] = {}
+    values = iter(solution.coefficients.tolist())
+    for piece in solution.hypothesis.pieces:
+        own = [next(values) for _ in piece.columns]
+        if piece.kind == "term":
+            name = full.problem.candidates[piece.owner].name
+            others = (*found.get(name, ()), *full.problem.same_curve(piece.owner, own))
+            found[name] = tuple(other for other in dict.fromkeys(others) if other != name)
+    return {name: others for name, others in found.items() if others}

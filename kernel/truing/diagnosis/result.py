@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from truing.diagnosis.verdict import Verdict, explanations_of, verdict_of
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -13,8 +15,7 @@ if TYPE_CHECKING:
     from truing.diagnosis.records import Records
     from truing.setup import Setup
 
-Verdict = Literal["none", "named", "unknown"]
-Kind = Literal["bias", "trend", "order", "step", "spread", "autocorrelation", "outlier"]
+Kind = Literal["bias", "trend", "order", "step", "wave", "spread", "autocorrelation", "outlier"]
 Sight = Literal["visible", "hidden in the tolerances", "not excited"]
 
 
@@ -28,21 +29,26 @@ class Amount:
 
 @dataclass(frozen=True)
 class Finding:
-    """Something that is wrong with the residuals of the calibrated model; ``p_value`` has paid for the search."""
+    """Something that is wrong with the residuals of the calibrated model; ``p_value`` has paid for the search.
+
+    ``is_allowed`` where the tolerances may have caused it: a bias inside of what they let machines differ by.
+    """
 
     kind: Kind
     covariate: str
     p_value: float | None
     text: str
+    is_allowed: bool = False
 
 
 @dataclass(frozen=True)
 class Noise:
     """What the noise of one result is like, once everything found is taken out.
 
-    ``autocorrelation`` is that of neighbouring rows (0 is none); ``tails`` and ``spread`` are words ("normal", "heavy,
-    t with 4 degrees of freedom"; "constant", "grows with forming_force"). ``outliers`` are (file, line) of rows beyond
-    four standard deviations.
+    ``autocorrelation`` is that of neighbouring rows (0 is none); ``ar_coefficient`` is the share of the slow part of
+    the noise that carries over from row to row (1 is a random walk); ``tails`` and ``spread`` are words ("normal",
+    "heavy, t with 4 degrees of freedom"; "constant", "grows with forming_force"). ``outliers`` are (file, line) of rows
+    beyond four standard deviations.
     """
 
     sd: Amount
@@ -50,6 +56,7 @@ class Noise:
     tails: str
     spread: str
     outliers: tuple[tuple[str, int], ...] = ()
+    ar_coefficient: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -99,7 +106,8 @@ class Cause:
 class Alternative:
     """Another explanation that this data does not exclude: ``behind`` in score units, ``separation`` as lambda.
 
-    ``causes`` names effects, and "unknown" for a shape nobody registered; ``unknowns`` holds its own fit by effect.
+    ``causes`` names effects, and "unknown" for a shape nobody registered; ``unknowns`` holds its own fit by effect,
+    ``same_as`` by effect those that are the same curve on this data.
     """
 
     causes: tuple[str, ...]
@@ -107,6 +115,7 @@ class Alternative:
     separation: float
     depends_on: tuple[str, ...] = ()
     unknowns: Mapping[str, tuple[FittedUnknown, ...]] = field(default_factory=dict)
+    same_as: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -162,7 +171,8 @@ class NextPoint:
     """A setting worth measuring next: what it separates, why, and lambda once all points up to it are measured.
 
     ``measure`` names results that were not measured and are to be, at the settings there are; lambda is then that of
-    one value without noise.
+    one value without noise. ``needed`` is the number of points like those proposed after which every pair that they
+    are for is told apart: more than there are where they do not suffice.
     """
 
     settings: Mapping[str, Amount]
@@ -170,6 +180,28 @@ class NextPoint:
     why: str
     separation: float
     measure: tuple[str, ...] = ()
+    needed: int = 1
+
+
+@dataclass(frozen=True)
+class Fact:
+    """What would have to be so if an explanation is the right one: a quantity that may be known from elsewhere.
+
+    ``quantity`` is "EFFECT.UNKNOWN" or "input:NAME", ``note`` what it was declared to be, in words.
+    """
+
+    explanation: str
+    quantity: str
+    value: Amount
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Tie:
+    """Explanations that no setting within reach and no further result tells apart, with the facts that would."""
+
+    explanations: tuple[str, ...]
+    facts: tuple[Fact, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -211,9 +243,7 @@ class Diagnosis:
     measured: tuple[str, ...]
     units: Mapping[str, str]
     wrong: tuple[Wrong, ...]
-    verdict: Verdict
     causes: tuple[Cause, ...]
-    unique: bool
     alternatives: tuple[Alternative, ...]
     remainder: Remainder | None
     seen: tuple[Seen, ...]
@@ -227,6 +257,17 @@ class Diagnosis:
     p_second: float | None = None
     ranking: tuple[Alternative, ...] = ()
     inseparable: tuple[str, ...] = ()
+    ties: tuple[Tie, ...] = ()
     warnings: tuple[str, ...] = ()
     extended: Setup | None = None
     """The setup with the causes on, conditions as measured and inputs calibrated; None where nothing was named."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """What may be said in one word; it follows from all that was found, so that it cannot contradict it."""
+        return verdict_of(self)
+
+    @property
+    def unique(self) -> bool:
+        """Whether one explanation is left, or nothing is to be explained."""
+        return self.verdict == "none" or len(explanations_of(self)) == 1

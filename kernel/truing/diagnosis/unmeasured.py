@@ -7,24 +7,26 @@ is known for it, so this is the only noise.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import combinations
+from math import sqrt
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.goals import Maximise, Minimise, Require
 from truing.declare.specs import Axis
 from truing.diagnosis.candidates import si_bounds, stacked
 from truing.diagnosis.contest import Contest, names_of
-from truing.diagnosis.design import SEPARATED
+from truing.diagnosis.design import Proposal
 from truing.diagnosis.findings import in_unit
 from truing.diagnosis.fit import Fit, fit
 from truing.diagnosis.machine import Machine, machine_of, predict
 from truing.diagnosis.naming import causes_of, switched_on
 from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import Records
-from truing.diagnosis.result import NextPoint
+from truing.diagnosis.result import Amount, Fact, NextPoint, Tie
 from truing.diagnosis.rival_twins import TwinTerm, is_physical, twins_of
+from truing.diagnosis.verdict import APART
 from truing.setup import SwitchedOn
 from truing.units import read_quantity
 from truing.units.names import PURE
@@ -38,22 +40,21 @@ if TYPE_CHECKING:
 RIVALS = 4
 ROWS = 40
 """So many rows of the record are asked what the rivals differ in."""
-CLEAR = 3.0
-"""Beyond this many standard deviations of machines within their tolerances a difference is seen."""
+CLEAR = sqrt(APART)
+"""Beyond this many standard deviations of machines within their tolerances a difference tells explanations apart."""
 NEARLY = 0.95
 """Of several rows that tell as clearly the one is told in which the difference is largest."""
-WORTH_MEASURING = 1.0
-"""Points that separate less, all together, are not worth setting where another result does."""
 LEAST_SHARE = 1e-3
 """Of the result itself: no gauge is trusted with less."""
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """A rival as it is fitted: its name and its effects, on."""
+    """A rival as it is fitted: its name, its effects, on, and its inputs that lie outside of their band, SI."""
 
     name: str
     on: tuple[SwitchedOn, ...]
+    inputs: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -82,8 +83,9 @@ def rival_explanations(full: Contest, best: Fit, rivals: Sequence[int]) -> list[
 
 
 def _fitted(full: Contest, best: Fit) -> Explanation:
-    name = " + ".join(names_of(full.problem, best.hypothesis))
-    return Explanation(name, switched_on(full, causes_of(full, best)))
+    name, causes = " + ".join(names_of(full.problem, best.hypothesis)), causes_of(full, best)
+    off = {cause.unknowns[0].name: cause.unknowns[0].value for cause in causes if cause.effect.startswith("input:")}
+    return Explanation(name, switched_on(full, causes), off)
 
 
 def _signs(best: Fit) -> list[float]:
@@ -107,31 +109,72 @@ def _twin(full: Contest, best: Fit, winner: Explanation, twin: TwinTerm) -> Expl
     values = {item.name: 0.0 if item.is_amplitude else si_bounds(item)[0] for item in twin.candidate.effect.unknowns}
     values |= {**twin.term.shape, **{name: float(size) for name, size in zip(twin.term.unknowns, fitted, strict=True)}}
     kept = tuple(item for item in winner.on if item.effect.name != replaced)
-    return Explanation(winner.name.replace(replaced, twin.name), (*kept, SwitchedOn(twin.candidate.effect, values)))
+    name = " + ".join(twin.name if each == replaced else each for each in winner.name.split(" + "))
+    return Explanation(name, (*kept, SwitchedOn(twin.candidate.effect, values)), winner.inputs)
 
 
-def with_results(full: Contest, best: Fit, rivals: Sequence[int], points: Sequence[NextPoint]) -> list[NextPoint]:
-    """Return the next points with the result that separates the rivals: first where no setting does as well."""
-    asked = result_to_measure(full.problem.machine, rival_explanations(full, best, rivals))
-    if asked is None:
-        return list(points)
-    suffices = bool(points) and points[-1].separation >= SEPARATED
-    suffices = suffices and any(set(point.separates) == set(asked.separates) for point in points)
-    if suffices:
-        return [*points, asked]
-    return [asked, *points] if points and points[-1].separation >= WORTH_MEASURING else [asked]
+def with_results(
+    full: Contest, best: Fit, rivals: Sequence[int], proposal: Proposal
+) -> tuple[list[NextPoint], list[Tie]]:
+    """Return the next points with the result that separates the rivals, and what neither of them tells apart.
+
+    The result comes first where settings leave something open that it does not.
+    """
+    explanations = rival_explanations(full, best, rivals)
+    asked, apart = result_to_measure(full.problem.machine, explanations)
+    tied = [pair for pair in proposal.tied if frozenset(pair) not in apart]
+    ties = [_tie(full.problem.machine.start, names, explanations) for names in _joined(tied)]
+    points = list(proposal.points)
+    if asked is not None:
+        suffices = points and points[-1].needed <= len(points) and not proposal.tied
+        points = [*points, asked] if suffices else [asked, *points]
+    return points, ties
 
 
-def result_to_measure(machine: Machine, explanations: Sequence[Explanation]) -> NextPoint | None:
-    """Return the result that separates most explanations from the first one, None where none separates any two.
+def _joined(pairs: Sequence[tuple[str, str]]) -> list[tuple[str, ...]]:
+    """Join pairs that share an explanation to groups."""
+    groups: list[tuple[str, ...]] = []
+    for pair in pairs:
+        own = [group for group in groups if set(group) & set(pair)]
+        groups = [group for group in groups if group not in own]
+        groups.append(tuple(dict.fromkeys(name for group in (*own, pair) for name in group)))
+    return groups
 
-    A result with a unit or a goal comes before a pure number, for which there is no gauge; then the one that parts most
-    explanations from the first, the one that a goal names, the one that separates most pairs, the clearest.
+
+def _tie(start: Any, names: Sequence[str], explanations: Sequence[Explanation]) -> Tie:
+    """Return explanations that cannot be told apart, with what would have to be so for each of them alone."""
+    tied = [each for each in explanations if each.name in names]
+    facts = [fact for each in tied for fact in _facts(start, each)]
+    common = {fact.quantity for fact in facts if sum(fact.quantity == other.quantity for other in facts) == len(tied)}
+    return Tie(tuple(names), tuple(fact for fact in facts if len(tied) < 2 or fact.quantity not in common))
+
+
+def _facts(start: Any, explanation: Explanation) -> Iterator[Fact]:
+    """Give the quantities that an explanation states: unknowns that are not zero, and inputs outside of their band."""
+    for on in explanation.on:
+        for unknown in on.effect.unknowns:
+            value = on.values.get(unknown.name, 0.0)
+            if value:
+                quantity = f"{on.effect.name}.{unknown.name}"
+                yield Fact(explanation.name, quantity, Amount(float(value), unknown.unit), unknown.note)
+    for name, value in explanation.inputs.items():
+        note = start.model.input_fields[name].note
+        yield Fact(explanation.name, f"input:{name}", Amount(value, start.unit_of(name)), note)
+
+
+def result_to_measure(
+    machine: Machine, explanations: Sequence[Explanation]
+) -> tuple[NextPoint | None, set[frozenset[str]]]:
+    """Return the result that separates most explanations from the first one, and the pairs that it tells apart.
+
+    None where no result tells any two apart. A result with a unit or a goal comes before a pure number, for which there
+    is no gauge; then the one that parts most explanations from the first, the one that a goal names, the one that
+    separates most pairs, the clearest.
     """
     start = machine.start
     names = [] if machine.records.rows.series or len(explanations) < 2 else _unmeasured(machine)
     if not names:
-        return None
+        return None, set()
     there = machine_of(start, _few_rows(machine.records, names))
     found = [_changes(there, explanation) for explanation in explanations]
     best: tuple[Any, ...] = ()
@@ -147,8 +190,10 @@ def result_to_measure(machine: Machine, explanations: Sequence[Explanation]) -> 
             is_goal = name in _goals(start.model)
             clearness = float(f"{faintest.clearness:.2g}")
             rank = (is_goal or _has_unit(start.model, name), parted, is_goal, len(gaps), clearness, -place)
-            best = max(best, (*rank, faintest), key=lambda item: item[:6] if item else ())
-    return _point(start, best[6]) if best else None
+            best = max(best, (*rank, faintest, gaps), key=lambda item: item[:6] if item else ())
+    if not best:
+        return None, set()
+    return _point(start, best[6]), {frozenset(gap.names) for gap in best[7]}
 
 
 def _has_unit(model: Any, name: str) -> bool:
@@ -190,7 +235,7 @@ def _few_rows(records: Records, names: Sequence[str]) -> Records:
 
 def _changes(there: Machine, explanation: Explanation) -> Mapping[str, Matrix]:
     """Return the change of every unmeasured result by an explanation, SI, shape (n,)."""
-    setup = there.start.with_effects(explanation.on)
+    setup = there.start.with_effects(explanation.on).changed(explanation.inputs)
     changed = predict(setup, there.records)
     return {name: changed[name] - there.base[name] for name in there.base}
 

@@ -7,12 +7,12 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from truing.declare.blocks import Words
+from truing.diagnosis.verdict import APART, UNKNOWN, explanations_of
 from truing.numbers import ABSENT, STATED_DIGITS, format_number, pretty
 from truing.report import diagnosis_figures as figures
 from truing.report.chapters import Figures
 from truing.report.context import BlockView, Chapter, TableView
 from truing.report.diagnosis_words import (
-    UNKNOWN,
     amount_text,
     certainty,
     explanation,
@@ -22,8 +22,10 @@ from truing.report.diagnosis_words import (
     percent,
     prose,
     readable,
+    reasons,
     score_text,
     spoken,
+    together,
 )
 from truing.runs.diagnosis_document import file_labels
 
@@ -82,7 +84,7 @@ def _wrong(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
         kinds = ("Result", "Kind", "What the residuals show", "How sure, the search paid for")
         yield _table("Structure in the residuals", kinds, found)
     else:
-        yield Words("The residuals show no bias, trend, order, step or spread that noise alone would not give.")
+        yield Words("At the level of 5 % the residuals show no bias, trend, order, step, wave or spread.")
     noise = [(spoken(item.result), *_noise(item.noise)) for item in diagnosis.wrong]
     about = ("Result", "Standard deviation", "Autocorrelation", "Tails", "Spread", "Suspected outliers")
     yield _table("The noise, once everything found is taken out", about, noise, (1, 2))
@@ -115,10 +117,6 @@ def _cause(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
     yield Words(" ".join(_significance(diagnosis)))
     if diagnosis.causes:
         yield _named_table(diagnosis)
-    if diagnosis.alternatives:
-        named = " + ".join(spoken(cause.effect) for cause in diagnosis.causes) or "the explanation given"
-        names = listed([named, *(explanation(item) for item in diagnosis.alternatives)])
-        yield Words(f"Cannot be told apart on this data: {names}.", kind="warning")
     if diagnosis.ranking:
         yield _ranking(diagnosis)
         title = "Ranking of the explanations"
@@ -142,8 +140,10 @@ def _named_table(diagnosis: Diagnosis) -> TableView:
 
 
 def _significance(diagnosis: Diagnosis) -> Iterator[str]:
-    if diagnosis.verdict == "none":
+    if not explanations_of(diagnosis):
         yield f"Nothing is named: the best of all explanations may be chance ({p_text(diagnosis.p_any)})."
+        if diagnosis.verdict == "undecided":
+            yield f"It is undecided whether anything is wrong: {listed(list(reasons(diagnosis)))}."
         return
     yield f"That anything is wrong is {certainty(diagnosis.p_any)}, every explanation that was tried paid for."
     if diagnosis.p_second is not None:
@@ -157,9 +157,10 @@ def _significance(diagnosis: Diagnosis) -> Iterator[str]:
             f"{listed([spoken(name) for name in remainder.results])} ({p_text(remainder.p_value)})."
         )
     if diagnosis.verdict == "named":
-        yield (
-            "The verdict is unique: no other explanation is near." if diagnosis.unique else "The verdict is not unique."
-        )
+        yield "The verdict is unique: no other explanation is near."
+    if diagnosis.verdict == "one_of":
+        names = [together(names) for names in explanations_of(diagnosis)]
+        yield f"The verdict is one of {len(names)}, and this record cannot say which: {listed(names, 'or')}."
 
 
 def _named(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
@@ -178,7 +179,7 @@ def _ranking(diagnosis: Diagnosis) -> TableView:
     ]
     note = (
         "Behind is the distance in score units (6 is a Bayes factor of about 20). λ is the loss of fit to expect if "
-        "the best explanation is true and this one is fitted: above 25 the two can be told apart."
+        f"the best explanation is true and this one is fitted: from {APART:.0f} on the two can be told apart."
     )
     return _table("Explanations, best first", ("Explanation", "Behind", "λ", "On this data"), rows, (1, 2), note)
 
@@ -335,25 +336,52 @@ def _gain(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
 
 
 def _next(diagnosis: Diagnosis) -> Iterator[BlockView]:
-    if not diagnosis.next:
+    if not diagnosis.next and diagnosis.verdict == "one_of":
+        yield Words("No setting can be proposed that tells the explanations apart.")
+    elif not diagnosis.next:
         can_be_more = any(item.sight == "not excited" for item in diagnosis.seen) or diagnosis.not_measured
         yield Words(
-            "There is nothing to separate."
+            ("More readings would decide." if diagnosis.verdict == "undecided" else "There is nothing to separate.")
             + (" Of what was not excited or not measured (chapter 2) this data says nothing." if can_be_more else "")
         )
-        return
+    else:
+        yield from _points(diagnosis)
+    yield from _ties(diagnosis)
+
+
+def _points(diagnosis: Diagnosis) -> Iterator[BlockView]:
     names = list(dict.fromkeys(name for point in diagnosis.next for name in (*point.measure, *point.settings)))
     rows = [_point(place, point, names) for place, point in enumerate(diagnosis.next, start=1)]
     heads = ("Point", *(spoken(name).capitalize() for name in names), "Separates", "λ then")
-    note = "λ then is the separation to expect once all points up to this one are measured; above 25 the two are apart."
+    note = (
+        "λ then is the separation to expect once all points up to this one are measured; from "
+        f"{APART:.0f} on the two are apart."
+    )
     yield _table("Settings to measure", heads, rows, (*range(1, len(names) + 1), len(names) + 2), note)
     for reason in dict.fromkeys(point.why for point in diagnosis.next if point.why):
         yield Words(f"{reason[:1].upper()}{reason[1:].rstrip('.')}.")
 
 
+def _ties(diagnosis: Diagnosis) -> Iterator[BlockView]:
+    """Say which facts decide between explanations that no measurement proposed here tells apart."""
+    for tie in diagnosis.ties:
+        names = listed([together([name]) for name in tie.explanations])
+        yield Words(f"No measurement proposed here tells {names} apart; a fact from elsewhere does.")
+        facts = [
+            (
+                together([fact.explanation]), spoken(fact.quantity.removeprefix("input:")), fact.note or ABSENT,
+                amount_text(readable(fact.value)),
+            )
+            for fact in tie.facts
+        ]  # fmt: skip
+        if facts:
+            heads = ("If it is", "then this quantity", "that is", "has this value")
+            yield _table("Facts that decide", heads, facts, (3,))
+
+
 def _point(place: int, point: NextPoint, names: Sequence[str]) -> tuple[str, ...]:
     settings = ["measure" if name in point.measure else amount_text(point.settings.get(name), 4) for name in names]
-    pair = f"{spoken(point.separates[0])} / {spoken(point.separates[1])}"
+    pair = " / ".join(together([name]) for name in point.separates)
     return str(place), *settings, pair, score_text(point.separation)
 
 

@@ -61,8 +61,7 @@ def make_diagnosis_sheet(diagnosis: Diagnosis, *, provenance: Provenance) -> Dia
 def _mood(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none":
         return "calm"
-    is_open = diagnosis.verdict == "unknown" or not diagnosis.unique or diagnosis.remainder is not None
-    return "open" if is_open else "found"
+    return "found" if diagnosis.verdict == "named" and diagnosis.remainder is None else "open"
 
 
 def data_words(diagnosis: Diagnosis) -> str:

@@ -6,17 +6,21 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from truing.declare.model import Model
+from truing.diagnosis.verdict import OUTSIDE, UNKNOWN, doubts, explanations_of
 from truing.numbers import ABSENT, format_number, format_value, pretty, with_unit
+from truing.units import to_si
 
 if TYPE_CHECKING:
-    from truing.diagnosis.result import Alternative, Amount, Cause, Diagnosis, FittedUnknown, Gain, NextPoint
+    from truing.diagnosis.result import Alternative, Amount, Cause, Diagnosis, Fact, FittedUnknown, Gain, NextPoint, Tie
 
 CERTAIN, LIKELY = 0.005, 0.05
 MUCH, FEW_BLOCKS = 0.5, 0.25
+AT_BOUND = 1e-3
+"""Of the declared range of an unknown: what lies nearer to an end of it lies there."""
 TO = " … "
-UNKNOWN = "unknown"
 MICRO = re.compile(r"(?<=\d )u(?=(?:m|rad|s|N|g|l)\b)")
 
 
@@ -24,7 +28,15 @@ def spoken(name: str) -> str:
     """Say a name: without underscores; the unknown of an effect behind it; an input outside of its band as such."""
     if name.startswith("input:"):
         return f"{name.removeprefix('input:').replace('_', ' ')} outside of its tolerance"
-    return "something unregistered" if name == UNKNOWN else name.replace("_", " ").replace(".", ", ")
+    if name.startswith(UNKNOWN):
+        over = [spoken(each) for each in name.removeprefix(UNKNOWN).removeprefix(":").split(",") if each]
+        return f"something unregistered over {listed(over)}" if over else "something unregistered"
+    return name.replace("_", " ").replace(".", ", ")
+
+
+def together(names: Sequence[str]) -> str:
+    """Say an explanation by the names of its causes."""
+    return " + ".join(spoken(each) for name in names for each in name.split(" + "))
 
 
 def prose(text: str) -> str:
@@ -42,11 +54,8 @@ def listed(words: Sequence[str], joined: str = "and") -> str:
 
 def explanation(item: Alternative) -> str:
     """Say one explanation: its causes, or that nothing is wrong."""
-    if not item.causes:
-        return "nothing but noise"
-    names = [spoken(name) for name in item.causes]
-    over = f" over {listed([spoken(name) for name in item.depends_on])}" if item.depends_on else ""
-    return " + ".join(names) + over
+    over = f":{','.join(item.depends_on)}" if item.depends_on else ""
+    return together([f"{name}{over}" if name == UNKNOWN else name for name in item.causes]) or "nothing but noise"
 
 
 def amount_text(amount: Amount | None, digits: int = 3) -> str:
@@ -145,30 +154,60 @@ def cause_text(cause: Cause) -> str:
 
 
 def verdict_word(diagnosis: Diagnosis) -> str:
-    """Say the verdict in two or three words."""
-    if diagnosis.verdict == "none":
-        return "Nothing found"
-    if diagnosis.verdict == "unknown":
-        return "Cause unknown"
-    word = "Cause named" if diagnosis.unique else "Cause named, others possible"
-    return f"{word}, a remainder left" if diagnosis.remainder is not None else word
+    """Say the verdict in a few words."""
+    count = len(explanations_of(diagnosis))
+    is_single = all(len(names) == 1 for names in explanations_of(diagnosis))
+    word = {
+        "none": "Nothing found",
+        "undecided": "Undecided",
+        "unknown": "Cause unknown",
+        "named": "Cause named",
+        "one_of": f"One of {count} {'causes' if is_single else 'explanations'}; this record cannot say which",
+    }[diagnosis.verdict]
+    has_more = bool(diagnosis.causes) and diagnosis.remainder is not None
+    return f"{word}, a remainder left" if has_more and diagnosis.verdict == "named" else word
 
 
 def headline(diagnosis: Diagnosis) -> list[str]:
     """Say what an engineer would tell a colleague: what is wrong, why, how much, what it is worth, what to do next."""
     if diagnosis.verdict == "none":
         return list(_nothing(diagnosis))
-    said = [*_cause_sentences(diagnosis), *_gain_sentences(diagnosis), *_next_sentences(diagnosis)]
+    if diagnosis.verdict == "undecided":
+        return list(_undecided(diagnosis))
+    said = [
+        *_cause_sentences(diagnosis), *_alarms(diagnosis), *_gain_sentences(diagnosis), *_next_sentences(diagnosis),
+    ]  # fmt: skip
     return [sentence[:1].upper() + sentence[1:] for sentence in said]
 
 
 def _nothing(diagnosis: Diagnosis) -> Iterator[str]:
-    parts = [
-        f"{spoken(item.result)} to {amount_text(item.rmse)} (noise floor {amount_text(item.noise_floor)})"
-        for item in diagnosis.wrong
-    ]
-    yield f"Within its tolerances the model meets the measurement: {listed(parts)}."
+    yield f"Within its tolerances the model meets the measurement: {_met(diagnosis)}."
     yield "What is left is noise; no effect, registered or not, is needed."
+    yield from _blind(diagnosis)
+
+
+def _undecided(diagnosis: Diagnosis) -> Iterator[str]:
+    yield f"No cause is named, but that nothing is wrong cannot be said either: {listed(list(reasons(diagnosis)))}."
+    yield f"The model as it is: {_met(diagnosis)}."
+    yield from _blind(diagnosis)
+    yield "More readings, of a wider range and in a changed order, would decide."
+
+
+def reasons(diagnosis: Diagnosis) -> Iterator[str]:
+    """Give the reasons for which a diagnosis is undecided, in print."""
+    yield from map(prose, doubts(diagnosis))
+
+
+def _met(diagnosis: Diagnosis) -> str:
+    return listed(
+        [
+            f"{spoken(item.result)} to {amount_text(item.rmse)} (noise floor {amount_text(item.noise_floor)})"
+            for item in diagnosis.wrong
+        ]
+    )
+
+
+def _blind(diagnosis: Diagnosis) -> Iterator[str]:
     blind = [spoken(item.name) for item in diagnosis.seen if item.sight == "not excited"]
     if blind:
         yield f"That says nothing of {listed(blind)}: this data does not excite {'it' if len(blind) == 1 else 'them'}."
@@ -195,21 +234,18 @@ def is_perhaps_gain(item: Gain) -> bool:
 
 def _cause_sentences(diagnosis: Diagnosis) -> Iterator[str]:
     results = listed([spoken(name) for name in wrong_results(diagnosis)])
+    is_open = diagnosis.verdict == "one_of"
+    if is_open:
+        names = [together(names) for names in explanations_of(diagnosis)]
+        yield f"what the model misses in {results} is drawn alike by {listed(names, 'or')}."
     if diagnosis.causes:
         causes = listed([cause_text(cause) for cause in diagnosis.causes])
-        yield f"what the model misses in {results}: {causes}."
-    for cause in diagnosis.causes:
-        if cause.same_as:
-            others = listed([spoken(name) for name in cause.same_as], "or")
-            yield f"on this data that is one curve with {others}: it may as well be called so."
-    if diagnosis.verdict == "named" and not diagnosis.unique:
-        others = listed([explanation(item) for item in diagnosis.alternatives[:4]], "or")
-        yield f"But this data does not exclude {others or 'other explanations'}."
+        yield f"taken as the first of them: {causes}." if is_open else f"what the model misses in {results}: {causes}."
     remainder = diagnosis.remainder
     if remainder is not None:
         over = listed([spoken(name) for name in remainder.depends_on])
         of_results = listed([spoken(name) for name in remainder.results])
-        what = "Beside it something" if diagnosis.causes else "Something"
+        what = "beside it something" if diagnosis.causes else "something"
         yield f"{what} that no registered effect explains is in {of_results}, over {over}: {prose(remainder.shape)}."
 
 
@@ -238,7 +274,7 @@ def _falls(item: Gain) -> str:
 
 def _held_out_sentences(diagnosis: Diagnosis) -> Iterator[str]:
     """Say what became of the error on rows that were held out on request: the strongest test there is."""
-    for item in diagnosis.gain if diagnosis.verdict != "none" else ():
+    for item in diagnosis.gain:
         if item.held_out is not None:
             before, after = (amount_text(replace(item.rmse_before, value=one)) for one in item.held_out)
             how = "falls" if item.held_out[1] < item.held_out[0] else "GROWS"
@@ -246,14 +282,82 @@ def _held_out_sentences(diagnosis: Diagnosis) -> Iterator[str]:
             yield f"on the rows held out the error of {spoken(item.result)} {how} from {before} to {after}{end}"
 
 
+def _alarms(diagnosis: Diagnosis) -> Iterator[str]:
+    """Say what makes a named cause doubtful: an unknown at its bound, an input far off its tolerance, a wave left."""
+    for cause in diagnosis.causes:
+        for unknown in cause.unknowns:
+            if at_bound(cause, unknown, diagnosis.setup.model):
+                yield f"{spoken(cause.effect)}: {fitted_text(unknown)} lies at the bound that is declared for it."
+    named = {cause.effect.removeprefix("input:") for cause in diagnosis.causes}
+    for moved in diagnosis.calibrated:
+        if abs(moved.of_its_sd) > OUTSIDE and moved.name not in named:
+            by = score_text(moved.of_its_sd)
+            yield f"beside that {spoken(moved.name)} had to move by {by} standard deviations of its tolerance."
+    for item in diagnosis.wrong:
+        for finding in item.findings:
+            if finding.kind == "wave":
+                yield f"in what is left of {spoken(item.result)} there are {prose(finding.text)}."
+
+
+def at_bound(cause: Cause, unknown: FittedUnknown, model: Model[Any, Any]) -> bool:
+    """Whether a fitted unknown lies at an end of its declared range, other than at zero."""
+    effect = model.known_effects.get(cause.effect)
+    declared = next((each for each in effect.unknowns if each.name == unknown.name), None) if effect else None
+    if declared is None or declared.whole or declared.along:
+        return False
+    low, high = (float(to_si(end, declared.unit)) for end in (declared.low, declared.high))
+    return any(end and abs(unknown.value - end) <= AT_BOUND * (high - low) for end in (low, high))
+
+
 def _next_sentences(diagnosis: Diagnosis) -> Iterator[str]:
-    if diagnosis.next:
-        point = diagnosis.next[0]
-        first, second = (spoken(name) for name in point.separates)
-        what = f"measure {settings_text(point)}" if point.measure else f"measure next at {settings_text(point)}"
-        yield f"{what}: it separates {first} from {second}."
-    elif diagnosis.verdict == "named" and diagnosis.unique:
+    """Say what tells the explanations apart; that it does only where it is predicted to pass the limit."""
+    results = [point for point in diagnosis.next if point.measure]
+    settings = [point for point in diagnosis.next if not point.measure]
+    for point in results:
+        yield f"measure {settings_text(point)}: it separates {pair_text(point)}."
+    if settings:
+        yield plan_text(settings)
+    yield from map(tie_text, diagnosis.ties)
+    if diagnosis.next or diagnosis.ties:
+        return
+    if diagnosis.verdict == "named":
         yield "no other explanation comes near; there is nothing left to separate."
+    if diagnosis.verdict == "one_of":
+        yield "no setting can be proposed that tells them apart; another record, of other conditions, may."
+
+
+def plan_text(points: Sequence[NextPoint]) -> str:
+    """Say what settings to measure are worth: that they separate, or how many of them would be needed."""
+    count, needed = len(points), points[0].needed
+    pairs = listed(list(dict.fromkeys(pair_text(point) for point in points)))
+    if needed > count:
+        return f"{needed} points like {settings_text(points[0])} would be needed to separate {pairs}."
+    if needed < 2:
+        return f"measure next at {settings_text(points[0])}: it separates {pairs}."
+    places = "; ".join(settings_text(point) for point in points[:needed])
+    return f"measure next at {places}: these {needed} points together separate {pairs}."
+
+
+def pair_text(point: NextPoint) -> str:
+    """Say which two explanations a point is for."""
+    first, second = point.separates
+    return f"{together([first])} from {together([second])}"
+
+
+def tie_text(tie: Tie) -> str:
+    """Say which fact decides where no measurement does."""
+    names = listed([together([name]) for name in tie.explanations])
+    if not tie.facts:
+        return f"no measurement proposed here tells {names} apart; only a fact from elsewhere does."
+    facts = listed([fact_text(fact) for fact in tie.facts], "or")
+    return f"no measurement proposed here tells {names} apart; a fact from elsewhere does: {facts}."
+
+
+def fact_text(fact: Fact) -> str:
+    """Say a quantity that may be known from elsewhere, and what it is if an explanation is right."""
+    what = spoken(fact.quantity.removeprefix("input:"))
+    note = f" ({fact.note})" if fact.note else ""
+    return f"whether {what}{note} is {amount_text(readable(fact.value))}"
 
 
 def settings_text(point: NextPoint) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
+from truing.diagnosis.verdict import doubts, explanations_of
 from truing.runs.documents import clean
 from truing.runs.provenance import provenance_of
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
         Gain,
         NextPoint,
         Remainder,
+        Tie,
         Wrong,
     )
 
@@ -41,6 +43,8 @@ def diagnosis_document(diagnosis: Diagnosis) -> dict[str, Any]:
         **_data(diagnosis),
         "wrong": {item.result: _wrong(item, _labels(diagnosis)) for item in diagnosis.wrong},
         "verdict": diagnosis.verdict,
+        "explanations": [list(names) for names in explanations_of(diagnosis)],
+        "undecided": [] if explanations_of(diagnosis) else list(doubts(diagnosis)),
         "p_any": clean(diagnosis.p_any),
         "p_second": clean(diagnosis.p_second),
         "causes": [_cause(cause, _labels(diagnosis)) for cause in diagnosis.causes],
@@ -56,6 +60,7 @@ def diagnosis_document(diagnosis: Diagnosis) -> dict[str, Any]:
         },
         "gain": {**{item.result: _gain(item) for item in diagnosis.gain}, "stability": clean(diagnosis.stability)},
         "next": [_next(point) for point in diagnosis.next],
+        "ties": [_tie(tie) for tie in diagnosis.ties],
         "notes": list(diagnosis.records.notes),
         "unit_slips": [
             {"column": slip.column, "factor": clean(slip.factor), "text": slip.text} for slip in diagnosis.records.slips
@@ -121,6 +126,7 @@ def _wrong(item: Wrong, labels: Mapping[str, str]) -> dict[str, Any]:
         "noise": {
             "sd": _amount(noise.sd),
             "autocorrelation": clean(noise.autocorrelation),
+            "ar_coefficient": clean(noise.ar_coefficient),
             "tails": noise.tails,
             "spread": noise.spread,
             "outliers": [{"file": labels.get(file, file), "line": int(line)} for file, line in noise.outliers],
@@ -166,6 +172,7 @@ def _alternative(item: Alternative) -> dict[str, Any]:
             effect: {unknown.name: _unknown(unknown) for unknown in unknowns}
             for effect, unknowns in item.unknowns.items()
         },
+        "same_as": {effect: list(names) for effect, names in item.same_as.items()},
     }
 
 
@@ -219,4 +226,13 @@ def _next(point: NextPoint) -> dict[str, Any]:
         "separates": list(point.separates),
         "why": point.why,
         "separation": clean(point.separation),
+        "needed": point.needed,
     }
+
+
+def _tie(tie: Tie) -> dict[str, Any]:
+    facts = [
+        {"explanation": fact.explanation, "quantity": fact.quantity, "note": fact.note, **_amount(fact.value)}
+        for fact in tie.facts
+    ]
+    return {"explanations": list(tie.explanations), "facts": facts}

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from truing.diagnosis.verdict import explanations_of
 from truing.formulas.symbols import printable
 from truing.runs.diagnosis_document import file_labels
 from truing.runs.inputs_written import complete_inputs
@@ -58,7 +59,12 @@ def _head(diagnosis: Diagnosis) -> Iterator[str]:
     yield f"{model} as measured: what calc diagnose made of {files} ({len(diagnosis.records)} rows)."
     if diagnosis.causes:
         names = " and ".join(cause.effect for cause in diagnosis.causes)
-        yield f"Named: {names}." if diagnosis.unique else f"Named: {names}; this data does not exclude other causes."
+        count = len(explanations_of(diagnosis))
+        others = f", one of {count} explanations; the record cannot say which" if count > 1 else ""
+        yield f"Named: {names}{others}."
+        for cause in diagnosis.causes:
+            if cause.same_as:
+                yield f"The same curve as {cause.effect} on this data: {' and '.join(cause.same_as)}."
     for item in diagnosis.alternatives[:4]:
         yield f"Not excluded: {' and '.join(item.causes)}, {item.behind:.1f} score units behind."
     if diagnosis.remainder is not None:

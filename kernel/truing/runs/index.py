@@ -21,7 +21,10 @@ DEEPEST = 20
 LARGEST = 100_000_000
 """A larger document is not read."""
 HEAD = ("project", "drawing", "revision")
-VERDICTS = {"none": "nothing found", "unknown": "cause unknown", "named": "cause named"}
+VERDICTS = {
+    "none": "nothing found", "undecided": "undecided", "unknown": "cause unknown", "named": "cause named",
+    "one_of": "one of several causes",
+}  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -235,7 +238,9 @@ def _first_results(document: Mapping[str, Any]) -> Iterator[Finding]:
 def _of_diagnosis(document: Mapping[str, Any], name: str) -> Entry:
     causes = document["causes"]
     words = VERDICTS[document["verdict"]]
-    if causes:
+    if document["verdict"] == "one_of":
+        words = f"{words}: {' or '.join(' and '.join(names) for names in document['explanations'])}"
+    elif causes:
         words = f"{words}: {' and '.join(str(cause['effect']) for cause in causes)}"
         words += "" if document["unique"] else "; others possible"
     if document.get("remainder") and document["verdict"] == "named":

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.model import Model
+from truing.diagnosis.verdict import explanations_of
 from truing.errors import UsageError
 from truing.testing.advice import advice_on, difference_text, hidden_words, quantity_text
 from truing.testing.hidden import Hidden
@@ -48,7 +49,7 @@ def assert_finds_nothing(hidden: Hidden) -> Diagnosis:
     if hidden.effect is not None or hidden.is_strange:
         raise UsageError(f"{hidden_words(hidden)} was hidden; assert_finds(hidden) is for that")
     diagnosis = hidden.answered.diagnosis
-    if diagnosis.verdict != "none":
+    if explanations_of(diagnosis):
         fail(
             f"{_model(hidden)}: nothing was hidden, but {_found(diagnosis)}; a diagnosis errs in some records of a "
             "hundred: try another seed, and if it is found there too, state the tolerances as wide as they are"
@@ -144,7 +145,7 @@ def _demand_unknown(hidden: Hidden, diagnosis: Diagnosis) -> None:
     __tracebackhide__ = True
     if diagnosis.verdict == "unknown":
         return
-    if diagnosis.verdict == "named":
+    if diagnosis.causes or diagnosis.alternatives:
         advice = "it draws nearly the same curve; measure another result, or vary more (over)"
     else:
         advice = "make it larger, measure more rows, or with less noise"

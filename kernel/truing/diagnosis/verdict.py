@@ -1,0 +1,94 @@
+"""The verdict of a diagnosis: one rule over all that was found, for headline, terminal, sheet and JSON alike."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+from math import isnan
+from typing import TYPE_CHECKING, Literal
+
+from truing.diagnosis.records import FEWEST_READINGS
+
+if TYPE_CHECKING:
+    from truing.diagnosis.result import Diagnosis
+
+Verdict = Literal["named", "one_of", "unknown", "none", "undecided"]
+
+UNKNOWN = "unknown"
+"""What an explanation calls a shape that nobody registered."""
+CHANCE = 0.2
+"""Below this p-value the best explanation is not called chance: one record of nothing in five lies below it."""
+RANDOM_WALK = 0.95
+"""From this AR coefficient on noise is nearly a random walk, which draws any slow curve (the largest that is tried)."""
+OUTSIDE = 3.0
+"""An input is off its band beyond this many standard deviations of its tolerance."""
+APART = 25.0
+"""The lambda from which on two explanations are told apart. Their scores then differ by 25 with a standard deviation of
+2 sqrt(25) = 10, so that with a chance of 97 % the difference is above the 6 below which a rival is not excluded."""
+_STRUCTURE = ("bias", "trend", "order", "step", "wave")
+
+Explanation = tuple[str, ...]
+
+
+def explanations_of(diagnosis: Diagnosis) -> tuple[Explanation, ...]:
+    """Return every explanation that this record does not exclude, the best first; names of one curve count each."""
+    if not diagnosis.causes and diagnosis.remainder is None:
+        return ()
+    best = [cause.effect for cause in diagnosis.causes]
+    same = {cause.effect: cause.same_as for cause in diagnosis.causes}
+    found = [*_by_name([*best, UNKNOWN] if diagnosis.remainder is not None else best, same)]
+    for rival in diagnosis.alternatives:
+        over = [f"{UNKNOWN}:{','.join(rival.depends_on)}" if name == UNKNOWN else name for name in rival.causes]
+        found += _by_name(over, rival.same_as)
+    once: dict[frozenset[str], Explanation] = {}
+    for names in found:
+        once.setdefault(frozenset(names), names)
+    return tuple(once.values())
+
+
+def _by_name(names: Sequence[str], same: Mapping[str, Sequence[str]]) -> Iterator[Explanation]:
+    """Give an explanation under every name that its causes may have."""
+    yield from product(*((name, *same.get(name, ())) for name in names))
+
+
+def verdict_of(diagnosis: Diagnosis) -> Verdict:
+    """Return the verdict; "one_of" wherever a cause has another name or a rival is near, "none" without any doubt."""
+    explanations = explanations_of(diagnosis)
+    if not explanations:
+        return "undecided" if any(doubts(diagnosis)) else "none"
+    if all(name.startswith(UNKNOWN) for names in explanations for name in names):
+        return "unknown"
+    return "named" if len(explanations) == 1 else "one_of"
+
+
+def doubts(diagnosis: Diagnosis) -> Iterator[str]:
+    """Give the reasons why it cannot be said that nothing is wrong where nothing was named, one clause each."""
+    readings = diagnosis.records.readings
+    if readings < FEWEST_READINGS:
+        yield f"{readings} readings are too few to tell a cause from chance"
+    elif diagnosis.p_any is None or not diagnosis.p_any >= CHANCE:
+        yield _nearly(diagnosis)
+    for wrong in diagnosis.wrong:
+        for finding in wrong.findings:
+            if finding.kind in _STRUCTURE and not finding.is_allowed:
+                yield f"the residuals of {wrong.result} are no mere noise: {finding.text}"
+        if wrong.noise.ar_coefficient >= RANDOM_WALK:
+            yield (
+                f"the noise of {wrong.result} was taken as nearly a random walk (AR coefficient "
+                f"{wrong.noise.ar_coefficient:.2g}), which draws any slow effect"
+            )
+    for moved in diagnosis.calibrated:
+        if abs(moved.of_its_sd) > OUTSIDE:
+            yield (
+                f"{moved.name} had to move by {moved.of_its_sd:.1f} standard deviations of its tolerance to meet the "
+                "measurement"
+            )
+
+
+def _nearly(diagnosis: Diagnosis) -> str:
+    if diagnosis.p_any is None or isnan(diagnosis.p_any):
+        return "whether anything is wrong was not tested"
+    best = next((rival.causes for rival in diagnosis.ranking if rival.causes), ())
+    named = f", {' + '.join(best)}," if best else ""
+    chance = "less than 0.001" if diagnosis.p_any < 0.001 else f"{diagnosis.p_any:.2g}"
+    return f"the best explanation{named} would come about by chance with a probability of {chance}"

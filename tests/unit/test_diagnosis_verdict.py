@@ -1,0 +1,197 @@
+"""One rule gives the verdict: over made states of a diagnosis, nothing that is printed contradicts what was found."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import hypothesis.strategies as st
+import numpy as np
+import pytest
+from diagnosis_samples import CALIBRATED, DRIFTING, HEATING, REMAINDER, SAMPLES, TIE, ambiguous, named, none_found
+from hypothesis import HealthCheck, given, settings
+
+from truing.cli.diagnosis_printed import report
+from truing.declare.blocks import Words
+from truing.diagnosis.result import Alternative, Cause, Diagnosis, Finding
+from truing.report.chapters import Figures
+from truing.report.context import TableView
+from truing.report.diagnosis_chapters import diagnosis_chapters
+from truing.report.diagnosis_words import headline, spoken, together, verdict_word
+from truing.runs.diagnosis_document import diagnosis_document
+from truing.runs.index import _of_diagnosis
+
+FINDINGS = {
+    "allowed": Finding("bias", "", None, "on average 3 um off the nominal model", is_allowed=True),
+    "bias": Finding("bias", "", None, "on average 30 um off the nominal model, more than the tolerances allow"),
+    "wave": Finding("wave", "crank_angle", 1e-4, "12 waves over the range of crank_angle, with 31 % of what is left"),
+    "trend": Finding("trend", "load", 0.03, "rises with load, by 3 um over the record"),
+    "spread": Finding("spread", "load", 0.001, "the scatter grows with load"),
+    "alike": Finding("autocorrelation", "", None, "neighbouring rows are alike (autocorrelation 0.6)"),
+    "far": Finding("outlier", "", None, "1 suspected outlier, beyond four standard deviations of the noise"),
+}
+HARMLESS = {"allowed", "spread", "alike", "far"}
+CAUSES = {
+    "rod_heating": HEATING,
+    "joint_play": Cause("joint_play", (replace(HEATING.unknowns[0], name="clearance", unit="um"),)),
+    "input:rod": Cause("input:rod", (replace(HEATING.unknowns[0], name="rod", value=0.32, unit="mm"),)),
+}
+RIVALS = [
+    DRIFTING, Alternative(("unknown",), 3.0, 2.0, ("time",)), Alternative(("rod_heating", "step"), 1.0, 0.3),
+    Alternative(("step",), 2.0, 1.0, same_as={"step": ("sensor_drift", "wear")}),
+]  # fmt: skip
+POINT = replace(ambiguous().next[0], needed=1)
+
+
+class NoFigures(Figures):
+    """Draws nothing: this is about words."""
+
+    def view(self, title: str, what: Any, caption: str) -> Words:
+        return Words(caption)
+
+
+@st.composite
+def states(draw: st.DrawFn) -> Diagnosis:
+    """A diagnosis in any state of its parts."""
+    made = none_found()
+    causes = [CAUSES[name] for name in draw(st.lists(st.sampled_from(list(CAUSES)), unique=True, max_size=2))]
+    same = [draw(st.sampled_from([(), (), ("warm_up",), ("warm_up", "sensor_offset")])) for _ in causes]
+    causes = [replace(cause, same_as=names) for cause, names in zip(causes, same, strict=True)]
+    remainder = draw(st.sampled_from([None, None, REMAINDER]))
+    is_found = bool(causes or remainder)
+    found = [FINDINGS[name] for name in draw(st.lists(st.sampled_from(list(FINDINGS)), unique=True, max_size=3))]
+    noise = replace(made.wrong[0].noise, ar_coefficient=draw(st.sampled_from([0.0, 0.6, 0.87, 0.95, 0.96])))
+    moved = replace(CALIBRATED[0], of_its_sd=draw(st.sampled_from([0.4, -2.9, 3.1, -7.0])))
+    if draw(st.integers(0, 9)) == 0:
+        records = made.records
+        rows = np.arange(len(records)) < 5
+        few = {name: np.where(rows, values, np.nan) for name, values in list(records.measured.items())[:1]}
+        made = replace(made, records=replace(records, measured=few))
+    names = [" + ".join(cause.effect for cause in causes)] if causes else []
+    rivals = draw(st.lists(st.sampled_from(RIVALS), unique_by=lambda item: item.causes, max_size=3)) if is_found else []
+    points = (
+        replace(POINT, separates=(names[0], "sensor_drift"), needed=draw(st.sampled_from([1, 2, 3, 40])))
+        if names
+        else None
+    )
+    return replace(
+        made,
+        causes=tuple(causes), remainder=remainder, alternatives=tuple(rivals), calibrated=(moved,),
+        wrong=(replace(made.wrong[0], findings=tuple(found), noise=noise), made.wrong[1]),
+        p_any=draw(st.sampled_from([0.003, 0.02] if is_found else [None, 0.003, 0.1, 0.19, 0.2, 0.5, 1.0])),
+        ranking=(Alternative(tuple(cause.effect for cause in causes), 0, 0), DRIFTING),
+        next=(points, points) if points is not None and rivals and draw(st.booleans()) else (),
+        ties=(TIE,) if rivals and draw(st.booleans()) else (),
+    )  # fmt: skip
+
+
+def sheet_text(made: Diagnosis) -> str:
+    """What the chapters of the sheet say, without their figures."""
+    said = []
+    for chapter in diagnosis_chapters(made, NoFigures()):
+        for block in chapter.blocks:
+            if isinstance(block, TableView):
+                said += [block.note, *(" | ".join(row) for row in block.rows)]
+            else:
+                said.append(block.text)
+    return "\n".join(said)
+
+
+def open_names(made: Diagnosis) -> set[frozenset[str]]:
+    """Every explanation that is left, each under all its names: worked out anew, by sets."""
+    found = []
+    if made.causes or made.remainder:
+        own = [{cause.effect, *cause.same_as} for cause in made.causes]
+        found.append([*own, {"something"}] if made.remainder else own)
+    for rival in made.alternatives:
+        other = ["something over " + ",".join(rival.depends_on) if each == "unknown" else each for each in rival.causes]
+        found.append([{each, *rival.same_as.get(each, ())} for each in other])
+    return {frozenset(names) for groups in found for names in product(*groups)}
+
+
+def is_doubtful(made: Diagnosis) -> bool:
+    """Whether something on the sheet speaks against "nothing": by the figures alone."""
+    (first, _) = made.wrong
+    return (
+        made.records.readings < 8
+        or made.p_any is None
+        or made.p_any < 0.2
+        or any(item not in [FINDINGS[name] for name in HARMLESS] for item in first.findings)
+        or first.noise.ar_coefficient >= 0.95
+        or abs(made.calibrated[0].of_its_sd) > 3
+    )
+
+
+def expected(made: Diagnosis) -> str:
+    """The verdict that this state asks for."""
+    left = open_names(made)
+    if not left:
+        return "undecided" if is_doubtful(made) else "none"
+    if all(name.startswith("something") for names in left for name in names):
+        return "unknown"
+    return "named" if len(left) == 1 else "one_of"
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@given(states())
+def test_headline_terminal_sheet_and_json_say_one_thing(made: Diagnosis) -> None:
+    document, verdict, left = diagnosis_document(made), expected(made), open_names(made)
+    said = f"{verdict_word(made)}. {' '.join(headline(made))}"
+    terminal = re.sub(r"\s+", " ", "\n".join(report(made, Path("runs/x"))))
+    everything = "\n".join([said, terminal, sheet_text(made), _of_diagnosis(document, "x").verdict]).lower()
+    assert document["verdict"] == verdict
+    assert said in terminal
+    assert {frozenset(names) for names in document["explanations"]} == {
+        frozenset("unknown" if name == "something" else name.replace("something over ", "unknown:") for name in names)
+        for names in left
+    }
+    assert document["unique"] is (verdict == "none" or len(left) == 1)
+    assert bool(document["undecided"]) is (verdict == "undecided")
+    assert ("nothing found" in everything) is (verdict == "none")
+    assert ("what is left is noise" in everything) is (verdict == "none")
+    sure = ("no other explanation", "nothing left to separate", "; unique", "is unique", "cause named")
+    assert verdict == "named" or not [words for words in sure if words in everything]
+    _demand_all_named(made, said, document["explanations"])
+    _demand_true_proposals(made, said, everything)
+
+
+def _demand_all_named(made: Diagnosis, said: str, explanations: Sequence[Sequence[str]]) -> None:
+    """Of several explanations the headline names every one, and their number."""
+    if made.verdict == "one_of":
+        assert re.match(rf"One of {len(explanations)} (causes|explanations); this record cannot say which\.", said)
+        assert not [names for names in explanations if together(names) not in said]
+
+
+def _demand_true_proposals(made: Diagnosis, said: str, everything: str) -> None:
+    """What is said to separate passes the limit with the points there are; else their number is said."""
+    if made.next:
+        pair = " from ".join(spoken(name) for name in made.next[0].separates)
+        suffices = made.next[0].needed <= len(made.next)
+        assert (f"separates {spoken(made.next[0].separates[0])}" in everything) is False or suffices
+        assert ("points together separate" in said or "it separates" in said) is suffices
+        assert (f"{made.next[0].needed} points like" in said) is not suffices
+        assert pair.split(" + ")[0] in said
+    if made.ties:
+        assert "a fact from elsewhere does" in said
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_every_sample_has_the_verdict_of_its_name(name: str) -> None:
+    words = {"ambiguous": "one_of", "remainder": "named"}
+    assert SAMPLES[name]().verdict == words.get(name, name)
+
+
+def test_an_unknown_at_its_bound_and_an_input_far_off_are_in_the_headline() -> None:
+    """The expansion may be 20 um/(m*K) at the most; the radius moved by 4 of its standard deviations."""
+    (unknown,) = HEATING.unknowns
+    at_end = replace(HEATING, unknowns=(replace(unknown, value=20e-6, low=18e-6, high=20e-6),))
+    said = " ".join(headline(replace(named(), causes=(at_end,), calibrated=(replace(CALIBRATED[0], of_its_sd=4.0),))))
+    assert "lies at the bound that is declared for it" in said
+    assert "radius had to move by 4 standard deviations of its tolerance" in said
+    quiet = " ".join(headline(named()))
+    assert "bound" not in quiet
+    assert "had to move" not in quiet
