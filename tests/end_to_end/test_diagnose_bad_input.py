@@ -189,13 +189,23 @@ def test_what_never_changed_is_not_excited(desk: Path, press: Columns) -> None:
     assert "slider inertia" in found.answer.out
 
 
-def test_rows_that_repeat_are_kept_once(desk: Path, press: Columns, plain: Diagnosed) -> None:
-    rows = [*range(10), 4, 4, 9, *range(10, 90), 0]
+def test_a_block_that_repeats_is_read_once(desk: Path, press: Columns, plain: Diagnosed) -> None:
+    rows = [*range(50), *range(30, 50), *range(50, 90)]
     found = diagnose_here(desk, "repeated", text_of(taken(press, rows)))
-    assert said(found, "4 rows repeat an earlier one in every cell and are left out")
-    left = [{"reason": "repeats an earlier row in every cell", "lines": [12, 13, 14, 95]}]
-    assert found.document["files"] == [{"file": "repeated.csv", "in_file": 94, "used": 90, "left_out": left, "runs": 1}]
+    reason = "in a block that repeats an earlier one in every cell, times included"
+    assert said(found, f"20 rows are left out: {reason}")
+    left = [{"reason": reason, "lines": list(range(52, 72))}]
+    assert found.document["files"] == [
+        {"file": "repeated.csv", "in_file": 110, "used": 90, "left_out": left, "runs": 1}
+    ]
     same_findings(found.document, plain.document)
+
+
+def test_one_row_many_times_names_nothing(desk: Path, press: Columns) -> None:
+    """A gauge that stands still: 80 times the same row are 80 readings, and no cause."""
+    found = diagnose_here(desk, "still", text_of(taken(press, [7] * 80)))
+    assert found.document["rows"] == 80
+    assert found.document["verdict"] in {"none", "undecided"}
 
 
 def test_rows_out_of_order_give_the_identical_answer(desk: Path, press: Columns, plain: Diagnosed) -> None:

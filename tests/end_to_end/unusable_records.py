@@ -51,10 +51,6 @@ REFUSED: dict[str, tuple[Change, Sequence[str]]] = {
         lambda press: "",
         ["m.csv:1: is empty; the first line of a table holds the names, with units such as 'load [N]'"],
     ),
-    "one row many times": (
-        lambda press: text_of(taken(press, [7] * 80)),
-        [f"m.csv: one row can be used; {NEEDED} (79 rows repeat an earlier one in every cell and are left out)"],
-    ),
     "a column of NaN": (
         lambda press: text_of({**press, HEIGHT: ["NaN"] * 90}),
         ["m.csv:1: column 'slider_position' holds no value in any row; fill it or leave it out"],

@@ -299,10 +299,9 @@ def test_the_faults_of_all_files_are_said_at_once(refused: Refused) -> None:
 
 
 def test_too_few_rows_say_where_the_others_are(refused: Refused) -> None:
-    rows = "load [N],depth [um]\n1,1\n1,1\n2,2\n,3\n"
+    rows = "load [N],depth [um]\n1,1\n2,2\n,3\n"
     (sentence,) = refused(PIN_WEAR, rows)
     assert sentence.startswith("a.csv: two rows can be used; a diagnosis needs 3 rows")
-    assert "1 row repeats an earlier one" in sentence
     assert "1 row is left out where 'load' is empty" in sentence
     assert refused(PIN_WEAR, "depth [um]\n1\n", "depth [um]\n2\n") == [f"the files hold two rows together; {NEEDED}"]
 
@@ -338,12 +337,34 @@ def test_rows_that_all_fail_hint_at_the_unit(refused: Refused) -> None:
 # What is tidied, counted and said
 
 
-def test_identical_rows_are_kept_once(read: Read) -> None:
+def test_rows_that_are_alike_are_real_repeats(read: Read) -> None:
+    """A gauge that shows whole micrometres repeats itself: three of eight rows stand there twice, and all count."""
     text = "load [N],depth [um],who\n100,1,me\n100,1.0,me\n100,1,you\n100,,me\n100,,me\n1e2,1,me\n100,-0,me\n100,0,me\n"
     records = read(PIN_WEAR, text)
-    assert records.notes[0] == "4 rows repeat an earlier one in every cell and are left out"
-    assert said(records, "nothing was measured") == ["1 row is left out where nothing was measured"]
-    assert records.lines.tolist() == [2, 4, 8]
+    assert said(records, "nothing was measured") == ["2 rows are left out where nothing was measured"]
+    assert records.lines.tolist() == [2, 3, 4, 7, 8, 9]
+
+
+@pytest.mark.parametrize(
+    ("times", "left_out"),
+    [
+        ("1 2 3 4 2 3 4 5", [6, 7, 8]),  # a logger wrote its last three rows again
+        ("1 2 3 4 1 2 3 4", [6, 7, 8, 9]),  # a file pasted behind itself
+        ("1 2 3 3 1 2 3 3", [6, 7, 8, 9]),  # with two rows alike inside
+        ("1 2 3 4 3 4 5 6", []),  # two rows may be chance
+        ("1 1 1 2 2 2 3 3", []),  # a coarse clock and a coarse gauge
+        ("2 2 2 1 2 2 2 3", []),  # no block: its clock stands still
+        ("1 2 3 9 1 2 4 3", []),  # in another order
+    ],
+)
+def test_a_block_of_rows_that_was_written_twice_is_left_out(read: Read, times: str, left_out: list[int]) -> None:
+    """The depth is that of the time; another run behind show that nothing else is touched."""
+    rows = [f"a,{time},{int(time) // 2},x" for time in times.split()]
+    more = [f"b,{time},{time % 4},y" for time in range(30)]
+    records = read(PIN_WEAR, "\n".join(["run,time [h],depth [um],who", *rows, *more, ""]))
+    assert sorted({*range(2, 40)} - {*records.lines.tolist()}) == left_out
+    words = f"{len(left_out)} rows are left out: in a block that repeats an earlier one in every cell, times included"
+    assert said(records, "repeat") == ([words] if left_out else [])
 
 
 def test_rows_are_sorted_by_time_inside_each_run(read: Read) -> None:

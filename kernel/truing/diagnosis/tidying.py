@@ -1,4 +1,4 @@
-"""Rows of one file put in order: each row once, sorted by time inside its run, angles in one piece, histories made.
+"""Rows of one file put in order: no block twice, sorted by time inside each run, angles in one piece, histories made.
 
 Nothing is done in silence: every function returns what it did as sentences.
 """
@@ -25,13 +25,16 @@ TIME = "time"
 FEW_DEGREES = 90.0
 SWEEPING = 0.95
 MOST_JUMPS = 0.25
+FEWEST_IN_BLOCK = 3
+"""Fewer rows that repeat earlier ones may be chance where the gauge is coarse."""
+BLOCK_AGAIN = "in a block that repeats an earlier one in every cell, times included"
 Tidied = tuple[DataFile, list[str]]
 
 
 def tidy(data: DataFile, model: Model[Any, Any]) -> Tidied:
     """Return the rows of a file in order, and what was done to them, one sentence each."""
     notes: list[str] = []
-    for step in (each_row_once, in_time_order):
+    for step in (each_block_once, in_time_order):
         data, said = step(data)
         notes += said
     data, said = in_one_piece(data, model)
@@ -52,31 +55,45 @@ def numbered(labels: Iterable[Any]) -> tuple[NDArray[np.intp], list[Any]]:
     return np.array(numbers, dtype=np.intp), list(known)
 
 
-def each_row_once(data: DataFile) -> Tidied:
-    """Keep the first of rows that are identical in every cell."""
+def each_block_once(data: DataFile) -> Tidied:
+    """Leave out blocks of rows that were written twice: where the clock goes back and the rows that follow are there.
+
+    A block has three rows or more over two times at the least, each equal in every cell, its time included, to the row
+    that follows in the earlier block. Single rows that are alike are real repeats of a coarse gauge, and are kept.
+    """
     import numpy as np
 
-    columns = [_as_numbers(values) for values in (data.runs, *data.columns.values())]
+    time, like = _time(data), _first_alike(data)
+    is_again = np.zeros(len(data), dtype=bool)
+    starts: Iterable[int] = (
+        [] if time is None else np.flatnonzero((np.diff(time) < 0) & (like[1:] <= np.arange(len(time) - 1))) + 1
+    )
+    for start in starts:
+        first = like[start]
+        rows = min(len(data) - start, start - first)
+        differ = np.flatnonzero(like[start : start + rows] != like[first : first + rows])
+        end = start + (int(differ[0]) if len(differ) else rows)
+        if time is not None and end - start >= FEWEST_IN_BLOCK and np.ptp(time[start:end]) > 0:
+            is_again[start:end] = True
+    if not is_again.any():
+        return data, []
+    again = counted(int(is_again.sum()), "row is", "rows are")
+    return data.without(is_again, BLOCK_AGAIN), [f"{again} left out: {BLOCK_AGAIN}"]
+
+
+def _first_alike(data: DataFile) -> NDArray[np.intp]:
+    """Return for each row the place of the first one that is equal in every cell."""
+    import numpy as np
+
+    columns = [_as_numbers(values).view(np.uint64) for values in (data.runs, *data.columns.values())]
     mixed = np.zeros(len(data), dtype=np.uint64)
-    for values in columns:
-        mixed = (mixed ^ values.view(np.uint64)) * np.uint64(0x9E3779B97F4A7C15)
+    for bits in columns:
+        mixed = (mixed ^ bits) * np.uint64(0x9E3779B97F4A7C15)
         mixed ^= mixed >> np.uint64(29)
     _, first, group = np.unique(mixed, return_index=True, return_inverse=True)
     like = first[group]
-    is_again = like != np.arange(len(data))
-    for values in columns:
-        bits = values.view(np.uint64)
-        is_again &= bits == bits[like]
-    if not is_again.any():
-        return data, []
-    again = counted(int(is_again.sum()), "row repeats", "rows repeat")
-    return data.without(is_again, "repeats an earlier row in every cell"), [
-        f"{again} an earlier one in every cell and {_is(is_again)} left out"
-    ]
-
-
-def _is(rows: NDArray[np.bool_]) -> str:
-    return "is" if int(rows.sum()) == 1 else "are"
+    is_alike = np.logical_and.reduce([bits == bits[like] for bits in columns])
+    return np.where(is_alike, like, np.arange(len(data)))
 
 
 def _as_numbers(values: NDArray[Any]) -> NDArray[np.float64]:
