@@ -7,6 +7,7 @@ import inspect
 from collections.abc import Mapping
 from typing import Any
 
+from truing.declare.builtin import may_stand
 from truing.declare.fields import Axis, Found, Given, InputField, Loaded, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary
 from truing.declare.published import Published
@@ -18,6 +19,7 @@ from truing.kernel import Offer
 def description(offer: Offer) -> dict[str, Any]:
     """Return everything the model declares, as one JSON-ready document."""
     model = offer.model
+    built_in = [effect for name, effect in model.known_effects.items() if name not in model.effects]
     return {
         "name": offer.name,
         "title": model.title,
@@ -39,7 +41,8 @@ def description(offer: Offer) -> dict[str, Any]:
         "effects": [_effect(effect) for effect in model.effects.values()],
         "conditions": [_condition(item) for item in model.conditions.values()],
         "built_in": {
-            "effects": [_effect(item) for name, item in model.known_effects.items() if name not in model.effects],
+            "effects": [_effect(item) for item in built_in if not may_stand(item)],
+            "where_turned": [_effect(item) for item in built_in if may_stand(item)],
             "conditions": [
                 _condition(item) for name, item in model.known_conditions.items() if name not in model.conditions
             ],

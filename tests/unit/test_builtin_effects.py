@@ -34,6 +34,9 @@ from truing import (
     rows,
 )
 from truing.calculation import calculate
+from truing.diagnosis.candidates import candidates_of
+from truing.diagnosis.machine import machine_of
+from truing.diagnosis.reading import read_records
 from truing.errors import InputError, UsageError
 from truing.evaluate import effect_column, evaluate, evaluate_rows
 from truing.inputs_file import json_schema, setup_from_text
@@ -178,6 +181,45 @@ def test_temperatures_are_conditions_first_and_then_inputs() -> None:
     assert drifts == ["thermal_drift", "thermal_drift_of_oil"]
     assert model.known_effects["thermal_drift"].needs == (bearing,)
     assert "temperature" not in model.known_conditions
+
+
+@inputs
+class Warm(Shaft):
+    """The same shaft with a socket for a rise of temperature."""
+
+    rise: Float = given(0.0, "K")
+
+
+def test_a_rise_is_the_temperature_of_nothing() -> None:
+    model = replace(SHAFT, function=_warm)
+    assert "rise" in model.input_fields
+    assert [name for name in model.known_effects if name.startswith("thermal")] == ["thermal_drift"]
+    assert model.known_effects["thermal_drift"].reads == ("oil",)
+
+
+def _warm(shaft: Warm) -> Runout:
+    return runout(shaft)
+
+
+@pytest.mark.parametrize(
+    ("pitch", "offered"),
+    [("10 20 30 40 50 60", False), ("0 60 120 180 240 300", True), ("-40 300 -40 300 -40 300", True), (None, False)],
+)
+def test_the_wave_of_an_input_is_looked_for_where_a_record_turns_it_round(
+    tmp_path: Path, pitch: str | None, offered: bool
+) -> None:
+    """A pitch that differs from gear to gear is an angle, and turns nothing."""
+    cells = pitch.split() if pitch else ["7"] * 6
+    lines = ["turn [deg],pitch [deg],height_left [um]", *(f"{30 * at},{cell},{at}" for at, cell in enumerate(cells))]
+    file = tmp_path / "record.csv"
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    setup = default_setup(SHAFT, OFFER.origin)
+    records = read_records([file], OFFER, setup)
+    names = {candidate.name for candidate in candidates_of(machine_of(setup, records))}
+    assert "periodic_order" in names
+    assert ("periodic_order_of_pitch" in names) is offered
+    assert records.covariates["turn"].is_angle
+    assert records.covariates["pitch"].is_angle is offered
 
 
 def _hot(shaft: Shaft, *, lift: Float, bearing: Float) -> Shaft:

@@ -12,6 +12,8 @@ from truing.cli.load import find_offer
 from truing.cli.words import AsJson, Plugin
 from truing.describe import description
 
+TURNED = ("periodic_order_of_INPUT", "", "", "where a record turns an input round that is an angle")
+
 
 @verb
 def describe(
@@ -49,7 +51,8 @@ def _lines(said: dict[str, Any]) -> Iterator[str]:
         "Effects": [_effect_row(item) for item in said["effects"]],
         "Conditions": [_condition_row(item) for item in said["conditions"]],
         "Built-in effects, on the reading of each RESULT": [
-            _built_in_row(item, [one["name"] for one in said["results"]]) for item in said["built_in"]["effects"]
+            *(_built_in_row(item, [one["name"] for one in said["results"]]) for item in said["built_in"]["effects"]),
+            *([_row(*TURNED)] if said["built_in"]["where_turned"] else []),
         ],
         "Built-in conditions": [_condition_row(item) for item in said["built_in"]["conditions"]],
         "Objectives": [_row(*_objective_words(item), "", "") for item in said["objectives"]],

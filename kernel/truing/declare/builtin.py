@@ -12,7 +12,9 @@ an axis the same value acts everywhere. A model's own effect of the same name ta
 - ``step``: reading + RESULT where time is at least RESULT_after
 
 Time, temperature and angle are what the model has of the kind, else conditions of the kernel. Of several temperatures
-or angles the first has the plain name, the others are ``thermal_drift_of_NAME`` and ``periodic_order_of_NAME``.
+or angles the first has the plain name, the others are ``thermal_drift_of_NAME`` and ``periodic_order_of_NAME``. An
+input that is an angle and over which no study runs may turn or not (a helix angle does not): its wave is looked for
+only in records that turn it round.
 """
 
 from __future__ import annotations
@@ -96,6 +98,12 @@ def builtin_effects(model: Model[Any, Any]) -> dict[str, Effect[Any, Any]]:
         *_made(_STEP, results, time_of(model)),
     ]
     return {effect.name: effect for effect in made if effect.name not in model.effects}
+
+
+def may_stand(effect: Effect[Any, Any]) -> bool:
+    """Whether an effect follows an input that is an angle, of which only a record can tell that it turns."""
+    reading = effect.function
+    return isinstance(reading, Reading) and reading.seen is not None and reading.seen.may_stand
 
 
 def _gauged(model: Model[Any, Any]) -> Iterator[ResultField]:

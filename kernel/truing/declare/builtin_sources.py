@@ -10,7 +10,7 @@ from truing.declare.batch import column
 from truing.declare.fields import InputField, ResultField, read
 from truing.declare.sources import SINCE_START, Condition, Tolerance
 from truing.declare.specs import Axis, Float
-from truing.units.names import PURE
+from truing.units.names import LEVELS, PURE
 
 if TYPE_CHECKING:
     from truing.declare.model import Model
@@ -24,7 +24,8 @@ ANGLE = Condition("angle", "deg", note="of what turns")
 class Seen:
     """A quantity that an effect of the kernel looks at: a condition, an input, a series or an axis of the results.
 
-    ``zero`` is where effects vanish, SI. A series or an axis is seen by results along one of ``axes`` alone.
+    ``zero`` is where effects vanish, SI. A series or an axis is seen by results along one of ``axes`` alone. An angle
+    ``may_stand`` where only a record can tell that it turns: an input such as a helix angle does not.
     """
 
     name: str
@@ -33,6 +34,7 @@ class Seen:
     zero: float = 0.0
     condition: Condition | None = None
     axes: frozenset[str] = frozenset()
+    may_stand: bool = False
 
     def by(self, item: ResultField) -> bool:
         """Whether a result can be set against it, value by value."""
@@ -63,24 +65,31 @@ def time_of(model: Model[Any, Any]) -> list[Seen]:
 
 
 def temperatures(model: Model[Any, Any]) -> list[Seen]:
-    """Return the temperatures: conditions first, then inputs (about their default), else the kernel's condition."""
-    numbers = [seen for seen in _inputs(model, "K") if seen.place == "input"]
-    return [*_conditions(model, "K"), *numbers] or _own(model, TEMPERATURE)
+    """Return the temperatures: conditions first, then inputs (about their default), else the kernel's condition.
+
+    An input in a unit of differences (K: a rise, a gradient) is the temperature of nothing.
+    """
+    fields = model.input_fields
+    levels = [seen for seen in _inputs(model, "K") if seen.place == "input" and fields[seen.name].unit in LEVELS]
+    return [*_conditions(model, "K"), *levels] or _own(model, TEMPERATURE)
 
 
 def angles(model: Model[Any, Any]) -> list[Seen]:
     """Return the angles, the likeliest to turn first.
 
-    That is what a study of the model runs over, then conditions, then inputs on which no tolerance acts, then axes of
-    results; the kernel's condition where there is none.
+    That is what a study of the model runs over, then conditions, then series and axes of results; the kernel's
+    condition where there is none. Of other inputs, on which no tolerance acts, only a record can say that they turn.
     """
     swept = [getattr(study, "over", "") for study in model.studies]
     held = {name for source in model.errors if isinstance(source, Tolerance) for name in source.on}
     inputs = list(_inputs(model, "deg"))
     conditions = list(_conditions(model, "deg"))
     first = [seen for name in swept for seen in (*inputs, *conditions) if seen.name == name]
-    others = [*conditions, *(seen for seen in inputs if seen.name not in held), *_result_axes(model, "deg")]
-    return list({seen.name: seen for seen in (*first, *others)}.values()) or _own(model, ANGLE)
+    series = [seen for seen in inputs if seen.place == "series" and seen.name not in held]
+    turning = [*first, *conditions, *series, *_result_axes(model, "deg")] or _own(model, ANGLE)
+    known = {seen.name for seen in turning}
+    free = [seen for seen in inputs if seen.place == "input" and seen.name not in {*held, *known}]
+    return [*{seen.name: seen for seen in turning}.values(), *(replace(seen, may_stand=True) for seen in free)]
 
 
 def _own(model: Model[Any, Any], condition: Condition) -> list[Seen]:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from truing.declare.builtin import may_stand
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.data_file import Part, measurable
 from truing.diagnosis.joining import Joined
+from truing.diagnosis.readings import reading_of
 from truing.diagnosis.records import Covariate, Role
 from truing.diagnosis.tidying import TIME, counted, is_angle
 from truing.errors import Fault, InputError
@@ -34,6 +37,7 @@ def covariates_of(joined: Joined, setup: Setup) -> tuple[dict[str, Covariate], l
 
     data = joined.data
     found: dict[str, Covariate] = {}
+    turning = _turning(setup)
     for part, usual in _ROLES.items():
         for name in data.named(part):
             if part == "word" and setup.model.input_fields[name].kind != "integer":
@@ -41,11 +45,20 @@ def covariates_of(joined: Joined, setup: Setup) -> tuple[dict[str, Covariate], l
             values, unit = data.columns[name].astype(float), _unit(name, joined, setup)
             if np.isfinite(values).any():
                 role: Role = "time" if name == TIME and _is_time(unit) else usual
-                found[name] = Covariate(name, values, unit, role, is_angle(unit))
+                item = Covariate(name, values, unit, role, is_angle(unit))
+                is_design = part in {"input", "series"} and name not in turning and not item.goes_round
+                found[name] = replace(item, is_angle=False) if is_design else item
     if not any(item.role == "time" for item in found.values()):
         name = ORDER if ORDER not in found else "row order"
         found[name] = Covariate(name, np.arange(len(joined), dtype=float), "", "order")
     return found, [*_of_others(joined, setup, found), *_of_constants(found)]
+
+
+def _turning(setup: Setup) -> set[str]:
+    """Return the names of what turns in any record: what the model sweeps, and conditions and axes that are angles."""
+    effects = [effect for name, effect in setup.model.known_effects.items() if name.startswith("periodic_order")]
+    known = [effect for effect in effects if reading_of(effect) is not None and not may_stand(effect)]
+    return {name for effect in known for name in (*effect.reads, *(need.name for need in effect.needs))}
 
 
 def _unit(name: str, joined: Joined, setup: Setup) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import pi
 from typing import TYPE_CHECKING, Literal
 
 from truing.measurements.row_count import RowCount
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 Role = Literal["input", "condition", "time", "other", "order"]
 
 
+FULL_TURN = 1.5 * pi
+"""An angle that covers so much of a turn goes round: waves describe it better than powers."""
 FEWEST_READINGS = 8
 """Fewer readings tell no cause from chance."""
 
@@ -26,6 +29,7 @@ class Covariate:
     """Something the error may depend on: one value per row, in SI, NaN where missing.
 
     ``role`` is "order" for the place in the record where no time was measured. ``unit`` is the one to print it in.
+    ``is_angle`` where it is one of something that turns, or may.
     """
 
     name: str
@@ -33,6 +37,14 @@ class Covariate:
     unit: str
     role: Role
     is_angle: bool = False
+
+    @property
+    def goes_round(self) -> bool:
+        """Whether it covers nearly a whole turn, as an angle of a design never does."""
+        import numpy as np
+
+        finite = self.values[np.isfinite(self.values)]
+        return len(finite) > 0 and float(np.ptp(finite)) >= FULL_TURN
 
     @property
     def is_constant(self) -> bool:

@@ -26,7 +26,6 @@ DEGREE = 4
 ORDERS = range(3, 17)
 CYCLES = (*(half / 2 for half in range(3, 13)), *range(7, 13))
 PLACES = 50
-FULL_TURN = 1.5 * pi
 
 
 @dataclass(frozen=True)
@@ -182,9 +181,7 @@ def _scaled(item: Covariate) -> tuple[str, Of]:
 
 def _turns(item: Covariate) -> bool:
     """Tell whether an angle covers so much of a turn that waves describe it better than powers."""
-    import numpy as np
-
-    return item.is_angle and float(np.nanmax(item.values) - np.nanmin(item.values)) >= FULL_TURN
+    return item.is_angle and item.goes_round
 
 
 def _main_terms(maker: _Maker, item: Covariate) -> Iterator[int]:
