@@ -52,7 +52,7 @@ SCHEMA = _object(
     rows=COUNT,
     runs=COUNT,
     wrong=_by_name(WRONG),
-    verdict={"enum": ["none", "named", "unknown"]},
+    verdict={"enum": ["none", "undecided", "named", "one_of", "unknown"]},
     causes={"type": "array", "items": _object(effect=TEXT, unknowns=_by_name(UNKNOWN), same_as=NAMES)},
     unique={"type": "boolean"},
     alternatives={"type": "array", "items": _object(causes=NAMES, behind={"type": "number", "minimum": 0})},
@@ -81,7 +81,7 @@ def demand_contract(document: Document, described: Document) -> None:
     jsonschema.validate(document, SCHEMA)
     _demand_agreement(document)
     units = {item["name"]: item["unit"] for item in described["results"]}
-    known = [*described["effects"], *described["built_in"]["effects"]]
+    known = [*described["effects"], *described["built_in"]["effects"], *described["built_in"]["where_turned"]]
     effects = {item["name"]: {one["name"]: one["unit"] for one in item["unknowns"]} for item in known}
     assert set(document["wrong"]) == set(document["measured"]) == set(document["gain"]) - {"stability"}
     assert set(document["measured"]) <= set(units)
@@ -112,8 +112,13 @@ def _demand_result(name: str, document: Document, unit: str) -> None:
 def _demand_agreement(document: Document) -> None:
     """What is said in one place follows from another."""
     has_cause, has_remainder = bool(document["causes"]), document["remainder"] is not None
-    assert document["verdict"] == ("named" if has_cause else "unknown" if has_remainder else "none")
-    assert document["unique"] is (not document["alternatives"])
+    is_found, count = has_cause or has_remainder, len(document["explanations"])
+    assert document["verdict"] in ({"named", "one_of", "unknown"} if is_found else {"none", "undecided"})
+    assert is_found is (count > 0)
+    assert has_cause or document["verdict"] != "named"
+    assert document["verdict"] not in {"named", "one_of"} or (document["verdict"] == "named") is (count == 1)
+    assert document["unique"] is (count == 1 or document["verdict"] == "none")
+    assert document["p_any"] >= 0.2 or document["verdict"] != "none"
     if has_remainder:
         assert set(document["remainder"]["depends_on"]) <= set(document["covariates"])
     named = [cause["effect"] for cause in document["causes"]]

@@ -157,7 +157,7 @@ def test_diagnosed_again_nothing_is_left(desk: Path, found: Diagnosed) -> None:
     answer = calc_here(desk, *command)
     assert (answer.code, answer.err) == (0, "")
     document = read_document(desk / "again")
-    assert (document["verdict"], document["causes"], document["remainder"]) == ("none", [], None)
+    assert (document["explanations"], document["causes"], document["remainder"]) == ([], [], None)
     assert document["wrong"][POSITION]["rmse"]["value"] < 1.2 * document["wrong"][POSITION]["noise_floor"]["value"]
 
 

@@ -62,7 +62,7 @@ def asked(case: Case, document: Mapping[str, Any]) -> dict[str, Any] | None:
 
 def open_rival(case: Case, document: Mapping[str, Any]) -> tuple[str, ...] | None:
     """The names of the first registered explanation beside the truth in an answer that leaves both open."""
-    if case.shape is not None or not case.truth or document["unique"] or document["verdict"] != "named":
+    if case.shape is not None or not case.truth or not document["alternatives"] or not document["causes"]:
         return None
     others = document["alternatives"][:FIRST]
     if is_exact(case, document):

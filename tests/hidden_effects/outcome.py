@@ -30,7 +30,7 @@ def outcome(case: Case, answer: Answer) -> dict[str, Any]:
         "in_set": exact or any(is_alternative(case, other) for other in document["alternatives"][:FIRST]),
         "extra": has_extra(case, document),
         "wrong_name": has_wrong_name(case, document),
-        "to_truth": None if exact or document["verdict"] == "none" else to_truth(case, document),
+        "to_truth": None if exact or not document["explanations"] else to_truth(case, document),
         "covered": covered(case, document) if exact else {},
         "held_out": held_out(case, answer.predicted),
         "gain": gains(case, document, answer.predicted),
@@ -54,10 +54,11 @@ def about(case: Case) -> dict[str, Any]:
 
 def essentials(document: Document) -> dict[str, Any]:
     """What the table and whoever looks into a case need of the document."""
-    kept = ("verdict", "causes", "unique", "p_any", "p_second")
+    kept = ("verdict", "causes", "p_any", "p_second")
     remainder = document["remainder"] or {}
     return {
         **{name: document.get(name) for name in kept},
+        "unique": not document["alternatives"],  # names of one curve are one explanation here
         "alternatives": [
             {name: other.get(name) for name in ("causes", "depends_on", "behind", "separation")}
             for other in document["alternatives"][:8]
@@ -98,9 +99,9 @@ def is_exact(case: Case, document: Document) -> bool:
     """Whether the verdict is the truth, no more and no less."""
     causes, remainder = document["causes"], document["remainder"]
     if case.stratum == "none":
-        return bool(document["verdict"] == "none")
+        return not document["explanations"]
     if case.shape is None:
-        return document["verdict"] == "named" and remainder is None and are_named(true_candidates(case), causes)
+        return bool(causes) and remainder is None and are_named(true_candidates(case), causes)
     own = [cause for cause in causes if cause["effect"] != case.shape.also]
     has_shape = remainder is not None and set(case.shape.depends_on) <= set(remainder["depends_on"])
     has_other_name = len(own) < len(causes) and remainder is None

@@ -11,6 +11,7 @@ Outcome = Mapping[str, Any]
 Chosen = Callable[[Outcome], bool]
 VISIBLE = 25.0
 APART = 10.0
+NOTHING = ("none", "undecided")
 KINDS = ("gaussian", "heavy", "autocorrelated", "growing")
 
 
@@ -122,7 +123,7 @@ def _exact(outcomes: Sequence[Outcome], which: str) -> list[bool]:
 
 def honesty(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
     """How often something false is stated, and how many explanations are left open."""
-    stated = [one for one in outcomes if one["unique"] and one["verdict"] != "none" and one["stratum"] != "none"]
+    stated = [one for one in outcomes if one["unique"] and one["verdict"] not in NOTHING and one["stratum"] != "none"]
     wrong = [is_unique_and_wrong(one) for one in stated]
     yield rate("stated unique and wrong (lambda to the truth >= 10)", wrong, "<= 1.5", "<= 0.7")
     named = [is_unique_and_wrong(one) and one["wrong_name"] for one in stated]
@@ -131,7 +132,7 @@ def honesty(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
     for kind in KINDS:
         held = [hit for one in outcomes if one["noise"] == kind for hit in one["covered"].values()]
         yield rate(f"95 % intervals cover, {kind}", held, "90-98", "93-97")
-    open_ones = [one for one in outcomes if one["verdict"] != "none" and not one["unique"]]
+    open_ones = [one for one in outcomes if one["verdict"] not in NOTHING and not one["unique"]]
     counts = [float(one["alternative_count"]) for one in open_ones]
     yield quantile("alternatives of an ambiguous verdict, median", counts, 0.5, "<= 3", "<= 2")
 
@@ -158,7 +159,7 @@ def gain(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
     stated = [
         one
         for case in outcomes
-        if case["verdict"] != "none" and case["stratum"] != "none"
+        if case["verdict"] not in NOTHING and case["stratum"] != "none"
         for one in case["gain"].values()
         if one["nested_before"] and one["nested_after"] and abs(log(one["held_after"] / one["held_before"])) > 0.01
     ]

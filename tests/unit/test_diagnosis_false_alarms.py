@@ -72,5 +72,7 @@ def test_a_few_rows_name_nothing(tmp_path: Path, rows: int) -> None:
     for seed in range(4):
         columns = {name: values[:rows] for name, values in nothing_wrong(NOISES[0], seed).items()}
         asked = Asked(drive_model(), seed=seed)
-        alarms += diagnose(asked.setup, asked.records(tmp_path, columns)).verdict != "none"
+        found = diagnose(asked.setup, asked.records(tmp_path, columns))
+        alarms += found.verdict not in {"none", "undecided"}
+        assert rows >= 8 or found.verdict == "undecided"
     assert alarms <= (0 if rows < 8 else most(4, PERMITTED))

@@ -211,7 +211,7 @@ def test_twenty_thousand_rows_are_named(tmp_path: Path) -> None:
     error = 0.02 * (bench.temperature - 20) + np.random.default_rng(7).normal(0, 1, len(bench))
     asked = Asked(drive_model(("clearance", "lead_error", "thermal_growth")))
     found = asked.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
-    assert found.verdict == "named"
+    assert found.verdict == "one_of"  # growth, or a drift of the gauge with temperature
     assert name_sets(found) == [{"thermal_growth", "thermal_drift"}]
     (size,) = found.causes[0].unknowns
     assert size.low is not None

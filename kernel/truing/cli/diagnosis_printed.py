@@ -155,7 +155,7 @@ def _sight(diagnosis: Diagnosis) -> Iterator[str]:
     """Say what this data could not show, and the smallest size of what it could."""
     named = {cause.effect for cause in diagnosis.causes}
     others = [item for item in diagnosis.seen if item.name.partition(".")[0] not in named]
-    for sight in ("not excited", "hidden in the tolerances"):
+    for sight in ("not excited", "cannot be fitted", "hidden in the tolerances"):
         found = [_blind(item) for item in others if item.sight == sight]
         if found:
             more = "; the sheet lists all" if len(found) > MOST_SEEN else ""

@@ -8,12 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
+from truing.declare.builtin import may_stand
 from truing.declare.sources import Effect, Unknown
 from truing.diagnosis.columns import Values, stored
 from truing.diagnosis.machine import Machine, predict
-from truing.diagnosis.readings import gauged, reading_curve
+from truing.diagnosis.readings import gauged, reading_curve, reading_of
+from truing.gauge import read_by_gauge
 from truing.setup import SwitchedOn
 from truing.units import to_si
 
@@ -95,18 +98,61 @@ def candidates_of(machine: Machine) -> list[Candidate]:
             shapes = tuple(unknown for unknown in unknowns if not unknown.is_amplitude)
             own = effect.name in model.effects
             found.append(Candidate(effect.name, effect, amplitudes, shapes, is_kernel=not own, order=order))
-    return [item for item in found if not item.is_kernel or gauged(item, machine.records.measured)]
+    return [item for item in found if not item.is_kernel or _is_offered(item, machine)]
+
+
+def _is_offered(candidate: Candidate, machine: Machine) -> bool:
+    """Whether an effect of the kernel makes sense here: its result is measured, and what is to turn goes round."""
+    covariates = machine.records.covariates
+    if not gauged(candidate, machine.records.measured):
+        return False
+    driven = (name in covariates and covariates[name].goes_round for name in candidate.effect.reads)
+    return not may_stand(candidate.effect) or any(driven)
 
 
 def curve_at(
     machine: Machine, candidate: Candidate, amplitudes: Mapping[str, float], shape: Mapping[str, float]
 ) -> Curve:
     """Return the exact change of every measured result by an effect with these unknowns, SI, shape (n,)."""
-    before = next((item.values for item in machine.start.effects if item.effect.name == candidate.name), {})
-    values = {unknown.name: _rest(unknown) for unknown in candidate.effect.unknowns if unknown.name not in before}
-    on = SwitchedOn(candidate.effect, {**values, **shape, **amplitudes})
+    on = _switched_on(machine, candidate, {**shape, **amplitudes})
     changed = predict(machine.start.with_effects([on]), machine.records)
     return {name: changed[name] - machine.base[name] for name in machine.records.measured}
+
+
+def _switched_on(machine: Machine, candidate: Candidate, stated: Mapping[str, float]) -> SwitchedOn:
+    """Return an effect with some of its unknowns; the others are at rest, or as they are in the model already."""
+    before = next((item.values for item in machine.start.effects if item.effect.name == candidate.name), {})
+    values = {unknown.name: _rest(unknown) for unknown in candidate.effect.unknowns if unknown.name not in before}
+    return SwitchedOn(candidate.effect, {**values, **stated})
+
+
+def works(machine: Machine, curve: Curve) -> bool:
+    """Whether the model does not fail with an effect in any row that was measured."""
+    import numpy as np
+
+    measured = machine.records.measured
+    known = {name: np.isfinite(machine.base[name]) & np.isfinite(values) for name, values in measured.items()}
+    return all(bool(np.isfinite(np.asarray(values)[known[name]]).all()) for name, values in curve.items())
+
+
+def failure_of(machine: Machine, candidate: Candidate) -> str:
+    """Return why the model fails with an effect that is hardly there, in some row that was measured; else nothing."""
+    import numpy as np
+
+    if reading_of(candidate.effect) is not None or stands_still(candidate, machine):
+        return ""
+    shape = {unknown.name: si_bounds(unknown)[0] for unknown in candidate.shapes}
+    measured = np.logical_or.reduce([np.isfinite(values) for values in machine.records.measured.values()])
+    for unknown in candidate.amplitudes:
+        for end in si_bounds(unknown):
+            setup = machine.start.with_effects([_switched_on(machine, candidate, {**shape, unknown.name: STEP * end})])
+            reasons = read_by_gauge(setup, machine.records.rows, tuple(machine.records.measured)).reasons if end else {}
+            row = next((row for row in sorted(reasons) if measured[row]), None)
+            if row is not None:
+                records = machine.records
+                place = f"{PurePath(records.files[records.file_of[row]]).name}:{records.lines[row]}"
+                return f"the model fails with it, in {place} as the first row: {reasons[row]}"
+    return ""
 
 
 def chord_at(machine: Machine, candidate: Candidate, size: float, shape: Mapping[str, float]) -> Curve:
@@ -140,7 +186,10 @@ def variants_of(
     place: int, candidate: Candidate, machine: Machine, shape: Mapping[str, float], scales: Mapping[str, float]
 ) -> list[Term]:
     """Return the terms of one shape: one, or two where an amplitude acts otherwise upward than downward."""
-    sided = [_sides(machine, candidate, unknown, shape) for unknown in candidate.amplitudes]
+    every = [_sides(machine, candidate, unknown, shape) for unknown in candidate.amplitudes]
+    sided = [[curve for curve in curves if works(machine, curve)] for curves in every]
+    if not all(sided):
+        return []
     bounds = [si_bounds(unknown) for unknown in candidate.amplitudes]
     names = [unknown.name for unknown in candidate.amplitudes]
     if len(sided) == 1 and len(sided[0]) == 2:
@@ -176,6 +225,8 @@ def _sides(machine: Machine, candidate: Candidate, unknown: Unknown, shape: Mapp
     step = STEP * max(-low, high)
     up = _slope(machine, candidate, unknown, shape, step) if high > 0 else None
     down = _slope(machine, candidate, unknown, shape, -step) if low < 0 else None
+    if up is not None and down is not None and works(machine, up) is not works(machine, down):
+        return [up if works(machine, up) else down]
     if up is None or down is None:
         return [up or down or {}]
     if not _differ(up, down):

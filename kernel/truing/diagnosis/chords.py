@@ -19,6 +19,7 @@ from truing.diagnosis.candidates import (
     si_bounds,
     stacked,
     stands_still,
+    works,
 )
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.readings import reading_of
@@ -111,7 +112,10 @@ def chord(
     low, high = one_side(candidate, size)
     near = sorted((size / reach, size * reach))
     side = max(low, near[0]), min(high, near[1])
-    column = TermColumn(chord_at(machine, candidate, size, shape), candidate.amplitudes[0].name, -1, *side)
+    curve = chord_at(machine, candidate, size, shape)
+    if not works(machine, curve):
+        return []
+    column = TermColumn(curve, candidate.amplitudes[0].name, -1, *side)
     return [replace(term, at=size) for term in made_term(place, [column], shape, scales)]
 
 

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 from truing.diagnosis.candidates import Term, si_bounds
 from truing.diagnosis.chords import one_side
 from truing.diagnosis.columns import MANY, in_blocks
-from truing.diagnosis.contest import Contest
+from truing.diagnosis.contest import Contest, names_of
 from truing.diagnosis.hypotheses import Hypothesis, Piece
 from truing.diagnosis.machine import Predicted, predict
 from truing.diagnosis.noise import SETTINGS, whiten
 from truing.diagnosis.slopes import Jacobian, white_directions
+from truing.errors import ConvergenceError
 from truing.evaluate import effect_column
 from truing.setup import Setup, SwitchedOn
 
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 LEVEL = 0.975
 FROM_BOUNDS = 0.03
 LARGEST_LEVERAGE = 0.95
+NEARER = 40
+"""So often a start at which the model fails is halved: what is left of it is rounding."""
 STEEPEST = 1e-12
 SPARING: Mapping[str, Any] = {"tr_solver": "lsmr", "tr_options": {"atol": 1e-13, "btol": 1e-13}}
 """Of many rows the fit makes no copies of its derivatives."""
@@ -205,10 +208,13 @@ def fit(contest: Contest, place: int) -> Fit:
     way: Mapping[str, Any] = {"bounds": (low, high), "x_scale": "jac", "xtol": 1e-10, "ftol": 1e-12}
     way = {**way, **(SPARING if contest.evidence.rows > MANY else {})}
     jacobian = Jacobian(fitter.parameters, residual, white_directions(contest, setting))
-    found = least_squares(residual, np.clip(start, low, high), jac=jacobian, **way)
+    start = _that_works(residual, np.clip(start, low, high))
+    found = least_squares(residual, start, jac=jacobian, **way)
     if jacobian.is_off(found.x):
         jacobian.is_exact = True
-        found = least_squares(residual, _inside(found.x, low, high), jac=jacobian, **way)
+        inside = _inside(found.x, low, high)
+        again = inside if np.isfinite(residual(inside)).all() else found.x
+        found = least_squares(residual, again, jac=jacobian, **way)
     covariance, freedom = _covariance(contest, found.fun, np.asarray(found.jac), setting)
     left = _split(contest, found.fun)
     predicted = fitter.predicted(found.x[:p], found.x[p:])
@@ -223,6 +229,23 @@ def is_off(contest: Contest, found: Fit) -> bool:
     residual = _residual(contest, fitter, found.setting, len(fitter.parameters))
     jacobian = Jacobian(fitter.parameters, residual, white_directions(contest, found.setting))
     return jacobian.is_off(np.concatenate([found.values, found.directions]))
+
+
+def _that_works(residual: _residual, start: Matrix) -> Matrix:
+    """Return a start at which the model does not fail: the linear one, or so much nearer to no cause at all.
+
+    Shapes stay where they are. Raises ConvergenceError where the model fails with the explanation however small it is.
+    """
+    import numpy as np
+
+    is_shape = np.zeros(len(start), dtype=bool)
+    is_shape[: residual.p] = [item.is_shape for item in residual.fitter.parameters]
+    for halving in range(NEARER):
+        tried = np.where(is_shape, start, start / 2**halving)
+        if np.isfinite(residual(tried)).all():
+            return tried
+    names = " and ".join(names_of(residual.contest.problem, residual.fitter.hypothesis)) or "no effect at all"
+    raise ConvergenceError(f"the model fails with {names}, however small")
 
 
 def _inside(x: Matrix, low: Matrix, high: Matrix) -> Matrix:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
 
-from truing.diagnosis.candidates import Candidate, Term, candidates_of, variants_of
+from truing.diagnosis.candidates import Candidate, Term, candidates_of, failure_of, variants_of
 from truing.diagnosis.chords import are_faint, bent_terms, far_terms, late_terms
 from truing.diagnosis.columns import Column, Design, Values, acting
 from truing.diagnosis.grids import terms_of
@@ -30,7 +30,7 @@ class Problem:
 
     ``shape_results`` holds, by the owner of a shape piece, the place of the shape and the results it acts on;
     ``like`` the (candidate, shape owner) pairs in which the shape reproduces the cause. ``beside`` are pairs of which
-    the second has the curve that it has beside the first.
+    the second has the curve that it has beside the first. ``failing`` says by effect why the model fails with it.
     """
 
     machine: Machine
@@ -46,6 +46,7 @@ class Problem:
     twins: Mapping[int, tuple[Twin, ...]]
     like: frozenset[tuple[int, int]]
     unexcited: tuple[str, ...]
+    failing: Mapping[str, str]
     beside: tuple[tuple[Piece, Piece], ...] = ()
 
     def same_curve(self, owner: int, coefficients: Sequence[float]) -> tuple[str, ...]:
@@ -96,6 +97,7 @@ def problem_of(machine: Machine, scales: Mapping[str, float]) -> Problem:
         same_as,
         frozenset(),
         tuple(dict.fromkeys(item.name for item in every if item.name not in seen and _could_move(item, machine))),
+        {item.name: reason for item in every if item.name not in seen and (reason := failure_of(machine, item))},
     )
     return replace(problem, like=known.reproduced(kept, shape_results))
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from truing.setup import Setup
 
 Kind = Literal["bias", "trend", "order", "step", "wave", "spread", "autocorrelation", "outlier"]
-Sight = Literal["visible", "hidden in the tolerances", "not excited"]
+Sight = Literal["visible", "hidden in the tolerances", "not excited", "cannot be fitted"]
 
 
 @dataclass(frozen=True)

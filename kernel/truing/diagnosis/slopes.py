@@ -55,14 +55,26 @@ class Jacobian:
         for place in range(p, len(x)) if self.is_exact else ():
             move = np.zeros(len(x))
             move[place] = MOVED
-            made[:, place] = (self.residual(x + move) - self.residual(x - move)) / (2 * MOVED)
+            made[:, place] = self._slope(x, place, x - move, x + move)
         for place, item in enumerate(self.unknowns):
             step = STEP * max(abs(float(x[place])), 1.0 if item.is_log else 1e-2)
             up, down = x.copy(), x.copy()
             up[place] = min(x[place] + step, item.high)
             down[place] = max(x[place] - step, item.low)
-            made[:, place] = (self.residual(up) - self.residual(down)) / (up[place] - down[place])
+            made[:, place] = self._slope(x, place, down, up)
         return made
+
+    def _slope(self, x: Matrix, place: int, down: Matrix, up: Matrix) -> Matrix:
+        """Return the derivative by one parameter: one-sided where the model fails on a side, 0 where on both."""
+        import numpy as np
+
+        below, above = self.residual(down), self.residual(up)
+        ends = [(point, left) for point, left in ((down, below), (up, above)) if np.isfinite(left).all()]
+        if len(ends) < 2:
+            ends.append((x, self.residual(x)))
+        (first, one), (second, other) = ends[0], ends[-1]
+        moved = second[place] - first[place]
+        return (other - one) / moved if moved else np.zeros(len(one))
 
 
 def white_directions(contest: Contest, setting: tuple[int, ...]) -> Matrix:

@@ -60,7 +60,12 @@ def smallest_visible(contest: Contest, setting: tuple[int, ...]) -> list[Seen]:
             known = found.get(key)
             if known is None or known.smallest is None or size < known.smallest.value:
                 found[key] = Seen(key, Amount(size, unknown.unit), sight)
-    return [*found.values(), *(Seen(name, None, "not excited") for name in problem.unexcited)]
+    still = [Seen(name, None, "not excited") for name in problem.unexcited if name not in problem.failing]
+    return [
+        *found.values(),
+        *still,
+        *(Seen(name, None, "cannot be fitted", why) for name, why in problem.failing.items()),
+    ]
 
 
 def _without_tolerances(contest: Contest, setting: tuple[int, ...]) -> NDArray[np.float64]:

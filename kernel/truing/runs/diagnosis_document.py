@@ -194,6 +194,7 @@ def _sight(diagnosis: Diagnosis) -> dict[str, Any]:
     seen = diagnosis.seen
     return {
         "not_excited": [item.name for item in seen if item.sight == "not excited"],
+        "not_fitted": {item.name: item.text for item in seen if item.sight == "cannot be fitted"},
         "not_measured": {effect: list(conditions) for effect, conditions in diagnosis.not_measured.items()},
         "hidden_in_tolerances": [item.name for item in seen if item.sight == "hidden in the tolerances"],
         "smallest_visible": {
