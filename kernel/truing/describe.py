@@ -42,7 +42,7 @@ def description(offer: Offer) -> dict[str, Any]:
         "conditions": [_condition(item) for item in model.conditions.values()],
         "built_in": {
             "effects": [_effect(item) for item in built_in if not may_stand(item)],
-            "where_turned": [_effect(item) for item in built_in if may_stand(item)],
+            "where_measured": [_effect(item) for item in built_in if may_stand(item)],
             "conditions": [
                 _condition(item) for name, item in model.known_conditions.items() if name not in model.conditions
             ],

@@ -81,7 +81,7 @@ def demand_contract(document: Document, described: Document) -> None:
     jsonschema.validate(document, SCHEMA)
     _demand_agreement(document)
     units = {item["name"]: item["unit"] for item in described["results"]}
-    known = [*described["effects"], *described["built_in"]["effects"], *described["built_in"]["where_turned"]]
+    known = [*described["effects"], *described["built_in"]["effects"], *described["built_in"]["where_measured"]]
     effects = {item["name"]: {one["name"]: one["unit"] for one in item["unknowns"]} for item in known}
     assert set(document["wrong"]) == set(document["measured"]) == set(document["gain"]) - {"stability"}
     assert set(document["measured"]) <= set(units)

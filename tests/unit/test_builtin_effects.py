@@ -34,6 +34,7 @@ from truing import (
     rows,
 )
 from truing.calculation import calculate
+from truing.declare.builtin import may_stand
 from truing.diagnosis.candidates import candidates_of
 from truing.diagnosis.machine import machine_of
 from truing.diagnosis.reading import read_records
@@ -190,10 +191,10 @@ class Warm(Shaft):
     rise: Float = given(0.0, "K")
 
 
-def test_a_rise_is_the_temperature_of_nothing() -> None:
+def test_a_rise_is_the_temperature_of_nothing_unless_a_record_varies_it() -> None:
     model = replace(SHAFT, function=_warm)
-    assert "rise" in model.input_fields
-    assert [name for name in model.known_effects if name.startswith("thermal")] == ["thermal_drift"]
+    drifts = {name: may_stand(effect) for name, effect in model.known_effects.items() if name.startswith("thermal")}
+    assert drifts == {"thermal_drift": False, "thermal_drift_of_rise": True}
     assert model.known_effects["thermal_drift"].reads == ("oil",)
 
 

@@ -12,7 +12,10 @@ from truing.cli.load import find_offer
 from truing.cli.words import AsJson, Plugin
 from truing.describe import description
 
-TURNED = ("periodic_order_of_INPUT", "", "", "where a record turns an input round that is an angle")
+WHERE_MEASURED = (
+    ("thermal_drift_of_INPUT", "", "", "where a record varies an input in K"),
+    ("periodic_order_of_INPUT", "", "", "where a record turns an input round that is an angle"),
+)
 
 
 @verb
@@ -52,7 +55,7 @@ def _lines(said: dict[str, Any]) -> Iterator[str]:
         "Conditions": [_condition_row(item) for item in said["conditions"]],
         "Built-in effects, on the reading of each RESULT": [
             *(_built_in_row(item, [one["name"] for one in said["results"]]) for item in said["built_in"]["effects"]),
-            *([_row(*TURNED)] if said["built_in"]["where_turned"] else []),
+            *(_row(*row) for row in WHERE_MEASURED if _is_among(row[0], said["built_in"]["where_measured"])),
         ],
         "Built-in conditions": [_condition_row(item) for item in said["built_in"]["conditions"]],
         "Objectives": [_row(*_objective_words(item), "", "") for item in said["objectives"]],
@@ -106,6 +109,11 @@ def _built_in_row(item: dict[str, Any], results: list[str]) -> tuple[str, ...]:
     unknowns = ", ".join("RESULT" + name.removeprefix(own) for name in first)
     needs = "needs " + ", ".join(item["needs"]) if item["needs"] else ""
     return _row(item["name"], unknowns, needs, item["looks_like"])
+
+
+def _is_among(name: str, effects: list[dict[str, Any]]) -> bool:
+    """Whether one of the effects is of the kind of this name."""
+    return any(item["name"].startswith(name.removesuffix("_of_INPUT")) for item in effects)
 
 
 def _effect_row(item: dict[str, Any]) -> tuple[str, ...]:

@@ -216,6 +216,6 @@ def _next(diagnosis: Diagnosis) -> Iterator[str]:
         yield f"{place}. {settings_text(point)}: {pair_text(point)} (λ then {score_text(point.separation)})"
     for reason in dict.fromkeys(point.why for point in diagnosis.next if point.why):
         yield f"   {reason}"
-    yield from map(tie_text, diagnosis.ties)
+    yield from (tie_text(tie).rstrip(".") for tie in diagnosis.ties)
     if not diagnosis.next and not diagnosis.ties:
         yield "nothing to separate" if diagnosis.unique else "no setting is proposed"

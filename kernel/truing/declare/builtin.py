@@ -14,7 +14,8 @@ an axis the same value acts everywhere. A model's own effect of the same name ta
 Time, temperature and angle are what the model has of the kind, else conditions of the kernel. Of several temperatures
 or angles the first has the plain name, the others are ``thermal_drift_of_NAME`` and ``periodic_order_of_NAME``. An
 input that is an angle and over which no study runs may turn or not (a helix angle does not): its wave is looked for
-only in records that turn it round.
+only in records that turn it round. So it is with an input in K, which may be a temperature or a socket for a rise: a
+record that varies it says so.
 """
 
 from __future__ import annotations
@@ -101,7 +102,7 @@ def builtin_effects(model: Model[Any, Any]) -> dict[str, Effect[Any, Any]]:
 
 
 def may_stand(effect: Effect[Any, Any]) -> bool:
-    """Whether an effect follows an input that is an angle, of which only a record can tell that it turns."""
+    """Whether an effect follows an input of which only a record can tell that it turns, or is a temperature."""
     reading = effect.function
     return isinstance(reading, Reading) and reading.seen is not None and reading.seen.may_stand
 

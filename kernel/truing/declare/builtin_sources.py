@@ -24,8 +24,8 @@ ANGLE = Condition("angle", "deg", note="of what turns")
 class Seen:
     """A quantity that an effect of the kernel looks at: a condition, an input, a series or an axis of the results.
 
-    ``zero`` is where effects vanish, SI. A series or an axis is seen by results along one of ``axes`` alone. An angle
-    ``may_stand`` where only a record can tell that it turns: an input such as a helix angle does not.
+    ``zero`` is where effects vanish, SI. A series or an axis is seen by results along one of ``axes`` alone. One
+    ``may_stand`` where only a record can tell that it turns or warms: a helix angle or a socket for a rise does not.
     """
 
     name: str
@@ -67,11 +67,12 @@ def time_of(model: Model[Any, Any]) -> list[Seen]:
 def temperatures(model: Model[Any, Any]) -> list[Seen]:
     """Return the temperatures: conditions first, then inputs (about their default), else the kernel's condition.
 
-    An input in a unit of differences (K: a rise, a gradient) is the temperature of nothing.
+    Of an input in a unit of differences (K: a temperature, or a rise) only a record can say that it is one.
     """
-    fields = model.input_fields
-    levels = [seen for seen in _inputs(model, "K") if seen.place == "input" and fields[seen.name].unit in LEVELS]
-    return [*_conditions(model, "K"), *levels] or _own(model, TEMPERATURE)
+    numbers = [seen for seen in _inputs(model, "K") if seen.place == "input"]
+    levels = [seen for seen in numbers if model.input_fields[seen.name].unit in LEVELS]
+    known = [*_conditions(model, "K"), *levels] or _own(model, TEMPERATURE)
+    return [*known, *(replace(seen, may_stand=True) for seen in numbers if seen not in levels)]
 
 
 def angles(model: Model[Any, Any]) -> list[Seen]:

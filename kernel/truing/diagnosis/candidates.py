@@ -16,6 +16,7 @@ from truing.declare.sources import Effect, Unknown
 from truing.diagnosis.columns import Values, stored
 from truing.diagnosis.machine import Machine, predict
 from truing.diagnosis.readings import gauged, reading_curve, reading_of
+from truing.diagnosis.tidying import is_angle
 from truing.gauge import read_by_gauge
 from truing.setup import SwitchedOn
 from truing.units import to_si
@@ -106,8 +107,8 @@ def _is_offered(candidate: Candidate, machine: Machine) -> bool:
     covariates = machine.records.covariates
     if not gauged(candidate, machine.records.measured):
         return False
-    driven = (name in covariates and covariates[name].goes_round for name in candidate.effect.reads)
-    return not may_stand(candidate.effect) or any(driven)
+    own = [covariates[name] for name in candidate.effect.reads if name in covariates]
+    return not may_stand(candidate.effect) or any(not is_angle(item.unit) or item.goes_round for item in own)
 
 
 def curve_at(
