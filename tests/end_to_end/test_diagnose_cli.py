@@ -38,7 +38,7 @@ def test_a_warm_probe_is_found_and_the_extended_model_is_taken_by_every_verb(
     assert answer.code == 0, answer.err
     folder = tmp_path / "runs" / "warm probe"
     document = json.loads((folder / "diagnosis.json").read_text(encoding="utf-8"))
-    assert document["verdict"] == "named"
+    assert document["verdict"] in {"named", "one_of"}
     (cause,) = document["causes"]
     assert "warm_probe" in (cause["effect"], *cause["same_as"])
     (slope,) = (item for item in cause["unknowns"].values())
@@ -63,6 +63,6 @@ def test_a_diagnosed_machine_can_be_diagnosed_again(calc: Calc, record: Path, tm
     assert calc("diagnose", PIN, "--inputs", "pin.toml", "--data", record, "-o", "first").code == 0
     answer = calc("diagnose", PIN, "--inputs", "first/extended.toml", "--data", record, "--json", "-o", "second")
     assert answer.code == 0, answer.err
-    assert json.loads(answer.out)["verdict"] == "none"
+    assert json.loads(answer.out)["explanations"] == []
     again = (tmp_path / "second" / "inputs.toml").read_text(encoding="utf-8")
     assert 'load = "120 N"' in again

@@ -94,7 +94,7 @@ def test_diagnosed_again_nothing_is_found(play: Diagnosed) -> None:
     desk = play.folder.parents[1]
     command = ("diagnose", "press_linkage", "--inputs", "runs/measured/extended.toml", "--data", "measured.csv")
     assert calc_here(desk, *command, "-o", "again").code == 0
-    assert read_document(desk / "again")["verdict"] == "none"
+    assert read_document(desk / "again")["explanations"] == []
 
 
 def test_under_load_of_one_sign_the_play_hides_in_the_tolerances(play: Diagnosed) -> None:
@@ -104,7 +104,7 @@ def test_under_load_of_one_sign_the_play_hides_in_the_tolerances(play: Diagnosed
     (desk / "loaded.csv").write_text("\n".join([header, *kept]) + "\n", encoding="utf-8")
     assert calc_here(desk, "diagnose", "press_linkage", "--inputs", "inputs.toml", "--data", "loaded.csv").code == 0
     document = read_document(desk / "runs" / "loaded")
-    assert document["verdict"] == "none"
+    assert document["explanations"] == []
     assert "joint_clearance" in document["hidden_in_tolerances"]
     assert any("forming_force never changed its sign" in sentence for sentence in document["inseparable"])
 
@@ -117,7 +117,8 @@ def test_what_ties_on_monday_is_told_apart_by_twelve_rows_of_tuesday(tmp_path: P
     assert monday["next"][-1]["separation"] > 10
     both = diagnosed(WARM, tmp_path / "both", "monday.csv", "tuesday.csv").document
     assert names(both) == ["link_heating"]
-    assert both["unique"]
+    assert both["alternatives"] == []
+    assert [set(tie["explanations"]) for tie in both["ties"]] == [{"link_heating", "side_heating"}]
     low, high = both["causes"][0]["unknowns"]["expansion"]["interval95"]
     assert low < stated(WARM, "µm/(m·K)") < high
 
@@ -145,7 +146,7 @@ def test_every_field_of_diagnosis_json_is_explained(play: Diagnosed) -> None:
     assert not missing
 
 
-@pytest.mark.parametrize("verdict", ["none", "named", "unknown"])
+@pytest.mark.parametrize("verdict", ["none", "undecided", "named", "one_of", "unknown"])
 def test_every_verdict_is_explained(verdict: str) -> None:
     assert f'| `"{verdict}"` |' in REFERENCE.read_text(encoding="utf-8")
 

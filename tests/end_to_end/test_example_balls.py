@@ -249,7 +249,7 @@ def test_what_is_left_of_a_ball_with_holes_is_the_same_curve_in_both_drops() -> 
 def test_nothing_is_named_that_the_rows_of_a_dense_ball_do_not_hold(dense: str, tmp_path: Path) -> None:
     found = diagnosed(tmp_path, dense)
     (said,) = [said for said in table() if said.ball == dense]
-    assert (found["verdict"], names(found), found["remainder"], said.found) == ("none", [], None, "nothing")
+    assert (found["explanations"], names(found), found["remainder"], said.found) == ([], [], None, "nothing")
     assert found["smallest_visible"]["air_drag"]["value"] == pytest.approx(said.visible, abs=0.006)
     assert found["wrong"]["height"]["noise_floor"]["value"] == pytest.approx(1e3 * said.noise, abs=6)
 

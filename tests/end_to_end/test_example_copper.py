@@ -150,7 +150,7 @@ def test_with_both_causes_on_nothing_is_left_to_name(tmp_path: Path) -> None:
     answer = calc_here(desk, "diagnose", "./copper_expansion.py", "--inputs", "both.toml", "--data", "hahn1.csv")
     assert answer.code == 0, answer.err
     again = read_document(desk / "runs" / "hahn1")
-    assert (again["verdict"], again["remainder"]) == ("none", None)
+    assert (again["explanations"], again["remainder"]) == ([], None)
     visible = {name: item["value"] for name, item in again["smallest_visible"].items()}
     assert 0.3 < visible["thermocouple_offset"] < 0.8
     electrons = (
