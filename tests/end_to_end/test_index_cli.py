@@ -120,7 +120,7 @@ def test_what_the_verbs_write_is_what_the_index_reads(calc: Calc, tmp_path: Path
     assert entries["none"]["verdict"] == "nothing found"
     assert entries["unknown"]["verdict"] == "cause unknown"
     assert entries["remainder"]["verdict"].endswith("; a remainder left")
-    assert entries["ambiguous"]["verdict"].endswith("; others possible")
+    assert entries["ambiguous"]["verdict"] == "one of several causes: rod_heating or warm_up or sensor_drift"
 
 
 def test_cases_count_each_and_the_least_margin_is_that_of_all(calc: Calc, tmp_path: Path) -> None:
