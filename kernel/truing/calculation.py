@@ -15,7 +15,8 @@ from truing.evaluate import acting_inputs, answered, evaluate
 from truing.executors import open_executor
 from truing.prices import price_answers
 from truing.setup import Setup, SwitchedOn
-from truing.studies.bench import Bench, Check, Outcome, Progress, State, silent
+from truing.studies.bench import Bench, Check, Outcome, Progress, silent
+from truing.studies.states import State
 from truing.studies.verdicts import Decided, decide
 
 

@@ -17,11 +17,12 @@ from truing.packed import Packed, pack, travels, unpack
 from truing.prices import price_answers
 from truing.setup import Setup
 from truing.studies.allocation import Allocation
-from truing.studies.bench import FINE, Check, Progress, State, silent, within
+from truing.studies.bench import FINE, Check, Progress, silent, within
 from truing.studies.checks import requirements
 from truing.studies.optimise import Optimise
 from truing.studies.reliability import Reliability
 from truing.studies.sensitivity import Sensitivity
+from truing.studies.states import State
 from truing.studies.surrogate import Surrogate
 from truing.studies.sweep import Sweep
 from truing.studies.verdicts import Decided, decide, worst

@@ -10,7 +10,8 @@ from truing import Float, Maximise, Model, Optimise, Optimum, Reliability, Requi
 from truing.calculation import calculate
 from truing.studies.checks import chance_check, margin_of
 from truing.studies.optimise_goals import bounds_of
-from truing.studies.verdicts import EXIT_CODES, sentence_of
+from truing.studies.states import EXIT_CODES
+from truing.studies.verdicts import sentence_of
 
 
 def check_of(model, require, **values):

@@ -8,7 +8,7 @@ from typing import Any
 from truing.cli.coloured import BAD, GOOD, NEW, OLD
 from truing.cli.console import one_line
 from truing.runs.comparison import Change, differing, number_in
-from truing.studies.verdicts import EXIT_CODES, SHORT
+from truing.studies.states import EXIT_CODES, SHORT
 
 LONGEST = 60
 ABSENT = "-"

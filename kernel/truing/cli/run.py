@@ -15,7 +15,7 @@ from truing.cli.load import find_offer, read_or_example
 from truing.cli.run_printed import lines_of
 from truing.cli.words import AsJson, Changed, Excel, Plugin
 from truing.errors import UsageError
-from truing.studies.verdicts import EXIT_CODES
+from truing.studies.states import EXIT_CODES
 
 if TYPE_CHECKING:
     from truing.report.run import Done, RunOrder

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from truing.cli.console import aligned, columns, one_line
-from truing.studies.verdicts import EXIT_CODES, HEADLINES, SHORT, change_words, sentence_of
+from truing.studies.states import EXIT_CODES, HEADLINES, SHORT
 
 if TYPE_CHECKING:
     from truing.calculation import Calculation
@@ -44,6 +44,7 @@ def lines_of(done: Done, folder: Path, *, with_titles: bool) -> Iterator[str]:
 def _verdict_lines(done: Done) -> Iterator[str]:
     """Say which limits, or which cases, are not kept as stated, and what would have to change."""
     from truing.report.sheet import sentence_of_cases
+    from truing.studies.verdicts import change_words, sentence_of
 
     decided, verdict = done.calculation.decided, done.verdict
     if verdict == "passes":

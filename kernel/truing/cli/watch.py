@@ -15,7 +15,7 @@ from truing.atomic import writings, written
 from truing.cli.console import Settings, one_line, out, progress_bar, say, sentence_of, settings_of, verb
 from truing.cli.load import find_offer
 from truing.cli.words import Changed, Excel, Plugin
-from truing.studies.verdicts import EXIT_CODES, SHORT
+from truing.studies.states import EXIT_CODES, SHORT
 
 if TYPE_CHECKING:
     from truing.kernel import Offer

@@ -13,7 +13,8 @@ from truing.declare.blocks import Words
 from truing.declare.published import Finding
 from truing.published import ComparedRow
 from truing.runs.provenance import Provenance
-from truing.studies.bench import Proposal, State
+from truing.studies.bench import Proposal
+from truing.studies.states import State
 
 if TYPE_CHECKING:
     from truing.formulas import Formula

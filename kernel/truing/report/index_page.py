@@ -18,7 +18,7 @@ from truing.report.context import Head
 from truing.report.render import page
 from truing.report.templates import template_folder
 from truing.runs.index import Entry, Finding, Listing, Other
-from truing.studies.bench import State
+from truing.studies.states import State
 
 MARK = '<meta name="generator" content="calc index">'
 """What an index of ours holds, and no other page."""

@@ -24,7 +24,8 @@ from truing.runs.folder import demand_place, write_run
 from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
-from truing.studies.bench import Progress, State
+from truing.studies.bench import Progress
+from truing.studies.states import State
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,8 @@ from truing.report.content import (
 from truing.report.context import Banner, Chapter, Head, InputRow, Sheet, TableView
 from truing.runs.provenance import Provenance
 from truing.studies.bench import Proposal
-from truing.studies.verdicts import HEADLINES, SHORT, sentence_of
+from truing.studies.states import HEADLINES, SHORT
+from truing.studies.verdicts import sentence_of
 
 if TYPE_CHECKING:
     from truing.cases import CaseResult, CasesTable

@@ -14,8 +14,8 @@ from typing import Any
 from truing.errors import UnknownPluginError
 from truing.runs.folder import DOCUMENTS, Kind
 from truing.runs.partial import HEADER
-from truing.studies.bench import State
-from truing.studies.verdicts import EXIT_CODES, HEADLINES, worst
+from truing.studies.states import EXIT_CODES, HEADLINES, State
+from truing.studies.verdicts import worst
 
 DEEPEST = 20
 LARGEST = 100_000_000

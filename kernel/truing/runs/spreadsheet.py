@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from truing.measurements import EXCEL, table_text
-from truing.studies.verdicts import SHORT
+from truing.studies.states import SHORT
 
 if TYPE_CHECKING:
     from truing.declare.model import Model

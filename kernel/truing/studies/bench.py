@@ -10,6 +10,7 @@ from typing import Any, Literal, Protocol
 from truing.declare.blocks import Block
 from truing.executors import keepable
 from truing.setup import Setup
+from truing.studies.states import State
 
 Progress = Callable[[str, int, int], None]
 
@@ -53,10 +54,6 @@ def within(progress: Progress, task: str, begin: float, end: float, stages: Sequ
         progress(task, round(FINE * reached), FINE)
 
     return told
-
-
-State = Literal["passes", "proposed", "undecided", "fails"]
-"""What is said of a limit and of a run: kept as stated, kept by a design that a study proposes, not decided, missed."""
 
 
 @keepable

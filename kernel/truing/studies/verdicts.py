@@ -10,7 +10,7 @@ from typing import Any
 from truing.declare.goals import Require
 from truing.executors import keepable
 from truing.setup import Setup
-from truing.studies.bench import Check, Outcome, Proposal, State, proposals_of
+from truing.studies.bench import Check, Outcome, Proposal, proposals_of
 from truing.studies.checks import (
     check_name,
     compared_words,
@@ -22,21 +22,8 @@ from truing.studies.checks import (
 )
 from truing.studies.demands import exists
 from truing.studies.reliability import Reliability
+from truing.studies.states import EXIT_CODES, State
 
-EXIT_CODES: Mapping[State, int] = {"passes": 0, "proposed": 0, "undecided": 1, "fails": 1}
-"""Exit codes by verdict, the best first."""
-HEADLINES: Mapping[State, str] = {
-    "passes": "Passes",
-    "proposed": "Passes with the proposed changes, not as stated",
-    "undecided": "Undecided",
-    "fails": "Fails",
-}
-SHORT: Mapping[State, str] = {
-    "passes": "pass",
-    "proposed": "not as stated",
-    "undecided": "UNDECIDED",
-    "fails": "FAILS",
-}
 NO_STUDY = "no study of the model"
 """What would decide a limit that none of the model's studies decides."""
 NO_RESULT = "no study: the result does not exist"
