@@ -10,7 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from truing.atomic import place_folder, write_files
+from truing.atomic import place_folder, recover, write_files
 from truing.errors import OutputError
 from truing.report.markdown import escaped
 from truing.report.templates import template_folder
@@ -93,6 +93,7 @@ def write_project(folder: Path, files: Mapping[str, str]) -> None:
     """
     try:
         if folder.is_dir():
+            recover(folder.absolute() / folder.absolute().name)
             if any(folder.iterdir()):
                 raise OutputError(f"{folder}: the folder is there and not empty; name another place with --output")
         elif folder.exists() or folder.is_symlink():
