@@ -73,13 +73,19 @@ GAUGES: dict[str, tuple[Callable[[Array, Array, Array], Array], dict[str, float]
     "sensor_offset": (lambda angle, hours, warm: np.full(ROWS, 8.0), {"sag": 8.0}),
     "sensor_drift": (lambda angle, hours, warm: -1.5 * hours, {"sag": -1.5}),
     "thermal_drift": (lambda angle, hours, warm: 0.4 * (warm - 20), {"sag": 0.4}),
-    "periodic_order": (
+    "periodic_order_of_turn": (
         lambda angle, hours, warm: np.asarray(3 * np.sin(2 * angle) - 2 * np.cos(2 * angle)),
         {"sag_sine": 3.0, "sag_cosine": -2.0, "sag_order": 2.0},
     ),
     "step": (lambda angle, hours, warm: 12.0 * (hours > 3.3), {"sag": 12.0, "sag_after": 3.3}),
 }
-UNITS = {"sensor_offset": "um", "sensor_drift": "um/h", "thermal_drift": "um/K", "periodic_order": "um", "step": "um"}
+UNITS = {
+    "sensor_offset": "um",
+    "sensor_drift": "um/h",
+    "thermal_drift": "um/K",
+    "periodic_order_of_turn": "um",
+    "step": "um",
+}
 
 
 def demand_unknowns(document: Document, truth: dict[str, float]) -> None:

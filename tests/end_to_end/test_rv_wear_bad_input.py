@@ -152,7 +152,7 @@ def test_what_is_said_stands_on_the_sheet_and_on_stderr(calc: Calc, tmp_path: Pa
         "--set", "working_time=0 h",
     )  # fmt: skip
     said = "study 'validity': pressure_viscosity is 4e-09 1/Pa, outside of 5e-9 to 5e-8 1/Pa"
-    assert answer.code == 0
+    assert answer.code == 1  # no study of this run decides the limit of the backlash
     assert f"warning: {said}" in answer.err
     assert said.replace("'", "&#39;") in (tmp_path / "run/sheet.html").read_text()
 
