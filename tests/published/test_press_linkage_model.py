@@ -392,7 +392,7 @@ def test_inputs_are_flat() -> None:
         "crank_angle", "position_limit", "tilt_limit", "position_goal", "tilt_goal", "reading",
     ]  # fmt: skip
     assert list(PRESS_LINKAGE.input_fields)[: len(wanted)] == wanted
-    assert len(PRESS_LINKAGE.input_fields) == len(wanted) + 29
+    assert len(PRESS_LINKAGE.input_fields) == len(wanted) + 31
     assert isinstance(PRESS_LINKAGE.inputs(), Press)
     assert Path(str(EXAMPLE)).is_file()
 

@@ -135,7 +135,7 @@ def test_a_grid_that_is_fine_enough_stays_as_it_is(tmp_path: Path) -> None:
 
 def test_whole_numbers_and_places_of_steps_do_not_become_finer(tmp_path: Path) -> None:
     problem = laid_out(tmp_path)
-    names = {"step", "periodic_order", "lead_error"}
+    names = {"step", "periodic_order_of_rotation", "lead_error"}
     pieces = [piece for piece in problem.term_pieces if problem.candidates[piece.owner].name in names]
     assert len(pieces) > 80
     assert sharpened(problem, pieces) == problem
@@ -241,10 +241,10 @@ def test_the_first_order_of_a_gauge_goes_by_the_name_of_the_models_own(tmp_path:
         asked = Asked(replace(model, errors=errors))
         found = problem_of(machine_of(asked.setup, asked.records(tmp_path, read())), {"deflection": UM})
         names = {found.candidates[place].name: same for place, same in found.same_as.items()}
-        orders[len(errors)] = list(places_of(found, "periodic_order", "deflection_order"))
-        assert names["periodic_order"] == ()
+        orders[len(errors)] = list(places_of(found, "periodic_order_of_rotation", "deflection_order"))
+        assert names["periodic_order_of_rotation"] == ()
     assert list(orders.values()) == [[1, 2, 3], [2, 3]]
-    assert names["eccentricity"] == ("periodic_order",)
+    assert names["eccentricity"] == ("periodic_order_of_rotation",)
     assert len([each for each in found.term_pieces if found.candidates[each.owner].name == "eccentricity"]) == 1
 
 

@@ -228,7 +228,7 @@ def test_a_grid_is_refined_where_neighbours_differ_too_much(tmp_path: Path) -> N
 
 def test_whole_numbers_are_tried_one_by_one_and_steps_at_places_of_the_record(tmp_path: Path) -> None:
     there = machine(asked(), tmp_path, wide(100))
-    (order,) = candidate(there, "periodic_order")[1].shapes
+    (order,) = candidate(there, "periodic_order_of_rotation")[1].shapes
     assert grid_of(order, there) == [1.0, 2.0, 3.0]
     (after,) = candidate(there, "step")[1].shapes
     places = np.array(grid_of(after, there)) / 3600

@@ -27,6 +27,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     finally:
         if is_program:  # what still ends now is not worth a second word
             signal.signal(signal.SIGINT, signal.SIG_IGN)
+            exec(
+                ""
+            )  # CPython forgets that an interrupt ended such a text (a dataclass being made), and exits with our code
 
 
 def _run(words: list[str], *, is_program: bool) -> int:
@@ -47,6 +50,8 @@ def _run(words: list[str], *, is_program: bool) -> int:
     try:
         app(args=kept, prog_name="calc", obj=Settings(**dict.fromkeys(said, True)))
     except SystemExit as end_:
+        if isinstance(getattr(end_.__context__, "__cause__", None), KeyboardInterrupt):  # before the verb had begun
+            raise KeyboardInterrupt from end_
         code = 0 if end_.code is None else end_.code
     except OSError as error:  # of the help or of a usage error: a verb raises none
         close_stream(sys.stderr)

@@ -98,5 +98,19 @@ class Records:
 
         return sum(int(np.isfinite(values[~self.held_out]).sum()) for values in self.measured.values())
 
+    @property
+    def is_varied(self) -> bool:
+        """Whether at least eight rows that may be fitted differ in what was measured, or where; not in order alone."""
+        import numpy as np
+
+        covariates = [item.values for item in self.covariates.values() if item.role != "order"]
+        table = np.column_stack([*self.measured.values(), *covariates])[~self.held_out]
+        different: set[bytes] = set()
+        for row in table:
+            different.add(row.tobytes())
+            if len(different) >= FEWEST_READINGS:
+                return True
+        return False
+
     def __len__(self) -> int:
         return len(self.run_of)
