@@ -8,24 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import pi
 from typing import TYPE_CHECKING
 
-from truing.declare.fields import InputField
 from truing.diagnosis.candidates import new_curves
 from truing.diagnosis.contest import Contest, curve_space, names_of
 from truing.diagnosis.findings import in_unit
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.noise import SETTINGS, whiten
 from truing.diagnosis.readable import readable_unit
-from truing.diagnosis.records import Covariate, Records
+from truing.diagnosis.records import Records
 from truing.diagnosis.result import Amount, NextPoint
 from truing.diagnosis.rival_twins import TwinTerm, believed, is_physical, twins_of
 from truing.diagnosis.search import Solution
+from truing.diagnosis.settings import settings_of
 from truing.diagnosis.verdict import APART
 from truing.measurements import RowsFile
 from truing.numbers import format_number
-from truing.units import from_si, same_dimension, to_si
+from truing.units import from_si
 
 if TYPE_CHECKING:
     import numpy as np
@@ -36,9 +35,7 @@ if TYPE_CHECKING:
 POINTS = 4
 MOST_POINTS = 100
 """Nobody measures more: explanations that so many points do not tell apart are told apart by a fact, or not at all."""
-TRIED = 512
 RIVALS = 4
-FEW_VALUES = 3
 FAINTEST = 0.01
 """Curves that no setting sets apart by more, in units of the noise squared, are the same curve everywhere."""
 
@@ -122,7 +119,7 @@ def next_points(full: Contest, winner: int, rivals: Sequence[int]) -> Proposal:
         return Proposal()
     fields = full.problem.machine.start.model.own_result_fields
     is_along = any(fields[name].along for name in full.problem.machine.records.measured)
-    settings = {} if is_along else _settings(full)
+    settings = {} if is_along else settings_of(full)
     named = [(twin, (_name_of(full, winner), _twin_name(full, winner, twin))) for twin in twins]
     duels: list[_Duel] = []
     if settings:
@@ -201,61 +198,6 @@ def _points(full: Contest, settings: Mapping[str, Matrix], live: Sequence[_Duel]
 def _is_part(full: Contest, believed: int, rival: int) -> bool:
     """Whether a rival is the believed explanation itself, or that with something added: it is never wrong then."""
     return set(full.found.hypotheses[believed].key) <= set(full.found.hypotheses[rival].key)
-
-
-def _settings(full: Contest) -> dict[str, Matrix]:
-    """Return the settings that are tried, by input or condition, SI: the corners of the box and points inside it."""
-    import numpy as np
-    from scipy.stats import qmc
-
-    boxes = {}
-    for name, item in full.problem.machine.records.covariates.items():
-        box = _box(full, name, item)
-        if box is not None and box[1] > box[0]:
-            boxes[name] = box
-    if not boxes:
-        return {}
-    sampler = qmc.Sobol(len(boxes), scramble=False)
-    unit = sampler.random(TRIED)
-    edges = np.random.Generator(np.random.SFC64(0)).integers(0, 3, size=(TRIED, len(boxes))) / 2
-    every = np.concatenate([unit, edges])
-    found = {}
-    for column, (name, (low, high)) in enumerate(boxes.items()):
-        values = low + (high - low) * every[:, column]
-        known = full.problem.machine.records.covariates[name].values
-        if len(np.unique(known[np.isfinite(known)])) <= FEW_VALUES:
-            values = np.where(every[:, column] < 0.5, low, high)
-        found[name] = values
-    return found
-
-
-def _box(full: Contest, name: str, item: Covariate) -> tuple[float, float] | None:
-    """Return the range in which something can be set: asked for, declared, or half as wide again as measured."""
-    import numpy as np
-
-    start = full.problem.machine.start
-    if name in start.diagnose.box:
-        return start.diagnose.box[name]
-    low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
-    condition = start.model.known_conditions.get(name)
-    if condition is not None:
-        limits = [
-            None if each is None else float(to_si(each, condition.unit)) for each in (condition.low, condition.high)
-        ]
-        return low if limits[0] is None else limits[0], high if limits[1] is None else limits[1]
-    field = start.model.input_fields.get(name)
-    return None if field is None or not field.varies else _input_box(field, low, high)
-
-
-def _input_box(field: InputField, low: float, high: float) -> tuple[float, float]:
-    declared = [getattr(field.spec, key, None) for key in ("at_least", "above", "at_most", "below")]
-    lows = [float(to_si(value, field.unit)) for value in declared[:2] if isinstance(value, (int, float))]
-    highs = [float(to_si(value, field.unit)) for value in declared[2:] if isinstance(value, (int, float))]
-    is_angle = field.unit not in {"", "1", "-"} and same_dimension(field.unit, "rad")
-    if is_angle and not lows and not highs:
-        return min(low, -pi), max(high, pi)
-    reach = (high - low) / 2
-    return max([low - reach, *lows]), min([high + reach, *highs])
 
 
 def _machine_there(full: Contest, settings: Mapping[str, Matrix]) -> Machine:

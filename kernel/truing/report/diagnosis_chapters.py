@@ -12,6 +12,7 @@ from truing.numbers import ABSENT, STATED_DIGITS, format_number, pretty
 from truing.report import diagnosis_figures as figures
 from truing.report.chapters import Figures
 from truing.report.context import BlockView, Chapter, TableView
+from truing.report.diagnosis_next import next_blocks, table_of
 from truing.report.diagnosis_words import (
     amount_text,
     certainty,
@@ -30,7 +31,7 @@ from truing.report.diagnosis_words import (
 from truing.runs.diagnosis_document import file_labels
 
 if TYPE_CHECKING:
-    from truing.diagnosis.result import Alternative, Diagnosis, FittedUnknown, NextPoint, Noise
+    from truing.diagnosis.result import Alternative, Diagnosis, FittedUnknown, Noise
 
 MOST_OUTLIERS = 12
 FITTED_DIGITS = 7
@@ -43,19 +44,12 @@ def diagnosis_chapters(diagnosis: Diagnosis, drawn: Figures) -> Iterator[Chapter
     yield _chapter("cause", "Cause", _cause(diagnosis, drawn))
     yield _chapter("model", "Extended model", _model(diagnosis))
     yield _chapter("gain", "Gain", _gain(diagnosis, drawn))
-    yield _chapter("next", "Next measurement", _next(diagnosis))
+    yield _chapter("next", "Next measurement", next_blocks(diagnosis))
     yield _chapter("data", "Data", _data(diagnosis))
 
 
 def _chapter(ident: str, title: str, blocks: Iterator[BlockView]) -> Chapter:
     return Chapter("", ident, title, "blocks", blocks=tuple(blocks))
-
-
-def _table(
-    title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], numeric: Sequence[int] = (), note: str = ""
-) -> TableView:
-    flags = tuple(place in numeric for place in range(len(columns)))
-    return TableView(title, tuple(columns), ("",) * len(columns), tuple(map(tuple, rows)), flags, note)
 
 
 # What is wrong
@@ -74,7 +68,7 @@ def _wrong(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
         "The error is that of the model calibrated within its tolerances. Reducible is the share of the mean square "
         "error that lies above the noise floor."
     )
-    yield _table("Error of the model as it is", heads, rows, (1, 2, 3, 4), note)
+    yield table_of("Error of the model as it is", heads, rows, (1, 2, 3, 4), note)
     found = [
         (spoken(item.result), finding.kind, prose(finding.text), certainty(finding.p_value))
         for item in diagnosis.wrong
@@ -82,12 +76,12 @@ def _wrong(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
     ]
     if found:
         kinds = ("Result", "Kind", "What the residuals show", "How sure, the search paid for")
-        yield _table("Structure in the residuals", kinds, found)
+        yield table_of("Structure in the residuals", kinds, found)
     else:
         yield Words("At the level of 5 % the residuals show no bias, trend, order, step, wave or spread.")
     noise = [(spoken(item.result), *_noise(item.noise)) for item in diagnosis.wrong]
     about = ("Result", "Standard deviation", "Autocorrelation", "Tails", "Spread", "Suspected outliers")
-    yield _table("The noise, once everything found is taken out", about, noise, (1, 2))
+    yield table_of("The noise, once everything found is taken out", about, noise, (1, 2))
     for curves in figures.shown_curves(diagnosis):
         title = f"Measured {spoken(curves.result)} against simulated"
         colours = " Red circles before, blue points after." if figures.has_changed(curves) else ""
@@ -125,18 +119,18 @@ def _cause(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
     yield from _residuals(diagnosis, drawn)
     yield from _sight(diagnosis)
     if diagnosis.inseparable:
-        yield _table("What this experiment can hardly tell apart", ("Because of its design",),
+        yield table_of("What this experiment can hardly tell apart", ("Because of its design",),
                      [(prose(sentence).rstrip("."),) for sentence in diagnosis.inseparable])  # fmt: skip
 
 
 def _named_table(diagnosis: Diagnosis) -> TableView:
     heads, rows = ("Cause", "What it is", "The same curve on this data"), list(_named(diagnosis))
     if len(rows) < 2:
-        return _table("Named", heads, rows)
+        return table_of("Named", heads, rows)
     shares = [percent(cause.share) for cause in diagnosis.causes]
     note = "Share: of the mean squares of what the named causes add to the model, over all rows in units of the noise."
     with_shares = [(*row, share) for row, share in zip(rows, shares, strict=True)]
-    return _table("Named", (*heads, "Share"), with_shares, (3,), note)
+    return table_of("Named", (*heads, "Share"), with_shares, (3,), note)
 
 
 def _significance(diagnosis: Diagnosis) -> Iterator[str]:
@@ -181,7 +175,7 @@ def _ranking(diagnosis: Diagnosis) -> TableView:
         "Behind is the distance in score units (6 is a Bayes factor of about 20). λ is the loss of fit to expect if "
         f"the best explanation is true and this one is fitted: from {APART:.0f} on the two can be told apart."
     )
-    return _table("Explanations, best first", ("Explanation", "Behind", "λ", "On this data"), rows, (1, 2), note)
+    return table_of("Explanations, best first", ("Explanation", "Behind", "λ", "On this data"), rows, (1, 2), note)
 
 
 def _judged(item: Alternative, diagnosis: Diagnosis) -> str:
@@ -219,7 +213,7 @@ def _sight(diagnosis: Diagnosis) -> Iterator[BlockView]:
     ]
     if rows:
         note = "Smallest visible: with a chance of 90 % this size is found, every explanation that is tried paid for."
-        yield _table("What this data can show", ("Effect", "Smallest visible", "Sight", "Remark"), rows, (1,), note)
+        yield table_of("What this data can show", ("Effect", "Smallest visible", "Sight", "Remark"), rows, (1,), note)
 
 
 # Extended model
@@ -234,7 +228,9 @@ def _model(diagnosis: Diagnosis) -> Iterator[BlockView]:
     ]
     heads = ("Cause", "Unknown", "Value", "95 % interval", "Unit")
     if fitted:
-        yield _table("Unknowns as fitted", heads, fitted, (2, 3), "Intervals hold if the named cause is the true one.")
+        yield table_of(
+            "Unknowns as fitted", heads, fitted, (2, 3), "Intervals hold if the named cause is the true one."
+        )
     else:
         yield Words("Nothing was named, so no effect is switched on.")
     others = [
@@ -248,10 +244,10 @@ def _model(diagnosis: Diagnosis) -> Iterator[BlockView]:
         if effect != UNKNOWN
     ]
     if others:
-        yield _table("The same for the explanations that are not excluded", ("Instead", *heads[1:]), others, (2, 3))
+        yield table_of("The same for the explanations that are not excluded", ("Instead", *heads[1:]), others, (2, 3))
     if diagnosis.calibrated:
         note = "Within its tolerance an input may move freely; what matters is how far, in standard deviations."
-        yield _table(
+        yield table_of(
             "Inputs as fitted to this machine", ("Input", "Nominal", "Fitted", "Moved, in its sd"),
             list(_calibrated(diagnosis)), (1, 2, 3), note,
         )  # fmt: skip
@@ -315,7 +311,7 @@ def _gain(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
         "cross-validation and compared with the model calibrated in the same fold. Removed is the share of the "
         "reducible error. Coverage is that of the 90 % prediction intervals."
     )
-    yield _table("What the extension is worth", heads, rows, tuple(range(1, 8)), note)
+    yield table_of("What the extension is worth", heads, rows, tuple(range(1, 8)), note)
     if diagnosis.causes:
         yield Words(f"The same causes were named in {percent(diagnosis.stability)} of the folds.")
     held = [
@@ -327,62 +323,12 @@ def _gain(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
         if item.held_out is not None
     ]
     if held:
-        yield _table("On the rows that were held out on request", ("Result", "Before", "After"), held, (1, 2))
+        yield table_of("On the rows that were held out on request", ("Result", "Before", "After"), held, (1, 2))
     title = "Error before and after, and the noise floor"
     yield drawn.view(title, partial(figures.gain_bars, diagnosis), f"{title}, on rows that were not fitted.")
 
 
 # Next measurement and data
-
-
-def _next(diagnosis: Diagnosis) -> Iterator[BlockView]:
-    if not diagnosis.next and diagnosis.verdict == "one_of":
-        yield Words("No setting can be proposed that tells the explanations apart.")
-    elif not diagnosis.next:
-        can_be_more = any(item.sight == "not excited" for item in diagnosis.seen) or diagnosis.not_measured
-        yield Words(
-            ("More readings would decide." if diagnosis.verdict == "undecided" else "There is nothing to separate.")
-            + (" Of what was not excited or not measured (chapter 2) this data says nothing." if can_be_more else "")
-        )
-    else:
-        yield from _points(diagnosis)
-    yield from _ties(diagnosis)
-
-
-def _points(diagnosis: Diagnosis) -> Iterator[BlockView]:
-    names = list(dict.fromkeys(name for point in diagnosis.next for name in (*point.measure, *point.settings)))
-    rows = [_point(place, point, names) for place, point in enumerate(diagnosis.next, start=1)]
-    heads = ("Point", *(spoken(name).capitalize() for name in names), "Separates", "λ then")
-    note = (
-        "λ then is the separation to expect once all points up to this one are measured; from "
-        f"{APART:.0f} on the two are apart."
-    )
-    yield _table("Settings to measure", heads, rows, (*range(1, len(names) + 1), len(names) + 2), note)
-    for reason in dict.fromkeys(point.why for point in diagnosis.next if point.why):
-        yield Words(f"{reason[:1].upper()}{reason[1:].rstrip('.')}.")
-
-
-def _ties(diagnosis: Diagnosis) -> Iterator[BlockView]:
-    """Say which facts decide between explanations that no measurement proposed here tells apart."""
-    for tie in diagnosis.ties:
-        names = listed([together([name]) for name in tie.explanations])
-        yield Words(f"No measurement proposed here tells {names} apart; a fact from elsewhere does.")
-        facts = [
-            (
-                together([fact.explanation]), spoken(fact.quantity.removeprefix("input:")), fact.note or ABSENT,
-                amount_text(readable(fact.value)),
-            )
-            for fact in tie.facts
-        ]  # fmt: skip
-        if facts:
-            heads = ("If it is", "then this quantity", "that is", "has this value")
-            yield _table("Facts that decide", heads, facts, (3,))
-
-
-def _point(place: int, point: NextPoint, names: Sequence[str]) -> tuple[str, ...]:
-    settings = ["measure" if name in point.measure else amount_text(point.settings.get(name), 4) for name in names]
-    pair = " / ".join(together([name]) for name in point.separates)
-    return str(place), *settings, pair, score_text(point.separation)
 
 
 def _data(diagnosis: Diagnosis) -> Iterator[BlockView]:
@@ -394,11 +340,11 @@ def _data(diagnosis: Diagnosis) -> Iterator[BlockView]:
         rows.append((label, str(count.in_file), str(count.used), str(count.unused), str(runs)))
     held = int(records.held_out.sum())
     note = f"{held} rows were held out: they judge and were not fitted." if held else ""
-    yield _table("Files", ("File", "Rows in the file", "Used", "Left out", "Runs"), rows, (1, 2, 3, 4), note)
+    yield table_of("Files", ("File", "Rows in the file", "Used", "Left out", "Runs"), rows, (1, 2, 3, 4), note)
     for label, count in zip(file_labels(records.files), records.counts, strict=True):
         if count.unused:
             yield Words(f"{label}: {count.sentence()}.")
-    yield _table("Covariates", ("Name", "From", "To", "Role", "Remark"), list(_covariates(diagnosis)), (1, 2))
+    yield table_of("Covariates", ("Name", "From", "To", "Role", "Remark"), list(_covariates(diagnosis)), (1, 2))
     for sentence in records.notes:
         yield Words(sentence.rstrip(".") + ".")
 

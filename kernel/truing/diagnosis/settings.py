@@ -1,0 +1,75 @@
+"""The settings at which a machine could be measured next: the box of what can be set, and points in it."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import TYPE_CHECKING
+
+from truing.declare.fields import InputField
+from truing.diagnosis.contest import Contest
+from truing.diagnosis.records import Covariate
+from truing.units import same_dimension, to_si
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+TRIED = 512
+FEW_VALUES = 3
+
+
+def settings_of(full: Contest) -> dict[str, Matrix]:
+    """Return the settings that are tried, by input or condition, SI: the corners of the box and points inside it."""
+    import numpy as np
+    from scipy.stats import qmc
+
+    boxes = {}
+    for name, item in full.problem.machine.records.covariates.items():
+        box = _box(full, name, item)
+        if box is not None and box[1] > box[0]:
+            boxes[name] = box
+    if not boxes:
+        return {}
+    sampler = qmc.Sobol(len(boxes), scramble=False)
+    unit = sampler.random(TRIED)
+    edges = np.random.Generator(np.random.SFC64(0)).integers(0, 3, size=(TRIED, len(boxes))) / 2
+    every = np.concatenate([unit, edges])
+    found = {}
+    for column, (name, (low, high)) in enumerate(boxes.items()):
+        values = low + (high - low) * every[:, column]
+        known = full.problem.machine.records.covariates[name].values
+        if len(np.unique(known[np.isfinite(known)])) <= FEW_VALUES:
+            values = np.where(every[:, column] < 0.5, low, high)
+        found[name] = values
+    return found
+
+
+def _box(full: Contest, name: str, item: Covariate) -> tuple[float, float] | None:
+    """Return the range in which something can be set: asked for, declared, or half as wide again as measured."""
+    import numpy as np
+
+    start = full.problem.machine.start
+    if name in start.diagnose.box:
+        return start.diagnose.box[name]
+    low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
+    condition = start.model.known_conditions.get(name)
+    if condition is not None:
+        limits = [
+            None if each is None else float(to_si(each, condition.unit)) for each in (condition.low, condition.high)
+        ]
+        return low if limits[0] is None else limits[0], high if limits[1] is None else limits[1]
+    field = start.model.input_fields.get(name)
+    return None if field is None or not field.varies else _input_box(field, low, high)
+
+
+def _input_box(field: InputField, low: float, high: float) -> tuple[float, float]:
+    declared = [getattr(field.spec, key, None) for key in ("at_least", "above", "at_most", "below")]
+    lows = [float(to_si(value, field.unit)) for value in declared[:2] if isinstance(value, (int, float))]
+    highs = [float(to_si(value, field.unit)) for value in declared[2:] if isinstance(value, (int, float))]
+    is_angle = field.unit not in {"", "1", "-"} and same_dimension(field.unit, "rad")
+    if is_angle and not lows and not highs:
+        return min(low, -pi), max(high, pi)
+    reach = (high - low) / 2
+    return max([low - reach, *lows]), min([high + reach, *highs])
