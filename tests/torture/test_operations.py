@@ -293,7 +293,7 @@ def judge(prepared: Prepared, name: str, inject: Callable[[], None], what: str) 
     else:
         assert found == before or is_new or (died and case.is_filled and found.items() <= after.items()), told
     if not died:
-        _judge_words(end, is_new=is_new or not case.results, told=told, is_watch=case.words.startswith("watch"))
+        _judge_words(end, case, is_new=is_new and bool(case.results), told=told)
     if died or leftovers(place):
         assert died or is_new or "--resume" in case.words, (told, leftovers(place))
         if not (case.is_filled and found) and (found == before or "new" not in name):
@@ -312,13 +312,13 @@ def _recover(place: Path, case: Case) -> None:
         recover(place / name)
 
 
-def _judge_words(end: End, *, is_new: bool, told: str, is_watch: bool) -> None:
+def _judge_words(end: End, case: Case, *, is_new: bool, told: str) -> None:
     """One sentence, which is true; 0 only where the new is there. A watch goes on until it is ended, then with 1."""
     assert "Traceback" not in end.err, told
     if end.code == 0:
-        assert is_new, told
+        assert is_new or not case.results, told
         return
-    if is_watch:
+    if case.words.startswith("watch"):
         assert end.code in {1, 2, 130}, told
         assert end.err.count("\n") <= 1, told
         assert end.code != 130 or ("complete" in end.err) == is_new, told
