@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import time
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -173,6 +174,7 @@ HOSTILE: dict[str, Callable[[int], str]] = {
     "unknown sections": lambda n: "".join(f"[inputs.load{i}]\n" for i in range(n // 16)),
 }
 SIZE = 20_000
+NAMES = "[inputs]\n" + "".join(f"load{i} = 1\n" for i in range(120_000))
 
 
 def processor_time(text: str) -> float:
@@ -196,7 +198,7 @@ def test_reading_time_grows_with_the_size_of_a_file(kind: str) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "[inputs]\n" + "".join(f"load{i} = 1\n" for i in range(120_000)),
+        NAMES,
         "".join(f"[load{i}]\n" for i in range(20_000)),
         "a = [\n" * 300_000,
         "[" * 1_900_000,
@@ -205,7 +207,10 @@ def test_reading_time_grows_with_the_size_of_a_file(kind: str) -> None:
     ids=["120000 names", "20000 sections", "lists", "brackets", "digits"],
 )
 def test_a_large_file_that_is_no_inputs_file_is_answered_at_once(text: str) -> None:
-    assert processor_time(text) < 2  # a second on a machine of its own; the suite shares its processors
+    """Against what Python's own reader takes for 120,000 names, about half a second on a machine of its own."""
+    begin = time.process_time()
+    tomllib.loads(NAMES)
+    assert processor_time(text) < 5 * (time.process_time() - begin)
 
 
 LINES = st.one_of(
