@@ -389,7 +389,8 @@ def test_inputs_are_flat() -> None:
     wanted = [
         "crank_radius", "rod_length", "platform_arm", "knee_drive_length", "upper_knee_length", "lower_knee_length",
         "slider_half_width", "crank_pivot_radius", "platform_half_width", "ground_pivot_radius", "ground_pivot_angle",
-        "crank_angle", "position_limit", "tilt_limit", "position_goal", "tilt_goal", "slider_mass", "counterbalance", "reading",
+        "crank_angle", "position_limit", "tilt_limit", "position_goal", "tilt_goal", "slider_mass",
+        "counterbalance", "reading",
     ]  # fmt: skip
     assert list(PRESS_LINKAGE.input_fields)[: len(wanted)] == wanted
     assert len(PRESS_LINKAGE.input_fields) == len(wanted) + 29
