@@ -15,6 +15,7 @@ from hidden_effects.plugin_asking import Answer
 from hidden_effects.rv_asking import REDUCER, diagnosed
 from hidden_effects.rv_cases import BACKLASH, WEAR, Case, Wish, make_case, measured
 from hidden_effects.rv_machine import RATED, ROUGHNESS, Array, Rows, Wearing, shown, wear_after
+from truing.diagnosis.verdict import APART
 
 BOTH = (BACKLASH, WEAR)
 ONE_CURVE = {"pin_rolling", "lost_motion_share", "duty_share", "pin_wear", "bearing_wear", "sensor_gain"}
@@ -66,7 +67,14 @@ UNKNOWN = [
 @cache
 def _answered(place: str, number: int) -> tuple[Case, Answer]:
     unknown = [wish for wish, _ in UNKNOWN]
-    places = {"nothing": NOTHING, "named": NAMED, "unknown": unknown, "alone": ALONE, "slower": SLOWER}
+    places = {
+        "nothing": NOTHING,
+        "named": NAMED,
+        "unknown": unknown,
+        "alone": ALONE,
+        "slower": SLOWER,
+        "unfelt": UNFELT,
+    }
     wish = places[place][number]
     case = make_case(wish)
     return case, diagnosed(case)
@@ -141,6 +149,9 @@ ALONE = [
 ]
 
 
+UNFELT = [Wish(seed=11, hidden={"lost_motion_share": {"loss": 0.5}})]
+
+
 @each("alone", ALONE)
 def test_on_the_backlash_alone_slower_wear_has_several_names(asked: tuple[str, int]) -> None:
     case, answer = _answered(*asked)
@@ -153,13 +164,17 @@ def test_on_the_backlash_alone_slower_wear_has_several_names(asked: tuple[str, i
     assert len((names | others) & ONE_CURVE) > 1
 
 
-def test_it_then_asks_for_the_wear() -> None:
-    document = _answered("alone", 1)[1].document
-    point = next(point for point in document["next"] if point["measure"])
+def test_it_asks_for_the_wear_where_the_wear_can_tell() -> None:
+    """Play that is not felt leaves the flank as deep as it is; less sliding does not."""
+    document = _answered("unfelt", 0)[1].document
+    explanations = {name for names in document["explanations"] for name in names}
+    assert (document["verdict"], explanations) == ("one_of", {"lost_motion_share", *LESS_SLIDING})
+    point = document["next"][0]
     assert (point["settings"], point["measure"]) == ({}, [WEAR])
-    assert set(point["separates"]) <= ONE_CURVE
+    assert "lost_motion_share" in point["separates"]
+    assert set(point["separates"]) <= explanations
     assert point["why"].startswith("measure max_wear, too: ")
-    assert point["separation"] > 9  # three standard deviations of machines within their tolerances
+    assert point["separation"] > APART
 
 
 def test_no_result_is_asked_for_where_none_can_tell() -> None:

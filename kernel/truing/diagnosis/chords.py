@@ -148,13 +148,23 @@ def _is_near(other: Term, term: Term, size: float) -> bool:
     return is_same and other.at != 0 and abs(other.at / size - 1) < ALIKE
 
 
+def is_seen_to_bend(new: Term, term: Term, scales: Mapping[str, float]) -> bool:
+    """Whether a chord is another curve than a term, by more than the noise at its size."""
+    apart, size = _apart(new, term, scales)
+    return apart * size > SEEN
+
+
 def _is_bent(new: Term, term: Term, scales: Mapping[str, float]) -> bool:
     """Whether a chord is another curve than a term: in its direction, or by more than the noise at its size."""
+    return _apart(new, term, scales)[0] > STRAIGHT or is_seen_to_bend(new, term, scales)
+
+
+def _apart(new: Term, term: Term, scales: Mapping[str, float]) -> tuple[float, float]:
+    """Return the sine squared of the angle between a chord and a term, and the square of the chord in noise units."""
     import numpy as np
 
     a, b = stacked(new.curves[0], scales), stacked(term.curves[0], scales)
     sizes = float(a @ a) * float(b @ b)
     if not np.isfinite(sizes) or sizes <= 0:
-        return False
-    apart = 1 - float(a @ b) ** 2 / sizes
-    return apart > STRAIGHT or apart * float(a @ a) * new.at**2 > SEEN
+        return 0.0, 0.0
+    return 1 - float(a @ b) ** 2 / sizes, float(a @ a) * new.at**2

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.candidates import new_curves
-from truing.diagnosis.contest import Contest, curve_space, names_of
+from truing.diagnosis.contest import Contest, names_of
 from truing.diagnosis.findings import in_unit
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.noise import SETTINGS, whiten
@@ -282,15 +282,16 @@ def _twin_duels(
     before = sum(len(each.columns) for each in solution.hypothesis.pieces[: twin.piece])
     own = slice(before, before + len(piece.columns))
     curves = list(zip(twin.term.curves, new_curves(there, twin.candidate, twin.term), twin.term.per, strict=True))
-    expected = believed(full, there, piece, solution.coefficients[own])
+    expected, here = (
+        believed(full, machine, piece, solution.coefficients[own]) for machine in (there, full.problem.machine)
+    )
     k = full.evidence.directions.shape[1]
     normal, cross, size = np.zeros((k + len(curves),) * 2), np.zeros(k + len(curves)), 0.0
     signal, rows = {}, {}
     for place, channel in enumerate(full.evidence.channels):
         setting = SETTINGS[solution.setting[place]]
-        here = curve_space(full, solution.hypothesis)[channel.name][:, own]
         rival = np.column_stack([curve[channel.name][channel.rows] * (per / channel.scale) for curve, _, per in curves])
-        made = np.column_stack([channel.directions, rival, here @ solution.coefficients[own]])
+        made = np.column_stack([channel.directions, rival, here[channel.name][channel.rows] / channel.scale])
         white = whiten(made * channel.weights[:, None], channel.starts, setting)
         normal, cross = normal + white[:, :-1].T @ white[:, :-1], cross + white[:, :-1].T @ white[:, -1]
         size += float(white[:, -1] @ white[:, -1])

@@ -14,6 +14,7 @@ from truing.diagnosis.design import next_points
 from truing.diagnosis.findings import wrong_of
 from truing.diagnosis.fit import Fit, fit, input_values, may_be_zero, shape_part
 from truing.diagnosis.gain import Nested, nested, sign_flip_p
+from truing.diagnosis.hypotheses import Hypothesis
 from truing.diagnosis.machine import machine_of
 from truing.diagnosis.naming import alternative_of, causes_of, extended_setup, remainder_of
 from truing.diagnosis.problem import Problem, problem_of
@@ -113,14 +114,20 @@ def _is_doubtful(full: Contest, place: int, best: Fit) -> bool:
     return any(may_be_zero(best, number) for number, piece in enumerate(pieces) if piece.kind == "term")
 
 
-def _adds_nothing(full: Contest, winner: int, rival: int) -> bool:
-    """Whether a rival is the winner itself with something that may as well be zero."""
-    chosen, other = full.found.hypotheses[winner], full.found.hypotheses[rival]
-    if not set(chosen.key) < set(other.key):
+def _rivals(full: Contest, winner: int) -> dict[int, Fit]:
+    """Return the explanations that this data does not exclude, best first, each with its exact fit."""
+    chosen = full.found.hypotheses[winner]
+    fits = {place: fit(full, place) for place in alternatives(full, winner)}
+    return {place: own for place, own in fits.items() if not _adds_nothing(own, chosen)}
+
+
+def _adds_nothing(rival: Fit, chosen: Hypothesis) -> bool:
+    """Whether a rival is the chosen explanation with something that may as well be zero."""
+    if not set(chosen.key) < set(rival.hypothesis.key):
         return False
-    found = fit(full, rival)
-    more = [place for place, piece in enumerate(other.pieces) if piece.tag not in chosen.key and piece.kind == "term"]
-    return bool(more) and all(may_be_zero(found, place) for place in more)
+    pieces = enumerate(rival.hypothesis.pieces)
+    more = [place for place, piece in pieces if piece.tag not in chosen.key and piece.kind == "term"]
+    return bool(more) and all(may_be_zero(rival, place) for place in more)
 
 
 class _Steps:
@@ -157,11 +164,11 @@ def _answer(full: Contest, decision: Decision, best: Fit, raw: NoiseModel, *, do
     units = units_of(full)
     causes = by_share(full, best, causes_of(full, best))
     remainder = remainder_of(full, best, decision, units)
-    rivals = [place for place in alternatives(full, decision.winner) if not _adds_nothing(full, decision.winner, place)]
+    rivals = _rivals(full, decision.winner)
     judged = nested(full, decision.winner, decision.thresholds, raw, done=done)
     wrong = wrong_of(full, best, decision.null, units)
     has_cause = bool(causes or remainder)
-    points, ties = with_results(full, best, rivals, next_points(full, decision.winner, rivals))
+    points, ties = with_results(full, best, [*rivals], next_points(full, decision.winner, [*rivals]))
     return Diagnosis(
         setup=machine.start,
         records=records,
@@ -170,7 +177,8 @@ def _answer(full: Contest, decision: Decision, best: Fit, raw: NoiseModel, *, do
         wrong=wrong,
         causes=causes,
         alternatives=tuple(
-            alternative_of(full, decision.winner, rival, fitted=rank < FITTED) for rank, rival in enumerate(rivals)
+            alternative_of(full, decision.winner, rival, own if rank < FITTED else None)
+            for rank, (rival, own) in enumerate(rivals.items())
         ),
         remainder=remainder,
         seen=tuple(smallest_visible(full, setting)),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from truing.declare.sources import Unknown
 from truing.diagnosis.contest import Contest, names_of
 from truing.diagnosis.findings import fitted_shape, shape_in_words
-from truing.diagnosis.fit import Fit, fit, input_values, interval, si_covariance
+from truing.diagnosis.fit import Fit, input_values, interval, si_covariance
 from truing.diagnosis.hypotheses import Piece
 from truing.diagnosis.profile import shape_interval
 from truing.diagnosis.result import Alternative, Cause, FittedUnknown, Remainder, ShapeTerm
@@ -196,8 +196,8 @@ def _alone(solution: Solution, piece: Piece) -> Solution:
     return replace(solution, hypothesis=only, coefficients=np.array(kept))
 
 
-def alternative_of(full: Contest, winner: int, rival: int, *, fitted: bool = False) -> Alternative:
-    """Return a rival explanation: how far behind, how separable, and where it is ``fitted`` what its own fit says."""
+def alternative_of(full: Contest, winner: int, rival: int, own: Fit | None = None) -> Alternative:
+    """Return a rival explanation: how far behind, how separable, and what its ``own`` fit says, where there is one."""
     hypothesis = full.found.hypotheses[rival]
     true = full.solution(winner)
     depends: tuple[str, ...] = ()
@@ -209,7 +209,7 @@ def alternative_of(full: Contest, winner: int, rival: int, *, fitted: bool = Fal
         max(0.0, float(full.found.score[winner] - full.found.score[rival])),
         separation(full, true, hypothesis),
         depends,
-        {cause.effect: cause.unknowns for cause in causes_of(full, fit(full, rival))} if fitted else {},
+        {} if own is None else {cause.effect: cause.unknowns for cause in causes_of(full, own)},
         _same_as(full, full.solution(rival)),
     )
 

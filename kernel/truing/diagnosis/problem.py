@@ -8,7 +8,7 @@ from functools import cached_property
 from math import inf
 
 from truing.diagnosis.candidates import Candidate, Term, candidates_of, failure_of, variants_of
-from truing.diagnosis.chords import are_faint, bent_terms, far_terms, late_terms
+from truing.diagnosis.chords import are_faint, bent_terms, far_terms, is_seen_to_bend, late_terms
 from truing.diagnosis.columns import Column, Design, Values, acting
 from truing.diagnosis.grids import terms_of
 from truing.diagnosis.hypotheses import Piece, unbounded
@@ -303,8 +303,27 @@ def bent(problem: Problem, fitted: Sequence[tuple[Piece, float]]) -> Problem:
     """
     terms = [(problem.terms[piece.place], coefficient) for piece, coefficient in fitted if piece.kind == "term"]
     gone, twins = Parting(problem.candidates, problem.machine, problem.scales).parted(terms, problem.twins)
-    new = bent_terms(terms, problem.terms, problem.candidates, problem.machine, problem.scales)
-    return _with_terms(replace(problem, twins=twins), [*gone, *new])
+    new = [*bent_terms(terms, problem.terms, problem.candidates, problem.machine, problem.scales)]
+    return _with_terms(_with_short_slopes(replace(problem, twins=twins), new), [*gone, *new])
+
+
+def _with_short_slopes(problem: Problem, chords: Sequence[Term]) -> Problem:
+    """Return the problem with slopes that stand only for sizes at which no chord is seen to be another curve.
+
+    Else the slope of a cause that has long bent would compete for it, and tie with another cause that is straight.
+    """
+    pieces = list(problem.term_pieces)
+    for chord in chords:
+        for number, piece in enumerate(pieces):
+            term = problem.terms[piece.place]
+            is_slope = term.candidate == chord.candidate and term.shape == chord.shape and not term.at
+            if is_slope and term.files == (-1,) and is_seen_to_bend(chord, term, problem.scales):
+                end = chord.at / term.per[0]
+                low, high = (
+                    (piece.low, (min(piece.high[0], end),)) if end > 0 else ((max(piece.low[0], end),), piece.high)
+                )
+                pieces[number] = replace(piece, low=low, high=high)
+    return replace(problem, term_pieces=tuple(pieces))
 
 
 def at_shapes(problem: Problem, pieces: Sequence[Piece], shapes: Mapping[int, Mapping[str, float]]) -> Problem:

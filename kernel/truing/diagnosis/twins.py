@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 VISIBLE = 9.0
 """Squared, in units of the noise: what one curve must leave of another for both to be told apart (three sigma)."""
+STEPS = 20
+EQUAL = 1e-3
+"""Share of its size up to which a cause is as strong as a curve, and how often its chord is made anew for that."""
 
 
 @dataclass(frozen=True)
@@ -94,10 +97,14 @@ class Parting:
         wanted = stacked(curve, self.scales)
         low, high = si_bounds(candidate.amplitudes[0])
         for term in variants_of(place, candidate, self.machine, {}, self.scales):
-            slope = stacked(term.curves[0], self.scales)
-            size = float(slope @ wanted) / float(slope @ slope)
-            if size and low <= size <= high and term.low[0] <= size / term.per[0] <= term.high[0]:
-                return next(iter(chord(place, candidate, self.machine, self.scales, (size, {}), reach=REACH)), None)
+            size = _strength(term, wanted, self.scales)
+            if not size or not low <= size <= high or not term.low[0] <= size / term.per[0] <= term.high[0]:
+                continue
+            for _ in range(STEPS):
+                made = chord(place, candidate, self.machine, self.scales, (size, {}), reach=REACH)
+                before, size = size, min(max(_strength(made[0], wanted, self.scales), low), high) if made else 0.0
+                if not made or abs(size - before) <= EQUAL * abs(before):
+                    return next(iter(made), None)
         return None
 
     def _differs(self, curve: Curve, other: Term) -> bool:
@@ -117,6 +124,12 @@ class Parting:
         inputs = np.concatenate([np.nan_to_num(slopes[name] @ moves) / scale for name, scale in self.scales.items()])
         made = np.column_stack([inputs, *(stacked(curve, self.scales) for curve in curves)])
         return visible(made.T @ made, moves.shape[1])
+
+
+def _strength(term: Term, wanted: Matrix, scales: Mapping[str, float]) -> float:
+    """Return the amplitude (SI) with which a term comes nearest to a curve."""
+    own = stacked(term.curves[0], scales)
+    return float(own @ wanted) / float(own @ own)
 
 
 def _sized(term: Term) -> Curve:

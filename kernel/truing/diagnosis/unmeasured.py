@@ -104,7 +104,7 @@ def _twin(full: Contest, best: Fit, winner: Explanation, twin: TwinTerm) -> Expl
     parts = zip(term.curves, term.unknowns, strict=True)
     wanted = sum((stacked(curve, scales) * sizes.get(name, 0.0) for curve, name in parts), np.zeros(1))
     own = np.column_stack([stacked(curve, scales) for curve in twin.term.curves])
-    fitted = np.linalg.lstsq(own, wanted, rcond=None)[0]
+    fitted = [twin.term.at] if twin.term.at else np.linalg.lstsq(own, wanted, rcond=None)[0]
     replaced = problem.candidates[best.hypothesis.pieces[twin.piece].owner].name
     values = {item.name: 0.0 if item.is_amplitude else si_bounds(item)[0] for item in twin.candidate.effect.unknowns}
     values |= {**twin.term.shape, **{name: float(size) for name, size in zip(twin.term.unknowns, fitted, strict=True)}}
