@@ -238,3 +238,15 @@ def test_a_decision_does_not_depend_on_who_asks(tmp_path: Path) -> None:
     assert decision.p_any == found.p_any
     kinds = [piece.kind for piece in full.found.hypotheses[decision.winner].pieces]
     assert len(kinds) == len(found.causes) == 2
+
+
+@pytest.mark.parametrize(("same", "verdict"), [(80, "undecided"), (20, "undecided"), (1, "named")])
+def test_one_reading_written_many_times_is_one_reading(tmp_path: Path, same: int, verdict: str) -> None:
+    """Eighty rows, so many of them alike in every cell; four to eighty settings are left that differ."""
+    bench = wide(80, seed=3)
+    error = 0.05 * bench.travel + np.random.default_rng(6).normal(0, 1, len(bench))
+    columns = bench.columns(gauge(bench.load, bench.travel) + error)
+    first = np.arange(len(bench)) // same * same
+    found = PROPER.diagnosed(tmp_path, {name: values[first] for name, values in columns.items()})
+    assert found.verdict == verdict
+    assert found.records.readings == len(bench) // same

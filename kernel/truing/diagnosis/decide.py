@@ -76,7 +76,7 @@ def decide(contest: Contest, *, seed: int) -> Decision:
     null = first_stage(contest, best, seed=seed)
     p_any = null.p_value
     limit = float(np.quantile(null.maxima, 1 - ANY_LEVEL))
-    if contest.evidence.rows < FEWEST_READINGS or not contest.problem.machine.records.is_varied:
+    if min(contest.evidence.rows, contest.problem.machine.records.readings) < FEWEST_READINGS:
         return Decision(0, 1.0, None, null, Thresholds(limit, 0.0))
     if p_any > ANY_LEVEL:
         return Decision(0, p_any, None, null, Thresholds(limit, 0.0))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import pi
 from typing import TYPE_CHECKING, Literal
 
@@ -91,26 +92,16 @@ class Records:
     counts: tuple[RowCount, ...] = ()
     """What became of every row of each file, in the order of ``files``."""
 
-    @property
+    @cached_property
     def readings(self) -> int:
-        """Number of measured values that may be fitted."""
+        """Number of measured values that may be fitted; those of rows that differ in their order alone count once."""
         import numpy as np
 
-        return sum(int(np.isfinite(values[~self.held_out]).sum()) for values in self.measured.values())
-
-    @property
-    def is_varied(self) -> bool:
-        """Whether at least eight rows that may be fitted differ in what was measured, or where; not in order alone."""
-        import numpy as np
-
-        covariates = [item.values for item in self.covariates.values() if item.role != "order"]
-        table = np.column_stack([*self.measured.values(), *covariates])[~self.held_out]
-        different: set[bytes] = set()
-        for row in table:
-            different.add(row.tobytes())
-            if len(different) >= FEWEST_READINGS:
-                return True
-        return False
+        measured = np.column_stack([*self.measured.values()])[~self.held_out]
+        settings = [item.values[~self.held_out] for item in self.covariates.values() if item.role != "order"]
+        rows = np.ascontiguousarray(np.column_stack([measured, *settings]), dtype=float)
+        _, first = np.unique(rows.view(np.dtype((np.void, rows.itemsize * rows.shape[1]))), return_index=True)
+        return int(np.isfinite(measured[first]).sum())
 
     def __len__(self) -> int:
         return len(self.run_of)

@@ -65,7 +65,7 @@ def doubts(diagnosis: Diagnosis) -> Iterator[str]:
     """Give the reasons why it cannot be said that nothing is wrong where nothing was named, one clause each."""
     readings = diagnosis.records.readings
     if readings < FEWEST_READINGS:
-        yield f"{readings} readings are too few to tell a cause from chance"
+        yield f"{readings} readings that differ are too few to tell a cause from chance"
     elif diagnosis.p_any is None or not diagnosis.p_any >= CHANCE:
         yield _nearly(diagnosis)
     for wrong in diagnosis.wrong:
