@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from xdist.scheduler import WorkStealingScheduling
 
 from shared import GUESTS, TESTS, copied_guest, process
 
@@ -16,6 +17,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--torture", choices=["modest", "full"], default="modest", help="size of the tests in tests/torture"
     )
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> WorkStealingScheduling:
+    """Give every worker tests that stand one after another, so that what these share is made once."""
+    return WorkStealingScheduling(config, log)
 
 
 @pytest.fixture(scope="session")

@@ -114,17 +114,20 @@ def _is_doubtful(full: Contest, place: int, best: Fit) -> bool:
     return any(may_be_zero(best, number) for number, piece in enumerate(pieces) if piece.kind == "term")
 
 
-def _rivals(full: Contest, winner: int) -> dict[int, Fit]:
-    """Return the explanations that this data does not exclude, best first, each with its exact fit."""
+def _rivals(full: Contest, winner: int) -> dict[int, Fit | None]:
+    """Return the explanations that this data does not exclude, best first, the nearest with their exact fits."""
     chosen = full.found.hypotheses[winner]
-    fits = {place: fit(full, place) for place in alternatives(full, winner)}
-    return {place: own for place, own in fits.items() if not _adds_nothing(own, chosen)}
+    found: dict[int, Fit | None] = {}
+    for rank, place in enumerate(alternatives(full, winner)):
+        has_more = set(chosen.key) < set(full.found.hypotheses[place].key)
+        own = fit(full, place) if has_more or rank < RANKED else None
+        if not (has_more and own is not None and _adds_nothing(own, chosen)):
+            found[place] = own
+    return found
 
 
 def _adds_nothing(rival: Fit, chosen: Hypothesis) -> bool:
-    """Whether a rival is the chosen explanation with something that may as well be zero."""
-    if not set(chosen.key) < set(rival.hypothesis.key):
-        return False
+    """Whether what a rival has beside the chosen explanation may as well be zero."""
     pieces = enumerate(rival.hypothesis.pieces)
     more = [place for place, piece in pieces if piece.tag not in chosen.key and piece.kind == "term"]
     return bool(more) and all(may_be_zero(rival, place) for place in more)
@@ -168,7 +171,8 @@ def _answer(full: Contest, decision: Decision, best: Fit, raw: NoiseModel, *, do
     judged = nested(full, decision.winner, decision.thresholds, raw, done=done)
     wrong = wrong_of(full, best, decision.null, units)
     has_cause = bool(causes or remainder)
-    points, ties = with_results(full, best, [*rivals], next_points(full, decision.winner, [*rivals]))
+    fitted = [own for own in rivals.values() if own is not None]
+    points, ties = with_results(full, best, fitted, next_points(full, decision.winner, [*rivals]))
     return Diagnosis(
         setup=machine.start,
         records=records,

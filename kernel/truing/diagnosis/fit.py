@@ -31,6 +31,9 @@ LARGEST_LEVERAGE = 0.95
 NEARER = 40
 """So often a start at which the model fails is halved: what is left of it is rounding."""
 STEEPEST = 1e-12
+SETTLED = 1e-8
+"""Share of the sum of squares: one step that gains less ends a fit. Of a hundred rows it is a millionth of what one
+standard deviation of a parameter is worth; derivatives that are not exact would go on for a hundred steps of these."""
 SPARING: Mapping[str, Any] = {"tr_solver": "lsmr", "tr_options": {"atol": 1e-13, "btol": 1e-13}}
 """Of many rows the fit makes no copies of its derivatives."""
 
@@ -205,7 +208,7 @@ def fit(contest: Contest, place: int) -> Fit:
     residual = _residual(contest, fitter, setting, p)
     low = np.array([item.low for item in fitter.parameters] + [-np.inf] * (len(start) - p))
     high = np.array([item.high for item in fitter.parameters] + [np.inf] * (len(start) - p))
-    way: Mapping[str, Any] = {"bounds": (low, high), "x_scale": "jac", "xtol": 1e-10, "ftol": 1e-12}
+    way: Mapping[str, Any] = {"bounds": (low, high), "x_scale": "jac", "xtol": 1e-10, "ftol": SETTLED}
     way = {**way, **(SPARING if contest.evidence.rows > MANY else {})}
     jacobian = Jacobian(fitter.parameters, residual, white_directions(contest, setting))
     start = _that_works(residual, np.clip(start, low, high))

@@ -19,7 +19,7 @@ from truing.diagnosis.candidates import si_bounds, stacked
 from truing.diagnosis.contest import Contest, names_of
 from truing.diagnosis.design import Proposal
 from truing.diagnosis.findings import in_unit
-from truing.diagnosis.fit import Fit, fit
+from truing.diagnosis.fit import Fit
 from truing.diagnosis.machine import Machine, machine_of, predict
 from truing.diagnosis.naming import causes_of, switched_on
 from truing.diagnosis.readable import readable_unit
@@ -72,14 +72,14 @@ class _Gap:
         return self.size / self.scatter if self.scatter > 0 else 1e6
 
 
-def rival_explanations(full: Contest, best: Fit, rivals: Sequence[int]) -> list[Explanation]:
+def rival_explanations(full: Contest, best: Fit, rivals: Sequence[Fit]) -> list[Explanation]:
     """Return the winner, the causes of the same curve and the rivals, each as it is fitted to this data."""
     if not is_physical(best.hypothesis):
         return []
     winner = _fitted(full, best)
     found = [winner, *(_twin(full, best, winner, twin) for twin in twins_of(full, best.hypothesis, _signs(best)))]
-    physical = [place for place in rivals if is_physical(full.found.hypotheses[place])][:RIVALS]
-    return [*found, *(_fitted(full, fit(full, place)) for place in physical)]
+    physical = [rival for rival in rivals if is_physical(rival.hypothesis)][:RIVALS]
+    return [*found, *(_fitted(full, rival) for rival in physical)]
 
 
 def _fitted(full: Contest, best: Fit) -> Explanation:
@@ -114,7 +114,7 @@ def _twin(full: Contest, best: Fit, winner: Explanation, twin: TwinTerm) -> Expl
 
 
 def with_results(
-    full: Contest, best: Fit, rivals: Sequence[int], proposal: Proposal
+    full: Contest, best: Fit, rivals: Sequence[Fit], proposal: Proposal
 ) -> tuple[list[NextPoint], list[Tie]]:
     """Return the next points with the result that separates the rivals, and what neither of them tells apart.
 
