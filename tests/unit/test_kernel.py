@@ -465,7 +465,7 @@ def test_the_page_of_hooks_says_when_and_what() -> None:
     assert all(hook.__doc__ and hook.__annotations__["return"] for hook in hooks_page())
 
 
-DECLARED = '''"""A bar under load."""
+DECLARED = '''"""A bar under load."""; import truing
 from truing import Float, Model, Price, Require, Tolerance, Vary, found, given, hookimpl, inputs, normal, results
 
 
@@ -493,6 +493,7 @@ MODEL = Model(
     name="bar", title="Bar", function=bar,
     errors=[Tolerance("load", normal(sd="3 N"), why="scatter", price=PRICE)],
     objectives=[Vary("load", "50 N", "200 N"), Require("double", at_most="80 N")],
+    studies=[truing.Sensitivity(of="double"), truing.Sweep(over="load", at="60 N to 90 N")],
 )
 
 
@@ -514,6 +515,9 @@ def truing_models() -> list[Model[Bar, Stress]]:
         ('"50 N"', '"50 Pa"', 28, "Vary('load'): '50 Pa' is a pressure or stress (Pa), expected a force (N)"),
         ('"3 N"', '"3 mm"', 27, "tolerance 'load': '3 mm' is a length (mm), expected a force (N)"),
         ("price=PRICE", 'price=Price("1 / width", width="mm", unit="EUR")', 27, "the width of tolerance 'load' "),
+        ("given(120.0", 'given(float("inf")', 9, "the default of 'load' is inf, which is no finite number"),
+        ('of="double"', 'of="duoble"', 29, "study 'sensitivity': bar has no result 'duoble'. Did you mean 'double'?"),
+        ('over="load"', 'over="laod"', 29, "study 'sweep': bar has no input 'laod'. Did you mean 'load'?"),
     ],
 )  # fmt: skip
 def test_a_quantity_that_is_declared_wrongly_is_told_with_its_line(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from truing.declare.checks import TOTAL_PRICE
 from truing.declare.goals import Require, Vary, prices_in
+from truing.declare.near_miss import near_miss
 from truing.declare.specs import Given
 from truing.declare.spreads import Target
 from truing.errors import UnitError, UsageError
@@ -36,6 +37,8 @@ def unread_quantities(model: Model[Any, Any]) -> Iterator[Unread]:
     yield from unread_units(model)
     yield from unread_goals(model)
     yield from _spreads(model)
+    yield from _not_finite(model)
+    yield from _studied(model)
 
 
 def unread_units(model: Model[Any, Any]) -> Iterator[Unread]:
@@ -114,6 +117,29 @@ def _spreads(model: Model[Any, Any]) -> Iterator[Unread]:
             target = Target(name, nominal, _unit_of(name, model), nominals.__getitem__)
             what = f"tolerance '{tolerance.name}'"
             yield from _refused(tolerance.name, tolerance.spread.text, what, partial(tolerance.spread.resolve, target))
+
+
+def _not_finite(model: Model[Any, Any]) -> Iterator[Unread]:
+    """Give defaults that are no finite numbers."""
+    for name, item in model.input_fields.items():
+        default = item.spec.default if isinstance(item.spec, Given) else None
+        if isinstance(default, float) and not math.isfinite(default):
+            yield Unread(name, f"{default}", f"the default of '{name}' is {default}, which is no finite number")
+
+
+def _studied(model: Model[Any, Any]) -> Iterator[Unread]:
+    """Give results and inputs that the kernel's own studies are declared with and that the model has not."""
+    for study in model.studies:
+        if not type(study).__module__.startswith("truing."):
+            continue
+        of, over = getattr(study, "of", ()), getattr(study, "over", "")
+        inputs = {**model.input_fields, **model.conditions}
+        asked = ("result", (of,) if isinstance(of, str) else of, model.own_result_fields)
+        varied = ("input", (over,) if isinstance(over, str) and over else (), inputs)
+        for kind, names, known in (asked, varied):
+            for name in (name for name in names if name not in known):
+                sentence = f"study '{study.name}': {model.name} has no {kind} '{name}'.{near_miss(name, known)}"
+                yield Unread(name, name, sentence)
 
 
 def _widths(model: Model[Any, Any]) -> Iterator[Unread]:
