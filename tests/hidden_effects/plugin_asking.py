@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Protocol, TypeAlias
@@ -77,3 +77,24 @@ class Rig:
         lines = [",".join(columns)]
         lines += [",".join(repr(float(cell)) for cell in row) for row in zip(*columns.values(), strict=True)]
         return "\n".join(lines) + "\n"
+
+
+def demand_named(
+    document: Mapping[str, Any],
+    curves: Sequence[set[str]],
+    *,
+    may_hold_more: bool = False,
+    may_be_unknown: bool = False,
+) -> None:
+    """Ask that no explanation is left but these causes, each by any name of its curve; else these and something more.
+
+    What autocorrelated or uneven noise leaves may draw something small beside a cause: then more than the one is left,
+    but nothing in its place. Few rows along one axis may also be drawn by a shape that nobody registered.
+    """
+    explanations = [set(names) for names in document["explanations"]]
+    assert document["verdict"] == ("named" if len(explanations) == 1 else "one_of")
+    for names in explanations:
+        if may_be_unknown and all(name.startswith("unknown") for name in names):
+            continue
+        assert all(names & curve for curve in curves), names
+        assert may_hold_more or len(names) == len(curves), names
