@@ -58,7 +58,9 @@ def heights(drive: Drive) -> tuple[Float, Float]:
 def _height(flank: Flank | None, rough: Rough | None, drive: Drive) -> Float:
     if flank is not None:
         return flank.height
-    return 0.0 if rough is None else patch_height(rough, drive.patch_length, drive.density)
+    if rough is None:
+        return 0.0
+    return np.where(np.isnan(rough.dimension), 0.0, patch_height(rough, drive.patch_length, drive.density))
 
 
 def approach(load: Float, reference: Float, contact: Contact) -> Float:

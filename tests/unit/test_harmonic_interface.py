@@ -170,3 +170,14 @@ def test_an_all_plastic_pair_is_told_not_refused() -> None:
     assert (found.stiffness, found.mesh_stiffness, found.torsion, found.load_exponent) == (0.0, 0.0, 0.0, 0.0)
     assert found.plastic_share == 1.0
     assert harmonic_fractal(drive_of()).plastic_share < 0.1
+
+
+def test_a_smooth_mate_beside_rough_ones_has_no_height() -> None:
+    """In a batch, too: rows without a mating flank are those of the drive without one."""
+    nothing = float("nan")
+    columns = {"mating_dimension": np.array([2.4, nothing]), "mating_roughness": np.array([1e-11, nothing])}
+    rows = evaluate_rows(default_setup(HARMONIC_FRACTAL), columns, 2)
+    rough, smooth = rows.results["mating_rough_height"]
+    assert not rows.failed.any()
+    assert rough > 0
+    assert smooth == 0
