@@ -103,7 +103,7 @@ class Parting:
             for _ in range(STEPS):
                 made = chord(place, candidate, self.machine, self.scales, (size, {}), reach=REACH)
                 before, size = size, min(max(_strength(made[0], wanted, self.scales), low), high) if made else 0.0
-                if not made or abs(size - before) <= EQUAL * abs(before):
+                if not made or not size or abs(size - before) <= EQUAL * abs(before):
                     return next(iter(made), None)
         return None
 
