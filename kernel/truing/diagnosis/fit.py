@@ -31,11 +31,6 @@ LARGEST_LEVERAGE = 0.95
 NEARER = 40
 """So often a start at which the model fails is halved: what is left of it is rounding."""
 STEEPEST = 1e-12
-SETTLED = 1e-8
-"""Share of the sum of squares: a fit goes on while a step gains more. Where derivatives are not exact hundreds of steps
-would gain less: of a hundred rows a millionth of what one standard deviation of a parameter is worth."""
-LAST_STEPS = 6
-"""So many follow, with which a fit that has derivatives as they are comes to the last digit."""
 SPARING: Mapping[str, Any] = {"tr_solver": "lsmr", "tr_options": {"atol": 1e-13, "btol": 1e-13}}
 """Of many rows the fit makes no copies of its derivatives."""
 
@@ -210,7 +205,7 @@ def fit(contest: Contest, place: int) -> Fit:
     residual = _residual(contest, fitter, setting, p)
     low = np.array([item.low for item in fitter.parameters] + [-np.inf] * (len(start) - p))
     high = np.array([item.high for item in fitter.parameters] + [np.inf] * (len(start) - p))
-    way: Mapping[str, Any] = {"bounds": (low, high), "x_scale": "jac", "xtol": 1e-10, "ftol": SETTLED}
+    way: Mapping[str, Any] = {"bounds": (low, high), "x_scale": "jac", "xtol": 1e-10, "ftol": 1e-12}
     way = {**way, **(SPARING if contest.evidence.rows > MANY else {})}
     jacobian = Jacobian(fitter.parameters, residual, white_directions(contest, setting))
     start = _that_works(residual, np.clip(start, low, high))
@@ -220,8 +215,6 @@ def fit(contest: Contest, place: int) -> Fit:
         inside = _inside(found.x, low, high)
         again = inside if np.isfinite(residual(inside)).all() else found.x
         found = least_squares(residual, again, jac=jacobian, **way)
-    last = least_squares(residual, found.x, jac=jacobian, **{**way, "ftol": 1e-12, "max_nfev": LAST_STEPS})
-    found = last if last.cost <= found.cost else found
     covariance, freedom = _covariance(contest, found.fun, np.asarray(found.jac), setting)
     left = _split(contest, found.fun)
     predicted = fitter.predicted(found.x[:p], found.x[p:])
