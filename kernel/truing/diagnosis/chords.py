@@ -156,7 +156,8 @@ def is_seen_to_bend(new: Term, term: Term, scales: Mapping[str, float]) -> bool:
 
 def _is_bent(new: Term, term: Term, scales: Mapping[str, float]) -> bool:
     """Whether a chord is another curve than a term: in its direction, or by more than the noise at its size."""
-    return _apart(new, term, scales)[0] > STRAIGHT or is_seen_to_bend(new, term, scales)
+    apart, size = _apart(new, term, scales)
+    return apart > STRAIGHT or apart * size > SEEN
 
 
 def _apart(new: Term, term: Term, scales: Mapping[str, float]) -> tuple[float, float]:

@@ -96,21 +96,26 @@ def _signs(best: Fit) -> list[float]:
 
 def _twin(full: Contest, best: Fit, winner: Explanation, twin: TwinTerm) -> Explanation:
     """Return the winner with one piece replaced by what draws the same curve, as large as that piece is."""
+    problem = full.problem
+    fitted = [twin.term.at] if twin.term.at else _as_large(full, best, twin)
+    replaced = problem.candidates[best.hypothesis.pieces[twin.piece].owner].name
+    values = {item.name: 0.0 if item.is_amplitude else si_bounds(item)[0] for item in twin.candidate.effect.unknowns}
+    values |= {**twin.term.shape, **dict(zip(twin.term.unknowns, fitted, strict=True))}
+    kept = tuple(item for item in winner.on if item.effect.name != replaced)
+    name = " + ".join(twin.name if each == replaced else each for each in winner.name.split(" + "))
+    return Explanation(name, (*kept, SwitchedOn(twin.candidate.effect, values)), winner.inputs)
+
+
+def _as_large(full: Contest, best: Fit, twin: TwinTerm) -> list[float]:
+    """Return the amplitudes (SI) with which the columns of a twin come nearest to the piece that it replaces."""
     import numpy as np
 
-    problem, scales = full.problem, full.noise.scales
-    term = problem.terms[best.hypothesis.pieces[twin.piece].place]
+    scales, term = full.noise.scales, full.problem.terms[best.hypothesis.pieces[twin.piece].place]
     sizes = {item.name: best.si_value(at) for at, item in enumerate(best.parameters) if item.piece == twin.piece}
     parts = zip(term.curves, term.unknowns, strict=True)
     wanted = sum((stacked(curve, scales) * sizes.get(name, 0.0) for curve, name in parts), np.zeros(1))
     own = np.column_stack([stacked(curve, scales) for curve in twin.term.curves])
-    fitted = [twin.term.at] if twin.term.at else np.linalg.lstsq(own, wanted, rcond=None)[0]
-    replaced = problem.candidates[best.hypothesis.pieces[twin.piece].owner].name
-    values = {item.name: 0.0 if item.is_amplitude else si_bounds(item)[0] for item in twin.candidate.effect.unknowns}
-    values |= {**twin.term.shape, **{name: float(size) for name, size in zip(twin.term.unknowns, fitted, strict=True)}}
-    kept = tuple(item for item in winner.on if item.effect.name != replaced)
-    name = " + ".join(twin.name if each == replaced else each for each in winner.name.split(" + "))
-    return Explanation(name, (*kept, SwitchedOn(twin.candidate.effect, values)), winner.inputs)
+    return [float(size) for size in np.linalg.lstsq(own, wanted, rcond=None)[0]]
 
 
 def with_results(
