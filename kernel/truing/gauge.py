@@ -69,14 +69,19 @@ def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None
     results are returned (all by default), and a row that lacks one of them fails. Conditions that no effect needs are
     not looked at. ``machine`` is taken as it is: see ``one_machine``.
     """
-    seen = {need.name for item in machine.effects for need in item.effect.needs}
-    seen |= {effect_column(item.effect.name, one.name) for item in machine.effects for one in item.effect.unknowns}
-    fields = machine.model.input_fields
-    columns = {name: values for name, values in rows.columns.items() if name in fields or name in seen}
+    columns = seen_columns(machine, rows)
     names = [name for name in _readable(machine, rows) if wanted is None or name in wanted]
     machine = _at_places(machine, rows)
     found = (_by_records if rows.series else _row_by_row)(machine, rows, columns, names)
     return found if wanted is None else found.complete()
+
+
+def seen_columns(machine: Setup, rows: RowsFile) -> dict[str, Any]:
+    """Return the columns that the model or an effect that is on looks at."""
+    seen = {need.name for item in machine.effects for need in item.effect.needs}
+    seen |= {effect_column(item.effect.name, one.name) for item in machine.effects for one in item.effect.unknowns}
+    fields = machine.model.input_fields
+    return {name: values for name, values in rows.columns.items() if name in fields or name in seen}
 
 
 def _at_places(machine: Setup, rows: RowsFile) -> Setup:
@@ -195,6 +200,11 @@ def _readable(machine: Setup, rows: RowsFile) -> Iterator[str]:
         axis = _axis_of(name, machine)
         if not axis or (axis in rows.axes and axis != name):
             yield name
+
+
+def runs_along_axis(machine: Setup, names: Collection[str]) -> bool:
+    """Whether one of these results runs along an axis, so that one calculation answers for many rows."""
+    return any(_axis_of(name, machine) for name in names)
 
 
 def _asked(names: Sequence[str], machine: Setup) -> set[str]:

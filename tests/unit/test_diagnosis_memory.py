@@ -30,7 +30,7 @@ from diagnosis_models import (
 )
 from numpy.testing import assert_allclose, assert_array_equal
 
-from truing import Effect, Float, Model, Tolerance, Unknown, normal
+from truing import Effect, Float, Model, Tolerance, Unknown, normal, trials
 from truing.diagnosis import contest as contest_module
 from truing.diagnosis import evidence, machine
 from truing.diagnosis.columns import FEW, MANY, Column, Design, Made, stored, times, when_asked
@@ -173,7 +173,7 @@ def test_rows_in_batches_are_predicted_as_at_once(tmp_path: Path, monkeypatch: p
     asked, bench = Asked(drive_model()), wide(50)
     records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel)), ["a"] * 30 + ["b"] * 20)
     at_once = predict(asked.setup, records)["deflection"]
-    monkeypatch.setattr(machine, "AT_ONCE", 7)
+    monkeypatch.setattr(trials, "AT_ONCE", 7)
     assert_allclose(predict(asked.setup, records)["deflection"], at_once, rtol=1e-12, atol=1e-15)
     assert_allclose(at_once, 1e-6 * gauge(bench.load, bench.travel), rtol=1e-12, atol=1e-15)
 

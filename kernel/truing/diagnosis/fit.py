@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from math import exp, log, sqrt
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,7 @@ from truing.diagnosis.chords import one_side
 from truing.diagnosis.columns import MANY, in_blocks
 from truing.diagnosis.contest import Contest, names_of
 from truing.diagnosis.hypotheses import Hypothesis, Piece
-from truing.diagnosis.machine import Predicted, predict
+from truing.diagnosis.machine import Predicted, predict_each
 from truing.diagnosis.noise import SETTINGS, whiten
 from truing.diagnosis.slopes import Jacobian, white_directions
 from truing.errors import ConvergenceError
@@ -133,10 +133,13 @@ class Fitter:
 
     def predicted(self, x: Matrix, u: Matrix) -> dict[str, Matrix]:
         """Return the extended model at every row, SI, by result."""
-        records = self.machine.records
-        rows = replace(records.rows, columns={**records.rows.columns, **self.columns(x, u)})
-        made = predict(self.setup, replace(records, rows=rows))
-        return {name: values + self.shape_part(x, name) for name, values in made.items()}
+        return next(self.predicted_at([(x, u)]))
+
+    def predicted_at(self, points: Sequence[tuple[Matrix, Matrix]]) -> Iterator[dict[str, Matrix]]:
+        """Give the extended model at several points, each parameters and directions, as few calls of the model."""
+        made = predict_each(self.setup, self.machine.records, [self.columns(x, u) for x, u in points])
+        for (x, _), each in zip(points, made, strict=True):
+            yield {name: values + self.shape_part(x, name) for name, values in each.items()}
 
     def shape_part(self, x: Matrix, name: str) -> Any:
         """Return what unregistered shapes add to a result, SI: an array (n,), or 0 where there are none."""
@@ -283,23 +286,33 @@ class _residual:  # noqa: N801  # a function with what it needs
         self.contest, self.fitter, self.setting, self.p = contest, fitter, setting, p
 
     def __call__(self, x: Matrix) -> Matrix:
+        return self.at([x])[0]
+
+    def at(self, points: Sequence[Matrix]) -> list[Matrix]:
+        """Return what is left at several points."""
         import numpy as np
 
-        u = x[self.p :]
-        return np.concatenate([white_residual(self.contest, self.fitter, self.setting, x[: self.p], u), u])
+        ends = [(x[: self.p], x[self.p :]) for x in points]
+        left = white_residuals(self.contest, self.fitter, self.setting, ends)
+        return [np.concatenate([each, u]) for each, (_, u) in zip(left, ends, strict=True)]
 
 
-def white_residual(contest: Contest, fitter: Fitter, setting: tuple[int, ...], x: Matrix, u: Matrix) -> Matrix:
-    """Return what is left of the pseudo-observations at some parameters, whitened, in units of the noise."""
+def white_residuals(
+    contest: Contest, fitter: Fitter, setting: tuple[int, ...], points: Sequence[tuple[Matrix, Matrix]]
+) -> list[Matrix]:
+    """Return what is left of the pseudo-observations at each point, whitened, in units of the noise."""
     import numpy as np
 
-    made, machine = fitter.predicted(x, u), fitter.machine
-    parts = []
-    for channel, place in zip(contest.evidence.channels, setting, strict=True):
-        target = contest.noise.residuals[channel.name] + machine.base[channel.name] + machine.shifts[channel.name]
-        left = (target - made[channel.name])[channel.rows] / channel.scale
-        parts.append(whiten(left * channel.weights, channel.starts, SETTINGS[place]))
-    return np.concatenate(parts)
+    machine = fitter.machine
+    found = []
+    for made in fitter.predicted_at(points):
+        parts = []
+        for channel, place in zip(contest.evidence.channels, setting, strict=True):
+            target = contest.noise.residuals[channel.name] + machine.base[channel.name] + machine.shifts[channel.name]
+            left = (target - made[channel.name])[channel.rows] / channel.scale
+            parts.append(whiten(left * channel.weights, channel.starts, SETTINGS[place]))
+        found.append(np.concatenate(parts))
+    return found
 
 
 def _split(contest: Contest, residual: Matrix) -> tuple[Matrix, ...]:

@@ -7,28 +7,25 @@ prior.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import permutations
 from typing import TYPE_CHECKING, Any
 
 from truing.diagnosis.columns import MANY, in_blocks, times
 from truing.diagnosis.records import Records
-from truing.gauge import one_machine, read_by_gauge
+from truing.gauge import one_machine
 from truing.setup import Setup
 from truing.studies.scatter import root_of, scatter_of
+from truing.trials import Trial, read_trials
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from truing.measurements import RowsFile
-
 Predicted = Mapping[str, "NDArray[np.float64]"]
 STEP = 0.5
-AT_ONCE = 65_536
-"""So many rows are one call of the model."""
 FAINTEST = 0.01
 
 
@@ -100,21 +97,12 @@ class Machine:
 
 def predict(setup: Setup, records: Records) -> Predicted:
     """Return what the gauge would show of every measured result, SI, shape (n,)."""
-    wanted, rows = tuple(records.measured), records.rows
-    if len(records) <= AT_ONCE or rows.series:
-        return read_by_gauge(setup, rows, wanted=wanted).results
-    import numpy as np
-
-    blocks = [slice(begin, begin + AT_ONCE) for begin in range(0, len(records), AT_ONCE)]
-    parts = [read_by_gauge(setup, _part(rows, block), wanted=wanted).results for block in blocks]
-    return {name: np.concatenate([part[name] for part in parts]) for name in wanted}
+    return next(predict_each(setup, records, [{}]))
 
 
-def _part(rows: RowsFile, block: slice) -> RowsFile:
-    """Return some rows of a file without series."""
-    columns = {name: values[block] for name, values in rows.columns.items()}
-    axes = {name: values[block] for name, values in rows.axes.items()}
-    return replace(rows, columns=columns, axes=axes, lines=rows.lines[block], runs=rows.runs[block])
+def predict_each(setup: Setup, records: Records, trials: Sequence[Trial]) -> Iterator[Predicted]:
+    """Give what the gauge would show in every trial: see ``read_trials``."""
+    return read_trials(setup, records.rows, trials, tuple(records.measured))
 
 
 def tolerated_inputs(setup: Setup, records: Records) -> list[Tolerated]:
@@ -154,28 +142,26 @@ def machine_of(setup: Setup, records: Records) -> Machine:
     slopes: dict[str, Any] = {
         name: np.zeros((len(records), len(inputs)), dtype=kind, order="F") for name in records.measured
     }
-    by_name: dict[str, Predicted] = {}
-    for place, item in enumerate(inputs):
-        if item.name not in by_name:
-            by_name = {item.name: _slope(start, records, item)}
-        for name, slope in by_name[item.name].items():
+    for changed, own in _slopes(start, records, inputs):
+        for place, item in enumerate(inputs):
             here = slice(None) if item.file < 0 else records.file_of == item.file
-            slopes[name][here, place] = slope[here]
+            for name, slope in own.items() if item.name == changed else ():
+                slopes[name][here, place] = slope[here]
     return Machine(setup, start, records, base, tuple(inputs), slopes)
 
 
-def _slope(start: Setup, records: Records, item: Tolerated) -> dict[str, NDArray[np.float64]]:
-    """Central difference over one standard deviation; one-sided where a side fails."""
+def _slopes(
+    start: Setup, records: Records, inputs: Sequence[Tolerated]
+) -> Iterator[tuple[str, dict[str, NDArray[np.float64]]]]:
+    """Give by input the central difference of every result over one standard deviation, 0 where the model fails."""
     import numpy as np
 
-    nominal = float(start.nominal(item.name))
-    up = predict(start.changed({item.name: nominal + STEP * item.sd}), records)
-    down = predict(start.changed({item.name: nominal - STEP * item.sd}), records)
-    found = {}
-    for name in records.measured:
-        slope = (up[name] - down[name]) / (2 * STEP)
-        found[name] = np.where(np.isfinite(slope), slope, 0.0)
-    return found
+    moves = {item.name: STEP * item.sd for item in inputs}
+    ends = [{name: float(start.nominal(name)) + sign * move} for name, move in moves.items() for sign in (1, -1)]
+    answers = predict_each(start, records, ends)
+    for name, up, down in zip(moves, answers, answers, strict=False):
+        slopes = {result: (up[result] - down[result]) / (2 * STEP) for result in records.measured}
+        yield name, {result: np.where(np.isfinite(slope), slope, 0.0) for result, slope in slopes.items()}
 
 
 def gram_of(slopes: NDArray[np.float64], rows: NDArray[np.intp] | None = None) -> NDArray[np.float64]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.contest import Contest
-from truing.diagnosis.fit import Fit, Fitter, white_residual
+from truing.diagnosis.fit import Fit, Fitter, white_residuals
 from truing.diagnosis.slopes import white_directions
 
 if TYPE_CHECKING:
@@ -90,7 +91,11 @@ class _Profile:
         return self.known[value].cost
 
     def _point(self, x: Matrix, u: Matrix) -> _Point:
-        return _Point(x, u, white_residual(self.full, self.fitter, self.best.setting, x, u))
+        return self._points([x], u)[0]
+
+    def _points(self, every: Sequence[Matrix], u: Matrix) -> list[_Point]:
+        left = white_residuals(self.full, self.fitter, self.best.setting, [(x, u) for x in every])
+        return [_Point(x, u, each) for x, each in zip(every, left, strict=True)]
 
     def _refitted(self, point: _Point) -> _Point:
         """Return the best point that a few linear steps lead to, each shortened where it leads up."""
@@ -119,7 +124,7 @@ class _Profile:
         import numpy as np
 
         k, free = len(point.u), [place for place in range(len(point.x)) if place != self.number]
-        design = np.column_stack([*(-self._slope(point, place) for place in free), self.inputs])
+        design = np.column_stack([*(-slope for slope in self._slopes(point, free)), self.inputs])
         prior = np.concatenate([np.zeros((k, len(free))), np.eye(k)], axis=1)
         full = np.concatenate([design, prior])
         target = np.concatenate([point.left, -point.u])
@@ -129,11 +134,13 @@ class _Profile:
         moved[[*free, *range(len(point.x), len(moved))]] = found
         return moved, float(rest @ rest)
 
-    def _slope(self, point: _Point, place: int) -> Matrix:
-        """Return the derivative of what is left by a parameter."""
-        item = self.fitter.parameters[place]
-        step = 1e-3 * max(abs(float(point.x[place])), 1e-2)
-        step = -step if point.x[place] + step > item.high else step
-        up = point.x.copy()
-        up[place] += step
-        return (self._point(up, point.u).left - point.left) / step
+    def _slopes(self, point: _Point, places: Sequence[int]) -> list[Matrix]:
+        """Return the derivatives of what is left by some parameters."""
+        ups = []
+        for place in places:
+            item = self.fitter.parameters[place]
+            step = 1e-3 * max(abs(float(point.x[place])), 1e-2)
+            ups.append(point.x.copy())
+            ups[-1][place] += -step if point.x[place] + step > item.high else step
+        steps = [up[place] - point.x[place] for place, up in zip(places, ups, strict=True)]
+        return [(up.left - point.left) / step for up, step in zip(self._points(ups, point.u), steps, strict=True)]

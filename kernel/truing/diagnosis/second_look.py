@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from truing.diagnosis.chords import may_bend
 from truing.diagnosis.contest import Contest, contest
-from truing.diagnosis.fit import Fit, Fitter, fit, white_residual
+from truing.diagnosis.fit import Fit, Fitter, fit, white_residuals
 from truing.diagnosis.grids import is_smooth
 from truing.diagnosis.hypotheses import Hypothesis, Piece
 from truing.diagnosis.noise import likelihood_of
@@ -69,7 +69,7 @@ def worth(plain: Contest, found: Fit) -> float:
     import numpy as np
 
     fitter = Fitter(plain, found.hypothesis)
-    left = white_residual(plain, fitter, found.setting, found.values, found.directions)
+    (left,) = white_residuals(plain, fitter, found.setting, [(found.values, found.directions)])
     ends = np.cumsum([len(channel) for channel in plain.evidence.channels])[:-1]
     price = 0.5 * found.hypothesis.size * log(plain.evidence.rows)
     return sum(likelihood_of(part) for part in np.split(left, ends)) - price

@@ -9,7 +9,7 @@ largest tenth of them (a few wild readings decide nothing).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -19,6 +19,7 @@ from truing.diagnosis.tidying import is_angle
 from truing.gauge import one_machine, read_by_gauge
 from truing.inputs_file.values import broken_bound
 from truing.setup import Setup
+from truing.trials import Trial, read_trials
 from truing.units.grammar import shown
 from truing.units.names import LEVELS, PURE
 
@@ -112,8 +113,8 @@ def _some_rows(joined: Joined) -> NDArray[np.intp]:
     return np.flatnonzero(first)
 
 
-def _answers(joined: Joined, machine: Setup) -> Answers:
-    return read_by_gauge(machine, rows_of(joined), joined.data.named("measured")).results
+def _answers(few: Joined, machine: Setup, trials: Sequence[Trial]) -> list[Answers]:
+    return list(read_trials(machine, rows_of(few), trials, few.data.named("measured")))
 
 
 def _gauges(few: Joined, setup: Setup) -> list[_Gauge]:
@@ -121,32 +122,20 @@ def _gauges(few: Joined, setup: Setup) -> list[_Gauge]:
     import numpy as np
 
     machine = one_machine(setup)
-    answers = _answers(few, machine)
+    scatter = [(name, each.sd) for by_input in setup.distributions().values() for name, each in by_input.items()]
+    moved = [{name: few.data.columns.get(name, machine.nominal(name)) + sd} for name, sd in scatter]
+    answers, *others = _answers(few, machine, [{}, *moved])
     reach = {name: np.zeros(2) for name in answers}
-    for by_input in setup.distributions().values():
-        for name, distribution in by_input.items():
-            moved = _answers(*_moved(few, machine, name, distribution.sd))
-            for result, values in answers.items():
-                change = moved[result] - values
-                sizes = np.array([_size(change, mode) for mode in (0, 1)])
-                reach[result] += np.where(np.isfinite(sizes), sizes, 0.0) ** 2
+    for other in others:
+        for result, values in answers.items():
+            sizes = np.array([_size(other[result] - values, mode) for mode in (0, 1)])
+            reach[result] += np.where(np.isfinite(sizes), sizes, 0.0) ** 2
     found = []
     for name, values in answers.items():
         here = np.isfinite(few.data.columns[name])
         raw, about = np.sqrt(reach[name]).tolist()
         found.append(_Gauge(name, few.data.columns[name], np.where(here, values, np.nan), (raw, about)))
     return found
-
-
-def _moved(few: Joined, machine: Setup, name: str, by: float) -> tuple[Joined, Setup]:
-    """Return rows and machine with one input or condition off by so much."""
-    if name in few.data.columns:
-        return _with(few, name, few.data.columns[name] + by), machine
-    return few, machine.changed({name: float(machine.nominal(name)) + by})
-
-
-def _with(few: Joined, name: str, values: NDArray[np.float64]) -> Joined:
-    return replace(few, data=replace(few.data, columns={**few.data.columns, name: values}))
 
 
 def _factors(unit: str) -> Mapping[float, str]:
@@ -173,8 +162,9 @@ def _own_slip(one: _Gauge, few: Joined, setup: Setup) -> Slip | None:
 def _input_slip(few: Joined, gauges: list[_Gauge], beyond: list[_Gauge], setup: Setup) -> Slip | None:
     """Return the slip of an input or condition that explains every error that is too large, and worsens none."""
     best: tuple[float, Slip] | None = None
-    for name, factor, words in _trials(few, setup):
-        answers = _answers(_with(few, name, few.data.columns[name] * factor), one_machine(setup))
+    trials = list(_trials(few, setup))
+    scaled = [{name: few.data.columns[name] * factor} for name, factor, _ in trials]
+    for (name, factor, words), answers in zip(trials, _answers(few, one_machine(setup), scaled), strict=True):
         gains = [one.gain(one.measured, answers[one.name]) for one in beyond]
         if not all(gains) or any(_is_worse(one, answers[one.name]) for one in gauges):
             continue
@@ -254,9 +244,11 @@ def _out_of_range(joined: Joined, setup: Setup) -> Iterator[Slip]:
 def factor_that_works(joined: Joined, setup: Setup) -> str:
     """Say with which factor on a column the model would not fail, where there is one; nothing otherwise."""
     few = joined.taken(_some_rows(joined))
+    machine, wanted = one_machine(setup), joined.data.named("measured")
     for name, factor, words in _trials(few, setup):
-        scaled = _with(few, name, few.data.columns[name] * factor)
-        found = read_by_gauge(one_machine(setup), rows_of(scaled), joined.data.named("measured"))
-        if found.failed.mean() <= 1 - INLIERS:
+        scaled = replace(
+            few, data=replace(few.data, columns={**few.data.columns, name: few.data.columns[name] * factor})
+        )
+        if read_by_gauge(machine, rows_of(scaled), wanted).failed.mean() <= 1 - INLIERS:
             return f"the model works where column {_header(name, joined)} is multiplied by {words}: is its unit right?"
     return ""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Protocol
 
 from truing.diagnosis.contest import Contest
 from truing.diagnosis.noise import SETTINGS, whiten
@@ -23,13 +23,23 @@ OFF = 1.0
 """Sum of squares, in units of the noise, that linear columns of the inputs may miss."""
 
 
+class Residual(Protocol):
+    """What is left at one point, or at several with few calls of the model."""
+
+    def __call__(self, x: Matrix) -> Matrix:
+        """Return what is left at a point."""
+
+    def at(self, points: Sequence[Matrix]) -> list[Matrix]:
+        """Return what is left at each of several points."""
+
+
 class Jacobian:
     """Derivatives of the residual: of the unknowns by differences, of the inputs from their linear columns.
 
     Where the model is not linear in the inputs as far as they have moved, ``is_exact`` takes differences there, too.
     """
 
-    def __init__(self, unknowns: Sequence[Parameter], residual: Callable[[Matrix], Matrix], inputs: Matrix) -> None:
+    def __init__(self, unknowns: Sequence[Parameter], residual: Residual, inputs: Matrix) -> None:
         self.unknowns, self.residual, self.inputs = unknowns, residual, inputs
         self.is_exact = False
 
@@ -41,7 +51,8 @@ class Jacobian:
         if len(x) == p:
             return False
         nominal = np.concatenate([x[:p], np.zeros(len(x) - p)])
-        missed = (self.residual(x) - self.residual(nominal))[:rows] + self.inputs @ x[p:]
+        here, there = self.residual.at([x, nominal])
+        missed = (here - there)[:rows] + self.inputs @ x[p:]
         return bool(missed @ missed > OFF)
 
     def __call__(self, x: Matrix) -> Matrix:
@@ -52,24 +63,31 @@ class Jacobian:
         made = np.zeros((len(self.inputs) + len(x) - p, len(x)))
         made[: len(self.inputs), p:] = -self.inputs
         made[len(self.inputs) :, p:] = np.eye(len(x) - p)
-        for place in range(p, len(x)) if self.is_exact else ():
-            move = np.zeros(len(x))
-            move[place] = MOVED
-            made[:, place] = self._slope(x, place, x - move, x + move)
-        for place, item in enumerate(self.unknowns):
-            step = STEP * max(abs(float(x[place])), 1.0 if item.is_log else 1e-2)
-            up, down = x.copy(), x.copy()
-            up[place] = min(x[place] + step, item.high)
-            down[place] = max(x[place] - step, item.low)
-            made[:, place] = self._slope(x, place, down, up)
+        ends = dict(self._ends(x))
+        left = iter(self.residual.at([point for pair in ends.values() for point in pair]))
+        for place, (down, up) in ends.items():
+            made[:, place] = self._slope(x, place, (down, next(left)), (up, next(left)))
         return made
 
-    def _slope(self, x: Matrix, place: int, down: Matrix, up: Matrix) -> Matrix:
+    def _ends(self, x: Matrix) -> Iterator[tuple[int, tuple[Matrix, Matrix]]]:
+        """Give the parameters of which differences are taken, each with the points below and above."""
+        p = len(self.unknowns)
+        for place in range(p, len(x)) if self.is_exact else ():
+            down, up = x.copy(), x.copy()
+            down[place], up[place] = x[place] - MOVED, x[place] + MOVED
+            yield place, (down, up)
+        for place, item in enumerate(self.unknowns):
+            step = STEP * max(abs(float(x[place])), 1.0 if item.is_log else 1e-2)
+            down, up = x.copy(), x.copy()
+            down[place] = max(x[place] - step, item.low)
+            up[place] = min(x[place] + step, item.high)
+            yield place, (down, up)
+
+    def _slope(self, x: Matrix, place: int, *sides: tuple[Matrix, Matrix]) -> Matrix:
         """Return the derivative by one parameter: one-sided where the model fails on a side, 0 where on both."""
         import numpy as np
 
-        below, above = self.residual(down), self.residual(up)
-        ends = [(point, left) for point, left in ((down, below), (up, above)) if np.isfinite(left).all()]
+        ends = [(point, left) for point, left in sides if np.isfinite(left).all()]
         if len(ends) < 2:
             ends.append((x, self.residual(x)))
         (first, one), (second, other) = ends[0], ends[-1]

@@ -1,0 +1,96 @@
+"""Rows read by the gauge again and again with something changed: inputs moved, unknowns of effects set.
+
+A call of a model costs much whatever its rows, so that many changes are asked in one call.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from truing.gauge import read_by_gauge, runs_along_axis, seen_columns
+from truing.setup import Setup
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from truing.measurements import RowsFile
+
+Trial = Mapping[str, Any]
+AT_ONCE = 65_536
+"""So many rows are one call of the model."""
+
+
+def read_trials(
+    machine: Setup, rows: RowsFile, trials: Sequence[Trial], wanted: Collection[str]
+) -> Iterator[Mapping[str, NDArray[np.float64]]]:
+    """Give what the gauge shows of every row in each trial, SI (n,) by result, NaN where the model fails.
+
+    A trial sets inputs and conditions to one value or to (n,), unknowns of effects that are on (``effect_column``) to
+    (n,), in SI and in place of what machine and rows say.
+    """
+    import numpy as np
+
+    if rows.series or runs_along_axis(machine, wanted) or not seen_columns(machine, rows):
+        # one calculation answers for many rows
+        yield from (_read(*_changed(machine, rows, trial), wanted) for trial in trials)
+        return
+    count = max(1, AT_ONCE // max(len(rows), 1))
+    for begin in range(0, len(trials), count):
+        block = trials[begin : begin + count]
+        values = _read(machine, _stacked(machine, rows, block), wanted)
+        parts = {name: np.split(value, len(block)) for name, value in values.items()}
+        yield from ({name: part[place] for name, part in parts.items()} for place in range(len(block)))
+
+
+def _changed(machine: Setup, rows: RowsFile, trial: Trial) -> tuple[Setup, RowsFile]:
+    """Return machine and rows of a trial: one value for all rows is the machine's, others are columns."""
+    import numpy as np
+
+    columns = {name: value for name, value in trial.items() if np.ndim(value) > 0}
+    series = {name: columns.pop(name, values) for name, values in rows.series.items()}
+    moved = machine.changed({name: value for name, value in trial.items() if np.ndim(value) == 0})
+    return moved, replace(rows, columns={**rows.columns, **columns}, series=series)
+
+
+def _stacked(machine: Setup, rows: RowsFile, trials: Sequence[Trial]) -> RowsFile:
+    """Return the rows as each trial has them, one trial behind another."""
+    import numpy as np
+
+    def behind(name: str) -> Any:
+        values = rows.columns.get(name)
+        if isinstance(values, list):
+            return values * len(trials)
+        if values is None and not all(name in trial for trial in trials):
+            values = machine.nominal(name)
+        return np.concatenate([np.broadcast_to(trial.get(name, values), (len(rows),)) for trial in trials])
+
+    return replace(
+        rows,
+        columns={
+            name: behind(name) for name in dict.fromkeys([*rows.columns, *(name for one in trials for name in one)])
+        },
+        axes={name: np.tile(values, len(trials)) for name, values in rows.axes.items()},
+        lines=rows.lines * len(trials),
+        runs=rows.runs * len(trials),
+    )
+
+
+def _read(machine: Setup, rows: RowsFile, wanted: Collection[str]) -> Mapping[str, NDArray[np.float64]]:
+    """Read rows, not too many of them in one call."""
+    import numpy as np
+
+    if len(rows) <= AT_ONCE or rows.series:
+        return read_by_gauge(machine, rows, wanted).results
+    blocks = [slice(begin, begin + AT_ONCE) for begin in range(0, len(rows), AT_ONCE)]
+    parts = [read_by_gauge(machine, _part(rows, block), wanted).results for block in blocks]
+    return {name: np.concatenate([part[name] for part in parts]) for name in wanted}
+
+
+def _part(rows: RowsFile, block: slice) -> RowsFile:
+    """Return some rows of a file without series."""
+    columns = {name: values[block] for name, values in rows.columns.items()}
+    axes = {name: values[block] for name, values in rows.axes.items()}
+    return replace(rows, columns=columns, axes=axes, lines=rows.lines[block], runs=rows.runs[block])
