@@ -122,3 +122,49 @@ def test_an_interrupted_run_leaves_no_worker_behind(tmp_path: Path, by: int, aft
         while any(map(is_alive, children)) and time.monotonic() < until:
             time.sleep(0.2)
         assert [child for child in children if is_alive(child)] == []
+
+
+WHILE_FINALIZED = """
+import os
+import signal
+import time
+
+from truing import Float, Model, found, given, hookimpl, inputs, results
+
+
+@inputs
+class Wait:
+    seconds: Float = given(60.0, "s", note="how long it takes")
+
+
+@results
+class Waited:
+    waited: Float = found("s", note="how long it took")
+
+
+class Signalled:
+    def __del__(self) -> None:
+        os.kill(os.getpid(), signal.{signal})
+        for _ in range(1000):
+            pass
+
+
+def wait(given: Wait) -> Waited:
+    Signalled()
+    time.sleep(60)
+    return Waited(waited=given.seconds)
+
+
+@hookimpl
+def truing_models() -> list[Model]:
+    return [Model(name="slow_wait", title="Wait", function=wait)]
+"""
+
+
+@pytest.mark.parametrize(("name", "code"), [("SIGINT", 130), ("SIGTERM", 143)])
+def test_an_interrupt_during_a_finalizer_is_not_lost(tmp_path: Path, name: str, code: int) -> None:
+    """Python drops what is raised in a finalizer; this one sends the signal to its own process."""
+    (tmp_path / "slow_wait.py").write_text(WHILE_FINALIZED.replace("{signal}", name))
+    command = hearing_interrupts([sys.executable, "-m", "truing", "run", "slow_wait.py", "-q"])
+    ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=50, check=False)
+    assert (ended.returncode, ended.stderr) == (code, "calc: interrupted; nothing was written\n")

@@ -34,11 +34,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(words: list[str], *, is_program: bool) -> int:
     from truing.cli.app import app
-    from truing.cli.console import Settings, after_output, close_stream, hear_termination, lose_output, ready_streams
+    from truing.cli.console import Settings, after_output, close_stream, lose_output, ready_streams
+    from truing.cli.endings import hear_endings
 
     ready_streams()
     if is_program:
-        hear_termination()
+        hear_endings()
     if "_CALC_COMPLETE" in os.environ:
         from truing.cli.completion import answer_the_shell
 

@@ -7,7 +7,6 @@ import json
 import os
 import re
 import shutil
-import signal
 import sys
 import textwrap
 import traceback
@@ -19,6 +18,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TextIO
 import typer
 
 from truing.atomic import writings, written
+from truing.cli.endings import Terminated
 from truing.errors import InputError, OutputError, TruingError
 
 if TYPE_CHECKING:
@@ -144,19 +144,6 @@ def verb(function: Callable[P, int]) -> Callable[P, None]:
         raise typer.Exit(code)
 
     return guarded
-
-
-class Terminated(KeyboardInterrupt):  # as the interrupt it is
-    """The system has asked this process to end (SIGTERM): what Ctrl-C does, with another exit code."""
-
-
-def hear_termination() -> None:
-    """End as after an interrupt when the system asks for it, so that nothing is left behind."""
-
-    def terminate(number: int, frame: object) -> None:
-        raise Terminated
-
-    signal.signal(signal.SIGTERM, terminate)
 
 
 def interrupted(before: int) -> str:
