@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.candidates import Candidate, Term, variants_of
@@ -153,15 +154,10 @@ def _firsts(plain: Contest, winner: int) -> Iterator[Placed]:
     if chosen.kind not in {"two", "mixed", "shape"}:
         return
     own = {piece.owner for piece in chosen.pieces if piece.kind == "term"}
-    count = 0
-    for place in found.ranked():
-        hypothesis = found.hypotheses[place]
-        if hypothesis.kind != "one" or count == MOST_FIRST:
-            continue
-        owner = hypothesis.pieces[0].owner
-        if (owner in own or not own) and candidates[owner].effect.place == "inputs":
-            count += 1
-            yield placed(plain, fit(plain, place))[0]
+    owners = ((place, found.hypotheses[place].pieces[0].owner) for place in found.ranked("one"))
+    first = (place for place, owner in owners if owner in own or not own if candidates[owner].effect.place == "inputs")
+    for place in islice(first, MOST_FIRST):
+        yield placed(plain, fit(plain, place))[0]
 
 
 def placed(there: Contest, found: Fit) -> list[Placed]:
@@ -197,7 +193,7 @@ def _fitted_beside(plain: Contest, first: Placed, rows: NDArray[np.bool_]) -> It
     wide = _only_pairs(plain, with_pairs(bare, [(own, term) for term in terms if term.candidate != first.owner]), rows)
     if wide is None:
         return
-    for place in wide.found.ranked()[:MOST_FITTED]:
+    for place in islice(wide.found.ranked(), MOST_FITTED):
         near = _only_pairs(plain, _competing(bare, placed(wide, fit(wide, place))), rows)
         if near is not None:
             near, found = _fitted(near)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.hypotheses import NOTHING, Hypothesis, Piece, mixed, off_inputs, pairs, shapes, singles
@@ -76,7 +77,7 @@ def contest(
         if left:
             best = found.best()
             if sharpen:
-                tops = [found.hypotheses[place] for place in found.ranked()[:SHARPENED]]
+                tops = [found.hypotheses[place] for place in islice(found.ranked(), SHARPENED)]
                 pieces = [piece for hypothesis in tops for piece in hypothesis.pieces]
                 problem = bent(problem, _fitted(evidence, found))
                 problem = sharpened(problem, [*pieces, *best_terms(found, SHARPENED)])
@@ -87,9 +88,9 @@ def contest(
 
 def _fitted(evidence: Evidence, found: Found) -> list[tuple[Piece, float]]:
     """Return the pieces of one column of the best explanations, and of the best single causes, as fitted."""
-    alone = [place for place in found.ranked() if found.hypotheses[place].kind == "one"]
+    tops = (*islice(found.ranked(), SHARPENED), *islice(found.ranked("one"), SHARPENED))
     made: list[tuple[Piece, float]] = []
-    for place in dict.fromkeys((*found.ranked()[:SHARPENED], *alone[:SHARPENED])):
+    for place in dict.fromkeys(tops):
         solution = solve(evidence, found.hypotheses[place], found.setting[place])
         values = iter(solution.coefficients.tolist())
         for piece in found.hypotheses[place].pieces:
@@ -123,18 +124,13 @@ def _all_scored(
 
 def best_terms(found: Found, count: int = FAVOURITES) -> list[Piece]:
     """Return the best variant of each of the best single causes."""
-    kept: list[Piece] = []
-    for place in found.ranked():
-        hypothesis = found.hypotheses[place]
-        if hypothesis.kind == "one":
-            kept.append(hypothesis.pieces[0])
-    return kept[:count]
+    return [found.hypotheses[place].pieces[0] for place in islice(found.ranked("one"), count)]
 
 
 def _finer(problem: Problem, found: Found) -> list[Hypothesis]:
     """Return the best explanations again with the values of a fine grid that were passed over."""
     made: list[Hypothesis] = []
-    for place in found.ranked()[:REFINED]:
+    for place in islice(found.ranked(), REFINED):
         hypothesis = found.hypotheses[place]
         for number, piece in enumerate(hypothesis.pieces):
             others = hypothesis.pieces[:number], hypothesis.pieces[number + 1 :]

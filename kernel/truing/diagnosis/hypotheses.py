@@ -53,6 +53,14 @@ class Hypothesis:
     pieces: tuple[Piece, ...]
     log_prior: float
 
+    def __hash__(self) -> int:
+        """Return the same as for any equal explanation, calculated once: lists of thousands are remembered."""
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash((self.kind, self.pieces))
+
     @cached_property
     def columns(self) -> tuple[int, ...]:
         """Places of all columns."""
@@ -112,29 +120,29 @@ def _beside(
     return _members("mixed", [(a, b) for a in terms for b in groups if (a.owner, b.owner) not in like])
 
 
-def singles(terms: Sequence[Piece]) -> list[Hypothesis]:
+def singles(terms: Sequence[Piece]) -> tuple[Hypothesis, ...]:
     """Return one hypothesis per variant of every cause."""
-    return list(_alone("one", tuple(terms)))
+    return _alone("one", tuple(terms))
 
 
-def pairs(terms: Sequence[Piece], beside: Sequence[tuple[Piece, Piece]] = ()) -> list[Hypothesis]:
+def pairs(terms: Sequence[Piece], beside: Sequence[tuple[Piece, Piece]] = ()) -> tuple[Hypothesis, ...]:
     """Return every pair of variants of two different causes, and those that only go with one another."""
-    return list(_paired(tuple(terms), tuple(beside)))
+    return _paired(tuple(terms), tuple(beside))
 
 
-def shapes(groups: Sequence[Piece]) -> list[Hypothesis]:
+def shapes(groups: Sequence[Piece]) -> tuple[Hypothesis, ...]:
     """Return one hypothesis per unregistered shape."""
-    return list(_alone("shape", tuple(groups)))
+    return _alone("shape", tuple(groups))
 
 
-def off_inputs(inputs: Sequence[Piece]) -> list[Hypothesis]:
+def off_inputs(inputs: Sequence[Piece]) -> tuple[Hypothesis, ...]:
     """Return one hypothesis per input that may lie outside its band."""
-    return list(_alone("input", tuple(inputs)))
+    return _alone("input", tuple(inputs))
 
 
-def mixed(terms: Sequence[Piece], groups: Sequence[Piece], like: frozenset[tuple[int, int]]) -> list[Hypothesis]:
+def mixed(terms: Sequence[Piece], groups: Sequence[Piece], like: frozenset[tuple[int, int]]) -> tuple[Hypothesis, ...]:
     """Return every cause beside every shape, but for shapes that reproduce the cause (``like``: owner, shape)."""
-    return list(_beside(tuple(terms), tuple(groups), like))
+    return _beside(tuple(terms), tuple(groups), like)
 
 
 @dataclass(frozen=True)
@@ -167,8 +175,13 @@ class Batch:
         return self.squares[size]
 
 
-def batches_of(hypotheses: Sequence[Hypothesis], rows: int, largest: int = 4000) -> list[Batch]:
+def batches_of(hypotheses: Sequence[Hypothesis], rows: int, largest: int = 4000) -> Sequence[Batch]:
     """Group hypotheses by their number of columns, in batches of bounded size."""
+    return _batched(tuple(hypotheses), rows, largest)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _batched(hypotheses: tuple[Hypothesis, ...], rows: int, largest: int) -> tuple[Batch, ...]:
     import numpy as np
 
     by_count: dict[int, list[int]] = {}
@@ -190,7 +203,7 @@ def batches_of(hypotheses: Sequence[Hypothesis], rows: int, largest: int = 4000)
                     np.array([_penalty(each, rows) for each in chosen]),
                 )
             )
-    return found
+    return tuple(found)
 
 
 def _penalty(hypothesis: Hypothesis, rows: int) -> float:

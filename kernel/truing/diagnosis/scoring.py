@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 RIDGE = 1e-10
 FLOOR = 1e-12
 BOUND_SLACK = 2.0
+FEW = 3
+"""So few coefficients are solved for faster by elimination over all hypotheses than by a library call for each."""
 
 
 @dataclass(frozen=True)
@@ -52,8 +54,25 @@ def _solved(case: Reduced, batch: Batch) -> tuple[Matrix, Matrix]:
     ridge = RIDGE * np.maximum(diagonal, 1e-300) + 1e-300
     diagonal += ridge
     right = case.total_g[batch.index]
-    solved = np.asarray(np.linalg.solve(normal, right))
+    solved = _eliminated(normal, right) if normal.shape[1] <= FEW else np.asarray(np.linalg.solve(normal, right))
     return solved, np.einsum("nkb,nkb->nb", solved, right + ridge[:, :, None] * solved)
+
+
+def _eliminated(normal: Matrix, right: Matrix) -> Matrix:
+    """Solve small positive definite systems (n, k, k) for right-hand sides (n, k, B), all at once step by step."""
+    import numpy as np
+
+    size, left = normal.shape[1], normal.copy()
+    solved = right.copy()
+    for pivot in range(size):
+        for row in range(pivot + 1, size):
+            factor = left[:, row, pivot] / left[:, pivot, pivot]
+            left[:, row, pivot:] -= factor[:, None] * left[:, pivot, pivot:]
+            solved[:, row] -= factor[:, None] * solved[:, pivot]
+    for row in reversed(range(size)):
+        above = np.einsum("nj,njb->nb", left[:, row, row + 1 :], solved[:, row + 1 :])
+        solved[:, row] = (solved[:, row] - above) / left[:, row, row, None]
+    return solved
 
 
 def batch_likelihood(case: Reduced, batch: Batch) -> Matrix:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 from typing import TYPE_CHECKING
@@ -17,7 +17,7 @@ from truing.diagnosis.evidence import (
     reduced,
     starts_of,
 )
-from truing.diagnosis.hypotheses import NOTHING, Batch, Hypothesis, batches_of
+from truing.diagnosis.hypotheses import NOTHING, Batch, Hypothesis, Kind, batches_of
 from truing.diagnosis.machine import Machine, gram_of
 from truing.diagnosis.noise import (
     SETTINGS,
@@ -112,15 +112,16 @@ class Found:
             return -1
         return places[int(np.argmax(self.score[places]))]
 
-    def ranked(self) -> list[int]:
-        """Return the best place of every explanation, whatever its variant, best first."""
+    def ranked(self, *kinds: Kind) -> Iterator[int]:
+        """Give the best place of every explanation, whatever its variant, best first; only of some kinds if named."""
         import numpy as np
 
-        best: dict[object, int] = {}
-        for place in np.argsort(-self.score, kind="stable"):
-            if np.isfinite(self.score[place]):
-                best.setdefault(self.hypotheses[place].key, int(place))
-        return list(best.values())
+        seen = set()
+        for place in np.argsort(-self.score, kind="stable")[: np.isfinite(self.score).sum()].tolist():
+            hypothesis = self.hypotheses[place]
+            if hypothesis.key not in seen and (not kinds or hypothesis.kind in kinds):
+                seen.add(hypothesis.key)
+                yield place
 
 
 def residuals_of(machine: Machine) -> dict[str, Matrix]:

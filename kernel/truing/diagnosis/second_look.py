@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import islice
 from math import log
 from typing import TYPE_CHECKING
 
@@ -52,9 +53,9 @@ def _worth_it(full: Contest, plain: Contest, winner: int, rows: NDArray[np.bool_
         yield plain, winner
     if chosen.kind in {"shape", "mixed"}:
         wider = contest(with_chords(full.problem), plain.noise, rows, rounds=1, settings=full.settings)
-        ranked = [place for place in wider.found.ranked() if wider.found.hypotheses[place].kind == "one"]
-        bending = [place for place in ranked if _owns(wider.problem, wider.found.hypotheses[place], "chords")]
-        yield from ((wider, place) for place in bending[:MOST_TRIED])
+        ranked = wider.found.ranked("one")
+        bending = (place for place in ranked if _owns(wider.problem, wider.found.hypotheses[place], "chords"))
+        yield from ((wider, place) for place in islice(bending, MOST_TRIED))
 
 
 def _owns(problem: Problem, hypothesis: Hypothesis, what: str) -> bool:
