@@ -194,7 +194,7 @@ def dense_likelihood(white: list[Array], chosen: tuple[int, ...], constant: floa
 def test_the_likelihood_of_many_explanations_is_the_dense_one_of_each() -> None:
     _, white, case = two_gauges()
     chosen = [(0,), (2,), (0, 1), (1, 2)]
-    batches = batches_of([one_of(each) for each in chosen], sum(LENGTHS))
+    batches = batches_of([one_of(each) for each in chosen])
     for batch in batches:
         found = batch_likelihood(case, batch)
         for place, value in zip(batch.places, found[:, 0], strict=True):
@@ -206,7 +206,7 @@ def test_a_score_pays_for_parameters_and_prior() -> None:
     _, white, case = two_gauges()
     gridded = Hypothesis("one", (piece((1,), size=2),), log(0.05))
     hypotheses = [NOTHING, gridded]
-    found = scores_of(case, batches_of(hypotheses, 23), 2)
+    found = scores_of(case, batches_of(hypotheses), 23)
     expected = dense_likelihood(white, (1,), case.constant) - 2 * log(23) + 2 * log(0.05)
     assert_allclose(found.score[1, 0], expected, rtol=1e-8)
     assert_allclose(found.score[0, 0], dense_likelihood(white, (), case.constant) + 2 * log(0.5), rtol=1e-10)
@@ -234,7 +234,7 @@ def straight(slope: float) -> Reduced:
 )
 def test_a_solution_outside_its_bounds_is_impossible(slope: float, low: float, high: float, possible: bool) -> None:
     """A bound of zero is a sign and kept strictly; any other within two standard errors (0.1 each here)."""
-    (batch,) = batches_of([one_of((0,), low, high)], 100)
+    (batch,) = batches_of([one_of((0,), low, high)])
     (value,) = batch_likelihood(straight(slope), batch)[:, 0]
     assert np.isfinite(value) == possible
     assert value == -inf or possible
@@ -273,11 +273,11 @@ def test_a_shape_that_reproduces_a_cause_is_never_beside_it() -> None:
 
 def test_batches_hold_every_explanation_once() -> None:
     hypotheses = [NOTHING, *(one_of(tuple(range(1 + place % 3))) for place in range(10))]
-    found = batches_of(hypotheses, 50, largest=2)
+    found = batches_of(hypotheses, largest=2)
     assert sorted(int(place) for batch in found for place in batch.places) == list(range(11))
     assert max(len(batch.places) for batch in found) == 2
     for batch in found:
-        for place, index, penalty in zip(batch.places, batch.index, batch.penalty, strict=True):
+        for place, index, penalty in zip(batch.places, batch.index, batch.penalty(50), strict=True):
             assert tuple(index) == hypotheses[place].columns
             assert_allclose(penalty, hypotheses[place].size * log(50) - 2 * hypotheses[place].log_prior)
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from itertools import combinations
+from itertools import chain, combinations
 from math import inf, log
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
     import numpy as np
@@ -61,25 +61,15 @@ class Hypothesis:
     def _hash(self) -> int:
         return hash((self.kind, self.pieces))
 
-    @cached_property
+    @property
     def columns(self) -> tuple[int, ...]:
         """Places of all columns."""
         return tuple(column for piece in self.pieces for column in piece.columns)
 
-    @cached_property
+    @property
     def size(self) -> int:
         """Number of free parameters."""
-        return sum(piece.size for piece in self.pieces)
-
-    @cached_property
-    def low(self) -> tuple[float, ...]:
-        """Lower bounds of all coefficients."""
-        return tuple(value for piece in self.pieces for value in piece.low)
-
-    @cached_property
-    def high(self) -> tuple[float, ...]:
-        """Upper bounds of all coefficients."""
-        return tuple(value for piece in self.pieces for value in piece.high)
+        return sum([piece.size for piece in self.pieces])
 
     @cached_property
     def key(self) -> tuple[tuple[str, int], ...]:
@@ -149,24 +139,37 @@ def mixed(terms: Sequence[Piece], groups: Sequence[Piece], like: frozenset[tuple
 class Batch:
     """Hypotheses with the same number of columns, as arrays: solved together.
 
-    ``places`` are their places in the list they came from; ``index`` (n, k), ``low`` and ``high`` (n, k), ``penalty``
-    (n,): size times log rows, less twice the log prior.
+    ``places`` are their places in the list they came from; ``index`` (n, k), ``low`` and ``high`` (n, k), ``size`` and
+    ``log_prior`` (n,).
     """
 
     places: NDArray[np.intp]
     index: NDArray[np.intp]
     low: NDArray[np.float64]
     high: NDArray[np.float64]
-    penalty: NDArray[np.float64]
+    size: NDArray[np.intp]
+    log_prior: NDArray[np.float64]
     squares: dict[int, NDArray[np.intp]] = field(default_factory=dict, compare=False, repr=False)
 
     @cached_property
-    def bounded(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Hypotheses and their columns whose coefficient has a bound, in order."""
+    def bounds(self) -> Bounds:
+        """The bounds that there are."""
         import numpy as np
 
         places, columns = np.nonzero(np.isfinite(self.low) | np.isfinite(self.high))
-        return places, columns
+        first = np.flatnonzero(np.append(True, places[1:] != places[:-1])) if len(places) else places
+        low, high = self.low[places, columns], self.high[places, columns]
+        return Bounds(places, columns, first, self.index[places, columns], low[:, None], high[:, None])
+
+    def penalty(self, rows: int) -> NDArray[np.float64]:
+        """Return what the parameters cost, (n,): size times log rows, less twice the log prior.
+
+        What has too many parameters for so few rows is out of the question.
+        """
+        import numpy as np
+
+        paid = self.size * log(rows) - 2 * self.log_prior
+        return np.where(self.size * ROWS_PER_PARAMETER > rows, inf, paid)
 
     def square(self, size: int) -> NDArray[np.intp]:
         """Return where the normal matrices of the hypotheses stand in one of ``size`` columns, flat, (n, k, k)."""
@@ -175,42 +178,55 @@ class Batch:
         return self.squares[size]
 
 
-def batches_of(hypotheses: Sequence[Hypothesis], rows: int, largest: int = 4000) -> Sequence[Batch]:
+@dataclass(frozen=True)
+class Bounds:
+    """Coefficients of a batch that have a bound: hypothesis and place in it, the first of each, column, low and high.
+
+    ``low`` and ``high`` have shape (bounded, 1).
+    """
+
+    places: NDArray[np.intp]
+    within: NDArray[np.intp]
+    first: NDArray[np.intp]
+    columns: NDArray[np.intp]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+
+
+def batches_of(hypotheses: Sequence[Hypothesis], largest: int = 4000) -> Sequence[Batch]:
     """Group hypotheses by their number of columns, in batches of bounded size."""
-    return _batched(tuple(hypotheses), rows, largest)
+    return _batched(tuple(hypotheses), largest)
 
 
 @lru_cache(maxsize=REMEMBERED)
-def _batched(hypotheses: tuple[Hypothesis, ...], rows: int, largest: int) -> tuple[Batch, ...]:
-    import numpy as np
-
+def _batched(hypotheses: tuple[Hypothesis, ...], largest: int) -> tuple[Batch, ...]:
     by_count: dict[int, list[int]] = {}
     for place, hypothesis in enumerate(hypotheses):
-        by_count.setdefault(len(hypothesis.columns), []).append(place)
-    found = []
-    for count, every in sorted(by_count.items()):
-        for begin in range(0, len(every), largest):
-            places = every[begin : begin + largest]
-            chosen = [hypotheses[place] for place in places]
-            low, high = [each.low for each in chosen], [each.high for each in chosen]
-            shape = (len(places), count)
-            found.append(
-                Batch(
-                    np.array(places),
-                    np.array([each.columns for each in chosen], dtype=int).reshape(shape),
-                    np.array(low, dtype=float).reshape(shape),
-                    np.array(high, dtype=float).reshape(shape),
-                    np.array([_penalty(each, rows) for each in chosen]),
-                )
-            )
-    return tuple(found)
+        by_count.setdefault(sum([len(piece.columns) for piece in hypothesis.pieces]), []).append(place)
+    return tuple(
+        _batch(hypotheses, every[begin : begin + largest], count)
+        for count, every in sorted(by_count.items())
+        for begin in range(0, len(every), largest)
+    )
 
 
-def _penalty(hypothesis: Hypothesis, rows: int) -> float:
-    """Return what the parameters of an explanation cost; one that has too many for so few rows is out of question."""
-    if hypothesis.size * ROWS_PER_PARAMETER > rows:
-        return inf
-    return hypothesis.size * log(rows) - 2 * hypothesis.log_prior
+def _batch(hypotheses: Sequence[Hypothesis], places: Sequence[int], count: int) -> Batch:
+    import numpy as np
+
+    chosen = [hypotheses[place] for place in places]
+
+    def of_each(values: Callable[[Piece], Sequence[float]], kind: type) -> NDArray[Any]:
+        flat = chain.from_iterable(values(piece) for each in chosen for piece in each.pieces)
+        return np.fromiter(flat, dtype=kind, count=len(chosen) * count).reshape(len(chosen), count)
+
+    return Batch(
+        np.array(places),
+        of_each(lambda piece: piece.columns, np.intp),
+        of_each(lambda piece: piece.low, np.float64),
+        of_each(lambda piece: piece.high, np.float64),
+        np.array([each.size for each in chosen]),
+        np.array([each.log_prior for each in chosen]),
+    )
 
 
 def unbounded(columns: Sequence[int]) -> tuple[tuple[float, ...], tuple[float, ...]]:

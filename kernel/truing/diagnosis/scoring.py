@@ -105,29 +105,26 @@ def _is_possible(case: Reduced, batch: Batch, solved: Matrix, variance: Matrix) 
     import numpy as np
 
     possible = np.ones((solved.shape[0], solved.shape[2]), dtype=bool)
-    bounded, column = batch.bounded
-    if not len(bounded):
+    bounds = batch.bounds
+    if not len(bounds.places):
         return possible
-    low, high = batch.low[bounded, column, None], batch.high[bounded, column, None]
-    value = solved[bounded, column]
-    curvature = case.curvature[batch.index[bounded, column], None]
-    slack = BOUND_SLACK * np.sqrt(variance[bounded]) / np.sqrt(curvature)
-    inside = (value >= np.where(low == 0, 0.0, low - slack)) & (value <= np.where(high == 0, 0.0, high + slack))
-    first = np.flatnonzero(np.append(True, bounded[1:] != bounded[:-1]))
-    possible[bounded[first]] = np.logical_and.reduceat(inside, first, axis=0)
+    low, high, value = bounds.low, bounds.high, solved[bounds.places, bounds.within]
+    slack = np.sqrt(variance)[bounds.places] * (BOUND_SLACK / np.sqrt(case.curvature[bounds.columns]))[:, None]
+    inside = (value >= low - slack * (low != 0)) & (value <= high + slack * (high != 0))
+    possible[bounds.places[bounds.first]] = np.logical_and.reduceat(inside, bounds.first, axis=0)
     return possible
 
 
-def scores_of(case: Reduced, batches: Sequence[Batch], count: int) -> Scores:
-    """Score ``count`` hypotheses; without a batch of its own a hypothesis has no columns (nothing is wrong)."""
+def scores_of(case: Reduced, batches: Sequence[Batch], rows: int) -> Scores:
+    """Score the hypotheses of all batches on so many rows; one without columns says that nothing is wrong."""
     import numpy as np
 
-    residuals = len(case.own[0])
+    residuals, count = len(case.own[0]), sum(len(batch.places) for batch in batches)
     likelihood = np.full((count, residuals), -np.inf)
     score = np.full((count, residuals), -np.inf)
     for batch in batches:
         has_columns = batch.index.shape[1] > 0
         value = batch_likelihood(case, batch) if has_columns else base_likelihood(case)[None, :]
         likelihood[batch.places] = value
-        score[batch.places] = value - batch.penalty[:, None]
+        score[batch.places] = value - batch.penalty(rows)[:, None]
     return Scores(likelihood, score)

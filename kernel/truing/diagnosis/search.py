@@ -182,12 +182,12 @@ def search(evidence: Evidence, hypotheses: Sequence[Hypothesis], settings: Seque
     """Score every hypothesis under every given noise filter and keep the best of each."""
     import numpy as np
 
-    batches = batches_of(hypotheses, evidence.rows)
+    batches = batches_of(hypotheses)
     best = np.full(len(hypotheses), -np.inf)
     likelihood = np.full(len(hypotheses), -np.inf)
     chosen = np.zeros(len(hypotheses), dtype=int)
     for place, setting in enumerate(settings):
-        found: Scores = scores_of(evidence.case(setting), batches, len(hypotheses))
+        found: Scores = scores_of(evidence.case(setting), batches, evidence.rows)
         better = found.score[:, 0] > best
         best[better] = found.score[better, 0]
         likelihood[better] = found.likelihood[better, 0]
@@ -211,8 +211,8 @@ def likely_settings(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> lis
         kept = []
         for channel in range(len(held)):
             trials = [(*held[:channel], place, *held[channel + 1 :]) for place in range(count)]
-            batches = batches_of(hypotheses, evidence.rows)
-            scores = [scores_of(evidence.case(trial), batches, len(hypotheses)).score[:, 0] for trial in trials]
+            batches = batches_of(hypotheses)
+            scores = [scores_of(evidence.case(trial), batches, evidence.rows).score[:, 0] for trial in trials]
             none = np.array([score[0] for score in scores])
             best = np.array([score.max() for score in scores])
             held[channel] = int(np.argmax(best))
@@ -244,7 +244,7 @@ def solve(evidence: Evidence, hypothesis: Hypothesis, setting: tuple[int, ...], 
     columns = list(hypothesis.columns)
     b = np.zeros(0)
     if columns:
-        batch: Batch = batches_of([hypothesis], evidence.rows)[0]
+        batch: Batch = batches_of([hypothesis])[0]
         b = coefficients(evidence.case(setting), batch)[0, :, 0]
     u = _directions(evidence, setting, columns, b, doubt)
     fitted, left = [], []

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from truing.diagnosis.contest import Contest, best_terms
 from truing.diagnosis.evidence import Channel, Reduced, Replicates, Simulation, reduced, replicates_of
-from truing.diagnosis.hypotheses import NOTHING, Batch, Hypothesis, batches_of, mixed, pairs, shapes, singles
+from truing.diagnosis.hypotheses import NOTHING, Hypothesis, batches_of, mixed, pairs, shapes, singles
 from truing.diagnosis.noise import SETTINGS, Setting
 from truing.diagnosis.problem import terms_for_pairs
 from truing.diagnosis.scoring import scores_of
@@ -127,17 +127,12 @@ def _maxima(
         made = replicates_of(channel, simulation, drawn, generator=generator, settings=chosen)
         replicates.append(dict(zip(places, made, strict=True)))
     best = [np.full(count, -np.inf), np.full(count, -np.inf)]
-    batches = [batches_of(each, evidence.rows) for each in (simple, rich)]
+    batches = [batches_of(each) for each in (simple, rich)]
     for setting in contest.settings:
         case = _case(contest, setting, replicates)
-        for place, (each, hypotheses) in enumerate(zip(batches, (simple, rich), strict=True)):
-            best[place] = np.maximum(best[place], _best(case, each, len(hypotheses)))
+        for place, each in enumerate(batches):
+            best[place] = np.maximum(best[place], scores_of(case, each, evidence.rows).score.max(axis=0))
     return np.asarray(best[1] - best[0])
-
-
-def _best(case: Reduced, batches: Sequence[Batch], count: int) -> Matrix:
-    best: Matrix = scores_of(case, batches, count).score.max(axis=0)
-    return best
 
 
 def _case(contest: Contest, setting: tuple[int, ...], replicates: Sequence[dict[int, Replicates]]) -> Reduced:
