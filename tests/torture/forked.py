@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import io
 import os
+import select
 import signal
 import sys
-import tempfile
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
+POLL = 0.05
 LONGEST = 60
 """Seconds that a forked command may take."""
 
@@ -39,17 +41,33 @@ def forked(
     before: Callable[[], object] = lambda: None,
 ) -> End:
     """Run ``calc`` in a fork, in a folder; ``before`` is called there at last, to inject what it likes."""
-    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
-        child = os.fork()
-        if child == 0:
-            _be_the_command(words, folder, (stdout or out.fileno, stderr or err.fileno), encoding, before)
-        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-        return End(code, _text(out), _text(err))
+    (out, out_there), (err, err_there) = os.pipe(), os.pipe()  # a file might be limited with all others
+    child = os.fork()
+    if child == 0:
+        _be_the_command(words, folder, (stdout or (lambda: out_there), stderr or (lambda: err_there)), encoding, before)
+    os.close(out_there)
+    os.close(err_there)
+    status, said = _heard(child, (out, err))
+    return End(os.waitstatus_to_exitcode(status), *(text.decode("utf-8", "replace") for text in said))
 
 
-def _text(stream: IO[bytes]) -> str:
-    stream.seek(0)
-    return stream.read().decode("utf-8", "replace")
+def _heard(child: int, pipes: Sequence[int]) -> tuple[int, list[bytes]]:
+    """Return how a process ended and what it said; what it has started may hold the pipes longer than it lives."""
+    said = dict.fromkeys(pipes, b"")
+    still = list(pipes)
+    ended = status = 0
+    while not ended:
+        ready = select.select(still, [], [], POLL)[0] if still else []
+        ended, status = os.waitpid(child, os.WNOHANG if still else 0)
+        for pipe in tuple(still if ended else ready):
+            os.set_blocking(pipe, False)
+            with suppress(BlockingIOError):
+                while part := os.read(pipe, 65536):
+                    said[pipe] += part
+                still.remove(pipe)
+    for pipe in pipes:
+        os.close(pipe)
+    return status, list(said.values())
 
 
 def _be_the_command(

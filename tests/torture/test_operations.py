@@ -297,7 +297,8 @@ def judge(prepared: Prepared, name: str, inject: Callable[[], None], what: str) 
     assert bool(leftovers(place)) or "are kept in" not in end.err, told
     if died or leftovers(place):
         assert died or is_new or "--resume" in case.words, (told, leftovers(place))
-        if not (case.is_filled and found) and (found == before or "new" not in name):
+        exists_already = is_new if name == "init" else "new" in name and found != before
+        if not (case.is_filled and found) and not exists_already:
             again = prepared.run(case, place)
             assert again.code == 0, (told, again)
             assert files_of(place, case.results) == after, told
@@ -314,14 +315,18 @@ def _recover(place: Path, case: Case) -> None:
 
 
 def _judge_words(end: End, case: Case, *, is_new: bool, told: str) -> None:
-    """One sentence, which is true; 0 only where the new is there. A watch goes on until it is ended, then with 1."""
+    """One sentence, which is true; 0 only where the new is there.
+
+    A watch that has begun goes on until it is ended, then with 1.
+    """
     assert "Traceback" not in end.err, told
     if end.code == 0:
         assert is_new or not case.results, told
         return
     if case.words.startswith("watch"):
-        assert end.code in {1, 2, 130}, told
+        assert end.code in {1, 2, 3, 130}, told
         assert end.err.count("\n") <= 1, told
+        assert end.err or end.code != 3, told
         assert end.code != 130 or ("complete" in end.err) == is_new, told
         return
     assert end.err.count("\n") == 1, told

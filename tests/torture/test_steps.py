@@ -91,7 +91,7 @@ def test_no_step_moves_a_result_by_more_than_the_sheet_says(sharing: str, wear: 
             answered += compared(before, answers(setup, halved), "reconstruction_depth")
             doubled = default_setup(RV_WEAR).changed(choices | {"phases": 2 * phases})
             answered += compared(before, answers(doubled, columns), "phases")
-    assert answered > (4000 if full_torture else 8)
+    assert answered > (2880 if full_torture else 8)  # half of them at least
 
 
 def compared(before: Rows, after: Rows, name: str) -> int:

@@ -166,15 +166,15 @@ def exit_code_of(error: BaseException) -> int:
     """Return the exit code of an error; one of the system, as of a disk, is no fault of the program."""
     if isinstance(error, KeyboardInterrupt):
         return 143 if isinstance(error, Terminated) else 130
-    if isinstance(error, OSError) and error.strerror:
+    if isinstance(error, OSError):
         return OutputError.exit_code
     return error.exit_code if isinstance(error, TruingError) else 3
 
 
 def sentence_of(error: Exception) -> str:
     """Return what is said of an error: with the place it names, or in the name of the program."""
-    if isinstance(error, OSError) and error.strerror:
-        return f"calc: {one_line(error.filename or 'the system')}: {one_line(error.strerror)}"
+    if isinstance(error, OSError):
+        return f"calc: {one_line(error.filename or 'the system')}: {one_line(error.strerror or error)}"
     if not isinstance(error, TruingError):
         words = one_line(f"{type(error).__name__}: {error}")
         return f"calc: {words} (this is a fault of the program; --traceback shows where)"
