@@ -13,7 +13,8 @@ from truing.diagnosis.columns import MANY, in_blocks
 from truing.diagnosis.contest import Contest, names_of
 from truing.diagnosis.hypotheses import Hypothesis, Piece
 from truing.diagnosis.machine import Predicted, predict_each
-from truing.diagnosis.noise import SETTINGS, whiten
+from truing.diagnosis.noise import SETTINGS
+from truing.diagnosis.residual import Residual
 from truing.diagnosis.slopes import Jacobian, white_directions
 from truing.errors import ConvergenceError
 from truing.evaluate import effect_column
@@ -205,7 +206,7 @@ def fit(contest: Contest, place: int) -> Fit:
     fitter = Fitter(contest, hypothesis)
     start = np.concatenate([_start(fitter, solution.coefficients), solution.directions])
     p = len(fitter.parameters)
-    residual = _residual(contest, fitter, setting, p)
+    residual = Residual(contest, fitter, setting)
     low = np.array([item.low for item in fitter.parameters] + [-np.inf] * (len(start) - p))
     high = np.array([item.high for item in fitter.parameters] + [np.inf] * (len(start) - p))
     way: Mapping[str, Any] = {"bounds": (low, high), "x_scale": "jac", "xtol": 1e-10, "ftol": 1e-12}
@@ -229,12 +230,12 @@ def is_off(contest: Contest, found: Fit) -> bool:
     import numpy as np
 
     fitter = Fitter(contest, found.hypothesis)
-    residual = _residual(contest, fitter, found.setting, len(fitter.parameters))
+    residual = Residual(contest, fitter, found.setting)
     jacobian = Jacobian(fitter.parameters, residual, white_directions(contest, found.setting))
     return jacobian.is_off(np.concatenate([found.values, found.directions]))
 
 
-def _that_works(residual: _residual, start: Matrix) -> Matrix:
+def _that_works(residual: Residual, start: Matrix) -> Matrix:
     """Return a start at which the model does not fail: the linear one, or so much nearer to no cause at all.
 
     Shapes stay where they are. Raises ConvergenceError where the model fails with the explanation however small it is.
@@ -277,42 +278,6 @@ def _start(fitter: Fitter, coefficients: Matrix) -> Matrix:
         value = fitter.contest.problem.terms[piece.place].shape[item.name]
         values.append(log(value) if item.is_log else value)
     return np.array(values)
-
-
-class _residual:  # noqa: N801  # a function with what it needs
-    """What is left of the pseudo-observations, whitened, in units of the noise; the prior of the inputs below."""
-
-    def __init__(self, contest: Contest, fitter: Fitter, setting: tuple[int, ...], p: int) -> None:
-        self.contest, self.fitter, self.setting, self.p = contest, fitter, setting, p
-
-    def __call__(self, x: Matrix) -> Matrix:
-        return self.at([x])[0]
-
-    def at(self, points: Sequence[Matrix]) -> list[Matrix]:
-        """Return what is left at several points."""
-        import numpy as np
-
-        ends = [(x[: self.p], x[self.p :]) for x in points]
-        left = white_residuals(self.contest, self.fitter, self.setting, ends)
-        return [np.concatenate([each, u]) for each, (_, u) in zip(left, ends, strict=True)]
-
-
-def white_residuals(
-    contest: Contest, fitter: Fitter, setting: tuple[int, ...], points: Sequence[tuple[Matrix, Matrix]]
-) -> list[Matrix]:
-    """Return what is left of the pseudo-observations at each point, whitened, in units of the noise."""
-    import numpy as np
-
-    machine = fitter.machine
-    found = []
-    for made in fitter.predicted_at(points):
-        parts = []
-        for channel, place in zip(contest.evidence.channels, setting, strict=True):
-            target = contest.noise.residuals[channel.name] + machine.base[channel.name] + machine.shifts[channel.name]
-            left = (target - made[channel.name])[channel.rows] / channel.scale
-            parts.append(whiten(left * channel.weights, channel.starts, SETTINGS[place]))
-        found.append(np.concatenate(parts))
-    return found
 
 
 def _split(contest: Contest, residual: Matrix) -> tuple[Matrix, ...]:

@@ -8,7 +8,8 @@ from math import exp
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.contest import Contest
-from truing.diagnosis.fit import Fit, Fitter, white_residuals
+from truing.diagnosis.fit import Fit, Fitter
+from truing.diagnosis.residual import white_residuals
 from truing.diagnosis.slopes import white_directions
 
 if TYPE_CHECKING:

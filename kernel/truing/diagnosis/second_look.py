@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING
 
 from truing.diagnosis.chords import may_bend
 from truing.diagnosis.contest import Contest, contest
-from truing.diagnosis.fit import Fit, Fitter, fit, white_residuals
+from truing.diagnosis.fit import Fit, Fitter, fit
 from truing.diagnosis.grids import is_smooth
 from truing.diagnosis.hypotheses import Hypothesis, Piece
 from truing.diagnosis.noise import likelihood_of
 from truing.diagnosis.problem import Problem, at_shapes, bent, of_their_own, with_chords
+from truing.diagnosis.residual import white_residuals
 from truing.diagnosis.search import NoiseModel, learned, residuals_of
 
 if TYPE_CHECKING:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from truing.diagnosis.contest import Contest
 from truing.diagnosis.noise import SETTINGS, whiten
+from truing.diagnosis.residual import Residual
 
 if TYPE_CHECKING:
     import numpy as np
@@ -21,16 +22,6 @@ MOVED = 0.02
 """Step of a direction of the inputs, in standard deviations."""
 OFF = 1.0
 """Sum of squares, in units of the noise, that linear columns of the inputs may miss."""
-
-
-class Residual(Protocol):
-    """What is left at one point, or at several with few calls of the model."""
-
-    def __call__(self, x: Matrix) -> Matrix:
-        """Return what is left at a point."""
-
-    def at(self, points: Sequence[Matrix]) -> list[Matrix]:
-        """Return what is left at each of several points."""
 
 
 class Jacobian:
