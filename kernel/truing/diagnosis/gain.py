@@ -7,7 +7,6 @@ base model calibrated in the same fold, never with the nominal one: calibration 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import islice
 from math import inf, log, pi, sqrt
 from typing import TYPE_CHECKING
 
@@ -37,8 +36,6 @@ COVERED = 0.9
 SMALLEST_GAIN = 1e-6
 """Less than this per row is rounding, not gain."""
 ROUNDS = 2
-BEST = 24
-"""So many explanations say which noise filters the folds try."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +101,7 @@ def nested(full: Contest, winner: int, thresholds: Thresholds, raw: NoiseModel, 
     size = len(records)
     judged = {name: Judged(*(np.full(size, np.nan) for _ in range(4))) for name in records.measured}
     same = 0
-    settings = _settings(full)
+    settings = list(dict.fromkeys(full.found.setting))  # under which some explanation does best on all rows
     folds = min(FOLDS, int(block_of.max()) + 1)
     for fold in range(folds):
         done(fold, folds)
@@ -118,12 +115,6 @@ def nested(full: Contest, winner: int, thresholds: Thresholds, raw: NoiseModel, 
         for channel, name in enumerate(judged):
             _judge(judged[name], again, (base, extended), channel, test)
     return Nested(judged, block_of, same / folds)
-
-
-def _settings(full: Contest) -> list[tuple[int, ...]]:
-    """Return the noise filters under which nothing and the best explanations do best on all rows: folds try these."""
-    found = full.found
-    return list(dict.fromkeys(found.setting[place] for place in (0, *islice(found.ranked(), BEST))))
 
 
 def _judge(
