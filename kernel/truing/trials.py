@@ -9,11 +9,12 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from truing.gauge import read_by_gauge, runs_along_axis, seen_columns
 from truing.setup import Setup
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from truing.measurements import RowsFile
@@ -31,13 +32,11 @@ def read_trials(
     A trial sets inputs and conditions to one value or to (n,), unknowns of effects that are on (``effect_column``) to
     (n,), in SI and in place of what machine and rows say.
     """
-    import numpy as np
-
-    if rows.series or runs_along_axis(machine, wanted) or not seen_columns(machine, rows):
-        # one calculation answers for many rows
+    count = min(len(trials), AT_ONCE // max(len(rows), 1))
+    answers_many = bool(rows.series) or runs_along_axis(machine, wanted) or not seen_columns(machine, rows)
+    if count < 2 or answers_many:  # with several rows to an answer a column for each would ask for more of them
         yield from (_read(*_changed(machine, rows, trial), wanted) for trial in trials)
         return
-    count = max(1, AT_ONCE // max(len(rows), 1))
     for begin in range(0, len(trials), count):
         block = trials[begin : begin + count]
         values = _read(machine, _stacked(machine, rows, block), wanted)
@@ -47,8 +46,6 @@ def read_trials(
 
 def _changed(machine: Setup, rows: RowsFile, trial: Trial) -> tuple[Setup, RowsFile]:
     """Return machine and rows of a trial: one value for all rows is the machine's, others are columns."""
-    import numpy as np
-
     columns = {name: value for name, value in trial.items() if np.ndim(value) > 0}
     series = {name: columns.pop(name, values) for name, values in rows.series.items()}
     moved = machine.changed({name: value for name, value in trial.items() if np.ndim(value) == 0})
@@ -57,7 +54,6 @@ def _changed(machine: Setup, rows: RowsFile, trial: Trial) -> tuple[Setup, RowsF
 
 def _stacked(machine: Setup, rows: RowsFile, trials: Sequence[Trial]) -> RowsFile:
     """Return the rows as each trial has them, one trial behind another."""
-    import numpy as np
 
     def behind(name: str) -> Any:
         values = rows.columns.get(name)
@@ -80,8 +76,6 @@ def _stacked(machine: Setup, rows: RowsFile, trials: Sequence[Trial]) -> RowsFil
 
 def _read(machine: Setup, rows: RowsFile, wanted: Collection[str]) -> Mapping[str, NDArray[np.float64]]:
     """Read rows, not too many of them in one call."""
-    import numpy as np
-
     if len(rows) <= AT_ONCE or rows.series:
         return read_by_gauge(machine, rows, wanted).results
     blocks = [slice(begin, begin + AT_ONCE) for begin in range(0, len(rows), AT_ONCE)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,6 +19,17 @@ from truing.trials import read_trials
 LOADS = "load [N],time [h]\n28,1\n56,2\n84,3\n"
 
 
+def counting() -> tuple[Callable[[Wall], Course], list[int]]:
+    """The calculation of the wall, and how many rows each call of it has had so far."""
+    calls: list[int] = []
+
+    def counted(given_: Wall) -> Course:
+        calls.append(np.size(given_.flux))
+        return wall(given_)
+
+    return counted, calls
+
+
 def test_each_trial_is_the_machine_with_that_input(tmp_path: Path) -> None:
     """Pressure is load over 28 mm^2; a measured column is replaced row by row, another input for all rows."""
     setup, rows = rows_for(PIN_WEAR, tmp_path / "rows.csv", LOADS)
@@ -32,12 +44,7 @@ def test_each_trial_is_the_machine_with_that_input(tmp_path: Path) -> None:
 
 
 def test_trials_are_one_call_and_not_too_many_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    calls = []
-
-    def counted(given_: Wall) -> Course:
-        calls.append(np.size(given_.flux))
-        return wall(given_)
-
+    counted, calls = counting()
     setup, rows = rows_for(replace(WALL, function=counted), tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
     changes = [{"outside": 273.15 + place} for place in range(5)]
     answers = list(read_trials(setup, rows, changes, ["inside"]))
@@ -53,12 +60,7 @@ def test_trials_are_one_call_and_not_too_many_rows(tmp_path: Path, monkeypatch: 
 @pytest.mark.parametrize("text", ["depth [mm]\n0\n50\n100\n", "depth [mm],pressing [N]\n0,1\n50,2\n100,3\n"])
 def test_a_curve_is_calculated_once_for_all_rows_of_a_trial(tmp_path: Path, text: str) -> None:
     """10 W/m^2 through 100 mm of 1 W/(m K) are one kelvin: half of it in the middle."""
-    calls = []
-
-    def counted(given_: Wall) -> Course:
-        calls.append(np.size(given_.flux))
-        return wall(given_)
-
+    counted, calls = counting()
     model = replace(WALL, function=counted)
     setup, rows = rows_for(model, tmp_path / "rows.csv", text)
     setup = setup.changed({"pressing": np.ones(3)})
@@ -68,12 +70,7 @@ def test_a_curve_is_calculated_once_for_all_rows_of_a_trial(tmp_path: Path, text
 
 
 def test_what_no_column_changes_is_calculated_once_a_trial(tmp_path: Path) -> None:
-    calls = []
-
-    def counted(given_: Wall) -> Course:
-        calls.append(np.size(given_.flux))
-        return wall(given_)
-
+    counted, calls = counting()
     setup, rows = rows_for(replace(WALL, function=counted), tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
     rows = replace(rows, columns={"of_another_effect": np.arange(3.0)})
     answers = list(read_trials(setup, rows, [{"flux": 10.0}, {"flux": 20.0}], ["inside"]))

@@ -144,8 +144,10 @@ def machine_of(setup: Setup, records: Records) -> Machine:
     }
     for changed, own in _slopes(start, records, inputs):
         for place, item in enumerate(inputs):
+            if item.name != changed:
+                continue
             here = slice(None) if item.file < 0 else records.file_of == item.file
-            for name, slope in own.items() if item.name == changed else ():
+            for name, slope in own.items():
                 slopes[name][here, place] = slope[here]
     return Machine(setup, start, records, base, tuple(inputs), slopes)
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from truing.diagnosis.contest import Contest
 from truing.diagnosis.noise import SETTINGS, whiten
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from truing.diagnosis.fit import Fitter
@@ -29,8 +30,6 @@ class Residual:
 
     def at(self, points: Sequence[Matrix]) -> list[Matrix]:
         """Return what is left at several points, with few calls of the model."""
-        import numpy as np
-
         ends = [(x[: self.p], x[self.p :]) for x in points]
         left = white_residuals(self.contest, self.fitter, self.setting, ends)
         return [np.concatenate([each, u]) for each, (_, u) in zip(left, ends, strict=True)]
@@ -40,15 +39,13 @@ def white_residuals(
     contest: Contest, fitter: Fitter, setting: tuple[int, ...], points: Sequence[tuple[Matrix, Matrix]]
 ) -> list[Matrix]:
     """Return what is left of the pseudo-observations at each point, whitened, in units of the noise."""
-    import numpy as np
-
-    machine = fitter.machine
+    machine, raw = fitter.machine, contest.noise.residuals
+    targets = {name: raw[name] + machine.base[name] + machine.shifts[name] for name in raw}
     found = []
     for made in fitter.predicted_at(points):
         parts = []
         for channel, place in zip(contest.evidence.channels, setting, strict=True):
-            target = contest.noise.residuals[channel.name] + machine.base[channel.name] + machine.shifts[channel.name]
-            left = (target - made[channel.name])[channel.rows] / channel.scale
+            left = (targets[channel.name] - made[channel.name])[channel.rows] / channel.scale
             parts.append(whiten(left * channel.weights, channel.starts, SETTINGS[place]))
         found.append(np.concatenate(parts))
     return found
