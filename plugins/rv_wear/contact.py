@@ -8,8 +8,8 @@ import numpy as np
 from rv_wear.mesh import Mesh
 from truing import Float
 
-NEWTON = 60
-CLOSE = 1e-15
+NEWTON = 4  # steps from the start below; they leave rounding only
+LEAST = 2.0 - np.log(2.0)  # of u - ln u; the formula is not followed to where it ends
 
 
 def compliance(mesh: Mesh) -> Float:
@@ -36,20 +36,16 @@ def approach(mesh: Mesh, force: Float, number: Float) -> Float:
 def force_of(mesh: Mesh, approached: Float, number: Float) -> Float:
     """Force that an approach needs: equation 1b solved by Newton's rule; 0 where nothing is approached.
 
-    Valid while the force stays far below exp(number - 1), where the formula ends (about 1e9 N for steel of this size).
+    With u = number - ln F equation 1b reads u - ln u = number - ln(approach / compliance), and F is the ratio over u.
+    Valid while the force stays below exp(number - 2); the formula ends at exp(number - 1), about 1e9 N for steel of
+    this size.
     """
-    each = compliance(mesh)
-    wanted = np.maximum(approached, 1e-30) / each
-    force = wanted / np.maximum(number - np.log(wanted / number), 2.0)
-    moving = np.ones(np.shape(force), dtype=bool)
+    wanted = np.maximum(approached, 1e-30) / compliance(mesh)
+    sought = np.maximum(number - np.log(wanted), LEAST)
+    left = sought + np.log(sought)
     for _ in range(NEWTON):
-        slope = np.maximum(number - np.log(force) - 1.0, 1.0)
-        step = (wanted - force * (number - np.log(force))) / slope
-        force = np.where(moving, np.maximum(force + step, 0.5 * force), force)
-        moving = moving & (np.abs(step) > CLOSE * force)
-        if not moving.any():
-            break
-    return np.where(approached > 0.0, force, 0.0)
+        left = left - (left - np.log(left) - sought) * left / (left - 1.0)
+    return np.where(approached > 0.0, wanted / left, 0.0)
 
 
 def mean_pressure(mesh: Mesh, force: Float, relative_radius: Float) -> Float:

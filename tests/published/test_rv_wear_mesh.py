@@ -13,6 +13,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.integrate import quad
 from scipy.optimize import brentq
+from scipy.special import lambertw
 
 from rv_wear import contact, curves, cycloid, sliding
 from rv_wear.history import states
@@ -209,6 +210,14 @@ def test_line_contact() -> None:
         assert contact.force_of(MESH, approach, number) == pytest.approx(force, rel=1e-13)
         assert contact.mean_pressure(MESH, force, 0.0047) == pytest.approx(force / (2 * width * 0.02), rel=1e-14)
     assert contact.force_of(MESH, -1e-6, number) == 0
+
+
+def test_force_of_an_approach_is_lamberts_function() -> None:
+    """F (n - ln F) = w has the solution w / -W(-w exp(-n)), on the lower branch; exp(-n) is as exact as n eps."""
+    approach, number = np.meshgrid(np.geomspace(1e-12, 1e-4, 200), np.linspace(17, 26, 25))
+    wanted = approach / contact.compliance(MESH)
+    force = wanted / -lambertw(-wanted * np.exp(-number), -1).real
+    np.testing.assert_allclose(contact.force_of(MESH, approach, number), force, rtol=ROUNDING)
 
 
 # Forces
