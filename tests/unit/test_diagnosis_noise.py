@@ -10,20 +10,23 @@ from diagnosis_models import Array
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import block_diag, solve_triangular, toeplitz
 from scipy.optimize import brentq
-from scipy.stats import multivariate_normal
+from scipy.signal import lfilter
+from scipy.stats import linregress, multivariate_normal
 
+from shared import ROUNDING
 from truing.diagnosis.noise import (
     LARGEST_EXPONENT,
     SETTINGS,
+    SMALL,
     TAILS,
     Setting,
     Spread,
     Tails,
+    carried_over,
     clipped,
     colour,
     log_likelihood,
     robust_sd,
-    segments,
     spread_of,
     standardised,
     tails_of,
@@ -124,8 +127,14 @@ def test_independent_rows_of_a_wander_by_the_long_run_variance() -> None:
     assert Setting().independent_share == 1
 
 
-def test_segments_are_the_runs() -> None:
-    assert segments(starts_of(RUNS)) == [slice(0, 7), slice(7, 8), slice(8, 20), slice(20, 22)]
+@pytest.mark.parametrize("columns", [(), (1,), (3,)])
+def test_what_carries_over_is_a_recursive_filter_of_each_run(columns: tuple[int, ...]) -> None:
+    driven = np.random.default_rng(3).normal(size=(sum(RUNS), *columns))
+    runs = np.split(driven, np.cumsum(RUNS)[:-1])
+    forwards = np.concatenate([lfilter([1.0], [1.0, -0.7], run, axis=0) for run in runs])
+    backwards = np.concatenate([lfilter([1.0], [1.0, -0.7], run[::-1], axis=0)[::-1] for run in runs])
+    assert_allclose(carried_over(driven, starts_of(RUNS), 0.7), forwards, rtol=0, atol=ROUNDING)
+    assert_allclose(carried_over(driven, starts_of(RUNS), 0.7, backwards=True), backwards, rtol=0, atol=ROUNDING)
 
 
 def innovations(freedom: float, seed: int, n: int = 2000) -> Array:
@@ -168,8 +177,11 @@ def test_a_spread_that_follows_a_driver_is_found_with_its_slope(slope: float) ->
     rng = np.random.default_rng(11)
     load, speed = rng.uniform(0, 20, 400), rng.uniform(1, 5, 400)
     z = (load - load.mean()) / load.std()
-    found = spread_of(rng.normal(size=400) * np.exp(slope * z), {"speed": speed, "load": load})
+    noise = rng.normal(size=400) * np.exp(slope * z)
+    found = spread_of(noise, {"speed": speed, "load": load})
     assert found.driver == "load"
+    line = linregress(load, np.log((noise / robust_sd(noise)) ** 2 + SMALL))
+    assert_allclose(found.p_value, 2 * line.pvalue, rtol=1e-9)  # two drivers
     assert found.p_value < 0.002
     assert_allclose(found.slope, slope, rtol=0, atol=4 / np.sqrt(2 * 400))
     assert found.words == f"{'grows' if slope > 0 else 'falls'} with load"

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from truing.diagnosis.noise import Setting, segments
+from truing.diagnosis.noise import Setting, carried_over, whiten
 
 if TYPE_CHECKING:
     import numpy as np
@@ -79,31 +79,19 @@ def _ends(starts: Marks) -> Matrix:
 
 
 def _white(values: Matrix, starts: Marks, setting: Setting) -> Matrix:
-    """Turn noise into innovations, as ``noise.whiten`` does, for values (c, n)."""
-    import numpy as np
-    from scipy.signal import lfilter
-
-    ratio = setting.variance_ratio
-    white = np.array(values)
-    white[:, 1:] -= setting.rho * values[:, :-1]
-    white[:, starts] = values[:, starts] / ratio
-    for rows in segments(starts):
-        white[:, rows] = lfilter([1.0], [1.0, -setting.theta], white[:, rows])
-    white[:, starts] = values[:, starts] / np.sqrt(ratio)
-    return white
+    """Turn noise into innovations for values (c, n)."""
+    return whiten(values.T, starts, setting).T
 
 
 def _back(white: Matrix, starts: Marks, setting: Setting) -> Matrix:
     """Apply the transpose of ``_white``."""
     import numpy as np
-    from scipy.signal import lfilter
 
     ratio = setting.variance_ratio
     first = white[:, starts] / np.sqrt(ratio)
     driven = np.array(white)
     driven[:, starts] = 0.0
-    for rows in segments(starts):
-        driven[:, rows] = lfilter([1.0], [1.0, -setting.theta], driven[:, rows][:, ::-1])[:, ::-1]
+    driven = carried_over(driven.T, starts, setting.theta, backwards=True).T
     made = np.array(driven)
     made[:, starts] /= ratio
     made[:, :-1] -= setting.rho * driven[:, 1:] * ~starts[1:]

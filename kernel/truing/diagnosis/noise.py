@@ -57,30 +57,35 @@ SETTINGS = (
 )  # fmt: skip
 
 
-def segments(starts: NDArray[np.bool_]) -> list[slice]:
-    """Return the rows of each run as slices; ``starts`` marks the first row of each."""
-    import numpy as np
+def carried_over(
+    driven: NDArray[np.float64], starts: NDArray[np.bool_], share: float, *, backwards: bool = False
+) -> NDArray[np.float64]:
+    """Return x_i = driven_i + share * x_{i-1} (backwards: x_{i+1}) inside every run, shape (n,) or (n, c).
 
-    first = np.flatnonzero(starts)
-    return [slice(int(a), int(b)) for a, b in zip(first, [*first[1:], len(starts)], strict=True)]
+    ``starts`` marks the first row of each run.
+    """
+    import numpy as np
+    from scipy.linalg.lapack import dtbtrs
+
+    band = np.ones((2, len(starts)))
+    band[1, :-1] = -share * ~starts[1:]
+    solved, _ = dtbtrs(band, driven, uplo="L", trans="T" if backwards else "N", diag="U")
+    found: NDArray[np.float64] = solved.reshape(driven.shape)
+    return found
 
 
 def whiten(values: NDArray[np.float64], starts: NDArray[np.bool_], setting: Setting) -> NDArray[np.float64]:
     """Turn noise of this filter into independent innovations, shape (n,) or (n, c), run by run."""
     import numpy as np
-    from scipy.signal import lfilter
 
     ratio = setting.variance_ratio
     white = np.array(values, dtype=float)
     if setting.rho == 0 and setting.theta == 0:
         return white
     white[1:] -= setting.rho * values[:-1]
-    if setting.theta == 0:
-        white[starts] = values[starts] / np.sqrt(ratio)
-        return white
-    white[starts] = values[starts] / ratio
-    for rows in segments(starts):
-        white[rows] = lfilter([1.0], [1.0, -setting.theta], white[rows], axis=0)
+    if setting.theta:
+        white[starts] = values[starts] / ratio
+        white = carried_over(white, starts, setting.theta)
     white[starts] = values[starts] / np.sqrt(ratio)
     return white
 
@@ -88,22 +93,17 @@ def whiten(values: NDArray[np.float64], starts: NDArray[np.bool_], setting: Sett
 def colour(white: NDArray[np.float64], starts: NDArray[np.bool_], setting: Setting) -> NDArray[np.float64]:
     """Undo ``whiten``: make noise of this filter from independent innovations."""
     import numpy as np
-    from scipy.signal import lfilter
 
     ratio = setting.variance_ratio
+    driven = np.array(white, dtype=float)
     if setting.rho == 0 and setting.theta == 0:
-        return np.array(white, dtype=float)
-    noise = np.empty_like(white, dtype=float)
-    for rows in segments(starts):
-        part = np.array(white[rows], dtype=float)
-        begin = part[0] * np.sqrt(ratio)
-        driven = part.copy()
-        driven[1:] -= setting.theta * part[:-1]
-        if setting.theta and len(part) > 1:
-            driven[1] += setting.theta * (part[0] - begin / ratio)
-        driven[0] = begin
-        noise[rows] = lfilter([1.0], [1.0, -setting.rho], driven, axis=0)
-    return noise
+        return driven
+    driven[1:] -= setting.theta * white[:-1]
+    begin = white * np.sqrt(ratio)
+    second = np.flatnonzero(starts[:-1] & ~starts[1:]) + 1
+    driven[second] += setting.theta * (white[second - 1] - begin[second - 1] / ratio)
+    driven[starts] = begin[starts]
+    return carried_over(driven, starts, setting.rho)
 
 
 def log_likelihood(values: NDArray[np.float64], starts: NDArray[np.bool_], setting: Setting, sd: float) -> float:
@@ -221,7 +221,6 @@ def spread_of(innovations: NDArray[np.float64], drivers: dict[str, NDArray[np.fl
     """Find what the spread of the innovations depends on, if on anything (Bonferroni over the drivers)."""
     import numpy as np
     from scipy.optimize import minimize_scalar
-    from scipy.stats import linregress
 
     u = innovations / (robust_sd(innovations) or 1.0)
     tried = {name: standardised(values) for name, values in drivers.items()}
@@ -229,7 +228,7 @@ def spread_of(innovations: NDArray[np.float64], drivers: dict[str, NDArray[np.fl
     if not tried or len(u) < 20:
         return Spread()
     logs = np.log(u**2 + SMALL)
-    p_values = {name: float(linregress(z, logs).pvalue) for name, z in tried.items()}
+    p_values = {name: _p_of_line(z, logs) for name, z in tried.items()}
     name = min(p_values, key=lambda key: p_values[key])
     p_value = min(1.0, p_values[name] * len(tried))
     if p_value >= SPREAD_LEVEL:
@@ -242,6 +241,15 @@ def spread_of(innovations: NDArray[np.float64], drivers: dict[str, NDArray[np.fl
 
     slope = float(minimize_scalar(cost, bounds=(-2.0, 2.0), method="bounded").x)
     return Spread(name, slope, p_value)
+
+
+def _p_of_line(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:
+    """Return the two-sided p-value of the slope of a line, by Student's t."""
+    import numpy as np
+    from scipy.special import stdtr
+
+    r, freedom = float(np.corrcoef(x, y)[0, 1]), len(x) - 2
+    return float(2 * stdtr(freedom, -abs(r) * np.sqrt(freedom / max(1 - r * r, 1e-300))))
 
 
 def weights_of(

@@ -28,10 +28,10 @@ CLOSE = 0.05
 
 def shape_interval(full: Contest, best: Fit, number: int) -> tuple[float | None, float | None]:
     """Return the 95 % profile interval of a shape in SI; an end is None where the profile stays open to its bound."""
-    from scipy.stats import f as ratio
+    from scipy.special import stdtrit
 
     item = best.parameters[number]
-    limit = float(ratio.ppf(LEVEL, 1, best.freedom))
+    limit = float(stdtrit(best.freedom, (1 + LEVEL) / 2)) ** 2
     profile = _Profile(full, best, number)
     lowest = profile.cost(float(best.values[number]))
     clipped = max(full.noise.tails[channel.name].clipped for channel in full.evidence.channels)
