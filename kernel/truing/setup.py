@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from math import isnan
 from typing import Any
 
-from truing.declare.fields import with_values
+from truing.declare.fields import read, with_values
 from truing.declare.model import Model, Study
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Effect, Unknown
@@ -119,8 +119,9 @@ class Setup:
 
     def nominal(self, name: str) -> Any:
         """Return the nominal value in SI of an input or condition."""
-        if name in self.model.input_fields:
-            return self.model.read_inputs(self.inputs)[name]
+        item = self.model.input_fields.get(name)
+        if item is not None:
+            return read(self.inputs, item.path)
         return self.conditions[name] if name in self.conditions else self.model.known_conditions[name].zero
 
     def unit_of(self, name: str) -> str:
