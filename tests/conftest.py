@@ -1,5 +1,6 @@
 """What tests share beside the fixtures of ``truing.testing``: the size of torture tests, the strangers' plugins."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from shared import GUESTS, TESTS, copied_guest, process
 
 collect_ignore = ["third_party", "data"]
 sys.path += [str(TESTS / "data"), str(TESTS / "data" / "gear_record")]
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # the commands that tests run compile the kernel once, not each
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -151,5 +151,7 @@ def _close(one: float, other: float) -> bool:
 
 def parted(setup: Setup, rows: Sequence[ComparedRow]) -> tuple[list[ComparedRow], list[ComparedRow]]:
     """Part the rows into those that this run reproduces and those that hold for other settings."""
-    own = [row for row in rows if holds_for(setup, row.published)]
-    return own, [row for row in rows if row not in own]
+    settings = {frozenset(row.published.settings.items()): row.published for row in rows}
+    own = {key for key, item in settings.items() if holds_for(setup, item)}
+    ours = [row for row in rows if frozenset(row.published.settings.items()) in own]
+    return ours, [row for row in rows if row not in ours]

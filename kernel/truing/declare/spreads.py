@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any, Literal, Protocol, overload
 
 from truing.declare.goals import Price, PriceByChoice
@@ -327,6 +327,7 @@ def drawn(function: Callable[..., Mapping[str, Any]], *, of: Sequence[str] = ())
     return Drawn(function, tuple(of))
 
 
+@lru_cache(maxsize=1024)
 def difference(text: str, unit: str) -> float:
     """Read a difference: like any quantity, except that levels of temperature differ by kelvins."""
     from truing.units import difference_unit, read_quantity

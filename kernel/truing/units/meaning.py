@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from hashlib import sha256
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
@@ -51,10 +52,12 @@ def registry() -> pint.UnitRegistry[Any]:
 @lru_cache(maxsize=1)
 def _registry() -> pint.UnitRegistry[Any]:
     import pint
+    from platformdirs import user_cache_path
 
     built: pint.UnitRegistry[Any]
+    home = sha256(pint.__file__.encode()).hexdigest()[:16]  # a cache holds paths of the pint that wrote it
     try:
-        built = pint.UnitRegistry(cache_folder=":auto:")
+        built = pint.UnitRegistry(cache_folder=user_cache_path("truing") / "pint" / home)
     except Exception:  # a cache that cannot be written, or was torn by another process, must not stop a calculation
         built = pint.UnitRegistry()
     for currency in names.CURRENCIES:
