@@ -127,7 +127,7 @@ def test_independent_rows_of_a_wander_by_the_long_run_variance() -> None:
     assert Setting().independent_share == 1
 
 
-@pytest.mark.parametrize("columns", [(), (1,), (3,)])
+@pytest.mark.parametrize("columns", [(), (0,), (1,), (3,)])
 def test_what_carries_over_is_a_recursive_filter_of_each_run(columns: tuple[int, ...]) -> None:
     driven = np.random.default_rng(3).normal(size=(sum(RUNS), *columns))
     runs = np.split(driven, np.cumsum(RUNS)[:-1])

@@ -30,9 +30,10 @@ MOST_FAILED = 0.5
 _FEW = ("no row", "one row", "two rows")
 
 
-def read_records(paths: Sequence[Path], offer: Offer, setup: Setup) -> Records:
+def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_slips: bool = True) -> Records:
     """Read measured files as the records of one machine; everything odd is counted and said in ``notes``.
 
+    ``with_slips`` looks for units that were written wrong, which asks the model for every column and factor.
     A column is an input, a result (measured), a condition of an effect, ``sigma_NAME``, ``run``, or anything else that
     an error may depend on. Raises InputError with every fault of every file: nothing measured, a unit that is unknown
     or of another dimension, cells that are no numbers, columns without any value, fewer than three rows.
@@ -66,7 +67,7 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup) -> Records:
         covariates=covariates,
         held_out=held_out,
         notes=(*notes, *said, *unused),
-        slips=suspected_slips(joined, answers, setup),
+        slips=suspected_slips(joined, answers, setup) if with_slips else (),
         absent=joined.absent,
         counts=joined.counts,
     )
