@@ -97,6 +97,7 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def _warm(folder: Path) -> None:
     import contextlib
     import io
+    import warnings
 
     from truing.cli import main
 
@@ -106,7 +107,9 @@ def _warm(folder: Path) -> None:
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as said:
             assert main(["run", "bar.py", "-o", "one"]) == 0, said.getvalue()
             assert main(["run", "bar.py", "-o", "two", "--set", "load=9kN"]) == 0
-            main(["diagnose", "bar.py", "--data", "measured.csv", "-o", "warm"])
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", RuntimeWarning)  # of numpy, which a user would see
+                assert main(["diagnose", "bar.py", "--data", "measured.csv", "-o", "warm"]) < 3, said.getvalue()
             shutil.rmtree("warm")
     finally:
         os.chdir(before)

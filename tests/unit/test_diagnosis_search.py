@@ -196,20 +196,20 @@ def test_the_likelihood_of_many_explanations_is_the_dense_one_of_each() -> None:
     chosen = [(0,), (2,), (0, 1), (1, 2)]
     batches = batches_of([one_of(each) for each in chosen])
     for batch in batches:
-        found = batch_likelihood(case, batch)
+        (found,) = batch_likelihood([case], batch)
         for place, value in zip(batch.places, found[:, 0], strict=True):
             assert_allclose(value, dense_likelihood(white, chosen[place], case.constant), rtol=1e-8)
-    assert_allclose(base_likelihood(case)[0], dense_likelihood(white, (), case.constant), rtol=1e-10)
+    assert_allclose(base_likelihood([case])[0, 0], dense_likelihood(white, (), case.constant), rtol=1e-10)
 
 
 def test_a_score_pays_for_parameters_and_prior() -> None:
     _, white, case = two_gauges()
     gridded = Hypothesis("one", (piece((1,), size=2),), log(0.05))
     hypotheses = [NOTHING, gridded]
-    found = scores_of(case, batches_of(hypotheses), 23)
+    found = scores_of([case], batches_of(hypotheses), 23)
     expected = dense_likelihood(white, (1,), case.constant) - 2 * log(23) + 2 * log(0.05)
-    assert_allclose(found.score[1, 0], expected, rtol=1e-8)
-    assert_allclose(found.score[0, 0], dense_likelihood(white, (), case.constant) + 2 * log(0.5), rtol=1e-10)
+    assert_allclose(found.score[0, 1, 0], expected, rtol=1e-8)
+    assert_allclose(found.score[0, 0, 0], dense_likelihood(white, (), case.constant) + 2 * log(0.5), rtol=1e-10)
 
 
 def straight(slope: float) -> Reduced:
@@ -235,7 +235,7 @@ def straight(slope: float) -> Reduced:
 def test_a_solution_outside_its_bounds_is_impossible(slope: float, low: float, high: float, possible: bool) -> None:
     """A bound of zero is a sign and kept strictly; any other within two standard errors (0.1 each here)."""
     (batch,) = batches_of([one_of((0,), low, high)])
-    (value,) = batch_likelihood(straight(slope), batch)[:, 0]
+    ((value,),) = batch_likelihood([straight(slope)], batch)[..., 0]
     assert np.isfinite(value) == possible
     assert value == -inf or possible
 

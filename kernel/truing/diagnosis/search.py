@@ -43,6 +43,7 @@ if TYPE_CHECKING:
 
 KEPT_SETTINGS = 4
 REMEMBERED = 20
+FILTERS_AT_ONCE = 16
 DOUBTS = 12
 SMALLEST_SHARE = 1e-6
 ROUNDING = 1e-4
@@ -182,17 +183,27 @@ def search(evidence: Evidence, hypotheses: Sequence[Hypothesis], settings: Seque
     """Score every hypothesis under every given noise filter and keep the best of each."""
     import numpy as np
 
-    batches = batches_of(hypotheses)
     best = np.full(len(hypotheses), -np.inf)
     likelihood = np.full(len(hypotheses), -np.inf)
     chosen = np.zeros(len(hypotheses), dtype=int)
-    for place, setting in enumerate(settings):
-        found: Scores = scores_of(evidence.case(setting), batches, evidence.rows)
-        better = found.score[:, 0] > best
-        best[better] = found.score[better, 0]
-        likelihood[better] = found.likelihood[better, 0]
-        chosen[better] = place
+    for begin, found in _scored(evidence, hypotheses, settings):
+        place = found.score[..., 0].argmax(axis=0)
+        top = np.take_along_axis(found.score[..., 0], place[None], 0)[0]
+        better = np.flatnonzero(top > best)
+        best[better] = top[better]
+        likelihood[better] = found.likelihood[place[better], better, 0]
+        chosen[better] = begin + place[better]
     return Found(tuple(hypotheses), best, likelihood, tuple(settings[place] for place in chosen))
+
+
+def _scored(
+    evidence: Evidence, hypotheses: Sequence[Hypothesis], settings: Sequence[tuple[int, ...]]
+) -> Iterator[tuple[int, Scores]]:
+    """Give the scores under some noise filters at a time, with the place of the first of them."""
+    batches = batches_of(hypotheses)
+    for begin in range(0, len(settings), FILTERS_AT_ONCE):
+        cases = [evidence.case(setting) for setting in settings[begin : begin + FILTERS_AT_ONCE]]
+        yield begin, scores_of(cases, batches, evidence.rows)
 
 
 def likely_settings(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> list[tuple[int, ...]]:
@@ -211,10 +222,8 @@ def likely_settings(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> lis
         kept = []
         for channel in range(len(held)):
             trials = [(*held[:channel], place, *held[channel + 1 :]) for place in range(count)]
-            batches = batches_of(hypotheses)
-            scores = [scores_of(evidence.case(trial), batches, evidence.rows).score[:, 0] for trial in trials]
-            none = np.array([score[0] for score in scores])
-            best = np.array([score.max() for score in scores])
+            scores = np.concatenate([found.score[..., 0] for _, found in _scored(evidence, hypotheses, trials)])
+            none, best = scores[:, 0], scores.max(axis=1)
             held[channel] = int(np.argmax(best))
             order = [place for pair in zip(np.argsort(-best), np.argsort(-none), strict=True) for place in pair]
             kept.append([int(place) for place in dict.fromkeys(order)][:KEPT_SETTINGS])

@@ -131,7 +131,7 @@ def _maxima(
     for setting in contest.settings:
         case = _case(contest, setting, replicates)
         for place, each in enumerate(batches):
-            best[place] = np.maximum(best[place], scores_of(case, each, evidence.rows).score.max(axis=0))
+            best[place] = np.maximum(best[place], scores_of([case], each, evidence.rows).score[0].max(axis=0))
     return np.asarray(best[1] - best[0])
 
 
