@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from truing.diagnosis.covariates import covariates_of, held_out_rows
 from truing.diagnosis.data_file import DataFile, read_data_file
 from truing.diagnosis.joining import Joined, complete_rows, join, measured_rows, rows_of, settle_conditions
-from truing.diagnosis.records import FEWEST_READINGS, Records
+from truing.diagnosis.records import FEWEST_READINGS, Records, Slip
 from truing.diagnosis.slips import Answers, factor_that_works, suspected_slips
 from truing.diagnosis.tidying import counted, numbered, tidy
 from truing.errors import Fault, InputError
@@ -54,6 +54,14 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_slip
     joined, said = _enough_values(joined, ~held_out, notes)
     notes += said
     joined, held_out, answers = _without_idle(joined, held_out, answers)
+    slips = suspected_slips(joined, answers, setup) if with_slips else ()
+    return _records(joined, setup, held_out, notes, slips)
+
+
+def _records(
+    joined: Joined, setup: Setup, held_out: NDArray[np.bool_], notes: Sequence[str], slips: tuple[Slip, ...]
+) -> Records:
+    """Put together what was read."""
     covariates, said = covariates_of(joined, setup)
     sigma, unused = _sigma(joined)
     return Records(
@@ -67,7 +75,7 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_slip
         covariates=covariates,
         held_out=held_out,
         notes=(*notes, *said, *unused),
-        slips=suspected_slips(joined, answers, setup) if with_slips else (),
+        slips=slips,
         absent=joined.absent,
         counts=joined.counts,
     )
