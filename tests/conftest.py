@@ -12,6 +12,8 @@ from shared import GUESTS, TESTS, copied_guest, process
 collect_ignore = ["third_party", "data"]
 sys.path += [str(TESTS / "data"), str(TESTS / "data" / "gear_record")]
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # the commands that tests run compile the kernel once, not each
+for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")  # the workers of the suite share the cores; a test of threads sets its own
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
