@@ -153,5 +153,7 @@ def parted(setup: Setup, rows: Sequence[ComparedRow]) -> tuple[list[ComparedRow]
     """Part the rows into those that this run reproduces and those that hold for other settings."""
     settings = {frozenset(row.published.settings.items()): row.published for row in rows}
     own = {key for key, item in settings.items() if holds_for(setup, item)}
-    ours = [row for row in rows if frozenset(row.published.settings.items()) in own]
-    return ours, [row for row in rows if row not in ours]
+    parts: tuple[list[ComparedRow], list[ComparedRow]] = [], []
+    for row in rows:
+        parts[frozenset(row.published.settings.items()) not in own].append(row)
+    return parts

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
 import random
 import shutil
 import sys
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 
@@ -95,10 +98,6 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _warm(folder: Path) -> None:
-    import contextlib
-    import io
-    import warnings
-
     from truing.cli import main
 
     before = Path.cwd()

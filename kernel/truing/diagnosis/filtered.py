@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from truing.diagnosis.noise import Setting, carried_over, whiten
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     Matrix = NDArray[np.float64]
@@ -25,8 +26,6 @@ def mixture(settings: Sequence[Setting]) -> Matrix:
 
     Rows, differences and ends count ``(1 - rho)^2``, ``rho`` and ``rho (1 - rho)``.
     """
-    import numpy as np
-
     slow = [setting for setting in settings if setting.theta]
     found = np.zeros((len(settings), 3 + len(slow)))
     for place, setting in enumerate(settings):
@@ -39,8 +38,6 @@ def mixture(settings: Sequence[Setting]) -> Matrix:
 
 def parts_of(values: Matrix, starts: Marks, settings: Sequence[Setting]) -> Iterator[Matrix]:
     """Give the parts of W'W applied to values (c, n), mixed by ``mixture``."""
-    import numpy as np
-
     steps = (values[:, 1:] - values[:, :-1]) * ~starts[1:]
     bent = np.zeros_like(values)
     bent[:, 1:] = steps
@@ -55,8 +52,6 @@ def parts_of(values: Matrix, starts: Marks, settings: Sequence[Setting]) -> Iter
 
 def grams_of(values: Matrix, starts: Marks, settings: Sequence[Setting]) -> Iterator[Matrix]:
     """Give the parts of the inner products of values (c, n) with themselves, (c, c) each, mixed by ``mixture``."""
-    import numpy as np
-
     steps = (values[:, 1:] - values[:, :-1]) * ~starts[1:]
     weight = _ends(starts)
     outer = values[:, weight > 0] * np.sqrt(weight[weight > 0])
@@ -71,8 +66,6 @@ def grams_of(values: Matrix, starts: Marks, settings: Sequence[Setting]) -> Iter
 
 def _ends(starts: Marks) -> Matrix:
     """Return 1 at the first and last row of a run, 2 where it has only one, else 0."""
-    import numpy as np
-
     found = starts.astype(float)
     found += np.append(starts[1:], True)
     return found
@@ -85,8 +78,6 @@ def _white(values: Matrix, starts: Marks, setting: Setting) -> Matrix:
 
 def _back(white: Matrix, starts: Marks, setting: Setting) -> Matrix:
     """Apply the transpose of ``_white``."""
-    import numpy as np
-
     ratio = setting.variance_ratio
     first = white[:, starts] / np.sqrt(ratio)
     driven = np.array(white)

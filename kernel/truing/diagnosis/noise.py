@@ -10,8 +10,12 @@ from dataclasses import dataclass
 from math import inf, log
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from scipy.linalg.lapack import dtbtrs
+from scipy.optimize import minimize_scalar
+from scipy.special import gammaln, stdtr
+
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 TAILS = {3.0: 1.9, 4.0: 2.1, 6.0: 2.5, 10.0: 3.0, 30.0: 4.5, inf: 4.5}
@@ -64,9 +68,6 @@ def carried_over(
 
     ``starts`` marks the first row of each run.
     """
-    import numpy as np
-    from scipy.linalg.lapack import dtbtrs
-
     if not driven.size:  # scipy's dtbtrs writes past the end of an array without columns
         return np.array(driven)
     band = np.ones((2, len(starts)))
@@ -78,8 +79,6 @@ def carried_over(
 
 def whiten(values: NDArray[np.float64], starts: NDArray[np.bool_], setting: Setting) -> NDArray[np.float64]:
     """Turn noise of this filter into independent innovations, shape (n,) or (n, c), run by run."""
-    import numpy as np
-
     ratio = setting.variance_ratio
     white = np.array(values, dtype=float)
     if setting.rho == 0 and setting.theta == 0:
@@ -94,8 +93,6 @@ def whiten(values: NDArray[np.float64], starts: NDArray[np.bool_], setting: Sett
 
 def colour(white: NDArray[np.float64], starts: NDArray[np.bool_], setting: Setting) -> NDArray[np.float64]:
     """Undo ``whiten``: make noise of this filter from independent innovations."""
-    import numpy as np
-
     ratio = setting.variance_ratio
     driven = np.array(white, dtype=float)
     if setting.rho == 0 and setting.theta == 0:
@@ -110,8 +107,6 @@ def colour(white: NDArray[np.float64], starts: NDArray[np.bool_], setting: Setti
 
 def log_likelihood(values: NDArray[np.float64], starts: NDArray[np.bool_], setting: Setting, sd: float) -> float:
     """Return the Gaussian log-likelihood of noise with innovations of this sd; exact for theta = 0."""
-    import numpy as np
-
     white = whiten(values, starts, setting)
     half = 0.5 * float(np.sum(white**2)) / sd**2
     n = len(values)
@@ -134,15 +129,11 @@ class Tails:
 
 def robust_sd(innovations: NDArray[np.float64]) -> float:
     """Return the standard deviation from the median absolute deviation."""
-    import numpy as np
-
     return 1.4826 * float(np.median(np.abs(innovations - np.median(innovations))))
 
 
 def tails_of(innovations: NDArray[np.float64]) -> Tails:
     """Choose the degrees of freedom of Student's t that fit innovations best (profile over its scale)."""
-    import numpy as np
-
     scale = _scale(innovations)
     best, chosen = -inf, inf
     for freedom, total in _by_freedom(innovations).items():
@@ -154,22 +145,15 @@ def tails_of(innovations: NDArray[np.float64]) -> Tails:
 
 def likelihood_of(innovations: NDArray[np.float64]) -> float:
     """Return the log-likelihood of innovations under the tails that fit them best."""
-    import numpy as np
-
     return max(_by_freedom(innovations).values()) - len(innovations) * float(np.log(_scale(innovations)))
 
 
 def _scale(innovations: NDArray[np.float64]) -> float:
-    import numpy as np
-
     return robust_sd(innovations) or float(np.std(innovations)) or 1.0
 
 
 def _by_freedom(innovations: NDArray[np.float64]) -> dict[float, float]:
     """Return the largest log-likelihood of scaled innovations by degrees of freedom."""
-    import numpy as np
-    from scipy.special import gammaln
-
     u = innovations / _scale(innovations)
     factors = np.exp(np.linspace(-0.6, 0.6, 25))
     totals = np.zeros((len(TAILS), len(factors)))
@@ -188,8 +172,6 @@ def _by_freedom(innovations: NDArray[np.float64]) -> dict[float, float]:
 
 def clipped(innovations: NDArray[np.float64], tails: Tails) -> NDArray[np.float64]:
     """Clip innovations at the limit of their tails: least squares on the rest is a one-step robust estimate."""
-    import numpy as np
-
     scale = robust_sd(innovations) or float(np.std(innovations))
     return np.clip(innovations, -tails.limit * scale, tails.limit * scale)
 
@@ -212,8 +194,6 @@ class Spread:
 
 def standardised(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return a driver with mean 0 and standard deviation 1, missing values at the mean."""
-    import numpy as np
-
     filled = np.where(np.isfinite(values), values, np.nanmean(values))
     sd = float(np.std(filled))
     return (filled - filled.mean()) / sd if sd > 0 else np.zeros_like(filled)
@@ -221,9 +201,6 @@ def standardised(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def spread_of(innovations: NDArray[np.float64], drivers: dict[str, NDArray[np.float64]]) -> Spread:
     """Find what the spread of the innovations depends on, if on anything (Bonferroni over the drivers)."""
-    import numpy as np
-    from scipy.optimize import minimize_scalar
-
     u = innovations / (robust_sd(innovations) or 1.0)
     tried = {name: standardised(values) for name, values in drivers.items()}
     tried = {name: z for name, z in tried.items() if np.ptp(z) > 0}
@@ -247,9 +224,6 @@ def spread_of(innovations: NDArray[np.float64], drivers: dict[str, NDArray[np.fl
 
 def _p_of_line(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:
     """Return the two-sided p-value of the slope of a line, by Student's t."""
-    import numpy as np
-    from scipy.special import stdtr
-
     r, freedom = float(np.corrcoef(x, y)[0, 1]), len(x) - 2
     return float(2 * stdtr(freedom, -abs(r) * np.sqrt(freedom / max(1 - r * r, 1e-300))))
 
@@ -261,8 +235,6 @@ def weights_of(
 
     ``learnt`` are the rows that the spread was learnt from: the driver is standardised over them.
     """
-    import numpy as np
-
     if driver is None or not spread.driver:
         return np.ones(rows)
     here = driver[learnt]

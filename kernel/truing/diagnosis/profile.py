@@ -7,13 +7,16 @@ from dataclasses import dataclass
 from math import exp
 from typing import TYPE_CHECKING
 
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import stdtrit
+
 from truing.diagnosis.contest import Contest
 from truing.diagnosis.fit import Fit, Fitter
 from truing.diagnosis.residual import white_residuals
 from truing.diagnosis.slopes import white_directions
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     Matrix = NDArray[np.float64]
@@ -28,8 +31,6 @@ CLOSE = 0.05
 
 def shape_interval(full: Contest, best: Fit, number: int) -> tuple[float | None, float | None]:
     """Return the 95 % profile interval of a shape in SI; an end is None where the profile stays open to its bound."""
-    from scipy.special import stdtrit
-
     item = best.parameters[number]
     limit = float(stdtrit(best.freedom, (1 + LEVEL) / 2)) ** 2
     profile = _Profile(full, best, number)
@@ -43,8 +44,6 @@ def shape_interval(full: Contest, best: Fit, number: int) -> tuple[float | None,
 
 def _end(profile: _Profile, start: float, bound: float, level: float) -> float | None:
     """Return where the profile crosses a level on the way to a bound; None where it does not."""
-    from scipy.optimize import brentq
-
     before = start
     for step in range(1, STEPS + 1):
         place = start + (bound - start) * (step / STEPS) ** 2
@@ -71,8 +70,6 @@ class _Profile:
     """The least sum of squares with one shape held, everything else refitted from the nearest point that is known."""
 
     def __init__(self, full: Contest, best: Fit, number: int) -> None:
-        import numpy as np
-
         self.full, self.best, self.number = full, best, number
         self.fitter = Fitter(full, best.hypothesis)
         self.inputs = white_directions(full, best.setting)
@@ -115,15 +112,11 @@ class _Profile:
         return point
 
     def _within(self, x: Matrix) -> Matrix:
-        import numpy as np
-
         items = self.fitter.parameters
         return np.clip(x, [item.low for item in items], [item.high for item in items])
 
     def _step(self, point: _Point) -> tuple[Matrix, float]:
         """Return where a linear step leads, parameters and directions one after the other, and the cost it promises."""
-        import numpy as np
-
         k, free = len(point.u), [place for place in range(len(point.x)) if place != self.number]
         design = np.column_stack([*(-slope for slope in self._slopes(point, free)), self.inputs])
         prior = np.concatenate([np.zeros((k, len(free))), np.eye(k)], axis=1)

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from truing.diagnosis.evidence import Reduced
 from truing.diagnosis.hypotheses import Batch
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     Matrix = NDArray[np.float64]
@@ -34,8 +35,6 @@ class Scores:
 
 def base_likelihood(cases: Sequence[Reduced]) -> Matrix:
     """Return twice the profiled log-likelihood without any column, shape (S, B)."""
-    import numpy as np
-
     own, rows, _ = _squares(cases)
     total = np.array([case.constant for case in cases])[:, None] - np.stack([case.own[-1] for case in cases])
     for left, count in zip(own, rows, strict=True):
@@ -45,8 +44,6 @@ def base_likelihood(cases: Sequence[Reduced]) -> Matrix:
 
 def _squares(cases: Sequence[Reduced]) -> tuple[Matrix, Matrix, Matrix]:
     """Return by channel and filter the sums of squares (C, S, B), the rows and the least sum that counts (C, S)."""
-    import numpy as np
-
     own = np.stack([np.stack(case.own[:-1]) for case in cases], axis=1)
     return own, np.array([case.rows for case in cases]).T, np.array([case.least for case in cases]).T
 
@@ -59,15 +56,12 @@ def coefficients(case: Reduced, batch: Batch) -> Matrix:
 
 def _taken(matrices: Iterable[Matrix], batch: Batch) -> Matrix:
     """Return of a square matrix of each filter the parts that the hypotheses of a batch are made of, (S, n, k, k)."""
-    import numpy as np
-
     return np.stack([np.take(matrix, batch.square(len(matrix)), mode="clip") for matrix in matrices])
 
 
+@np.errstate(divide="ignore", invalid="ignore")  # two columns that are one have no solution
 def _solved(cases: Sequence[Reduced], batch: Batch) -> tuple[Matrix, Matrix]:
     """Return the coefficients (S, n, k, B), and by how much they lower the sum of all squares (S, n, B)."""
-    import numpy as np
-
     normal = _taken((case.total_h for case in cases), batch)
     diagonal = np.einsum("snii->sni", normal)
     ridge = RIDGE * np.maximum(diagonal, 1e-300) + 1e-300
@@ -79,8 +73,6 @@ def _solved(cases: Sequence[Reduced], batch: Batch) -> tuple[Matrix, Matrix]:
 
 def _eliminated(normal: Matrix, right: Matrix) -> Matrix:
     """Solve small positive definite systems (..., k, k) for right-hand sides (..., k, B), all at once step by step."""
-    import numpy as np
-
     size, left = normal.shape[-1], normal.copy()
     solved = right.copy()
     for pivot in range(size):
@@ -100,10 +92,7 @@ def batch_likelihood(cases: Sequence[Reduced], batch: Batch) -> Matrix:
     The noise of every result is estimated anew under every hypothesis. Solutions that leave the bounds of an unknown
     by more than two standard errors count as impossible, and so do columns that cannot be told apart at all.
     """
-    import numpy as np
-
-    with np.errstate(divide="ignore", invalid="ignore"):  # two columns that are one have no solution
-        solved, lowered = _solved(cases, batch)
+    solved, lowered = _solved(cases, batch)
     total = np.empty(lowered.shape)
     total[:] = np.array([case.constant for case in cases])[:, None, None]
     variance = np.zeros_like(total)
@@ -123,8 +112,6 @@ def batch_likelihood(cases: Sequence[Reduced], batch: Batch) -> Matrix:
 
 def _is_possible(cases: Sequence[Reduced], batch: Batch, solved: Matrix, variance: Matrix) -> NDArray[np.bool_]:
     """Tell which solutions lie inside the bounds; a bound at zero is a sign and is kept strictly."""
-    import numpy as np
-
     possible = np.ones(variance.shape, dtype=bool)
     bounds = batch.bounds
     if not len(bounds.places):
@@ -142,8 +129,6 @@ def scores_of(cases: Sequence[Reduced], batches: Sequence[Batch], rows: int) -> 
 
     A hypothesis without columns says that nothing is wrong.
     """
-    import numpy as np
-
     residuals, count = len(cases[0].own[0]), sum(len(batch.places) for batch in batches)
     likelihood = np.full((len(cases), count, residuals), -np.inf)
     score = np.full((len(cases), count, residuals), -np.inf)
@@ -155,8 +140,6 @@ def scores_of(cases: Sequence[Reduced], batches: Sequence[Batch], rows: int) -> 
 
 def _in_parts(cases: Sequence[Reduced], batch: Batch) -> Matrix:
     """Return the likelihoods (S, n, B) of a batch, under as many filters at a time as a cache holds."""
-    import numpy as np
-
     if not batch.index.size:
         return base_likelihood(cases)[:, None]
     width = max(1, IN_CACHE // batch.index.size)

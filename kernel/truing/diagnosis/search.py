@@ -7,6 +7,8 @@ from dataclasses import dataclass, field, replace
 from math import inf
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from truing.diagnosis.columns import in_blocks
 from truing.diagnosis.evidence import (
     Channel,
@@ -36,7 +38,6 @@ from truing.diagnosis.problem import Problem
 from truing.diagnosis.scoring import Scores, coefficients, scores_of
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     Matrix = NDArray[np.float64]
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
 KEPT_SETTINGS = 4
 REMEMBERED = 20
 FILTERS_AT_ONCE = 16
+"""Their reduced problems are held together, so fewer than are remembered."""
 DOUBTS = 12
 SMALLEST_SHARE = 1e-6
 ROUNDING = 1e-4
@@ -141,8 +143,6 @@ def moved_to(noise: NoiseModel, here: Machine, there: Machine) -> NoiseModel:
 
 def evidence_of(problem: Problem, noise: NoiseModel, rows: NDArray[np.bool_]) -> Evidence:
     """Reduce the chosen rows of the records to inner products, in units of the noise."""
-    import numpy as np
-
     machine = problem.machine
     places = {name: np.flatnonzero(rows & np.isfinite(noise.residuals[name])) for name in noise.scales}
     total = sum(len(here) for here in places.values())
@@ -171,8 +171,6 @@ def evidence_of(problem: Problem, noise: NoiseModel, rows: NDArray[np.bool_]) ->
 
 def _pieces(machine: Machine, rows: NDArray[np.bool_]) -> NDArray[np.intp]:
     """Number the pieces of runs that are left when only some rows are taken: a gap starts the noise anew."""
-    import numpy as np
-
     runs = machine.records.run_of
     gap = np.zeros(len(rows), dtype=np.intp)
     gap[1:] = (runs[1:] != runs[:-1]) | (rows[1:] & ~rows[:-1])
@@ -181,8 +179,6 @@ def _pieces(machine: Machine, rows: NDArray[np.bool_]) -> NDArray[np.intp]:
 
 def search(evidence: Evidence, hypotheses: Sequence[Hypothesis], settings: Sequence[tuple[int, ...]]) -> Found:
     """Score every hypothesis under every given noise filter and keep the best of each."""
-    import numpy as np
-
     best = np.full(len(hypotheses), -np.inf)
     likelihood = np.full(len(hypotheses), -np.inf)
     chosen = np.zeros(len(hypotheses), dtype=int)
@@ -211,8 +207,6 @@ def likely_settings(evidence: Evidence, hypotheses: Sequence[Hypothesis]) -> lis
 
     ``hypotheses`` are the simple ones: nothing, single causes, shapes. Each channel is scanned with the others held.
     """
-    import numpy as np
-
     count = len(evidence.products[0])
     if len(evidence.channels) == 1:
         return list(combined([count]))
@@ -248,8 +242,6 @@ class Solution:
 
 def solve(evidence: Evidence, hypothesis: Hypothesis, setting: tuple[int, ...], doubt: float = 1.0) -> Solution:
     """Solve one hypothesis under one noise filter per channel; ``doubt`` multiplies the scale of the noise."""
-    import numpy as np
-
     columns = list(hypothesis.columns)
     b = np.zeros(0)
     if columns:
@@ -273,8 +265,6 @@ def base_solution(evidence: Evidence, setting: tuple[int, ...]) -> Solution:
 
     What is left may be far more than noise; inputs are not driven out of their tolerances to draw it.
     """
-    import numpy as np
-
     trials = [solve(evidence, NOTHING, setting, doubt=2.0**power) for power in range(DOUBTS)]
 
     def likelihood(trial: Solution) -> float:
@@ -287,8 +277,6 @@ def base_solution(evidence: Evidence, setting: tuple[int, ...]) -> Solution:
 def _directions(
     evidence: Evidence, setting: tuple[int, ...], columns: Sequence[int], b: Matrix, doubt: float
 ) -> Matrix:
-    import numpy as np
-
     k = evidence.directions.shape[1]
     chosen = [products[place].matrix for products, place in zip(evidence.products, setting, strict=True)]
     total = sum(chosen[1:], chosen[0])
@@ -304,8 +292,6 @@ def learned(
     The clipped innovations are put back through the noise filter: least squares on these pseudo-observations is a
     one-step robust estimate, so that all later algebra stays linear. Measured values themselves are never clipped.
     """
-    import numpy as np
-
     scales, weights, residuals, spreads, tails = {}, {}, {}, {}, {}
     drivers = _drivers(problem)
     free = len(solution.coefficients) / len(evidence.channels) + np.sqrt(evidence.directions.shape[1])
@@ -335,8 +321,6 @@ def learned(
 
 def _drivers(problem: Problem) -> dict[str, Matrix]:
     """Return what the spread of noise may depend on: every covariate, and its size where it changes sign."""
-    import numpy as np
-
     found: dict[str, Matrix] = {}
     for name, item in problem.machine.records.covariates.items():
         if item.is_constant:
@@ -348,15 +332,11 @@ def _drivers(problem: Problem) -> dict[str, Matrix]:
 
 
 def _size(problem: Problem, result: str) -> dict[str, Matrix]:
-    import numpy as np
-
     return {f"size of {result}": np.abs(problem.machine.base[result])}
 
 
 def first_noise(machine: Machine) -> NoiseModel:
     """Return a first idea of the noise: what the tolerated inputs and powers of all covariates cannot explain."""
-    import numpy as np
-
     raw = residuals_of(machine)
     scales = {}
     drivers = [standardised(item.values) for item in machine.records.covariates.values() if not item.is_constant]
@@ -378,8 +358,6 @@ def first_noise(machine: Machine) -> NoiseModel:
 
 def _unexplained(triangle: Matrix, rows: int) -> float:
     """Return the standard deviation that columns leave of the last one, of the triangle of their QR decomposition."""
-    import numpy as np
-
     size = np.sqrt(np.sum(triangle[:, :-1] ** 2, axis=0))
     design = triangle[:, :-1][:, size > 0] / size[size > 0]
     left, singular, _ = np.linalg.svd(design, full_matrices=False)
@@ -391,8 +369,6 @@ def _unexplained(triangle: Matrix, rows: int) -> float:
 
 def _stated(machine: Machine, name: str) -> Matrix:
     """Return the weights that stated standard deviations ask for: 1 where none is stated, less where it is larger."""
-    import numpy as np
-
     stated = machine.records.sigma.get(name)
     if stated is None or not (stated > 0).any():
         return np.ones(len(machine.records))

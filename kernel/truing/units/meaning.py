@@ -15,6 +15,8 @@ from hashlib import sha256
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
+from platformdirs import user_cache_path
+
 from truing.errors import UnitError
 from truing.units import grammar, names
 from truing.units.grammar import shown
@@ -52,7 +54,6 @@ def registry() -> pint.UnitRegistry[Any]:
 @lru_cache(maxsize=1)
 def _registry() -> pint.UnitRegistry[Any]:
     import pint
-    from platformdirs import user_cache_path
 
     built: pint.UnitRegistry[Any]
     home = sha256(pint.__file__.encode()).hexdigest()[:16]  # a cache holds paths of the pint that wrote it
