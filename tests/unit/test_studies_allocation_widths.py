@@ -38,7 +38,7 @@ from truing.declare.spreads import read_spread
 from truing.errors import UsageError
 from truing.fits import GRADES, tolerance
 from truing.setup import Setup
-from truing.studies.strips import Strip
+from truing.studies.strips import Strip, prices_at
 
 
 @inputs
@@ -332,7 +332,9 @@ def test_the_slope_of_a_price_is_exact(formula: str) -> None:
     strip = Strip("a", 1e-3, 1e-4, 1e-2, euro(formula), {}, {})
     step = 1e-7
     expected = (strip.cost(1e-3 + step) - strip.cost(1e-3 - step)) / (2 * step)
-    assert strip.cost_slope(1e-3) == pytest.approx(expected, rel=1e-6, abs=1e-9)
+    prices, slopes = prices_at([strip, strip], np.array([1e-3, 2e-3]))
+    assert slopes[0] == pytest.approx(expected, rel=1e-6, abs=1e-9)
+    assert prices == pytest.approx([strip.cost(1e-3), strip.cost(2e-3)], rel=1e-14)
 
 
 @pytest.mark.parametrize("options", [{"tightest": 0.0}, {"tightest": 2.0, "widest": 2.0}, {"widest": float("inf")}])

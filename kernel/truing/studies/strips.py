@@ -8,7 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.goals import Price
 from truing.declare.sources import Tolerance
@@ -19,6 +22,7 @@ from truing.setup import Setup
 from truing.studies.chances import Straight
 
 COMPLEX_STEP = 1e-30
+Values: TypeAlias = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -45,19 +49,6 @@ class Strip:
         """Return what a full width costs."""
         return self.price.at(width)
 
-    def cost_slope(self, width: float) -> float:
-        """Return the exact derivative of the price by the width: the formula at a width with an imaginary step.
-
-        Source: W. Squire, G. Trapp, Using complex variables to estimate derivatives, SIAM Rev. 40 (1998) 110.
-        """
-        from truing.formulas import evaluate, parse
-        from truing.units import unit_factor
-
-        factor = unit_factor(self.price.width)
-        step = COMPLEX_STEP * width
-        value = evaluate(parse(self.price.formula), {"width": complex(width, step) / factor})
-        return float(complex(value).imag / step)
-
     def variance(self, demand: str, width: float) -> float:
         """Return the first-order variance that a width gives to a demand's response."""
         return self.variances[demand] * (width / self.start) ** 2
@@ -65,6 +56,20 @@ class Strip:
     def shift(self, demand: str, width: float) -> float:
         """Return by how much the mean of a demand's response lies from that of the start."""
         return self.pulls[demand] * (width - self.start)
+
+
+def prices_at(strips: Sequence[Strip], widths: Values) -> tuple[Values, Values]:
+    """Return what these full widths (n,) in SI cost, and the exact derivatives: the formulas with an imaginary step.
+
+    Every formula is computed once, for all widths that it prices.
+    Source: W. Squire, G. Trapp, Using complex variables to estimate derivatives, SIAM Rev. 40 (1998) 110.
+    """
+    paid = np.empty(len(strips), dtype=complex)
+    prices = [strip.price for strip in strips]
+    for price in set(prices):
+        own = [place for place, other in enumerate(prices) if other == price]
+        paid[own] = price.evaluated(widths[own] * (1 + 1j * COMPLEX_STEP))
+    return paid.real, paid.imag / (COMPLEX_STEP * widths)
 
 
 def strips_of(setup: Setup, straight: Mapping[str, Straight], span: tuple[float, float]) -> dict[str, Strip]:

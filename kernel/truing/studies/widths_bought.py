@@ -10,20 +10,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import inf
+from functools import cached_property
+from math import exp, inf
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from truing.studies.demands import Demand
+from truing.studies.strips import Values, prices_at
 from truing.studies.synthesis import Plan, largest_variance
 from truing.studies.threads import one_thread
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from truing.studies.grades import Shop
-
-    Values = NDArray[np.float64]
 
 MARGINS = (0.0, 1e-10, 1e-8, 1e-6)
 ROUNDING = 1e-13
@@ -42,8 +41,6 @@ class Search:
 
     def widths(self, x: Values) -> dict[str, float]:
         """Return the full widths (SI)."""
-        import numpy as np
-
         return {
             strip.name: float(strip.start * np.exp(value))
             for strip, value in zip(self.shop.strips.values(), x, strict=True)
@@ -51,33 +48,28 @@ class Search:
 
     def ends(self) -> tuple[Values, Values]:
         """Return the smallest and the largest logarithms."""
-        import numpy as np
-
         strips = self.shop.strips.values()
         low = np.log([strip.low / strip.start for strip in strips])
         return low, np.log([strip.high / strip.start for strip in strips])
 
     def cost(self, x: Values) -> tuple[float, Values]:
         """Return the price of the widths and its gradient, both over the price of those in force."""
-        import numpy as np
+        strips = tuple(self.shop.strips.values())
+        widths = np.array(list(self.widths(x).values()))
+        prices, slopes = prices_at(strips, widths)
+        return float(prices.sum()) / self._whole, slopes * widths / self._whole
 
-        strips = self.shop.strips.values()
-        whole = sum(abs(strip.cost(strip.start)) for strip in strips) or 1.0
-        widths = list(self.widths(x).values())
-        price = sum(strip.cost(width) for strip, width in zip(strips, widths, strict=True))
-        slopes = [strip.cost_slope(width) * width for strip, width in zip(strips, widths, strict=True)]
-        return price / whole, np.array(slopes) / whole
+    @cached_property
+    def _whole(self) -> float:
+        """The price of the widths in force."""
+        return sum(abs(strip.cost(strip.start)) for strip in self.shop.strips.values()) or 1.0
 
     def slack(self, x: Values) -> tuple[Values, Values]:
         """Return by goal how far it is kept (goals,), in standard deviations of the start, and the gradients."""
-        import numpy as np
-
         found = [self._slack(demand, x) for demand in self.shop.goals]
         return np.array([value for value, _ in found]), np.array([gradient for _, gradient in found])
 
     def _slack(self, demand: Demand, x: Values) -> tuple[float, Values]:
-        import numpy as np
-
         shop, name = self.shop, demand.name
         widths = self.widths(x)
         sd = max(shop.variance(name, self.grades, widths), 1e-300) ** 0.5
@@ -107,8 +99,6 @@ def _room(demand: Demand, mean: float, sd: float) -> tuple[float, float, float]:
 
 def _largest_sd(demand: Demand, mean: float) -> tuple[float, float]:
     """Return the standard deviation up to which a goal between two limits is met, and its derivative by the mean."""
-    from math import exp
-
     from scipy.optimize import brentq
     from scipy.special import ndtr, ndtri
 
@@ -159,8 +149,6 @@ def bettered(shop: Shop, plan: Plan) -> Plan:
 
 def _steps_from(shop: Shop, plan: Plan) -> Iterator[Plan]:
     """Yield the designs with one grade a step finer or coarser that meet all goals; widths start where they are."""
-    import numpy as np
-
     for name, part in shop.parts.items():
         offered = list(part.choices)
         place = offered.index(plan.grades[name])
@@ -187,8 +175,6 @@ def _with(shop: Shop, plan: Plan, widths: Mapping[str, float], *, residual: floa
 
 def _starts(search: Search) -> Iterator[Values]:
     """Yield the widths in force, the narrowest, the widest, those between, and some by chance, always the same."""
-    import numpy as np
-
     low, high = search.ends()
     yield np.clip(np.zeros(len(low)), low, high)
     yield from (low, high, (low + high) / 2)
@@ -211,8 +197,6 @@ def _cheapest(search: Search, starts: Sequence[Values]) -> Values | None:
 
 def _exact(search: Search, x: Values) -> Values:
     """Take the last rounding out of the goals that are just missed, by the shortest way."""
-    import numpy as np
-
     for _ in range(4):
         if search.shop.reached(search.grades, search.widths(x)):
             break
@@ -235,8 +219,6 @@ def _descended(search: Search, start: Values, margin: float) -> Values | None:
 
 def _nearest(search: Search, starts: Sequence[Values]) -> Values:
     """Return the widths whose worst goal is nearest to being met: the largest slack that all goals can have."""
-    import numpy as np
-
     low, high = search.ends()
     upward = np.append(np.zeros(len(low)), -1.0)
     rising = -np.ones(len(search.shop.goals))
@@ -258,7 +240,6 @@ def _nearest(search: Search, starts: Sequence[Values]) -> Values:
 
 def _solved(objective: Any, start: Values, ends: tuple[Values, Values], constraint: Any) -> Values | None:
     """Return where SLSQP ends, inside the bounds; None where it loses itself."""
-    import numpy as np
     from scipy.optimize import Bounds, minimize
 
     held: Any = {"type": "ineq", **constraint}
@@ -275,7 +256,6 @@ def _residual(search: Search, x: Values) -> float:
 
     0 is a minimum of Karush, Kuhn and Tucker; 1 is no balance at all.
     """
-    import numpy as np
     from scipy.optimize import nnls
 
     low, high = search.ends()
