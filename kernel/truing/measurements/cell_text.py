@@ -9,6 +9,8 @@ MARK = "\ufeff"
 """The byte order mark: by it a spreadsheet knows UTF-8, and we a table that was written for one."""
 
 NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+EITHER = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
+"""A comma that may be the decimal mark or part thousands: read where another number decides, written nowhere."""
 MISSING_WORDS = {"nan", "na", "n/a", "#n/a", "null", "none", "-"}
 _FORMULA = re.compile(r"'*(?P<words>\s*[=+\-@＝＋－＠].+)", re.DOTALL)
 

@@ -17,7 +17,7 @@ from typing import TextIO
 
 from truing.errors import Fault, InputError
 from truing.inputs_file.files import refuse_file
-from truing.measurements.cell_text import MARK, all_unguarded
+from truing.measurements.cell_text import EITHER, MARK, all_unguarded
 from truing.measurements.row_count import LeftOut, RowCount
 from truing.units.grammar import shown
 
@@ -28,7 +28,6 @@ ROWS_AT_ONCE = 8192
 COMMENT, NOTHING = "begins with '#'", "holds nothing"
 """Why lines behind the header are left out: a remark, or cells that are all empty."""
 _OPEN = re.compile(r' *"[^"]*(?:""[^"]*)*')
-_EITHER = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
 
 
 _NOT_CLOSED = "opens a quotation mark that this line does not close; a cell ends in the line in which it begins"
@@ -94,7 +93,7 @@ class DecimalMarks:
         """Note the mark of a number that was read in the column *name*."""
         if "," not in cell and "." not in cell:
             return
-        if _EITHER.fullmatch(cell):
+        if EITHER.fullmatch(cell):
             self.unclear.append((name, cell, line))
         else:
             self.first.setdefault("," if "," in cell else ".", (cell, line))

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from truing.atomic import write_files
-from truing.measurements.cell_text import MARK, guarded
+from truing.measurements.cell_text import EITHER, MARK, guarded
 
 
 @dataclass(frozen=True)
@@ -85,6 +85,7 @@ def _cell(value: Any, form: Form) -> str:
         return str(value).lower()
     if isinstance(value, float):
         text = repr(value) if math.isfinite(value) else "" if math.isnan(value) else str(value)
-        return text if form.decimal == "." else text.replace(".", form.decimal)
+        text = text.replace(".", form.decimal)
+        return f"{text}0" if EITHER.fullmatch(text) else text
     text = " ".join(re.split(r"[\r\n]+", str(value)))  # a cell ends in the line in which it begins
     return guarded(text) if form.is_guarded and isinstance(value, str) else text
