@@ -46,7 +46,6 @@ def hostile() -> Diagnosis:
         alternatives=(Alternative((LONG, HOSTILE), 1.0, 2.0, (LONG,)),),
         ranking=(*made.ranking, Alternative((LONG, HOSTILE), 7.0, 2.0)),
         seen=(*made.seen, Seen(LONG, None, "not excited", HOSTILE)),
-        warnings=(HOSTILE,),
         records=replace(made.records, notes=(HOSTILE,), slips=(Slip(LONG, 1e3, HOSTILE),), files=(LONG, HOSTILE)),
     )
 

@@ -183,7 +183,11 @@ def sizes(of: str, text: str) -> tuple[float, float, float]:
 
 
 def test_overflow_and_outlet_are_named_with_their_sizes() -> None:
-    (named,) = re.findall(r"^Cause named\. What the model misses in level: (.*)$", story(), re.MULTILINE)
+    """With what speaks against them: what is left of this record is no noise."""
+    (named,) = re.findall(
+        r"^Cause in doubt\. What the model misses in level is drawn best by (.*)$", story(), re.MULTILINE
+    )
+    assert "The noise of level was taken as nearly a random walk" in story()
     assert re.findall(r"(?:^|and )(outlet losses, lower|overflow, spill)", named) == [
         "outlet losses, lower", "overflow, spill",
     ]  # fmt: skip

@@ -261,7 +261,6 @@ def named() -> Diagnosis:
         wrong=wrong_of(41 * UM, 0.98, TREND), causes=(HEATING,), ranking=ranking,
         calibrated=CALIBRATED, gain=gain_of(41.2 * UM, 6.12 * UM, 0.001), p_any=0.0033, p_second=0.6,
         curves=curves_of(records_of(), 0.98),
-        warnings=("the linear ranking and the full fit name different winners; the full fit is shown",),
     )  # fmt: skip
     return replace(made, extended=extended(made, {"rod_heating": {"expansion": 11.8e-6}}))
 

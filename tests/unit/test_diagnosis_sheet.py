@@ -133,7 +133,7 @@ def test_hostile_texts_are_printed_and_do_nothing() -> None:
     )  # fmt: skip
     wrong = replace(made.wrong[0], findings=(Finding("trend", HOSTILE, 0.01, HOSTILE),))
     made = replace(
-        made, records=records, wrong=(wrong, made.wrong[1]), warnings=(HOSTILE,), inseparable=(HOSTILE,),
+        made, records=records, wrong=(wrong, made.wrong[1]), inseparable=(HOSTILE,),
         alternatives=(Alternative((HOSTILE,), 1.0, 2.0, (HOSTILE,)),),
         causes=(*made.causes, Cause(f"input:{HOSTILE}", (FittedUnknown(HOSTILE, 1.0, 0.5, 1.5, ""),), (), (HOSTILE,))),
         next=(NextPoint({HOSTILE: Amount(1.0, "")}, (HOSTILE, HOSTILE), HOSTILE, 3.0),),
@@ -278,8 +278,8 @@ def test_a_large_gain_in_few_blocks_is_told_with_its_chance() -> None:
     ("after", "words"),
     [
         (7e-6, "On the rows held out the error of slide position falls from 40 µm to 7 µm."),
-        (55e-6, "On the rows held out the error of slide position GROWS from 40 µm to 55 µm: the extension does not "
-                "carry over to them."),
+        (55e-6, "On the rows held out the error of slide position grows from 40 µm to 55 µm: the extension does not "
+                "carry over to them; look at what is different there."),
     ],
 )  # fmt: skip
 def test_what_became_of_rows_held_out_is_told(after: float, words: str) -> None:
@@ -378,7 +378,7 @@ def test_the_verb_prints_the_report_and_writes_the_folder(
     assert answer.out.startswith("DIAGNOSIS  press_record.csv")
     assert answer.out.endswith("extended model: runs/press record/extended.toml\n")
     said = [line.split(":")[0] for line in answer.err.splitlines()]
-    assert said == ["no --inputs", "warning", "warning", "data/press_record.csv", "note", "note"]
+    assert said == ["no --inputs", "warning", "data/press_record.csv", "note", "note"]
     assert "warning: suspected unit slip: load lies" in answer.err
     names = {path.name for path in (tmp_path / "runs" / "press record").iterdir()}
     assert names >= {"diagnosis.json", "extended.toml", "sheet.html", "sheet.md", "inputs.toml", "run.json"}

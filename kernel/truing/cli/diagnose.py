@@ -67,12 +67,10 @@ def _as_one(progress: Progress) -> Progress:
 
 
 def _say_beside(done: Diagnosed, settings: Settings) -> None:
-    """Say what is no result: what was done to the records, suspected slips, warnings, how the printing went."""
+    """Say what is no result: what was done to the records, suspected slips, how the printing went."""
     records = done.diagnosis.records
     for slip in records.slips:
         settings.say(f"warning: suspected unit slip: {one_line(slip.text)} (nothing was changed)")
-    for warning in done.diagnosis.warnings:
-        settings.say(f"warning: {one_line(warning)}")
     for count in (count for count in records.counts if count.unused):
         settings.say(f"{one_line(count.file)}: {one_line(count.sentence())}")
     for note in records.notes:

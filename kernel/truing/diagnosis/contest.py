@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from truing.diagnosis.alarms import OUTSIDE
 from truing.diagnosis.hypotheses import NOTHING, Hypothesis, Piece, mixed, off_inputs, pairs, shapes, singles
 from truing.diagnosis.problem import Problem, bent, near, sharpened, terms_for_pairs
 from truing.diagnosis.search import (
@@ -21,7 +22,7 @@ from truing.diagnosis.search import (
     search,
     solve,
 )
-from truing.diagnosis.verdict import OUTSIDE, UNKNOWN
+from truing.diagnosis.verdict import UNKNOWN
 from truing.studies.bench import Done, unheard
 
 if TYPE_CHECKING:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from truing.diagnosis.alarms import alarms_of
 from truing.diagnosis.verdict import Verdict, explanations_of, verdict_of
 
 if TYPE_CHECKING:
@@ -235,7 +236,7 @@ class Diagnosis:
     """Everything one diagnosis found. ``p_any`` and ``p_second`` are the significance of a first and second cause.
 
     ``not_measured`` holds, by effect, the conditions that no column gives; ``inseparable`` are sentences about pairs
-    that this design of the experiment cannot separate whatever their size; ``warnings`` all else that must be said.
+    that this design of the experiment cannot separate whatever their size.
     """
 
     setup: Setup
@@ -258,7 +259,6 @@ class Diagnosis:
     ranking: tuple[Alternative, ...] = ()
     inseparable: tuple[str, ...] = ()
     ties: tuple[Tie, ...] = ()
-    warnings: tuple[str, ...] = ()
     extended: Setup | None = None
     """The setup with the causes on, conditions as measured and inputs calibrated; None where nothing was named."""
 
@@ -268,6 +268,11 @@ class Diagnosis:
         return verdict_of(self)
 
     @property
+    def warnings(self) -> tuple[str, ...]:
+        """What speaks against the causes that are named, one sentence each."""
+        return tuple(alarms_of(self))
+
+    @property
     def unique(self) -> bool:
         """Whether one explanation is left, or nothing is to be explained."""
-        return self.verdict == "none" or len(explanations_of(self)) == 1
+        return self.verdict == "none" or (self.verdict != "undecided" and len(explanations_of(self)) == 1)

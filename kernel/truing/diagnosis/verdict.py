@@ -7,6 +7,7 @@ from itertools import product
 from math import isnan
 from typing import TYPE_CHECKING, Literal
 
+from truing.diagnosis.alarms import alarms_of, moved_inputs, wandering
 from truing.diagnosis.records import FEWEST_READINGS
 
 if TYPE_CHECKING:
@@ -18,10 +19,6 @@ UNKNOWN = "unknown"
 """What an explanation calls a shape that nobody registered."""
 CHANCE = 0.2
 """Below this p-value the best explanation is not called chance: one record of nothing in five lies below it."""
-RANDOM_WALK = 0.95
-"""From this AR coefficient on noise is nearly a random walk, which draws any slow curve (the largest that is tried)."""
-OUTSIDE = 3.0
-"""An input is off its band beyond this many standard deviations of its tolerance."""
 APART = 25.0
 """The lambda from which on two explanations are told apart. Their scores then differ by 25 with a standard deviation of
 2 sqrt(25) = 10, so that with a chance of 97 % the difference is above the 6 below which a rival is not excluded."""
@@ -52,17 +49,29 @@ def _by_name(names: Sequence[str], same: Mapping[str, Sequence[str]]) -> Iterato
 
 
 def verdict_of(diagnosis: Diagnosis) -> Verdict:
-    """Return the verdict; "one_of" wherever a cause has another name or a rival is near, "none" without any doubt."""
+    """Return the verdict; "one_of" wherever a cause has another name or a rival is near, "none" without any doubt.
+
+    One explanation that an alarm speaks against is not named: it is undecided.
+    """
     explanations = explanations_of(diagnosis)
     if not explanations:
         return "undecided" if any(doubts(diagnosis)) else "none"
     if all(name.startswith(UNKNOWN) for names in explanations for name in names):
         return "unknown"
-    return "named" if len(explanations) == 1 else "one_of"
+    if len(explanations) > 1:
+        return "one_of"
+    return "undecided" if any(alarms_of(diagnosis)) else "named"
 
 
 def doubts(diagnosis: Diagnosis) -> Iterator[str]:
-    """Give the reasons why it cannot be said that nothing is wrong where nothing was named, one clause each."""
+    """Give the reasons for which a diagnosis may be undecided, one clause each.
+
+    Where a cause would be named: what speaks against it. Where none is: why it cannot be said that nothing is wrong.
+    """
+    yield from alarms_of(diagnosis) if explanations_of(diagnosis) else _doubts_of_nothing(diagnosis)
+
+
+def _doubts_of_nothing(diagnosis: Diagnosis) -> Iterator[str]:
     readings = diagnosis.records.readings
     if readings < FEWEST_READINGS:
         yield f"{readings} readings that differ are too few to tell a cause from chance"
@@ -72,17 +81,8 @@ def doubts(diagnosis: Diagnosis) -> Iterator[str]:
         for finding in wrong.findings:
             if finding.kind in _STRUCTURE and not finding.is_allowed:
                 yield f"the residuals of {wrong.result} are no mere noise: {finding.text}"
-        if wrong.noise.ar_coefficient >= RANDOM_WALK:
-            yield (
-                f"the noise of {wrong.result} was taken as nearly a random walk (AR coefficient "
-                f"{wrong.noise.ar_coefficient:.2g}), which draws any slow effect"
-            )
-    for moved in diagnosis.calibrated:
-        if abs(moved.of_its_sd) > OUTSIDE:
-            yield (
-                f"{moved.name} had to move by {moved.of_its_sd:.1f} standard deviations of its tolerance to meet the "
-                "measurement"
-            )
+    yield from wandering(diagnosis)
+    yield from moved_inputs(diagnosis)
 
 
 def _nearly(diagnosis: Diagnosis) -> str:

@@ -150,6 +150,8 @@ def _significance(diagnosis: Diagnosis) -> Iterator[str]:
             f"What {beside}no registered effect explains depends on {over}: {prose(remainder.shape)}, in "
             f"{listed([spoken(name) for name in remainder.results])} ({p_text(remainder.p_value)})."
         )
+    if diagnosis.verdict == "undecided":
+        yield f"The verdict is undecided: {listed([prose(each) for each in diagnosis.warnings])}."
     if diagnosis.verdict == "named":
         yield "The verdict is unique: no other explanation is near."
     if diagnosis.verdict == "one_of":

@@ -75,7 +75,6 @@ def data_words(diagnosis: Diagnosis) -> str:
 
 
 def _warnings(diagnosis: Diagnosis, drawn: Figures) -> Iterator[str]:
-    yield from diagnosis.warnings
     yield from filter(None, [logo_of(diagnosis.setup)[1]])
     yield from drawn.failures
 

@@ -6,20 +6,16 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from truing.declare.model import Model
-from truing.diagnosis.verdict import OUTSIDE, UNKNOWN, doubts, explanations_of
+from truing.diagnosis.verdict import UNKNOWN, doubts, explanations_of
 from truing.numbers import ABSENT, format_number, format_value, pretty, with_unit
-from truing.units import to_si
 
 if TYPE_CHECKING:
     from truing.diagnosis.result import Alternative, Amount, Cause, Diagnosis, Fact, FittedUnknown, Gain, NextPoint, Tie
 
 CERTAIN, LIKELY = 0.005, 0.05
 MUCH, FEW_BLOCKS = 0.5, 0.25
-AT_BOUND = 1e-3
-"""Of the declared range of an unknown: what lies nearer to an end of it lies there."""
 TO = " … "
 MICRO = re.compile(r"(?<=\d )u(?=(?:m|rad|s|N|g|l)\b)")
 
@@ -159,7 +155,7 @@ def verdict_word(diagnosis: Diagnosis) -> str:
     is_single = all(len(names) == 1 for names in explanations_of(diagnosis))
     word = {
         "none": "Nothing found",
-        "undecided": "Undecided",
+        "undecided": "Cause in doubt" if count else "Undecided",
         "unknown": "Cause unknown",
         "named": "Cause named",
         "one_of": f"One of {count} {'causes' if is_single else 'explanations'}; this record cannot say which",
@@ -172,10 +168,11 @@ def headline(diagnosis: Diagnosis) -> list[str]:
     """Say what an engineer would tell a colleague: what is wrong, why, how much, what it is worth, what to do next."""
     if diagnosis.verdict == "none":
         return list(_nothing(diagnosis))
-    if diagnosis.verdict == "undecided":
+    if diagnosis.verdict == "undecided" and not diagnosis.causes:
         return list(_undecided(diagnosis))
     said = [
-        *_cause_sentences(diagnosis), *_alarms(diagnosis), *_gain_sentences(diagnosis), *_next_sentences(diagnosis),
+        *_cause_sentences(diagnosis), *_alarm_sentences(diagnosis), *_gain_sentences(diagnosis),
+        *_next_sentences(diagnosis),
     ]  # fmt: skip
     return [sentence[:1].upper() + sentence[1:] for sentence in said]
 
@@ -240,7 +237,12 @@ def _cause_sentences(diagnosis: Diagnosis) -> Iterator[str]:
         yield f"what the model misses in {results} is drawn alike by {listed(names, 'or')}."
     if diagnosis.causes:
         causes = listed([cause_text(cause) for cause in diagnosis.causes])
-        yield f"taken as the first of them: {causes}." if is_open else f"what the model misses in {results}: {causes}."
+        if is_open:
+            yield f"taken as the first of them: {causes}."
+        elif diagnosis.verdict == "undecided":
+            yield f"what the model misses in {results} is drawn best by {causes}; that this is the cause is in doubt."
+        else:
+            yield f"what the model misses in {results}: {causes}."
     remainder = diagnosis.remainder
     if remainder is not None:
         over = listed([spoken(name) for name in remainder.depends_on])
@@ -278,35 +280,15 @@ def _held_out_sentences(diagnosis: Diagnosis) -> Iterator[str]:
         if item.held_out is not None:
             before, after = (amount_text(replace(item.rmse_before, value=one)) for one in item.held_out)
             how = "falls" if item.held_out[1] < item.held_out[0] else "GROWS"
+            if how == "GROWS" and diagnosis.causes:
+                continue  # an alarm says so
             end = "." if how == "falls" else ": the extension does not carry over to them."
             yield f"on the rows held out the error of {spoken(item.result)} {how} from {before} to {after}{end}"
 
 
-def _alarms(diagnosis: Diagnosis) -> Iterator[str]:
-    """Say what makes a named cause doubtful: an unknown at its bound, an input far off its tolerance, a wave left."""
-    for cause in diagnosis.causes:
-        for unknown in cause.unknowns:
-            if at_bound(cause, unknown, diagnosis.setup.model):
-                yield f"{spoken(cause.effect)}: {fitted_text(unknown)} lies at the bound that is declared for it."
-    named = {cause.effect.removeprefix("input:") for cause in diagnosis.causes}
-    for moved in diagnosis.calibrated:
-        if abs(moved.of_its_sd) > OUTSIDE and moved.name not in named:
-            by = score_text(moved.of_its_sd)
-            yield f"beside that {spoken(moved.name)} had to move by {by} standard deviations of its tolerance."
-    for item in diagnosis.wrong:
-        for finding in item.findings:
-            if finding.kind == "wave":
-                yield f"in what is left of {spoken(item.result)} there are {prose(finding.text)}."
-
-
-def at_bound(cause: Cause, unknown: FittedUnknown, model: Model[Any, Any]) -> bool:
-    """Whether a fitted unknown lies at an end of its declared range, other than at zero."""
-    effect = model.known_effects.get(cause.effect)
-    declared = next((each for each in effect.unknowns if each.name == unknown.name), None) if effect else None
-    if declared is None or declared.whole or declared.along:
-        return False
-    low, high = (float(to_si(end, declared.unit)) for end in (declared.low, declared.high))
-    return any(end and abs(unknown.value - end) <= AT_BOUND * (high - low) for end in (low, high))
+def _alarm_sentences(diagnosis: Diagnosis) -> Iterator[str]:
+    """Say what makes a named cause doubtful; of rows that were held out the sentences on the gain speak."""
+    yield from (f"{prose(alarm)}." for alarm in diagnosis.warnings)
 
 
 def _next_sentences(diagnosis: Diagnosis) -> Iterator[str]:

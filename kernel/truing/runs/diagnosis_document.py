@@ -44,7 +44,7 @@ def diagnosis_document(diagnosis: Diagnosis) -> dict[str, Any]:
         "wrong": {item.result: _wrong(item, _labels(diagnosis)) for item in diagnosis.wrong},
         "verdict": diagnosis.verdict,
         "explanations": [list(names) for names in explanations_of(diagnosis)],
-        "undecided": [] if explanations_of(diagnosis) else list(doubts(diagnosis)),
+        "undecided": list(doubts(diagnosis)) if diagnosis.verdict == "undecided" else [],
         "p_any": clean(diagnosis.p_any),
         "p_second": clean(diagnosis.p_second),
         "causes": [_cause(cause, _labels(diagnosis)) for cause in diagnosis.causes],

@@ -242,7 +242,7 @@ def _of_diagnosis(document: Mapping[str, Any], name: str) -> Entry:
         words = f"{words}: {' or '.join(' and '.join(names) for names in document['explanations'])}"
     elif causes:
         words = f"{words}: {' and '.join(str(cause['effect']) for cause in causes)}"
-        words += "" if document["unique"] else "; others possible"
+        words += " in doubt" if document["verdict"] == "undecided" else ""
     if document.get("remainder") and document["verdict"] == "named":
         words += "; a remainder left"
     sizes = [

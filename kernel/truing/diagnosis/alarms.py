@@ -1,0 +1,121 @@
+"""What makes a named cause doubtful: what a wrong cause looks like, each in one sentence with what to check.
+
+The thresholds are conventions; each stands with its name below.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from truing.numbers import format_number, with_unit
+from truing.units import from_si, to_si
+
+if TYPE_CHECKING:
+    from truing.diagnosis.result import Amount, Cause, Diagnosis, FittedUnknown
+
+AT_BOUND = 5e-3
+"""Of the declared range of an unknown: what lies nearer to an end of it lies there."""
+OUTSIDE = 3.0
+"""An input is off its band beyond this many standard deviations of its tolerance."""
+RANDOM_WALK = 0.95
+"""From this AR coefficient on noise is nearly a random walk, which draws any slow curve (the largest that is tried)."""
+STABLE = 0.5
+"""Less than this share of the folds that name the same causes is another verdict on parts of the record."""
+
+
+def alarms_of(diagnosis: Diagnosis) -> Iterator[str]:
+    """Give what speaks against the causes that are named, one sentence each; nothing where none is named."""
+    if diagnosis.causes:
+        yield from chain(
+            _at_bounds(diagnosis),
+            moved_inputs(diagnosis),
+            _growing(diagnosis),
+            _unstable(diagnosis),
+            wandering(diagnosis),
+            waves_left(diagnosis),
+        )
+
+
+def _at_bounds(diagnosis: Diagnosis) -> Iterator[str]:
+    for cause in diagnosis.causes:
+        for unknown in cause.unknowns:
+            if at_bound(diagnosis, cause, unknown):
+                yield (
+                    f"{unknown.name} of {cause.effect} was fitted at the bound declared for it "
+                    f"({_text(unknown.value, unknown.unit)}): a wrong cause often ends there; look at what else could "
+                    "draw this curve, and widen the range if the machine allows more"
+                )
+
+
+def at_bound(diagnosis: Diagnosis, cause: Cause, unknown: FittedUnknown) -> bool:
+    """Whether a fitted unknown lies at an end of its declared range, other than at zero."""
+    effect = diagnosis.setup.model.known_effects.get(cause.effect)
+    declared = next((each for each in effect.unknowns if each.name == unknown.name), None) if effect else None
+    if declared is None or declared.whole or declared.along:
+        return False
+    low, high = (float(to_si(end, declared.unit)) for end in (declared.low, declared.high))
+    return any(end and abs(unknown.value - end) <= AT_BOUND * (high - low) for end in (low, high))
+
+
+def moved_inputs(diagnosis: Diagnosis) -> Iterator[str]:
+    """Give the inputs that no cause names and that were calibrated far beyond their tolerances."""
+    named = {cause.effect.removeprefix("input:") for cause in diagnosis.causes}
+    for moved in diagnosis.calibrated:
+        if abs(moved.of_its_sd) > OUTSIDE and moved.name not in named:
+            yield (
+                f"{moved.name} had to move by {moved.of_its_sd:.1f} standard deviations of its tolerance to meet the "
+                "measurement: its tolerance is stated too narrow, or something else is wrong; measure it"
+            )
+
+
+def _growing(diagnosis: Diagnosis) -> Iterator[str]:
+    for gain in diagnosis.gain:
+        if gain.held_out is not None and gain.held_out[1] > gain.held_out[0]:
+            before, after = (_text(error, gain.rmse_before.unit) for error in gain.held_out)
+            yield (
+                f"on the rows held out the error of {gain.result} grows from {before} to {after}: the extension "
+                "does not carry over to them; look at what is different there"
+            )
+    if diagnosis.gain and all(gain.rmse_after.value > gain.rmse_before.value for gain in diagnosis.gain):
+        first = diagnosis.gain[0]
+        yield (
+            f"on rows that were not fitted the error of {first.result} grows from {_amount(first.rmse_before)} to "
+            f"{_amount(first.rmse_after)}: the cause draws this record and predicts nothing; measure more rows"
+        )
+
+
+def _unstable(diagnosis: Diagnosis) -> Iterator[str]:
+    if diagnosis.stability < STABLE:
+        yield (
+            f"the same causes are named in {100 * diagnosis.stability:.0f} % of the folds only: parts of the record "
+            "say something else; look at the ranking, and measure more rows"
+        )
+
+
+def wandering(diagnosis: Diagnosis) -> Iterator[str]:
+    """Give the results whose noise was taken as nearly a random walk."""
+    for wrong in diagnosis.wrong:
+        if wrong.noise.ar_coefficient >= RANDOM_WALK:
+            yield (
+                f"the noise of {wrong.result} was taken as nearly a random walk (AR coefficient "
+                f"{wrong.noise.ar_coefficient:.2g}), which draws any slow effect: something that wanders over time is "
+                "unexplained; measure again, in a changed order"
+            )
+
+
+def waves_left(diagnosis: Diagnosis) -> Iterator[str]:
+    """Give the results in whose residuals a wave is left."""
+    for wrong in diagnosis.wrong:
+        for finding in wrong.findings:
+            if finding.kind == "wave":
+                yield f"in what is left of {wrong.result} there are {finding.text}: something else is at work"
+
+
+def _amount(amount: Amount) -> str:
+    return _text(amount.value, amount.unit)
+
+
+def _text(value: float, unit: str) -> str:
+    return with_unit(format_number(float(from_si(value, unit)), 3), unit)
