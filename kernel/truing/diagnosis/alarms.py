@@ -34,8 +34,14 @@ def alarms_of(diagnosis: Diagnosis) -> Iterator[str]:
             _growing(diagnosis),
             _unstable(diagnosis),
             wandering(diagnosis),
-            waves_left(diagnosis),
         )
+
+
+def warnings_of(diagnosis: Diagnosis) -> Iterator[str]:
+    """Give the alarms, and what is left beside the causes that are named: more to be found, nothing against them."""
+    yield from alarms_of(diagnosis)
+    if diagnosis.causes:
+        yield from _waves_left(diagnosis)
 
 
 def _at_bounds(diagnosis: Diagnosis) -> Iterator[str]:
@@ -105,12 +111,11 @@ def wandering(diagnosis: Diagnosis) -> Iterator[str]:
             )
 
 
-def waves_left(diagnosis: Diagnosis) -> Iterator[str]:
-    """Give the results in whose residuals a wave is left."""
+def _waves_left(diagnosis: Diagnosis) -> Iterator[str]:
     for wrong in diagnosis.wrong:
         for finding in wrong.findings:
             if finding.kind == "wave":
-                yield f"in what is left of {wrong.result} there are {finding.text}: something else is at work"
+                yield f"in what is left of {wrong.result} there are {finding.text}: something more is at work"
 
 
 def _amount(amount: Amount) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
-from truing.diagnosis.alarms import alarms_of
+from truing.diagnosis.alarms import warnings_of
 from truing.diagnosis.verdict import Verdict, explanations_of, verdict_of
 
 if TYPE_CHECKING:
@@ -269,8 +269,8 @@ class Diagnosis:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What speaks against the causes that are named, one sentence each."""
-        return tuple(alarms_of(self))
+        """What speaks against the causes that are named, and what is left beside them, one sentence each."""
+        return tuple(warnings_of(self))
 
     @property
     def unique(self) -> bool:

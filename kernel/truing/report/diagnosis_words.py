@@ -240,7 +240,8 @@ def _cause_sentences(diagnosis: Diagnosis) -> Iterator[str]:
         if is_open:
             yield f"taken as the first of them: {causes}."
         elif diagnosis.verdict == "undecided":
-            yield f"what the model misses in {results} is drawn best by {causes}; that this is the cause is in doubt."
+            what = "this is the cause" if len(diagnosis.causes) == 1 else "these are the causes"
+            yield f"what the model misses in {results} is drawn best by {causes}; that {what} is in doubt."
         else:
             yield f"what the model misses in {results}: {causes}."
     remainder = diagnosis.remainder
