@@ -142,7 +142,7 @@ def alternatives(contest: Contest, winner: int) -> list[int]:
             continue
         if len(rival.pieces) > len(chosen.pieces) or not _is_close(contest, winner, place):
             continue
-        if not _contains(contest, rival, chosen):
+        if not is_vaguer(contest, rival, chosen):
             kept.append(place)
     return kept
 
@@ -156,15 +156,15 @@ def _is_close(contest: Contest, winner: int, rival: int) -> bool:
     return bool(same_number and found.likelihood[winner] - found.likelihood[rival] < CLOSE_LIKELIHOOD)
 
 
-def _contains(contest: Contest, larger: Hypothesis, smaller: Hypothesis) -> bool:
+def is_vaguer(contest: Contest, larger: Hypothesis, smaller: Hypothesis) -> bool:
     """Tell whether an explanation can draw every curve of the other and is a vaguer word for it.
 
     It has more columns; or as many, where a shape that nobody registered draws what is registered.
     """
     import numpy as np
 
-    is_vaguer = any(piece.kind == "shape" for piece in larger.pieces)
-    if len(larger.columns) < len(smaller.columns) + (0 if is_vaguer else 1):
+    has_shape = any(piece.kind == "shape" for piece in larger.pieces)
+    if len(larger.columns) < len(smaller.columns) + (0 if has_shape else 1):
         return False
     covered, total = np.zeros(len(smaller.columns)), np.zeros(len(smaller.columns))
     a, b = curve_space(contest, larger), curve_space(contest, smaller)

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.beside import second_beside_first
 from truing.diagnosis.contest import Contest, contest
-from truing.diagnosis.decide import Decision, alternatives, decide, without_needless_inputs
+from truing.diagnosis.decide import Decision, decide, without_needless_inputs
 from truing.diagnosis.design import next_points
 from truing.diagnosis.findings import wrong_of
 from truing.diagnosis.fit import Fit, fit, input_values, may_be_zero, shape_part
 from truing.diagnosis.gain import Nested, nested, sign_flip_p
-from truing.diagnosis.hypotheses import Hypothesis
 from truing.diagnosis.machine import machine_of
 from truing.diagnosis.naming import alternative_of, causes_of, extended_setup, remainder_of
 from truing.diagnosis.problem import Problem, problem_of
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.result import Alternative, Amount, Calibrated, Curves, Diagnosis, Gain
+from truing.diagnosis.rivals import Rival, rivals_of
 from truing.diagnosis.search import NoiseModel, first_noise, moved_to
 from truing.diagnosis.second_look import second_look
 from truing.diagnosis.shares import by_share
@@ -114,25 +114,6 @@ def _is_doubtful(full: Contest, place: int, best: Fit) -> bool:
     return any(may_be_zero(best, number) for number, piece in enumerate(pieces) if piece.kind == "term")
 
 
-def _rivals(full: Contest, winner: int) -> dict[int, Fit | None]:
-    """Return the explanations that this data does not exclude, best first, the nearest with their exact fits."""
-    chosen = full.found.hypotheses[winner]
-    found: dict[int, Fit | None] = {}
-    for rank, place in enumerate(alternatives(full, winner)):
-        has_more = set(chosen.key) < set(full.found.hypotheses[place].key)
-        own = fit(full, place) if has_more or rank < RANKED else None
-        if not (has_more and own is not None and _adds_nothing(own, chosen)):
-            found[place] = own
-    return found
-
-
-def _adds_nothing(rival: Fit, chosen: Hypothesis) -> bool:
-    """Whether what a rival has beside the chosen explanation may as well be zero."""
-    pieces = enumerate(rival.hypothesis.pieces)
-    more = [place for place, piece in pieces if piece.tag not in chosen.key and piece.kind == "term"]
-    return bool(more) and all(may_be_zero(rival, place) for place in more)
-
-
 class _Steps:
     """Says how far a diagnosis has come, where anybody listens."""
 
@@ -167,12 +148,13 @@ def _answer(full: Contest, decision: Decision, best: Fit, raw: NoiseModel, *, do
     units = units_of(full)
     causes = by_share(full, best, causes_of(full, best))
     remainder = remainder_of(full, best, decision, units)
-    rivals = _rivals(full, decision.winner)
+    rivals = rivals_of(full, decision.winner, best)
     judged = nested(full, decision.winner, decision.thresholds, raw, done=done)
     wrong = wrong_of(full, best, decision.null, units)
     has_cause = bool(causes or remainder)
-    fitted = [own for own in rivals.values() if own is not None]
-    points, ties = with_results(full, best, fitted, next_points(full, decision.winner, [*rivals]))
+    fitted = [rival.own for rival in rivals if rival.own is not None]
+    places = [rival.place for rival in rivals]
+    points, ties = with_results(full, best, fitted, next_points(full, decision.winner, places))
     return Diagnosis(
         setup=machine.start,
         records=records,
@@ -181,8 +163,7 @@ def _answer(full: Contest, decision: Decision, best: Fit, raw: NoiseModel, *, do
         wrong=wrong,
         causes=causes,
         alternatives=tuple(
-            alternative_of(full, decision.winner, rival, own if rank < FITTED else None)
-            for rank, (rival, own) in enumerate(rivals.items())
+            alternative_of(full, decision.winner, rival, with_sizes=rank < FITTED) for rank, rival in enumerate(rivals)
         ),
         remainder=remainder,
         seen=tuple(smallest_visible(full, setting)),
@@ -203,8 +184,9 @@ def _answer(full: Contest, decision: Decision, best: Fit, raw: NoiseModel, *, do
 
 def _ranking(full: Contest, winner: int) -> tuple[Alternative, ...]:
     """Return the best explanations, the winner first, every one with how far it lies behind."""
-    places = [winner, *(place for place in full.found.ranked() if place != winner)][:RANKED]
-    return tuple(alternative_of(full, winner, place) for place in places)
+    score, others = full.found.score, (place for place in full.found.ranked() if place != winner)
+    ranked = [Rival(place, None, max(0.0, float(score[winner] - score[place]))) for place in [winner, *others][:RANKED]]
+    return tuple(alternative_of(full, winner, each) for each in ranked)
 
 
 def units_of(full: Contest) -> dict[str, str]:

@@ -13,6 +13,7 @@ from truing.diagnosis.fit import Fit, input_values, interval, si_covariance
 from truing.diagnosis.hypotheses import Piece
 from truing.diagnosis.profile import shape_interval
 from truing.diagnosis.result import Alternative, Cause, FittedUnknown, Remainder, ShapeTerm
+from truing.diagnosis.rivals import Rival
 from truing.diagnosis.search import Solution
 from truing.diagnosis.visibility import separation
 from truing.setup import Setup, SwitchedOn
@@ -196,9 +197,9 @@ def _alone(solution: Solution, piece: Piece) -> Solution:
     return replace(solution, hypothesis=only, coefficients=np.array(kept))
 
 
-def alternative_of(full: Contest, winner: int, rival: int, own: Fit | None = None) -> Alternative:
-    """Return a rival explanation: how far behind, how separable, and what its ``own`` fit says, where there is one."""
-    hypothesis = full.found.hypotheses[rival]
+def alternative_of(full: Contest, winner: int, rival: Rival, *, with_sizes: bool = False) -> Alternative:
+    """Return a rival explanation: how far behind, how separable, and on demand what its own fit says if it has one."""
+    hypothesis = full.found.hypotheses[rival.place]
     true = full.solution(winner)
     depends: tuple[str, ...] = ()
     for piece in hypothesis.pieces:
@@ -206,11 +207,11 @@ def alternative_of(full: Contest, winner: int, rival: int, own: Fit | None = Non
             depends = full.problem.library.shapes[full.problem.shape_results[piece.owner][0]].depends_on
     return Alternative(
         names_of(full.problem, hypothesis),
-        max(0.0, float(full.found.score[winner] - full.found.score[rival])),
+        rival.behind,
         separation(full, true, hypothesis),
         depends,
-        {} if own is None else {cause.effect: cause.unknowns for cause in causes_of(full, own)},
-        _same_as(full, full.solution(rival)),
+        {cause.effect: cause.unknowns for cause in causes_of(full, rival.own)} if with_sizes and rival.own else {},
+        _same_as(full, full.solution(rival.place)),
     )
 
 
