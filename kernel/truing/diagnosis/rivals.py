@@ -2,8 +2,8 @@
 
 The search ranks by columns, which stand for a cause at a few sizes. So the best causes and pairs of the ranking are
 fitted with the model itself, and what is then near is no less an explanation than the winner. Near is within ``CLOSE``
-score units, or within two standard errors of the difference as the single rows give it (Q. H. Vuong, Likelihood ratio
-tests for model selection and non-nested hypotheses, Econometrica 57, 1989, 307).
+score units, or within ``SURE`` standard errors of the difference as the single rows give it (Q. H. Vuong, Likelihood
+ratio tests for model selection and non-nested hypotheses, Econometrica 57, 1989, 307).
 """
 
 from __future__ import annotations
@@ -27,8 +27,12 @@ SINGLES, PAIRS = 12, 24
 """So many of the best causes, and of the best pairs, are fitted exactly."""
 WITHIN = 100.0
 """Score units behind the winner in the search beyond which nothing is fitted: exact fits differ from it by tens."""
-SURE = 2.0
-"""Standard errors of the difference of two scores within which it does not decide."""
+SURE = sqrt(CLOSE) / 2
+"""Standard errors of the difference of two scores within which it does not decide.
+
+Where what is left is noise, a difference d has the standard error 2 sqrt(d), so that this is ``CLOSE`` once more. Where
+the rows contradict one another, because something else is wrong, the standard error is larger and more stays open.
+"""
 
 
 @dataclass(frozen=True)
