@@ -3,7 +3,8 @@
 The search ranks by columns, which stand for a cause at a few sizes. So the best causes and pairs of the ranking are
 fitted with the model itself, and what is then near is no less an explanation than the winner. Near is within ``CLOSE``
 score units, or within ``SURE`` standard errors of the difference as the single rows give it (Q. H. Vuong, Likelihood
-ratio tests for model selection and non-nested hypotheses, Econometrica 57, 1989, 307).
+ratio tests for model selection and non-nested hypotheses, Econometrica 57, 1989, 307). What is near and yet draws
+something else, which the winner leaves, is a further cause and no rival.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from truing.diagnosis.contest import Contest
 from truing.diagnosis.decide import CLOSE, alternatives, is_vaguer
 from truing.diagnosis.fit import Fit, fit, may_be_zero
 from truing.diagnosis.hypotheses import Hypothesis
-from truing.diagnosis.search import Solution
+from truing.diagnosis.search import Solution, solve
 from truing.errors import ConvergenceError
 
 RANKED = 8
@@ -78,8 +79,21 @@ def _near_as_fitted(full: Contest, winner: int, best: Fit, known: set[int]) -> I
         behind = top - exact_score(full, place, own)
         if behind >= max(CLOSE, SURE * unsure(best, own)) or is_vaguer(full, own.hypothesis, chosen):
             continue
-        if not any(may_be_zero(own, number) for number in range(len(own.hypothesis.pieces))):
+        has_all = not any(may_be_zero(own, number) for number in range(len(own.hypothesis.pieces)))
+        if has_all and not _acts_beside(full, winner, own.hypothesis):
             yield Rival(place, own, max(0.0, behind))
+
+
+def _acts_beside(full: Contest, winner: int, rival: Hypothesis) -> bool:
+    """Whether a rival draws something else than the winner does: beside it, it is still worth its parameters.
+
+    Then both act, and neither is another name for the other.
+    """
+    chosen, setting = full.found.hypotheses[winner], full.found.setting[winner]
+    more = tuple(piece for piece in rival.pieces if piece.tag not in chosen.key)
+    both = solve(full.evidence, Hypothesis("two", (*chosen.pieces, *more), 0.0), setting)
+    gain = _likelihood(full, both) - _likelihood(full, solve(full.evidence, chosen, setting))
+    return gain - sum(piece.size for piece in more) * log(full.evidence.rows) > CLOSE
 
 
 def _worth_a_fit(full: Contest, winner: int) -> Iterator[int]:
