@@ -88,7 +88,7 @@ def test_the_unsureness_of_a_fit_and_itself_is_nothing(tmp_path: Path) -> None:
 def test_what_acts_beside_the_winner_is_no_rival(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two causes draw two curves: each alone leaves the other, so that neither stands for it, however near they are."""
     bench = wide(ROWS, seed=21)
-    full = searched(tmp_path, 0.012 * bench.travel + 0.7 * np.sign(bench.load))
+    full = searched(tmp_path, 0.01 * bench.travel + 1.6 * np.sign(bench.load))
     monkeypatch.setattr(rivals, "unsure", lambda one, other: 1e6)
     one, other = single(full, "lead_error"), single(full, "clearance")
     assert {one, other} & set(rivals._worth_a_fit(full, one)) == {other}
