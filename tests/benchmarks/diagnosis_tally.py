@@ -46,8 +46,8 @@ class Tally:
             self.strange[said] += 1
         elif not wish.hidden:
             self.nothing += 1
-            self.false_alarms += verdict != "none"
-            said = "nothing" if verdict == "none" else "false alarm"
+            self.false_alarms += bool(document["explanations"])
+            said = "false alarm" if document["explanations"] else "nothing"
         else:
             said = verdict_on(document, next(iter(wish.hidden)))
             self.said[said] += 1

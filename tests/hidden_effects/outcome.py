@@ -54,11 +54,13 @@ def about(case: Case) -> dict[str, Any]:
 
 def essentials(document: Document) -> dict[str, Any]:
     """What the table and whoever looks into a case need of the document."""
-    kept = ("verdict", "causes", "p_any", "p_second")
+    kept = ("causes", "p_any", "p_second")
     remainder = document["remainder"] or {}
+    in_doubt = document["verdict"] == "undecided" and bool(document["explanations"])
     return {
         **{name: document.get(name) for name in kept},
-        "unique": not document["alternatives"],  # names of one curve are one explanation here
+        "verdict": "in doubt" if in_doubt else document["verdict"],
+        "unique": not (document["alternatives"] or in_doubt),  # names of one curve are one explanation here
         "alternatives": [
             {name: other.get(name) for name in ("causes", "depends_on", "behind", "separation")}
             for other in document["alternatives"][:8]

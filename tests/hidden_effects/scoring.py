@@ -128,11 +128,13 @@ def honesty(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
     yield rate("stated unique and wrong (lambda to the truth >= 10)", wrong, "<= 1.5", "<= 0.7")
     named = [is_unique_and_wrong(one) and one["wrong_name"] for one in stated]
     yield rate("  of these, a cause is named that is not there", named)
+    right = [one for one in outcomes if one["exact"] and one["stratum"] != "none"]
+    yield rate("right, but in doubt", [one["verdict"] == "in doubt" for one in right])
     yield rate("an extra second name on a single", [one["extra"] for one in of(outcomes, "single")], "<= 2.5", "<= 1")
     for kind in KINDS:
         held = [hit for one in outcomes if one["noise"] == kind for hit in one["covered"].values()]
         yield rate(f"95 % intervals cover, {kind}", held, "90-98", "93-97")
-    open_ones = [one for one in outcomes if one["verdict"] not in NOTHING and not one["unique"]]
+    open_ones = [one for one in outcomes if one["verdict"] not in NOTHING and one["alternative_count"]]
     counts = [float(one["alternative_count"]) for one in open_ones]
     yield quantile("alternatives of an ambiguous verdict, median", counts, 0.5, "<= 3", "<= 2")
 
