@@ -17,9 +17,8 @@ from truing.atomic import write_files
 from truing.cli.console import out, settings_of, verb
 from truing.errors import UsageError
 
-ASKED = "_CALC_COMPLETE"
-"""The environment variable by which a shell asks."""
 LINE = "_TYPER_COMPLETE_ARGS"
+"""The environment variable in which a shell hands over what was typed."""
 _FLAGS = re.compile(r"(?<=\s)(?:-q|-v|--quiet|--verbose|--traceback)(?=\s)")
 
 

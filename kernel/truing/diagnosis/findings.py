@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import hypot
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.contest import Contest
@@ -316,8 +315,3 @@ def _noise(full: Contest, best: Fit, after: Matrix, place: int, *, floor: float,
     spread = noise.spreads[channel.name].words
     tails = noise.tails[channel.name].words
     return Noise(Amount(floor, unit), setting.neighbours, tails, spread, outliers, setting.rho)
-
-
-def amplitude_of(sine: float, cosine: float) -> float:
-    """Return the amplitude of a wave."""
-    return hypot(sine, cosine)
