@@ -288,7 +288,7 @@ def _held_out_sentences(diagnosis: Diagnosis) -> Iterator[str]:
 
 
 def _alarm_sentences(diagnosis: Diagnosis) -> Iterator[str]:
-    """Say what makes a named cause doubtful; of rows that were held out the sentences on the gain speak."""
+    """Say what makes the causes doubtful, and what is left beside them."""
     yield from (f"{prose(alarm)}." for alarm in diagnosis.warnings)
 
 
