@@ -9,7 +9,10 @@ import numpy as np
 import pytest
 
 from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, hookimpl, inputs, normal, results
+from truing.diagnosis.beside import Placed
 from truing.diagnosis.engine import diagnose
+from truing.diagnosis.machine import machine_of
+from truing.diagnosis.problem import problem_of
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import Diagnosis
 from truing.inputs_file import read_setup
@@ -73,9 +76,18 @@ LOOSE = Tolerance("rigidity", normal(sd="40 %"))
 LOOSE_SHAFT: Model[Any, Any] = Model(name="loose", title="A shaft", function=shaft, errors=[LOOSE, *EFFECTS])
 
 
+def two_sided(joint: Joint, base: Twist, *, left: Float, right: Float) -> Twist:
+    """Give way by another share on each side."""
+    return replace(base, angle=base.angle * (1 + np.where(joint.torque < 0, left, right)))
+
+
+SIDES = Effect("two_sided", on_results=two_sided, unknowns=[Unknown("left", -1, 1, ""), Unknown("right", -1, 1, "")])
+TWO_SIDED: Model[Any, Any] = Model(name="two_sided", title="A shaft", function=shaft, errors=[RIGIDITY, SIDES])
+
+
 @hookimpl
 def truing_models() -> list[Model[Any, Any]]:
-    return [SHAFT, LOOSE_SHAFT]
+    return [SHAFT, LOOSE_SHAFT, TWO_SIDED]
 
 
 def loops(noise: float, *, play: float, held: float, rigidity: float = 405.0, wave: float = 0.0) -> str:
@@ -144,3 +156,19 @@ def test_parts_of_an_effect_that_is_on_are_looked_for_and_join_it(tmp_path: Path
     assert found.extended is not None
     (joined,) = found.extended.effects
     assert joined.values == {"slow": pytest.approx(6e-3), "fast": fast.value}
+
+
+def test_an_amplitude_that_the_record_does_not_excite_is_zero_beside_the_others(tmp_path: Path) -> None:
+    """Torque of one sign says nothing of the other side, and the cause is switched on all the same."""
+    offer = next(
+        each for each in Kernel([sys.modules[__name__]], strict=True).offers.values() if each.model is TWO_SIDED
+    )
+    rows = "".join(f"{torque!r},{2.6 * torque!r}\n" for torque in np.linspace(1, 20, 40).tolist())
+    (tmp_path / "measured.csv").write_text("torque [N*m],angle [mrad]\n" + rows, encoding="utf-8")
+    (tmp_path / "inputs.toml").write_text("[inputs]\n", encoding="utf-8")
+    setup = read_setup(tmp_path / "inputs.toml", offer)
+    machine = machine_of(setup, read_records([tmp_path / "measured.csv"], offer, setup))
+    candidates = problem_of(machine, {"angle": 1e-4}).candidates
+    candidate = next(each for each in candidates if each.name == "two_sided")
+    there = Placed(0, candidate, {"right": 0.04}, {}).switched_on(machine)
+    np.testing.assert_allclose(there.base["angle"], 1.04 * machine.base["angle"], rtol=1e-12)

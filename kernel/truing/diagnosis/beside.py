@@ -48,8 +48,9 @@ class Placed:
     shape: Mapping[str, float]
 
     def switched_on(self, machine: Machine) -> Machine:
-        """Return a machine whose model has this cause on."""
-        on = SwitchedOn(self.candidate.effect, {**self.shape, **self.amplitudes})
+        """Return a machine whose model has this cause on; amplitudes that this record does not excite are 0."""
+        idle = {unknown.name: 0.0 for unknown in self.candidate.amplitudes}
+        on = SwitchedOn(self.candidate.effect, {**idle, **self.shape, **self.amplitudes})
         start = machine.start.with_effects([on])
         return replace(machine, start=start, base=predict(start, machine.records))
 

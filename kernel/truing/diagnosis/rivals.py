@@ -97,13 +97,18 @@ def _acts_beside(full: Contest, winner: int, rival: Hypothesis) -> bool:
 
 
 def _worth_a_fit(full: Contest, winner: int) -> Iterator[int]:
-    """Give the best single causes and the best pairs that are no larger than the winner and do not contain it."""
+    """Give the best single causes and pairs that are no larger than the winner; neither contains the other."""
     found, chosen = full.found, full.found.hypotheses[winner]
     for kind, most in (("one", SINGLES), ("two", PAIRS)):
         for place in islice(found.ranked(kind), most):  # type: ignore[arg-type]
             rival = found.hypotheses[place]
-            is_other = not set(chosen.key) <= set(rival.key) and len(rival.pieces) <= len(chosen.pieces)
-            if is_other and found.score[winner] - found.score[place] < WITHIN:
+            own, more = set(chosen.key) - set(rival.key), set(rival.key) - set(chosen.key)
+            if (
+                own
+                and more
+                and len(rival.pieces) <= len(chosen.pieces)
+                and found.score[winner] - found.score[place] < WITHIN
+            ):
                 yield place
 
 
