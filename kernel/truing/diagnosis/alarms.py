@@ -47,7 +47,7 @@ def warnings_of(diagnosis: Diagnosis) -> Iterator[str]:
 def _at_bounds(diagnosis: Diagnosis) -> Iterator[str]:
     for cause in diagnosis.causes:
         for unknown in cause.unknowns:
-            if at_bound(diagnosis, cause, unknown):
+            if _is_at_bound(diagnosis, cause, unknown):
                 yield (
                     f"{unknown.name} of {cause.effect} was fitted at the bound declared for it "
                     f"({_text(unknown.value, unknown.unit)}): a wrong cause often ends there; look at what else could "
@@ -55,7 +55,7 @@ def _at_bounds(diagnosis: Diagnosis) -> Iterator[str]:
                 )
 
 
-def at_bound(diagnosis: Diagnosis, cause: Cause, unknown: FittedUnknown) -> bool:
+def _is_at_bound(diagnosis: Diagnosis, cause: Cause, unknown: FittedUnknown) -> bool:
     """Whether a fitted unknown lies at an end of its declared range, other than at zero."""
     effect = diagnosis.setup.model.known_effects.get(cause.effect)
     declared = next((each for each in effect.unknowns if each.name == unknown.name), None) if effect else None

@@ -9,7 +9,7 @@ something else, which the winner leaves, is a further cause and no rival.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
 from math import log, sqrt
@@ -19,12 +19,12 @@ import numpy as np
 from truing.diagnosis.contest import Contest
 from truing.diagnosis.decide import CLOSE, alternatives, is_vaguer
 from truing.diagnosis.fit import Fit, fit, may_be_zero
-from truing.diagnosis.hypotheses import Hypothesis
+from truing.diagnosis.hypotheses import Hypothesis, Kind
 from truing.diagnosis.search import Solution, solve
 from truing.errors import ConvergenceError
 
 RANKED = 8
-SINGLES, PAIRS = 12, 24
+FITTED: Mapping[Kind, int] = {"one": 12, "two": 24}
 """So many of the best causes, and of the best pairs, are fitted exactly."""
 WITHIN = 100.0
 """Score units behind the winner in the search beyond which nothing is fitted: exact fits differ from it by tens."""
@@ -89,18 +89,18 @@ def _acts_beside(full: Contest, winner: int, rival: Hypothesis) -> bool:
 
     Then both act, and neither is another name for the other.
     """
-    chosen, setting = full.found.hypotheses[winner], full.found.setting[winner]
+    chosen = full.found.hypotheses[winner]
     more = tuple(piece for piece in rival.pieces if piece.tag not in chosen.key)
-    both = solve(full.evidence, Hypothesis("two", (*chosen.pieces, *more), 0.0), setting)
-    gain = _likelihood(full, both) - _likelihood(full, solve(full.evidence, chosen, setting))
+    both = solve(full.evidence, Hypothesis("two", (*chosen.pieces, *more), 0.0), full.found.setting[winner])
+    gain = _likelihood(full, both) - _likelihood(full, full.solution(winner))
     return gain - sum(piece.size for piece in more) * log(full.evidence.rows) > CLOSE
 
 
 def _worth_a_fit(full: Contest, winner: int) -> Iterator[int]:
     """Give the best single causes and pairs that are no larger than the winner; neither contains the other."""
     found, chosen = full.found, full.found.hypotheses[winner]
-    for kind, most in (("one", SINGLES), ("two", PAIRS)):
-        for place in islice(found.ranked(kind), most):  # type: ignore[arg-type]
+    for kind, most in FITTED.items():
+        for place in islice(found.ranked(kind), most):
             rival = found.hypotheses[place]
             own, more = set(chosen.key) - set(rival.key), set(rival.key) - set(chosen.key)
             if (

@@ -171,8 +171,8 @@ def headline(diagnosis: Diagnosis) -> list[str]:
     if diagnosis.verdict == "undecided" and not diagnosis.causes:
         return list(_undecided(diagnosis))
     said = [
-        *_cause_sentences(diagnosis), *_alarm_sentences(diagnosis), *_gain_sentences(diagnosis),
-        *_next_sentences(diagnosis),
+        *_cause_sentences(diagnosis), *(f"{prose(each)}." for each in diagnosis.warnings),
+        *_gain_sentences(diagnosis), *_next_sentences(diagnosis),
     ]  # fmt: skip
     return [sentence[:1].upper() + sentence[1:] for sentence in said]
 
@@ -285,11 +285,6 @@ def _held_out_sentences(diagnosis: Diagnosis) -> Iterator[str]:
                 continue  # an alarm says so
             end = "." if how == "falls" else ": the extension does not carry over to them."
             yield f"on the rows held out the error of {spoken(item.result)} {how} from {before} to {after}{end}"
-
-
-def _alarm_sentences(diagnosis: Diagnosis) -> Iterator[str]:
-    """Say what makes the causes doubtful, and what is left beside them."""
-    yield from (f"{prose(alarm)}." for alarm in diagnosis.warnings)
 
 
 def _next_sentences(diagnosis: Diagnosis) -> Iterator[str]:
