@@ -16,6 +16,7 @@ from truing.declare.sources import Unknown
 from truing.errors import InfeasibleError, PluginError, TruingError, UsageError
 from truing.kernel.blame import home_of, place_of
 from truing.parts_of_batch import uniform_parts
+from truing.repeated import results_of
 from truing.setup import Setup, SwitchedOn
 
 if TYPE_CHECKING:
@@ -113,13 +114,15 @@ def evaluate_rows(
     reading: bool = False,
     wanted: Collection[str] | None = None,
     done: Callable[[int, int], None] = lambda count, rows: None,
+    repeats: int = 0,
 ) -> Rows:
     """Run ``rows`` calculations, as one array call wherever the declaration allows it.
 
     A column holds (rows,) values or one value for all. Only ``wanted`` results are returned (all by default). Failed
     rows are NaN in every result and keep their reason; a table shorter than the longest is filled up with NaN. A row
     that lacks a result keeps the others: see ``Rows.absent`` and ``Rows.complete``.
-    ``done`` hears of rows that are done where they take several calls.
+    ``done`` hears of rows that are done where they take several calls. Rows that come in so many ``repeats``, one copy
+    of all behind another, cost no more than one of them where they differ in what acts after the model: see repeated.
     Raises UsageError for a column that nobody knows or that has another length.
     """
     names = [name for name in setup.model.own_result_fields if wanted is None or name in wanted]
@@ -128,7 +131,8 @@ def evaluate_rows(
     order: list[NDArray[np.intp]] = []
     finished = 0
     for index, part in uniform_parts(setup, fixed, arrays, rows):
-        parts.append(_one_call(setup, part, len(index), names, reading=reading))
+        copies = repeats if len(index) == rows else 0
+        parts.append(_one_call(setup, part, len(index), names, reading=reading, repeats=copies))
         if len(index) == rows > 0:
             return parts[0]
         order.append(index)
@@ -195,14 +199,16 @@ def _joined(pieces: Sequence[NDArray[np.float64]], order: Sequence[NDArray[np.in
     return joined
 
 
-def _one_call(setup: Setup, columns: Mapping[str, Any], rows: int, names: Collection[str], *, reading: bool) -> Rows:
+def _one_call(
+    setup: Setup, columns: Mapping[str, Any], rows: int, names: Collection[str], *, reading: bool, repeats: int = 0
+) -> Rows:
     """Call the model once for ``rows`` rows; where no column differs between rows, for one that answers for all."""
     import numpy as np
 
     alike = not any(isinstance(values, np.ndarray) for values in columns.values())
     called = 1 if alike else rows
     with np.errstate(all="ignore"), watching(called) as log:
-        results = _apply(setup, columns, reading=reading)
+        results = _apply(setup, columns, reading=reading, known=None if alike or not repeats else log, repeats=repeats)
         flat = setup.model.read_results(results)
         answers = {name: _as_rows(setup, name, flat, called) for name in names}
         for name, values in answers.items():
@@ -264,7 +270,9 @@ def _sorted_columns(setup: Setup, columns: Mapping[str, Any], rows: int) -> tupl
     return fixed, arrays
 
 
-def _apply(setup: Setup, columns: Mapping[str, Any], *, reading: bool) -> Any:
+def _apply(
+    setup: Setup, columns: Mapping[str, Any], *, reading: bool, known: FailedRows | None = None, repeats: int = 0
+) -> Any:
     """Inputs, effects on inputs, model, effects on results, effects on the reading: in this order."""
     model = setup.model
     switched = [(item, _keywords(item, setup, columns)) for item in setup.effects]
@@ -273,7 +281,7 @@ def _apply(setup: Setup, columns: Mapping[str, Any], *, reading: bool) -> Any:
         for item, keywords in switched:
             if item.effect.place == "inputs":
                 inputs = item.effect.function(inputs, **keywords)
-        results = model.function(inputs)
+        results = model.function(inputs) if known is None else results_of(model, inputs, repeats, known)
         for place in ("results", "reading") if reading else ("results",):
             for item, keywords in switched:
                 if item.effect.place == place:

@@ -60,19 +60,22 @@ def _lacking(evaluated: Rows) -> dict[int, str]:
     return {row: "; ".join(f"no {', '.join(names)}: {why}" for why, names in of.items()) for row, of in said.items()}
 
 
-def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None = None) -> Rows:
+def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None = None, repeats: int = 0) -> Rows:
     """Evaluate every row: its columns replace inputs and conditions, readings act; one value (n,) per result, SI.
 
     A result along an axis is read at the row's place on it (linear between points, NaN beyond its ends); without such a
     column it is left out. An axis that follows an input series is calculated just at the places of the rows. Where
     inputs run along an axis, the rows of one run are one record and one evaluation; else all rows are. Only ``wanted``
     results are returned (all by default), and a row that lacks one of them fails. Conditions that no effect needs are
-    not looked at. ``machine`` is taken as it is: see ``one_machine``.
+    not looked at. ``machine`` is taken as it is: see ``one_machine``. ``repeats``: see ``evaluate_rows``.
     """
     columns = seen_columns(machine, rows)
     names = [name for name in _readable(machine, rows) if wanted is None or name in wanted]
     machine = _at_places(machine, rows)
-    found = (_by_records if rows.series else _row_by_row)(machine, rows, columns, names)
+    if rows.series:
+        found = _by_records(machine, rows, columns, names)
+    else:
+        found = _row_by_row(machine, rows, columns, names, repeats)
     return found if wanted is None else found.complete()
 
 
@@ -111,8 +114,9 @@ def without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int, 
     return reasons
 
 
-def _row_by_row(machine: Setup, rows: RowsFile, columns: Mapping[str, Any], names: Sequence[str]) -> Rows:
-    found = evaluate_rows(machine, columns, len(rows), reading=True, wanted=_asked(names, machine))
+def _row_by_row(machine: Setup, rows: RowsFile, columns: Mapping[str, Any], names: Sequence[str], repeats: int) -> Rows:
+    wanted = _asked(names, machine)
+    found = evaluate_rows(machine, columns, len(rows), reading=True, wanted=wanted, repeats=repeats)
     places = range(len(rows))
     values = {name: _placed(name, found, machine, rows, places) for name in names}
     return Rows(values, found.failed, found.reasons, found.absent)

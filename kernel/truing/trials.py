@@ -39,7 +39,7 @@ def read_trials(
         return
     for begin in range(0, len(trials), count):
         block = trials[begin : begin + count]
-        values = _read(machine, _stacked(machine, rows, block), wanted)
+        values = _read(machine, _stacked(machine, rows, block), wanted, len(block))
         parts = {name: np.split(value, len(block)) for name, value in values.items()}
         yield from ({name: part[place] for name, part in parts.items()} for place in range(len(block)))
 
@@ -74,10 +74,12 @@ def _stacked(machine: Setup, rows: RowsFile, trials: Sequence[Trial]) -> RowsFil
     )
 
 
-def _read(machine: Setup, rows: RowsFile, wanted: Collection[str]) -> Mapping[str, NDArray[np.float64]]:
+def _read(
+    machine: Setup, rows: RowsFile, wanted: Collection[str], repeats: int = 1
+) -> Mapping[str, NDArray[np.float64]]:
     """Read rows, not too many of them in one call."""
     if len(rows) <= AT_ONCE or rows.series:
-        return read_by_gauge(machine, rows, wanted).results
+        return read_by_gauge(machine, rows, wanted, repeats).results
     blocks = [slice(begin, begin + AT_ONCE) for begin in range(0, len(rows), AT_ONCE)]
     parts = [read_by_gauge(machine, _part(rows, block), wanted).results for block in blocks]
     return {name: np.concatenate([part[name] for part in parts]) for name in wanted}

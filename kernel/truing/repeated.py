@@ -1,0 +1,109 @@
+"""The model itself, called once for rows that come again and again: a fit asks for the same inputs many times.
+
+Effects on results and on readings act after the model, so that rows which differ in their unknowns alone need it once.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Mapping
+from dataclasses import dataclass
+from hashlib import blake2b
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from truing.declare.batch import FailedRows, watching
+from truing.declare.fields import read, with_values
+
+if TYPE_CHECKING:
+    from truing.declare.model import Model
+
+REMEMBERED = 8
+LARGEST = 500_000
+"""So many numbers of results are remembered; a longer record is calculated anew."""
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What a model answered for some rows, and which of them failed."""
+
+    model: Model[Any, Any]
+    results: Any
+    failed: FailedRows
+
+
+_ANSWERS: OrderedDict[bytes, _Known] = OrderedDict()
+
+
+def results_of(model: Model[Any, Any], inputs: Any, repeats: int, failed: FailedRows) -> Any:
+    """Return the results of a model for rows that come ``repeats`` times, one copy of all behind another.
+
+    It is called for one copy, and not at all where it was called with these inputs before. Where the copies differ it
+    is called for all. What fails is noted in ``failed``.
+    """
+    rows = len(failed.codes)
+    values = {field.path: read(inputs, field.path) for field in model.input_fields.values()}
+    series = {field.path for field in model.input_fields.values() if field.spec.along}
+    columns = {
+        path: value
+        for path, value in values.items()
+        if path not in series and isinstance(value, np.ndarray) and value.shape[:1] == (rows,)
+    }
+    count = rows // max(repeats, 1)
+    if any(isinstance(values[path], np.ndarray) and values[path].ndim > 1 for path in series) or not all(
+        _is_repeated(value, count) for value in columns.values()
+    ):
+        return model.function(inputs)
+    key = _key({**values, **{path: value[:count] for path, value in columns.items()}})
+    known = _ANSWERS.get(key)
+    if known is None or known.model is not model:
+        with watching(count) as own:
+            results = model.function(with_values(inputs, {path: value[:count] for path, value in columns.items()}))
+        known = _Known(model, results, own)
+        _remember(key, known, count)
+    _note(failed, known.failed, repeats)
+    flat, fields = model.read_results(known.results), model.own_result_fields
+    copies = {
+        fields[name].path: np.tile(value, (repeats, *[1] * (value.ndim - 1)))
+        for name, value in flat.items()
+        if isinstance(value, np.ndarray) and value.shape[:1] == (count,) and not (fields[name].along and value.ndim < 2)
+    }
+    return with_values(known.results, copies) if repeats > 1 else known.results
+
+
+def _is_repeated(value: np.ndarray[Any, Any], count: int) -> bool:
+    """Whether a column is one copy of its first rows behind another, values that are not given included."""
+    if len(value) == count:
+        return True
+    copies = value.reshape(-1, count, *value.shape[1:])
+    is_same = (copies == copies[0]) | ((copies != copies) & (copies[0] != copies[0]))
+    return bool(is_same.all())
+
+
+def _key(values: Mapping[tuple[str, ...], Any]) -> bytes:
+    digest = blake2b(digest_size=16)
+    for path, value in values.items():
+        digest.update(repr(path).encode())
+        if isinstance(value, np.ndarray):
+            digest.update(repr((value.shape, value.dtype.str)).encode())
+            digest.update(np.ascontiguousarray(value).data)
+        else:
+            digest.update(repr(value).encode())
+    return digest.digest()
+
+
+def _remember(key: bytes, known: _Known, count: int) -> None:
+    if count * max(len(known.model.own_result_fields), 1) > LARGEST:
+        return
+    _ANSWERS[key] = known
+    if len(_ANSWERS) > REMEMBERED:
+        _ANSWERS.popitem(last=False)
+
+
+def _note(failed: FailedRows, own: FailedRows, repeats: int) -> None:
+    """Note what failed in one copy for all of them."""
+    for number, sentence in enumerate(own.sentences, start=1):
+        failed.add(np.tile(own.codes == number, repeats), sentence)
+    for name, lacking in own.of.items():
+        _note(failed.of.setdefault(name, FailedRows(len(failed.codes))), lacking, repeats)
