@@ -50,26 +50,30 @@ def results_of(model: Model[Any, Any], inputs: Any, repeats: int, failed: Failed
         for path, value in values.items()
         if path not in series and isinstance(value, np.ndarray) and value.shape[:1] == (rows,)
     }
-    count = rows // max(repeats, 1)
+    count = rows // repeats
     if any(isinstance(values[path], np.ndarray) and values[path].ndim > 1 for path in series) or not all(
         _is_repeated(value, count) for value in columns.values()
     ):
         return model.function(inputs)
-    key = _key({**values, **{path: value[:count] for path, value in columns.items()}})
+    one = {path: value[:count] for path, value in columns.items()}
+    key = _key({**values, **one})
     known = _ANSWERS.get(key)
     if known is None or known.model is not model:
         with watching(count) as own:
-            results = model.function(with_values(inputs, {path: value[:count] for path, value in columns.items()}))
+            results = model.function(with_values(inputs, one))
         known = _Known(model, results, own)
         _remember(key, known, count)
     _note(failed, known.failed, repeats)
     flat, fields = model.read_results(known.results), model.own_result_fields
-    copies = {
-        fields[name].path: np.tile(value, (repeats, *[1] * (value.ndim - 1)))
-        for name, value in flat.items()
-        if isinstance(value, np.ndarray) and value.shape[:1] == (count,) and not (fields[name].along and value.ndim < 2)
+    arrays = {name: value for name, value in flat.items() if isinstance(value, np.ndarray) and value.ndim}
+    of_rows = {
+        name for name, value in arrays.items() if len(value) == count and not (fields[name].along and value.ndim < 2)
     }
-    return with_values(known.results, copies) if repeats > 1 else known.results
+    copies = {  # never what is remembered itself: an effect may change an array in place
+        fields[name].path: np.tile(value, (repeats if name in of_rows else 1, *[1] * (value.ndim - 1)))
+        for name, value in arrays.items()
+    }
+    return with_values(known.results, copies)
 
 
 def _is_repeated(value: np.ndarray[Any, Any], count: int) -> bool:

@@ -115,3 +115,17 @@ def test_another_model_of_the_same_inputs_is_asked_itself() -> None:
     for function, factor in ((bend, 8.0), (heavy, 1.0), (bend, 8.0)):
         answer = evaluate_rows(default_setup(replace(BENDING, function=function)), load, 6, repeats=2)
         np.testing.assert_allclose(answer.results["sag"], factor * load["load"])
+
+
+def worn(beam: Beam, bent: Bent, *, size: Float) -> Bent:
+    sag: Any = bent.sag
+    sag += size  # in place, as a careless effect does
+    return bent
+
+
+def test_an_effect_that_changes_an_array_in_place_changes_nothing_that_is_remembered() -> None:
+    effect = Effect("worn", on_results=worn, unknowns=[Unknown("size", -1, 1, "m")], looks_like="a constant")
+    setup = default_setup(replace(BENDING, errors=[effect])).with_effects([SwitchedOn(effect, {"size": 0.5})])
+    load = {"load": np.array([1.0, 2.0, 3.0])}
+    for _ in range(3):
+        np.testing.assert_allclose(evaluate_rows(setup, load, 3, repeats=1).results["sag"], 8.0 * load["load"] + 0.5)
