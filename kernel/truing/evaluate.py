@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.batch import FailedRows, watching
@@ -82,7 +83,7 @@ def answered(setup: Setup, *, reading: bool = False) -> Answered:
     import numpy as np
 
     with np.errstate(all="ignore"), watching(1, is_single=True) as log:
-        results = _apply(setup, {}, reading=reading)
+        results = _apply(setup, {}, setup.model.function, reading=reading)
     flat = setup.model.read_results(results)
     absent = {name: reasons[0] for name, reasons in _absent(setup, log, 1).items() if reasons}
     changed: dict[str, Any] = {}
@@ -208,7 +209,9 @@ def _one_call(
     alike = not any(isinstance(values, np.ndarray) for values in columns.values())
     called = 1 if alike else rows
     with np.errstate(all="ignore"), watching(called) as log:
-        results = _apply(setup, columns, reading=reading, known=None if alike or not repeats else log, repeats=repeats)
+        model = setup.model
+        calculate = model.function if alike or not repeats else partial(results_of, model, repeats=repeats, failed=log)
+        results = _apply(setup, columns, calculate, reading=reading)
         flat = setup.model.read_results(results)
         answers = {name: _as_rows(setup, name, flat, called) for name in names}
         for name, values in answers.items():
@@ -270,10 +273,11 @@ def _sorted_columns(setup: Setup, columns: Mapping[str, Any], rows: int) -> tupl
     return fixed, arrays
 
 
-def _apply(
-    setup: Setup, columns: Mapping[str, Any], *, reading: bool, known: FailedRows | None = None, repeats: int = 0
-) -> Any:
-    """Inputs, effects on inputs, model, effects on results, effects on the reading: in this order."""
+def _apply(setup: Setup, columns: Mapping[str, Any], calculate: Callable[[Any], Any], *, reading: bool) -> Any:
+    """Inputs, effects on inputs, model, effects on results, effects on the reading: in this order.
+
+    ``calculate`` is the function of the model, or what remembers its results.
+    """
     model = setup.model
     switched = [(item, _keywords(item, setup, columns)) for item in setup.effects]
     try:
@@ -281,7 +285,7 @@ def _apply(
         for item, keywords in switched:
             if item.effect.place == "inputs":
                 inputs = item.effect.function(inputs, **keywords)
-        results = model.function(inputs) if known is None else results_of(model, inputs, repeats, known)
+        results = calculate(inputs)
         for place in ("results", "reading") if reading else ("results",):
             for item, keywords in switched:
                 if item.effect.place == place:
