@@ -1,16 +1,15 @@
-"""Columns of the kernel's own effects, from what the gauge shows already: the model is not called for them."""
+"""The kernel's own effects, which act on the reading of one result each: which result, and what they follow."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from truing.declare.builtin import Reading, zero_of
-from truing.declare.sources import Effect, Unknown
-from truing.diagnosis.machine import Machine
+from truing.declare.builtin import Reading
+from truing.declare.sources import Effect
 
 if TYPE_CHECKING:
-    from truing.diagnosis.candidates import Candidate, Curve
+    from truing.diagnosis.causes import Cause
 
 
 def reading_of(effect: Effect[Any, Any]) -> Reading | None:
@@ -18,49 +17,17 @@ def reading_of(effect: Effect[Any, Any]) -> Reading | None:
     return effect.function if isinstance(effect.function, Reading) else None
 
 
-def gauged(candidate: Candidate, measured: Iterable[str]) -> str:
+def gauged(cause: Cause, measured: Iterable[str]) -> str:
     """Return the measured result whose reading a part of a built-in effect changes, or nothing."""
-    reading = reading_of(candidate.effect)
-    names = {unknown.name for unknown in (*candidate.amplitudes, *candidate.shapes)}
+    reading = None if cause.effect is None else reading_of(cause.effect)
+    names = {number.name for number in cause.numbers}
     for item, roles in reading.roles if reading is not None else ():
         if item.name in set(measured) and names == set(roles.values()):
             return item.name
     return ""
 
 
-def followed_by(candidate: Candidate) -> str:
+def followed_by(cause: Cause) -> str:
     """Return the name of the input, condition or axis that a built-in effect follows; nothing for an offset or gain."""
-    reading = reading_of(candidate.effect)
+    reading = None if cause.effect is None else reading_of(cause.effect)
     return reading.seen.name if reading is not None and reading.seen is not None else ""
-
-
-def reading_curve(machine: Machine, candidate: Candidate, unknown: Unknown, shape: Mapping[str, float]) -> Curve | None:
-    """Return the derivative of every measured result by an amplitude of a built-in effect, or None for other effects.
-
-    Built-in effects act last and are linear in their amplitudes, so this is what evaluating them would give.
-    """
-    import numpy as np
-
-    reading = reading_of(candidate.effect)
-    if reading is None:
-        return None
-    result = gauged(candidate, machine.records.measured)
-    item, roles = next(entry for entry in reading.roles if entry[0].name == result)
-    own = {role: 1.0 if name == unknown.name else shape.get(name, 0.0) for role, name in roles.items()}
-    sight = machine.base[result] - zero_of(item) if reading.seen is None else _seen(machine, reading)
-    curve = {name: np.zeros(len(machine.records)) for name in machine.records.measured}
-    curve[result] = np.broadcast_to(np.asarray(reading.kind.added(own, sight), dtype=float), (len(machine.records),))
-    return curve
-
-
-def _seen(machine: Machine, reading: Reading) -> Any:
-    """Return what a built-in effect follows, one value per row in SI, from where its effects vanish."""
-    import numpy as np
-
-    seen = reading.seen
-    if seen is None:
-        return np.zeros(len(machine.records))
-    measured = machine.records.rows.placed(seen.name)
-    held = machine.start.nominal(seen.name) if measured is None else measured
-    values = np.broadcast_to(np.asarray(held, dtype=float), (len(machine.records),))
-    return values - seen.zero if reading.kind.is_from_zero else values

@@ -1,0 +1,227 @@
+"""What competes to explain a record: effects or parts of them, and inputs that lie outside of their band.
+
+A cause is a handful of numbers. Amplitudes switch it off at zero; the others give it its shape. Shapes that nobody
+registered are causes too: see ``unregistered``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import inf
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from truing.declare.builtin import may_stand
+from truing.declare.sources import Effect, Unknown
+from truing.diagnosis.machine import Machine
+from truing.diagnosis.readings import followed_by, gauged, reading_of
+from truing.diagnosis.tidying import is_angle
+from truing.gauge import read_by_gauge
+from truing.setup import SwitchedOn
+from truing.units import to_si
+
+if TYPE_CHECKING:
+    from truing.diagnosis.unregistered import Shape
+
+INPUT = "input:"
+UNKNOWN = "unknown"
+LITTLE = 1e-3
+"""Share of its bound at which an effect is hardly there."""
+
+
+@dataclass(frozen=True)
+class Number:
+    """One number of a cause, SI: an amplitude, or a shape. ``file`` is that whose rows it acts on, -1 for all.
+
+    A ``whole`` number, and a place ``along`` a covariate at which nothing is smooth, keep the value of their start.
+    """
+
+    name: str
+    low: float
+    high: float
+    is_amplitude: bool = True
+    whole: bool = False
+    along: str = ""
+    file: int = -1
+
+    @property
+    def is_free(self) -> bool:
+        """Whether a fit may move it smoothly."""
+        return not self.whole and not self.along
+
+    @property
+    def is_log(self) -> bool:
+        """Whether it is looked for by its logarithm: a shape of one sign."""
+        return not self.is_amplitude and not self.whole and self.low > 0
+
+
+@dataclass(frozen=True, eq=False)
+class Cause:
+    """One cause that may be on. ``tag`` tells it from every other one; ``name`` is what the answer calls it.
+
+    Of an effect ``effect`` holds the declaration; of an input ``tolerated`` is its place among the machine's inputs; of
+    a shape that nobody registered ``shape`` says how it is calculated. ``order`` is that of declaration.
+    """
+
+    name: str
+    tag: str
+    numbers: tuple[Number, ...]
+    order: int = 0
+    effect: Effect[Any, Any] | None = None
+    tolerated: int = -1
+    shape: Shape | None = None
+    is_kernel: bool = False
+
+    @property
+    def size(self) -> int:
+        """How many numbers it has."""
+        return len(self.numbers)
+
+    @property
+    def amplitudes(self) -> list[int]:
+        """Places of the numbers that switch it off at zero."""
+        return [place for place, number in enumerate(self.numbers) if number.is_amplitude]
+
+    @property
+    def shapes(self) -> list[int]:
+        """Places of the numbers that give it its shape."""
+        return [place for place, number in enumerate(self.numbers) if not number.is_amplitude]
+
+    @property
+    def acts_on_inputs(self) -> bool:
+        """Whether the model runs again with it, so that it may change what other causes do."""
+        return self.tolerated >= 0 or (self.effect is not None and self.effect.place == "inputs")
+
+    @property
+    def is_registered(self) -> bool:
+        """Whether somebody declared it: an effect or a tolerated input."""
+        return self.shape is None
+
+    @property
+    def weakest_first(self) -> tuple[int, bool, int]:
+        """Which of several names for one curve is taken: fewest numbers, the kernel's, the first declared."""
+        return self.size, not self.is_kernel, self.order
+
+
+def si_bounds(unknown: Unknown) -> tuple[float, float]:
+    """Return the bounds of an unknown in SI."""
+    return float(to_si(unknown.low, unknown.unit)), float(to_si(unknown.high, unknown.unit))
+
+
+def effects_of(machine: Machine) -> list[Cause]:
+    """Return every effect, or part of one, that could act: the model's in the order of declaration, the kernel's last.
+
+    Effects, and parts of effects, that are on already are part of the model; an effect whose conditions nobody measured
+    is left out, and so is one that follows only what never moved.
+    """
+    model, on = machine.start.model, {item.effect.name: item.values for item in machine.start.effects}
+    made: list[Cause] = []
+    for order, effect in enumerate(model.known_effects.values()):
+        if any(need.name in machine.records.absent for need in effect.needs):
+            continue
+        parts = effect.parts or (tuple(unknown.name for unknown in effect.unknowns),)
+        for place, part in enumerate(parts):
+            if set(part) & set(on.get(effect.name, ())):
+                continue
+            tag = effect.name if len(parts) == 1 else f"{effect.name}.{place}"
+            numbers = tuple(_numbers(effect, part, machine))
+            own = effect.name in model.effects
+            made.append(Cause(effect.name, tag, numbers, order, effect, is_kernel=not own))
+    offered = [cause for cause in made if not cause.is_kernel or _is_offered(cause, machine)]
+    return [cause for cause in offered if not stands_still(cause, machine)]
+
+
+def _numbers(effect: Effect[Any, Any], part: Sequence[str], machine: Machine) -> Iterator[Number]:
+    """Give the numbers of a part of an effect, one for every file where they are fitted file by file."""
+    per_file, files = set(machine.start.diagnose.per_file), len(machine.records.files)
+    for unknown in effect.unknowns:
+        if unknown.name not in part:
+            continue
+        is_split = bool(per_file & {effect.name, f"{effect.name}.{unknown.name}"}) and files > 1
+        for file in range(files) if is_split and unknown.is_amplitude else (-1,):
+            yield Number(
+                unknown.name, *si_bounds(unknown), unknown.is_amplitude, unknown.whole, unknown.along, file
+            )
+
+
+def _is_offered(cause: Cause, machine: Machine) -> bool:
+    """Whether an effect of the kernel makes sense here: its result is measured, and what is to turn goes round."""
+    covariates, effect = machine.records.covariates, cause.effect
+    if effect is None or not gauged(cause, machine.records.measured):
+        return False
+    own = [covariates[name] for name in effect.reads if name in covariates]
+    return not may_stand(effect) or any(not is_angle(item.unit) or item.goes_round for item in own)
+
+
+def stands_still(cause: Cause, machine: Machine) -> bool:
+    """Whether nothing that the effect follows has moved; one that acts at the references follows nothing."""
+    effect = cause.effect
+    if effect is None or effect.acts_at_reference:
+        return False
+    covariates = machine.records.covariates
+    names = [*(need.name for need in effect.needs), *effect.reads]
+    return bool(names) and all(name not in covariates or covariates[name].is_constant for name in names)
+
+
+def inputs_of(machine: Machine) -> list[Cause]:
+    """Return every tolerated input that moves a measured result, as a cause that shifts it by standard deviations."""
+    return [
+        Cause(f"{INPUT}{item.name}", f"{INPUT}{item.name}.{item.file}", (Number(item.name, -inf, inf),), tolerated=place)
+        for place, item in enumerate(machine.inputs)
+        if any(np.any(slopes[:, place]) for slopes in machine.slopes.values())
+    ]
+
+
+def idle_of(machine: Machine) -> tuple[str, ...]:
+    """Return the names of effects that nothing in this record excites, and of which it is worth saying so."""
+    model, on = machine.start.model, {item.effect.name for item in machine.start.effects}
+    names = []
+    for order, effect in enumerate(model.known_effects.values()):
+        own = effect.name in model.effects
+        cause = Cause(effect.name, effect.name, (), order, effect, is_kernel=not own)
+        if effect.name in on or any(need.name in machine.records.absent for need in effect.needs):
+            continue
+        followed = followed_by(cause) if cause.is_kernel else ""
+        if stands_still(cause, machine) and (not followed or followed in machine.records.covariates):
+            names.append(effect.name)
+    return tuple(names)
+
+
+def at_rest(cause: Cause, machine: Machine) -> dict[str, float]:
+    """Return every unknown of the effect of a cause where it does nothing: no amplitude, any shape."""
+    effect = cause.effect
+    if effect is None:
+        return {}
+    before = next((item.values for item in machine.start.effects if item.effect.name == effect.name), {})
+    if effect.parts and effect.takes_any:
+        names = {number.name for number in cause.numbers}
+        return {unknown.name: _rest(unknown) for unknown in effect.unknowns if unknown.name in names}
+    return {unknown.name: _rest(unknown) for unknown in effect.unknowns if unknown.name not in before}
+
+
+def _rest(unknown: Unknown) -> float:
+    return 0.0 if unknown.is_amplitude else si_bounds(unknown)[0]
+
+
+def failure_of(machine: Machine, cause: Cause) -> str:
+    """Return why the model fails with an effect that is hardly there, in some row that was measured; else nothing."""
+    if cause.effect is None or reading_of(cause.effect) is not None:
+        return ""
+    rest = at_rest(cause, machine)
+    measured = np.logical_or.reduce([np.isfinite(values) for values in machine.records.measured.values()])
+    for number in cause.numbers:
+        for end in (number.low, number.high) if number.is_amplitude else ():
+            on = SwitchedOn(cause.effect, {**rest, number.name: LITTLE * end})
+            setup = machine.start.with_effects([on])
+            reasons: Mapping[int, str] = (
+                read_by_gauge(setup, machine.records.rows, tuple(machine.records.measured)).reasons if end else {}
+            )
+            row = next((row for row in sorted(reasons) if measured[row]), None)
+            if row is not None:
+                records = machine.records
+                place = f"{PurePath(records.files[records.file_of[row]]).name}:{records.lines[row]}"
+                return f"the model fails with it, in {place} as the first row: {reasons[row]}"
+    return ""

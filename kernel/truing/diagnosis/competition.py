@@ -1,0 +1,358 @@
+"""The search: explanations of up to five causes, each fitted exactly, compete for what the readings say.
+
+Forward, with what is on so far on: the best single causes; all pairs of the best of them, because two can mask one
+another; every other cause beside the best singles, with its curves as they are there; then one more and one more beside
+the best so far, and what is no longer needed goes. At the end every cause of the best is exchanged for every other, the
+others held where they are and refitted: one of the two alone may end in another basin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations, islice
+from math import inf, lgamma, log
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from truing.diagnosis.alarms import AT_BOUND, OUTSIDE
+from truing.diagnosis.causes import Cause, Number
+from truing.diagnosis.curves import Curves, Looked, look
+from truing.diagnosis.exact import EXACTLY, ROUGHLY, Fit, fit, is_too_large, nothing
+from truing.diagnosis.extended import Extended
+from truing.diagnosis.sample import Sample, as_noise, learnt, sample_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+MOST_CAUSES = 5
+SINGLES = 12
+"""So many of the most promising causes are fitted alone, and all registered ones that promise anything."""
+BEAM = 8
+"""Of so many of the best singles all pairs are fitted."""
+FIRSTS = 4
+"""Beside so many of the best singles all other causes are looked at."""
+JOINED = 6
+"""So many of the most promising causes are fitted beside an explanation."""
+STARTS = 2
+"""So many of the best explanations of one size get one more cause."""
+MARGIN = 6.0
+"""What every sign of a wrong explanation costs, in score: a Bayes factor of about 20."""
+UNREGISTERED = 4.0
+"""What a shape that nobody registered costs beside its numbers."""
+LEAST_PROMISE = 4.0
+"""A cause whose curves promise less, unpaid, is not fitted."""
+WITHIN = 60.0
+"""Explanations within so much of the best are fitted again when the noise was learnt anew, and so many at most."""
+RENEWED = 40
+SETTLED = 0.02
+ROUNDS = 4
+
+Unheard = Callable[[int, int], None]
+
+
+@dataclass
+class Competition:
+    """Everything that was fitted so far, by its causes, and the noise in which it was."""
+
+    extended: Extended
+    causes: tuple[Cause, ...]
+    sample: Sample
+    curves: Curves
+    known: dict[frozenset[str], Fit] = field(default_factory=dict)
+    tries: dict[str, float] = field(default_factory=dict)
+    fits: int = 0
+    fresh: set[frozenset[str]] = field(default_factory=set)
+    """What was fitted in the present noise."""
+
+    # ---- scores
+
+    def price(self, found: Fit) -> float:
+        """Return what an explanation pays for its numbers, for the choice of its causes and of their curves."""
+        many, most = len(found.causes), max(len(self.causes), len(found.causes))
+        choice = 2 * (lgamma(most + 1) - lgamma(many + 1) - lgamma(most - many + 1))
+        return choice + sum(self.price_of(cause) for cause in found.causes)
+
+    def price_of(self, cause: Cause) -> float:
+        """Return what a cause pays for its numbers and for the choice among its independent curves."""
+        own = cause.size * log(max(self.sample.total, 2.0)) + 2 * log(max(self.tries.get(cause.tag, 1.0), 1.0))
+        return own + (0.0 if cause.is_registered else UNREGISTERED)
+
+    def score(self, found: Fit) -> float:
+        """Return how unlikely an explanation is: -2 log likelihood, prior of the inputs, price, signs of a wrong one."""
+        return found.cost + self.price(found) + MARGIN * signs_of_wrong(found)
+
+    def own_score(self, found: Fit) -> float:
+        """Return the same where what is left counts as noise with the memory that suits it best."""
+        inputs = float(found.inputs @ found.inputs)
+        return as_noise(self.sample, found.left) + inputs + self.price(found) + MARGIN * signs_of_wrong(found)
+
+    def ranked(self, accept: Callable[[Fit], bool] = lambda _: True) -> list[Fit]:
+        """Return what was fitted and is accepted, the best first."""
+        return sorted((found for found in self.known.values() if accept(found)), key=self.score)
+
+    def best(self, size: int) -> Fit | None:
+        """Return the best explanation of so many causes."""
+        return min((found for found in self.known.values() if len(found.causes) == size), key=self.score, default=None)
+
+    @property
+    def null(self) -> Fit:
+        """The model as it is."""
+        return self.known[frozenset()]
+
+    @property
+    def fairest(self) -> Fit:
+        """What is best where every explanation has the noise that it leaves: the noise is learnt from it."""
+        return min(islice(self.ranked(), RENEWED), key=self.own_score)
+
+    # ---- fits
+
+    def keep(self, found: Fit | None) -> Fit | None:
+        """Keep a fit where it is better than what is known of its causes."""
+        if found is None:
+            return None
+        before = self.known.get(found.key)
+        if before is None or found.key not in self.fresh or found.cost < before.cost:
+            self.known[found.key] = found
+            self.fresh.add(found.key)
+        return self.known[found.key]
+
+    def fitted(
+        self, causes: Sequence[Cause], values: Sequence[Matrix], inputs: Matrix | None, until: float = ROUGHLY
+    ) -> Fit | None:
+        """Fit an explanation from a start and keep it."""
+        if is_too_large(self.sample, causes) or _are_exclusive(causes):
+            return None
+        self.fits += 1
+        return self.keep(fit(self.sample, self.extended, causes, values, inputs, until=until))
+
+    def joined(self, at: Fit, cause: Cause, starts: Iterable[tuple[float, Matrix]]) -> Fit | None:
+        """Fit an explanation with one more cause, from each of its starts."""
+        made = None
+        for _, values in starts:
+            made = self.fitted((*at.causes, cause), (*at.values, values), at.inputs) or made
+        return made
+
+    def look(self, at: Fit, causes: Sequence[Cause] | None = None) -> Mapping[str, Looked]:
+        """Compare the curves of causes with what an explanation leaves, and count their independent curves."""
+        made = look(self.curves, at, self.causes if causes is None else causes)
+        for tag, each in made.items():
+            self.tries[tag] = max(self.tries.get(tag, 1.0), each.tries)
+        return made
+
+    def forward(self, at: Fit, count: int, accept: Callable[[Cause], bool] = lambda _: True) -> None:
+        """Fit the most promising causes beside an explanation."""
+        if len(at.causes) >= MOST_CAUSES:
+            return
+        seen = self.look(at, [cause for cause in self.causes if accept(cause)])
+        for cause in islice(self.promising(seen), count):
+            self.joined(at, cause, seen[cause.tag].starts)
+
+    def promising(self, seen: Mapping[str, Looked]) -> Iterator[Cause]:
+        """Give causes by what their curves promise once they are paid for, of those of one curve the weakest."""
+        worth = {
+            cause: seen[cause.tag].starts[0][0] - self.price_of(cause)
+            for cause in self.causes
+            if cause.tag in seen and seen[cause.tag].starts and seen[cause.tag].starts[0][0] > LEAST_PROMISE
+        }
+        yield from sorted(worth, key=lambda cause: (-worth[cause], cause.weakest_first))
+
+    def without(self, found: Fit, place: int) -> Fit | None:
+        """Fit an explanation without one of its causes."""
+        rest = [number for number in range(len(found.causes)) if number != place]
+        key = frozenset(found.causes[number].tag for number in rest)
+        if key in self.fresh:
+            return self.known[key]
+        return self.fitted([found.causes[n] for n in rest], [found.values[n] for n in rest], found.inputs)
+
+    def backward(self, found: Fit) -> Fit:
+        """Leave out what is no longer needed."""
+        less = [each for place in range(len(found.causes)) if (each := self.without(found, place)) is not None]
+        best = min(less, key=self.score, default=found)
+        return self.backward(best) if len(found.causes) > 1 and self.score(best) < self.score(found) else found
+
+    # ---- noise
+
+    def renew(self) -> None:
+        """Learn the noise from the fairest explanation, and judge everything in it."""
+        for _ in range(ROUNDS):
+            fair = self.fairest
+            noise = learnt(self.sample, fair.predicted, fair.size + len(fair.inputs) ** 0.5)
+            finer = any(noise[name].scale < 0.5 * own.scale for name, own in self.sample.noise.items())
+            directions = None if finer else self.sample.directions
+            sample = sample_of(self.sample.machine, noise, self.sample.mask, directions)
+            change = float(np.abs(np.log(sample.counts / self.sample.counts)).max())
+            scale = max(abs(log(noise[name].scale / own.scale)) for name, own in self.sample.noise.items())
+            self.sample, self.fresh = sample, set()
+            self.known = {key: found.in_sample(sample) for key, found in self.known.items()}
+            self.again(self.ranked()[:3])
+            if change < SETTLED and scale < SETTLED:
+                break
+
+    def again(self, several: Iterable[Fit], until: float = ROUGHLY) -> None:
+        """Fit explanations again from where they are, in the present noise."""
+        for found in several:
+            if found.key not in self.fresh or until < ROUGHLY:
+                self.fits += 1
+                made = fit(self.sample, self.extended, found.causes, found.values, found.inputs, until=until)
+                self.fresh.discard(found.key)
+                self.keep(made)
+
+    def refresh(self) -> None:
+        """Fit again what lies near the best, since the noise was learnt anew; and the model as it is."""
+        top = self.score(self.ranked()[0])
+        near = [found for found in self.ranked()[:RENEWED] if self.score(found) < top + WITHIN]
+        self.again([self.null, *near])
+
+
+def competition_of(extended: Extended, causes: Sequence[Cause], sample: Sample) -> Competition:
+    """Begin a competition with the model as it is."""
+    made = Competition(extended, tuple(causes), sample, Curves(extended))
+    made.keep(nothing(sample, extended))
+    made.renew()
+    return made
+
+
+def search(made: Competition, done: Unheard = lambda count, of: None) -> None:
+    """Fit everything that may explain the record; ``done`` hears of the stages."""
+    stages = (_singles, _pairs, _beside_firsts, _more, _exchanged, _exactly)
+    for count, stage in enumerate(stages):
+        done(count, len(stages))
+        stage(made)
+        if count < len(stages) - 1:
+            made.renew()
+            made.refresh()
+
+
+def _singles(made: Competition) -> None:
+    seen = made.look(made.null)
+    order = list(made.promising(seen))
+    chosen = [*order[:SINGLES], *(cause for cause in order[SINGLES:] if cause.is_registered)]
+    for cause in chosen:
+        made.joined(made.null, cause, seen[cause.tag].starts)
+
+
+def _distinct(made: Competition, size: int, count: int) -> list[Fit]:
+    """Return the best explanations of one size that do not draw the same."""
+    kept: list[Fit] = []
+    for found in made.ranked(lambda each: len(each.causes) == size):
+        if all(differ(found, other) > 1.0 for other in kept):
+            kept.append(found)
+        if len(kept) == count:
+            break
+    return kept
+
+
+def differ(one: Fit, other: Fit) -> float:
+    """Return how far two explanations draw apart: sum of squares in units of the noise that the first leaves."""
+    sample = one.sample
+    apart = sample.left(one.predicted) - sample.left(other.predicted)
+    return float(np.sum((sample.roots(one.left) * apart) ** 2))
+
+
+def _pairs(made: Competition) -> None:
+    for one, other in combinations(_distinct(made, 1, BEAM), 2):
+        made.fitted(one.causes + other.causes, one.values + other.values, one.inputs)
+
+
+def _beside_firsts(made: Competition) -> None:
+    for at in _distinct(made, 1, FIRSTS):
+        made.forward(at, JOINED, lambda cause: _is_quick(cause))
+
+
+def _is_quick(cause: Cause) -> bool:
+    """Whether a cause has few curves: waves of any period are looked for beside the best explanation only."""
+    return all(number.name != "frequency" for number in cause.numbers)
+
+
+def _more(made: Competition) -> None:
+    now = made.ranked()[0]
+    while 1 <= len(now.causes) < MOST_CAUSES:
+        size = len(now.causes)
+        for at in _distinct(made, size, STARTS):
+            made.forward(at, JOINED)
+        best = made.best(size + 1)
+        if best is None:
+            return
+        made.backward(best)
+        if made.score(best) >= made.score(now):
+            return
+        made.renew()
+        made.refresh()
+        now = made.ranked()[0]
+
+
+def _exchanged(made: Competition) -> None:
+    for _ in range(2):
+        now = made.ranked()[0]
+        for place in range(len(now.causes)):
+            exchange(made, now, place)
+        if made.ranked()[0].key == now.key:
+            return
+
+
+def exchange(made: Competition, now: Fit, place: int) -> None:
+    """Fit an explanation with one of its causes exchanged for others, the rest refitted without it and held."""
+    rest = made.without(now, place)
+    others = {cause.tag for cause in now.causes}
+    if rest is not None:
+        made.forward(rest, JOINED, lambda cause: _is_quick(cause) and cause.tag not in others)
+    if len(now.causes) > 1:
+        causes, values = _less(now.causes, place), _less(now.values, place)
+        (predicted,) = made.extended.at(causes, [(values, now.moved)])
+        left = made.sample.left(predicted)
+        if np.isfinite(left).all():
+            held = Fit(causes, values, now.inputs, predicted, left, made.sample.cost(left, now.inputs), made.sample)
+            made.forward(held, JOINED, lambda cause: _is_quick(cause) and cause.tag not in others)
+
+
+def _less(several: tuple[Any, ...], place: int) -> tuple[Any, ...]:
+    return several[:place] + several[place + 1 :]
+
+
+def _exactly(made: Competition) -> None:
+    top = made.score(made.ranked()[0])
+    near = [found for found in made.ranked()[:RENEWED] if made.score(found) < top + 4 * MARGIN]
+    made.again([made.null, *near, *(best for size in range(1, MOST_CAUSES) if (best := made.best(size)) is not None)], EXACTLY)
+
+
+def _are_exclusive(causes: Sequence[Cause]) -> bool:
+    """Whether causes cannot stand beside one another: two shapes of one kind over the same, one effect's same part."""
+    shapes = [cause.shape for cause in causes if cause.shape is not None]
+    kinds = [(shape.kind, shape.depends_on) for shape in shapes if shape.kind != "wave"]
+    return len(kinds) != len(set(kinds)) or len({cause.tag for cause in causes}) != len(causes)
+
+
+def signs_of_wrong(found: Fit) -> int:
+    """Count what a wrong explanation looks like: unknowns at their bounds, inputs far outside of their tolerances."""
+    at_bound = sum(
+        is_at_bound(number, float(value))
+        for cause, values in zip(found.causes, found.values, strict=True)
+        if cause.effect is not None
+        for number, value in zip(cause.numbers, values, strict=True)
+    )
+    return at_bound + len(far_inputs(found))
+
+
+def is_at_bound(number: Number, value: float) -> bool:
+    """Whether a fitted number lies at an end of its declared range, other than at zero."""
+    if not number.is_free:
+        return False
+    reach = AT_BOUND * (number.high - number.low)
+    return any(end and abs(end) < inf and abs(value - end) <= reach for end in (number.low, number.high))
+
+
+def far_inputs(found: Fit) -> list[int]:
+    """Return the places of inputs that no cause shifts and that were moved far beyond their tolerances."""
+    shifted = {cause.tolerated for cause in found.causes}
+    inputs, moved = found.sample.machine.inputs, found.moved
+    start = found.sample.machine.start
+    made = []
+    for place, item in enumerate(inputs):
+        off = (float(start.nominal(item.name)) + item.mean + float(moved[place]) * item.sd - item.design) / item.sd
+        if place not in shifted and abs(off) > OUTSIDE:
+            made.append(place)
+    return made

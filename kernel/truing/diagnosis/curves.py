@@ -1,0 +1,439 @@
+"""Response curves: what every cause would draw on these rows, from the model itself, over a spread of all its numbers.
+
+A cause that acts in proportion to its amplitudes is asked for one curve of each; one that bends, for curves at sizes
+from a thousandth of its bounds up to them. A shape with one number is swept as finely as its own curves change on
+this record; with several, a Sobol sequence covers them. Curves are compared with what an explanation leaves once
+the inputs and its own numbers have taken their part, and the best points are where exact fits begin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import log
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.stats import qmc
+
+from truing.diagnosis.causes import Cause, Number
+from truing.diagnosis.exact import Fit, slopes_at
+from truing.diagnosis.extended import Extended, shape_added
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+KEPT = 3
+"""So many points of a cause begin exact fits."""
+LEVELS = (1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001)
+"""Shares of its bound at which an amplitude that bends is asked for."""
+STRAIGHT = 1e-4
+"""Share of its size by which chords of a cause may differ while it counts as proportional."""
+NEAR_LEVEL = 2.0
+"""A curve that bends stands for amplitudes up to so many times its own, and down to one over it."""
+FIRST, FINEST = 9, 3000
+"""Points of a sweep to begin with, and at most."""
+ALIKE = 0.7
+"""Neighbours of a sweep with a smaller cosine have another curve between them."""
+SPREAD = 64
+"""Points over several numbers at once."""
+FAINT = 1e-9
+WAVES_PER_POINT = 0.25
+"""Step of a frequency, in what one wave more over the record is: its curves are known to change by then."""
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """Curves of one cause: ``points`` (M, numbers) SI, and ``curves`` (M, q, readings) by columns, SI per coefficient.
+
+    Of a bundle in proportion, column j is the change per unit of amplitude j and coefficients are amplitudes; else
+    there is one column, the change itself, and its coefficient is near 1.
+    """
+
+    cause: Cause
+    points: Matrix
+    curves: Matrix
+    is_straight: bool
+
+
+@dataclass(frozen=True)
+class Looked:
+    """What a cause could draw beside an explanation: gains in score with the numbers to begin with, the best first.
+
+    ``tries`` counts its independent curves; ``basis`` (M, q, rows + K) is orthonormal within a point.
+    """
+
+    starts: tuple[tuple[float, Matrix], ...]
+    tries: float
+    basis: Matrix
+
+
+class Curves:
+    """The curves of all causes of a machine, asked for once beside nothing and anew where causes act on the inputs."""
+
+    def __init__(self, extended: Extended) -> None:
+        self.extended = extended
+        self._alone: dict[str, Bundle] = {}
+        self._straight: dict[str, bool] = {}
+
+    def of(self, cause: Cause, beside: Fit) -> Bundle:
+        """Return the curves of a cause beside an explanation; those beside nothing where that makes no difference."""
+        if cause.shape is not None or cause.tolerated >= 0 or not self._matters(cause, beside):
+            if cause.tag not in self._alone:
+                self._alone[cause.tag] = self._made(cause, _Place(self.extended, beside, ()))
+            return self._alone[cause.tag]
+        return self._made(cause, _Place(self.extended, beside, beside.causes))
+
+    @staticmethod
+    def _matters(cause: Cause, beside: Fit) -> bool:
+        """Whether a cause may draw something else beside an explanation than alone."""
+        on = [each for each in beside.causes if each.effect is not None]
+        return bool(on) and (cause.acts_on_inputs or any(each.acts_on_inputs for each in on))
+
+    def _made(self, cause: Cause, place: _Place) -> Bundle:
+        if cause.shape is not None:
+            return _swept(cause, lambda values: place.of_shape(cause, values), is_straight=True)
+        if cause.tolerated >= 0:
+            return place.of_input(cause)
+        if cause.tag not in self._straight:
+            self._straight[cause.tag] = place.is_straight(cause)
+        if self._straight[cause.tag]:
+            return _swept(cause, lambda values: place.slopes(cause, values), is_straight=True)
+        return place.bent(cause)
+
+
+class _Place:
+    """An explanation beside which curves are asked for."""
+
+    def __init__(self, extended: Extended, beside: Fit, causes: tuple[Cause, ...]) -> None:
+        self.extended, self.causes, self.machine = extended, causes, extended.machine
+        self.values = [beside.of(cause) for cause in causes]
+        self.moved = beside.moved if causes else np.zeros_like(beside.moved)
+        self.base = self._stacked([])[0] if causes else None
+
+    def _stacked(self, added: Sequence[tuple[Cause, Matrix]]) -> Matrix:
+        """Return what the gauges show with each of some causes on beside the others, (points, readings), SI."""
+        if not added:
+            made = self.extended.at(self.causes, [(self.values, self.moved)])
+        else:
+            own = (*self.causes, added[0][0])
+            made = self.extended.at(own, [([*self.values, values], self.moved) for _, values in added])
+        return np.array([np.concatenate([each[name] for name in self.machine.records.measured]) for each in made])
+
+    def changes(self, cause: Cause, points: Matrix) -> Matrix:
+        """Return what a cause changes at some points (M, numbers), (M, readings)."""
+        if self.base is None:
+            self.base = self._stacked([])[0]
+        return self._stacked([(cause, point) for point in points]) - self.base
+
+    def is_straight(self, cause: Cause) -> bool:
+        """Whether a cause is proportional to its amplitudes, and several of them do no more than their sum."""
+        middle = np.array([_middle(number) for number in cause.numbers])
+        ends = [place for place in cause.amplitudes]
+        points, shares = [], (1.0, 0.1, LEVELS[-1])
+        for place in ends:
+            for side in (cause.numbers[place].low, cause.numbers[place].high):
+                for share in shares if side else ():
+                    point = middle.copy()
+                    point[place] = side * share
+                    points.append(point)
+        together = middle.copy()
+        together[ends] = [0.5 * max((n.low, n.high), key=abs) for n in (cause.numbers[place] for place in ends)]
+        made = self.changes(cause, np.array([*points, together]))
+        if not np.isfinite(_known(made)).all():
+            return False
+        made = np.nan_to_num(made)
+        slopes = {place: np.zeros(made.shape[1]) for place in ends}
+        for point, curve in zip(points, made, strict=False):
+            (place,) = (each for each in ends if point[each])
+            slope, largest = curve / point[place], np.abs(curve).max() / abs(point[place])
+            if not slopes[place].any():
+                slopes[place] = slope
+            elif np.abs(slope - slopes[place]).max() > STRAIGHT * max(largest, np.abs(slopes[place]).max()):
+                return False
+        summed = sum((slopes[place] * together[place] for place in ends), np.zeros(made.shape[1]))
+        return bool(np.abs(made[-1] - summed).max() <= STRAIGHT * max(float(np.abs(summed).max()), 1e-300) * len(ends))
+
+    def slopes(self, cause: Cause, shapes: Matrix) -> Matrix:
+        """Return the change per unit of every amplitude at some shapes (M, shape numbers), (M, q, readings)."""
+        sizes = [max((n.low, n.high), key=abs) for n in (cause.numbers[place] for place in cause.amplitudes)]
+        points = np.zeros((len(shapes), len(sizes), cause.size))
+        points[:, :, cause.shapes] = shapes[:, None]
+        for column, (place, size) in enumerate(zip(cause.amplitudes, sizes, strict=True)):
+            points[:, column, place] = size
+        made = self.changes(cause, points.reshape(-1, cause.size)).reshape(len(shapes), len(sizes), -1)
+        return np.asarray(made / np.array(sizes)[None, :, None])
+
+    def bent(self, cause: Cause) -> Bundle:
+        """Return the curves of a cause that bends, at amplitudes of many sizes and at shapes all over."""
+        points = _spread(cause)
+        made = self.changes(cause, points)
+        works = np.isfinite(_known(made)).all(axis=1)
+        return Bundle(cause, points[works], np.nan_to_num(made[works])[:, None, :], is_straight=False)
+
+    def of_shape(self, cause: Cause, shapes: Matrix) -> Matrix:
+        """Return the terms of a shape that nobody registered, result after result, (M, q, readings)."""
+        measured, rows = list(self.machine.records.measured), len(self.machine.records)
+        made = np.zeros((len(shapes), len(cause.amplitudes), len(measured) * rows))
+        shape = cause.shape
+        for point, values in enumerate(shapes if shape is not None else ()):
+            terms = shape.terms(values.tolist(), self.machine.records.covariates) if shape is not None else []
+            column = 0
+            for name in shape.results if shape is not None else ():
+                begin = measured.index(name) * rows
+                for term in terms:
+                    made[point, column, begin : begin + rows] = term.values
+                    column += 1
+        return made
+
+    def of_input(self, cause: Cause) -> Bundle:
+        """Return the slope of an input, per standard deviation."""
+        slopes = [self.machine.slopes[name][:, cause.tolerated] for name in self.machine.records.measured]
+        return Bundle(cause, np.zeros((1, 1)), np.concatenate(slopes)[None, None, :], is_straight=True)
+
+
+def _known(made: Matrix) -> Matrix:
+    """Return changes with those readings as 0 in which the model fails whatever the point."""
+    return np.where(np.isnan(made).all(axis=0), 0.0, made)
+
+
+def _middle(number: Number) -> float:
+    """Return a number that is not looked at: no amplitude, the middle of a shape's range."""
+    if number.is_amplitude:
+        return 0.0
+    if number.whole:
+        return float(round((number.low + number.high) / 2))
+    return float((number.low * number.high) ** 0.5) if number.is_log else (number.low + number.high) / 2
+
+
+def _from_unit(number: Number, u: Matrix) -> Matrix:
+    """Return values of a shape number for places from 0 to 1 in its range."""
+    if number.whole:
+        return np.minimum(np.floor(number.low + u * (number.high - number.low + 1)), number.high)
+    if number.is_log and number.high / number.low > 10 and number.name != "frequency":
+        return np.asarray(number.low * (number.high / number.low) ** u)
+    return np.asarray(number.low + u * (number.high - number.low))
+
+
+def _swept(cause: Cause, make: Callable[[Matrix], Matrix], *, is_straight: bool) -> Bundle:
+    """Return curves over all shapes of a cause; along one number as finely as they change."""
+    shapes = [cause.numbers[place] for place in cause.shapes]
+    if not shapes:
+        u = np.zeros((1, 0))
+    elif len(shapes) == 1:
+        u = _first_places(shapes[0])[:, None]
+    else:
+        u = qmc.Sobol(len(shapes), seed=1).random(SPREAD)
+    values = _placed(shapes, u)
+    made = make(values)
+    if len(shapes) == 1 and not shapes[0].whole and not shapes[0].along:
+        u, made = _refined(shapes, u, made, make)
+        values = _placed(shapes, u)
+    works = np.isfinite(_known(made.reshape(len(made), -1))).all(axis=1)
+    points = np.zeros((len(values), cause.size))
+    points[:, cause.shapes] = values
+    return Bundle(cause, points[works], np.nan_to_num(made[works]), is_straight)
+
+
+def _placed(shapes: Sequence[Number], u: Matrix) -> Matrix:
+    return np.column_stack([_from_unit(number, u[:, place]) for place, number in enumerate(shapes)]) if shapes else u
+
+
+def _first_places(number: Number) -> Matrix:
+    """Return where a sweep begins: every whole number, a frequency in steps that its curves are known to need."""
+    if number.whole:
+        count = int(number.high - number.low) + 1
+        return np.asarray((np.arange(min(count, FINEST)) + 0.5) / count)
+    if number.along:
+        return np.linspace(0, 1, 50)
+    if number.name == "frequency":
+        waves = number.high / number.low
+        return np.linspace(0, 1, int(min(FINEST, max(FIRST, waves / WAVES_PER_POINT))))
+    return np.linspace(0, 1, FIRST)
+
+
+def _refined(shapes: Sequence[Number], u: Matrix, made: Matrix, make: Callable[[Matrix], Matrix]) -> tuple[Matrix, Matrix]:
+    """Put points between neighbours that are no longer alike, until all are or there are enough."""
+    while shapes[0].name != "frequency" and len(u) < FINEST:
+        flat = np.nan_to_num(made.reshape(len(made), -1))
+        size = np.linalg.norm(flat, axis=1)
+        cosine = np.abs(np.einsum("ij,ij->i", flat[1:], flat[:-1])) / np.maximum(size[1:] * size[:-1], 1e-300)
+        gaps = np.flatnonzero((cosine < ALIKE) & (np.diff(u[:, 0]) > 1e-5) & (np.minimum(size[1:], size[:-1]) > 0))
+        if not len(gaps):
+            break
+        new = (u[gaps] + u[gaps + 1])[: FINEST - len(u)] / 2
+        order = np.argsort(np.concatenate([u, new])[:, 0], kind="stable")
+        made = np.concatenate([made, make(_placed(shapes, new))])[order]
+        u = np.concatenate([u, new])[order]
+    return u, made
+
+
+def _spread(cause: Cause) -> Matrix:
+    """Return points over amplitudes of many sizes, to both sides, and over all shapes."""
+    shapes = [cause.numbers[place] for place in cause.shapes]
+    ends = [(place, end) for place in cause.amplitudes for end in (cause.numbers[place].low, cause.numbers[place].high) if end]
+    points = []
+    if len(cause.amplitudes) == 1 and len(shapes) <= 1:
+        grid = _placed(shapes, _few_places(shapes)) if shapes else np.zeros((1, 0))
+        for place, end in ends:
+            for level in LEVELS:
+                for values in grid:
+                    point = np.zeros(cause.size)
+                    point[cause.shapes], point[place] = values, level * end
+                    points.append(point)
+        return np.array(points)
+    sampler = qmc.Sobol(cause.size + 1, seed=1).random(4 * SPREAD)
+    for u in sampler:
+        point = np.zeros(cause.size)
+        point[cause.shapes] = _placed(shapes, u[None, : len(shapes)])[0] if shapes else []
+        level = 10 ** (-3 * u[-1])
+        for column, place in enumerate(cause.amplitudes, start=len(shapes)):
+            number = cause.numbers[place]
+            v = u[column]
+            side = number.high if (v >= 0.5 or not number.low) and number.high else number.low
+            share = abs(2 * v - 1) if number.low and number.high else v
+            point[place] = level * side * (0.05 + 0.95 * share)
+        points.append(point)
+    return np.array(points)
+
+
+def _few_places(shapes: Sequence[Number]) -> Matrix:
+    places = _first_places(shapes[0])
+    return places[:: max(1, len(places) // FIRST)][:, None]
+
+
+@dataclass(frozen=True)
+class Beside:
+    """What an explanation leaves, weighted (rows + K,), once its numbers and the inputs have taken their part.
+
+    ``taken`` (rows + K, t) is an orthonormal basis of what they can draw; ``index`` and ``factor`` turn readings of all
+    records into weighted rows of the sample.
+    """
+
+    left: Matrix
+    taken: Matrix
+    index: NDArray[np.intp]
+    factor: Matrix
+    total: float
+
+    def weighed(self, curves: Matrix) -> Matrix:
+        """Return curves (..., readings, SI) as what only they can draw, (..., rows + K)."""
+        rows = curves[..., self.index] * self.factor
+        k = len(self.left) - len(self.index)
+        made = np.concatenate([rows, np.zeros((*rows.shape[:-1], k))], axis=-1)
+        return np.asarray(made - (rows @ self.taken[: len(self.index)]) @ self.taken.T)
+
+
+def beside_of(found: Fit, extended: Extended) -> Beside:
+    """Return an explanation as other causes see it."""
+    sample, k = found.sample, len(found.inputs)
+    roots = sample.roots(found.left)
+    if found.causes:
+        own, inputs = slopes_at(found, extended)
+    else:
+        own, inputs = np.zeros((sample.rows, 0)), sample.drawn
+    columns = np.concatenate(
+        [np.column_stack([own, inputs]) * roots[:, None], np.column_stack([np.zeros((k, own.shape[1])), np.eye(k)])]
+    )
+    columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    basis, size, _ = np.linalg.svd(columns, full_matrices=False)
+    taken = basis[:, size > 1e-9 * size.max()] if size.size else basis
+    left = np.concatenate([roots * found.left, -found.inputs])
+    left = left - taken @ (taken.T @ left)
+    names, rows = list(sample.machine.records.measured), len(sample.machine.records)
+    index = np.concatenate([names.index(channel.name) * rows + channel.rows for channel in sample.channels])
+    factor = np.concatenate([channel.weights / channel.scale for channel in sample.channels]) * roots
+    return Beside(left, np.asarray(taken), index, factor, sample.total)
+
+
+def looked(bundle: Bundle, beside: Beside) -> Looked | None:
+    """Compare the curves of a cause with what an explanation leaves; None where it draws nothing here."""
+    weighed = beside.weighed(bundle.curves)
+    raw = np.linalg.norm(bundle.curves[..., beside.index] * beside.factor, axis=-1)
+    size = np.linalg.norm(weighed, axis=-1)
+    kept = ((size > 1e-6 * raw) & (raw > FAINT)).any(axis=1)
+    if not kept.any():
+        return None
+    weighed, points = weighed[kept], bundle.points[kept]
+    basis = _orthonormal(weighed)
+    gains, values = _starts(bundle, points, weighed, beside)
+    order = np.argsort(-gains, kind="stable")
+    chosen: list[int] = []
+    for place in order[:200].tolist():
+        if gains[place] > 0 and not any(_is_same(basis[place], basis[other]) for other in chosen):
+            chosen.append(place)
+        if len(chosen) == KEPT:
+            break
+    starts = tuple((_score(float(gains[place]), beside.total), values[place]) for place in chosen)
+    return Looked(starts, independent(basis, is_sweep=bundle.is_straight and len(bundle.cause.shapes) <= 1), basis)
+
+
+def _score(gain: float, total: float) -> float:
+    """Return what a fall of the sum of squares is worth where the noise is the one that is left."""
+    return -total * log(max(1 - gain / max(total, 1e-300), 1e-9))
+
+
+def _is_same(one: Matrix, other: Matrix) -> bool:
+    """Whether two sets of columns draw nearly the same."""
+    return bool(np.linalg.norm(one @ other.T) ** 2 > 0.98 * min(len(one), len(other)))
+
+
+def _orthonormal(weighed: Matrix) -> Matrix:
+    """Return columns (M, q, rows) orthonormal within each point; 0 for those that depend on others."""
+    made = np.array(weighed)
+    size = np.linalg.norm(weighed, axis=-1)
+    for column in range(made.shape[1]):
+        for _ in range(2):
+            for before in range(column):
+                inner = np.einsum("mn,mn->m", made[:, before], made[:, column])
+                made[:, column] -= inner[:, None] * made[:, before]
+        left = np.linalg.norm(made[:, column], axis=-1)
+        is_own = left > 1e-6 * np.maximum(size[:, column], 1e-300)
+        made[:, column] *= np.where(is_own, 1 / np.maximum(left, 1e-300), 0.0)[:, None]
+    return made
+
+
+def _starts(bundle: Bundle, points: Matrix, weighed: Matrix, beside: Beside) -> tuple[Matrix, Matrix]:
+    """Return what each point lowers the sum of squares by within the bounds of the cause, and the numbers there."""
+    right = weighed @ beside.left
+    normal = np.einsum("mqn,mpn->mqp", weighed, weighed)
+    diagonal = np.einsum("mqq->mq", normal)
+    scale = np.sqrt(np.maximum(diagonal, 1e-300))
+    scaled = normal / (scale[:, :, None] * scale[:, None, :]) + 1e-9 * np.eye(normal.shape[1])
+    solved = np.linalg.solve(scaled, (right / scale)[..., None])[..., 0] / scale
+    values = np.array(points)
+    if bundle.is_straight:
+        numbers = [bundle.cause.numbers[place] for place in bundle.cause.amplitudes]
+        solved = np.clip(solved, [number.low for number in numbers], [number.high for number in numbers])
+        values[:, bundle.cause.amplitudes] = solved
+    else:
+        solved = np.clip(solved, 1 / NEAR_LEVEL, NEAR_LEVEL)
+        for place in bundle.cause.amplitudes:
+            number = bundle.cause.numbers[place]
+            values[:, place] = np.clip(points[:, place] * solved[:, 0], number.low, number.high)
+    gains = 2 * np.einsum("mq,mq->m", solved, right) - np.einsum("mq,mqp,mp->m", solved, normal, solved)
+    return gains, values
+
+
+def independent(basis: Matrix, *, is_sweep: bool) -> float:
+    """Return how many independent curves a set of points draws: the way along a sweep, else the rank that counts."""
+    if len(basis) < 2:
+        return 1.0
+    q = max(int((np.linalg.norm(basis, axis=-1) > 0.5).sum(axis=1).max()), 1)
+    if is_sweep:
+        inner = np.einsum("mqn,mpn->mqp", basis[1:], basis[:-1])
+        same = np.clip((inner**2).sum(axis=(1, 2)) / q, 0, 1)
+        return float(1 + np.sqrt(1 - same).sum() / 2)
+    flat = basis.reshape(-1, basis.shape[-1])
+    gram = flat @ flat.T
+    return float(np.trace(gram) ** 2 / max(float((gram**2).sum()), 1e-300) / q)
+
+
+def look(curves: Curves, at: Fit, causes: Sequence[Cause]) -> Mapping[str, Looked]:
+    """Compare all causes with what an explanation leaves, by their tag."""
+    beside = beside_of(at, curves.extended)
+    on = at.key
+    every = ((cause.tag, looked(curves.of(cause, at), beside)) for cause in causes if cause.tag not in on)
+    return {tag: each for tag, each in every if each is not None}

@@ -1,0 +1,369 @@
+"""Exact fits: an explanation with the model itself, its numbers within their bounds, the inputs within their tolerances.
+
+Levenberg-Marquardt steps on the numbers of the causes. The inputs are eliminated from every step: as far as the fit
+goes they act by their slopes about an anchor, which is moved when the fit has settled and the model bends in them.
+Derivatives are taken by differences in one batched call and corrected by what each step shows (C. G. Broyden, Math.
+Comp. 19, 1965, 577) until that no longer leads down. The noise of every result is the one that is left: the logarithm
+of its mean square is what a fit makes small.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from math import inf, log
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from truing.diagnosis.causes import Cause, Number
+from truing.diagnosis.extended import Extended, parts_of
+from truing.diagnosis.sample import Sample
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+EXACTLY = 1e-5
+ROUGHLY = 1e-2
+"""A fit ends where a step promises less than so much of the score."""
+MOST_STEPS = 40
+STEP = 1e-4
+"""Of a number, or of a hundredth of its range: by how much it is moved for a difference."""
+MOVED = 1.0
+"""Sum of squares, in units of the noise, that slopes of the inputs may miss before their anchor is moved."""
+MOST_ANCHORS = 6
+NEARER = 30
+"""So often a start at which the model fails is halved: what is left of it is rounding."""
+FIRST_DAMPING = 1e-3
+LARGEST_DAMPING = 1e8
+GOOD = 0.25
+"""Share of what a step promised from which on its corrected derivatives are good enough for the next one."""
+ROWS_PER_NUMBER = 4
+"""Fewer rows for every number are followed by any curve, noise or not."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """An explanation as fitted: numbers of every cause (SI), directions of the inputs, and what the model then says.
+
+    ``predicted`` holds results by name, SI on all rows of the records; ``left`` what is left of the sample's rows in
+    units of the noise. ``cost`` is -2 log likelihood plus the prior of the inputs, in the noise that it was fitted in.
+    """
+
+    causes: tuple[Cause, ...]
+    values: tuple[Matrix, ...]
+    inputs: Matrix
+    predicted: dict[str, Matrix]
+    left: Matrix
+    cost: float
+    sample: Sample = field(repr=False)
+
+    @property
+    def key(self) -> frozenset[str]:
+        """Which causes are on, whatever their order."""
+        return frozenset(cause.tag for cause in self.causes)
+
+    @property
+    def size(self) -> int:
+        """How many numbers its causes have."""
+        return sum(cause.size for cause in self.causes)
+
+    @property
+    def moved(self) -> Matrix:
+        """How far each tolerated input is moved, in standard deviations from its mean."""
+        return moved_by(self.sample, self.inputs)
+
+    def of(self, cause: Cause) -> Matrix:
+        """Return the numbers of one of its causes, SI."""
+        return self.values[[each.tag for each in self.causes].index(cause.tag)]
+
+    def in_sample(self, sample: Sample) -> Fit:
+        """Return the same numbers judged in other noise or on other rows."""
+        left = sample.left(self.predicted)
+        if sample.directions.shape != self.sample.directions.shape or sample.directions is not self.sample.directions:
+            solved = np.linalg.lstsq(sample.directions, self.moved, rcond=None)[0] if self.inputs.size else np.zeros(0)
+            inputs = np.asarray(solved)[: sample.directions.shape[1]]
+        else:
+            inputs = self.inputs
+        return replace(self, left=left, inputs=inputs, cost=sample.cost(left, inputs), sample=sample)
+
+
+def moved_by(sample: Sample, inputs: Matrix) -> Matrix:
+    """Return by how many standard deviations directions move each tolerated input from its mean."""
+    return sample.directions @ inputs if len(inputs) else np.zeros(len(sample.machine.inputs))
+
+
+def inward(number: Number, size: float) -> tuple[float, float]:
+    """Return the bounds of a number as the fit sees it: a logarithm, or in units of ``size``."""
+    if number.is_log:
+        return log(number.low), log(number.high)
+    return number.low / size, number.high / size
+
+
+def is_too_large(sample: Sample, causes: Sequence[Cause]) -> bool:
+    """Whether an explanation has too many numbers for so few rows."""
+    return sum(cause.size for cause in causes) * ROWS_PER_NUMBER > sample.rows
+
+
+def fit(
+    sample: Sample,
+    extended: Extended,
+    causes: Sequence[Cause],
+    values: Sequence[Matrix],
+    inputs: Matrix | None = None,
+    *,
+    until: float = EXACTLY,
+    held: Sequence[Number] = (),
+) -> Fit | None:
+    """Fit an explanation from a start: numbers of every cause, SI, and directions of the inputs (K,).
+
+    Numbers in ``held`` keep their start. None where the model fails however small the causes are.
+    """
+    start = inputs if inputs is not None and len(inputs) == sample.directions.shape[1] else None
+    state = _Fitting(sample, extended, tuple(causes), held)
+    if not state.begin(np.concatenate(values) if causes else np.zeros(0), start):
+        return None
+    state.settle(until)
+    return state.answer()
+
+
+class _Fitting:
+    """One fit on its way: the numbers as the fit sees them, what is left, and its derivatives."""
+
+    def __init__(self, sample: Sample, extended: Extended, causes: tuple[Cause, ...], held: Sequence[Number]) -> None:
+        self.sample, self.extended, self.causes = sample, extended, causes
+        self.numbers = [number for cause in causes for number in cause.numbers]
+        sizes = {channel.name: channel.scale for channel in sample.channels}
+        self.sizes = np.array([_size(number, sizes) for number in self.numbers])
+        ends = [inward(number, size) for number, size in zip(self.numbers, self.sizes, strict=True)]
+        self.low, self.high = (np.array([end[side] for end in ends]) for side in (0, 1))
+        self.free = np.array([n.is_free and not any(n is each for each in held) for n in self.numbers], dtype=bool)
+        self.log = np.array([number.is_log for number in self.numbers], dtype=bool)
+        self.slopes = sample.drawn
+        self.anchor = np.zeros(self.slopes.shape[1])
+        self.damping = FIRST_DAMPING
+
+    def outward(self, u: Matrix) -> Matrix:
+        """Return numbers in SI."""
+        return np.where(self.log, np.exp(np.where(self.log, u, 0.0)), u * self.sizes)
+
+    def shown(self, points: Sequence[Matrix], anchor: Matrix) -> list[dict[str, Matrix]]:
+        """Return what the gauges show at several points, with the inputs at an anchor."""
+        moved = moved_by(self.sample, anchor)
+        return self.extended.at(self.causes, [(parts_of(self.causes, self.outward(u)), moved) for u in points])
+
+    def bare(self, shown: dict[str, Matrix]) -> Matrix:
+        """Return what is left if the inputs were at their means, as far as their slopes tell."""
+        return self.sample.left(shown) + self.slopes @ self.anchor
+
+    def begin(self, values: Matrix, inputs: Matrix | None) -> bool:
+        """Take a start, or so much nearer to no cause at all that the model does not fail; False where it always does."""
+        u = np.where(self.log, np.log(np.where(self.log, values, 1.0)), values / self.sizes)
+        u = np.clip(u, self.low, self.high)
+        amplitudes = np.array([number.is_amplitude for number in self.numbers], dtype=bool)
+        if inputs is not None:
+            self.anchor = np.array(inputs)
+        for halving in range(NEARER):
+            tried = np.where(amplitudes, u / 2**halving, u)
+            (shown,) = self.shown([tried], self.anchor)
+            bare = self.bare(shown)
+            if np.isfinite(bare).all():
+                self.u, self.predicted, self.r0 = tried, shown, bare
+                self.b = self.anchor
+                self.b, self.left, self.cost = self.calibrated(bare)
+                return True
+        return False
+
+    def calibrated(self, bare: Matrix, rounds: int = 2) -> tuple[Matrix, Matrix, float]:
+        """Return the inputs that go best with what is left without them, what is then left, and its cost."""
+        b = self.b
+        left = bare - self.slopes @ b
+        if not len(b):
+            return b, left, self.sample.cost(left, b)
+        for _ in range(rounds):
+            roots = self.sample.roots(left)
+            weighted = self.slopes * roots[:, None]
+            normal = weighted.T @ weighted + np.eye(len(b))
+            b = cho_solve(cho_factor(normal), weighted.T @ (roots * bare))
+            left = bare - self.slopes @ b
+        return b, left, self.sample.cost(left, b)
+
+    def derivatives(self) -> None:
+        """Take the derivatives of what is left by all free numbers, in one call of the model."""
+        places = np.flatnonzero(self.free)
+        steps = STEP * np.maximum(np.abs(self.u), np.where(self.log, 1.0, 1e-2))
+        steps = np.where(self.u + steps > self.high, -steps, steps)
+        points = []
+        for place in places:
+            point = self.u.copy()
+            point[place] += steps[place]
+            points.append(point)
+        self.slope = np.zeros((len(self.left), len(self.u)))
+        for place, shown in zip(places, self.shown(points, self.anchor) if points else [], strict=True):
+            column = (self.bare(shown) - self.r0) / steps[place]
+            self.slope[:, place] = column if np.isfinite(column).all() else self._other_side(place, steps[place])
+        self.is_fresh = True
+
+    def _other_side(self, place: int, step: float) -> Matrix:
+        """Return the derivative to the side on which the model does not fail, 0 where it fails on both."""
+        point = self.u.copy()
+        point[place] -= step
+        column = (self.bare(self.shown([point], self.anchor)[0]) - self.r0) / -step
+        return np.where(np.isfinite(column).all(), column, 0.0)
+
+    def step(self) -> tuple[Matrix, float]:
+        """Return where a damped step leads within the bounds, and by how much the cost is to fall."""
+        roots = self.sample.roots(self.left)
+        slope, slopes = self.slope * roots[:, None], self.slopes * roots[:, None]
+        right, k = -(roots * self.left), len(self.b)
+        eliminated = slopes.T @ slopes + np.eye(k)
+        factor = cho_factor(eliminated) if k else None
+        g0 = slopes.T @ right + self.b if k else np.zeros(0)
+        cross = slopes.T @ slope
+        normal, gradient = slope.T @ slope, slope.T @ right
+        if factor is not None:
+            normal = normal - cross.T @ cho_solve(factor, cross)
+            gradient = gradient - cross.T @ cho_solve(factor, g0)
+        moved = np.zeros(len(self.u))
+        active = self.free & (np.diag(normal) > 0)
+        for _ in range(len(self.u) + 1):
+            places = np.flatnonzero(active)
+            if not len(places):
+                break
+            held = np.flatnonzero(~active)
+            target = gradient[places] - normal[np.ix_(places, held)] @ moved[held]
+            own = normal[np.ix_(places, places)]
+            moved[places] = _solved(own + np.diag((self.damping + 1e-12) * np.diag(own)), target)
+            beyond = (self.u + moved < self.low) | (self.u + moved > self.high)
+            if not (beyond & active).any():
+                break
+            moved = np.where(beyond & active, np.clip(self.u + moved, self.low, self.high) - self.u, moved)
+            active = active & ~beyond
+        promised = float(2 * gradient @ moved - moved @ normal @ moved)
+        return moved, promised
+
+    def settle(self, until: float) -> None:
+        """Step down until little is promised; then move the anchor of the inputs, where slopes miss what they do."""
+        for _ in range(MOST_ANCHORS):
+            self._descend(until)
+            if not len(self.b) or (until > EXACTLY and float(np.abs(self.b - self.anchor).max()) < 1.0):
+                return
+            if not self._anchored():
+                return
+
+    def _descend(self, until: float) -> None:
+        if not self.free.any():
+            return
+        self.derivatives()
+        for _ in range(MOST_STEPS):
+            moved, promised = self.step()
+            if promised < until:
+                if self.is_fresh or promised < 1e-3 * until:
+                    return
+                self.derivatives()
+                continue
+            gained = self._taken(moved)
+            if gained is None or gained <= 0:
+                if not self.is_fresh:
+                    self.derivatives()
+                elif self.damping < LARGEST_DAMPING:
+                    self.damping = max(self.damping, 1e-6) * 10
+                else:
+                    return
+                continue
+            self.damping = max(self.damping / 5, 1e-12) if gained > GOOD * promised else self.damping * 3
+            if gained < GOOD * promised and not self.is_fresh:
+                self.derivatives()
+            elif gained < until and self.is_fresh:
+                return
+
+    def _taken(self, moved: Matrix) -> float | None:
+        """Take a step if it leads down, and correct the derivatives by what it shows; return by how much it led down."""
+        tried = np.clip(self.u + moved, self.low, self.high)
+        (shown,) = self.shown([tried], self.anchor)
+        bare = self.bare(shown)
+        if not np.isfinite(bare).all():
+            return None
+        b, left, cost = self.calibrated(bare)
+        gained = self.cost - cost
+        if gained > 0:
+            way = tried - self.u
+            self.slope = self.slope + np.outer((bare - self.r0) - self.slope @ way, way) / max(float(way @ way), 1e-300)
+            self.u, self.predicted, self.r0, self.b, self.left, self.cost = tried, shown, bare, b, left, cost
+            self.is_fresh = False
+        return gained
+
+    def _anchored(self) -> bool:
+        """Move the anchor to the inputs as they are; whether the slopes had missed enough to go on."""
+        (shown,) = self.shown([self.u], self.b)
+        exact = self.sample.left(shown)
+        if not np.isfinite(exact).all():
+            return False
+        missed = self.sample.roots(self.left) * (exact - self.left)
+        is_off = float(missed @ missed) > MOVED
+        self.anchor, self.predicted = self.b, shown
+        self.r0 = exact + self.slopes @ self.anchor
+        self.b, self.left, self.cost = self.calibrated(self.r0) if is_off else (self.b, exact, self.sample.cost(exact, self.b))
+        return is_off
+
+    def answer(self) -> Fit:
+        """Return the fit, its predictions with the inputs where they are."""
+        predicted = self.predicted
+        if len(self.b) and np.any(self.b != self.anchor):
+            moved = moved_by(self.sample, self.b - self.anchor)
+            slopes = self.sample.machine.slopes
+            predicted = {name: shown + slopes[name] @ moved for name, shown in predicted.items()}
+        values = tuple(parts_of(self.causes, self.outward(self.u)))
+        return Fit(self.causes, values, self.b, predicted, self.left, self.cost, self.sample)
+
+
+def _size(number: Number, scales: dict[str, float]) -> float:
+    """Return the unit in which a fit counts a number: its largest bound, or the noise of the result that it adds to."""
+    largest = max(abs(number.low), abs(number.high))
+    return largest if largest < inf else scales.get(number.name.rpartition(":")[0], 1.0)
+
+
+def _solved(normal: Matrix, right: Matrix) -> Matrix:
+    scale = np.sqrt(np.maximum(np.diag(normal), 1e-300))
+    return np.asarray(np.linalg.lstsq(normal / np.outer(scale, scale), right / scale, rcond=1e-14)[0] / scale)
+
+
+def slopes_at(found: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
+    """Return the derivatives of what a fit predicts by its numbers and by the directions, in units of the noise.
+
+    Shapes (rows, numbers) per unit of the number as the fit sees it, 0 for what keeps its start, and (rows, K); those of
+    the inputs are taken where the fit has put them.
+    """
+    state = _Fitting(found.sample, extended, found.causes, ())
+    state.begin(np.concatenate(found.values) if found.causes else np.zeros(0), found.inputs)
+    state.derivatives()
+    sample, k = found.sample, len(found.inputs)
+    own = parts_of(found.causes, state.outward(state.u))
+    points = [(own, moved_by(sample, found.inputs + sign * 0.5 * np.eye(k)[place])) for place in range(k) for sign in (1, -1)]
+    made = extended.at(found.causes, points) if points else []
+    columns = [sample.left(down) - sample.left(up) for up, down in zip(made[::2], made[1::2], strict=True)]
+    inputs = np.column_stack(columns) if columns else np.zeros((sample.rows, 0))
+    return -state.slope, np.where(np.isfinite(inputs), inputs, state.slopes)
+
+
+def unit_of(found: Fit) -> Matrix:
+    """Return what one unit of every number, as the fit sees it, is in SI at the fitted value."""
+    scales = {channel.name: channel.scale for channel in found.sample.channels}
+    numbers = [number for cause in found.causes for number in cause.numbers]
+    flat = np.concatenate(found.values) if found.causes else np.zeros(0)
+    return np.array(
+        [value if number.is_log else _size(number, scales) for number, value in zip(numbers, flat, strict=True)]
+    )
+
+
+def nothing(sample: Sample, extended: Extended) -> Fit:
+    """Return the model as it is, calibrated as far as tolerances and its own misfit make likely."""
+    found = fit(sample, extended, (), ())
+    if found is None:  # a sample holds only rows in which the model has an answer
+        raise ArithmeticError("the model fails with its inputs at their means")
+    return found
+
+

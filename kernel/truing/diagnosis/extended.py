@@ -1,0 +1,133 @@
+"""The extended model, and the one place that calls it: causes with their numbers on, the inputs moved, all rows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from truing.diagnosis.causes import Cause, at_rest
+from truing.diagnosis.machine import Machine, Predicted, predict_each
+from truing.evaluate import effect_column
+from truing.setup import Setup, SwitchedOn
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+Point = tuple[Sequence["Matrix"], "Matrix"]
+"""The numbers of every cause, SI, and how far each tolerated input is moved, in standard deviations from its mean."""
+
+
+class Extended:
+    """A machine whose model can have causes on. ``calls`` counts how often all rows were asked for."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+        self.calls = 0
+        self._setups: dict[frozenset[str], Setup] = {}
+
+    def at(self, causes: Sequence[Cause], points: Sequence[Point]) -> list[dict[str, Matrix]]:
+        """Return what the gauges show at several points, by result, SI on all rows; NaN where the model fails."""
+        setup = self._with(causes)
+        trials = [self._columns(causes, values, moved) for values, moved in points]
+        self.calls += len(points)
+        made = predict_each(setup, self.machine.records, trials)
+        return [
+            {name: shown + _of_shapes(self.machine, causes, values, name) for name, shown in each.items()}
+            for each, (values, _) in zip(made, points, strict=True)
+        ]
+
+    def _with(self, causes: Sequence[Cause]) -> Setup:
+        """Return the setup with the effects of these causes on; parts of one effect are on together."""
+        tags = frozenset(cause.tag for cause in causes if cause.effect is not None)
+        if tags not in self._setups:
+            values: dict[str, dict[str, float]] = {}
+            effects = {}
+            for cause in causes:
+                if cause.effect is not None:
+                    values.setdefault(cause.name, {}).update(at_rest(cause, self.machine))
+                    effects[cause.name] = cause.effect
+            on = tuple(SwitchedOn(effects[name], own) for name, own in values.items())
+            self._setups[tags] = self.machine.start.with_effects(on) if on else self.machine.start
+        return self._setups[tags]
+
+    def _columns(self, causes: Sequence[Cause], values: Sequence[Matrix], moved: Matrix) -> dict[str, Any]:
+        """Return the columns that set every unknown and every input, SI, (n,)."""
+        files, size = self.machine.records.file_of, len(self.machine.records)
+        made: dict[str, Any] = {}
+        off = np.array(moved, dtype=float)
+        for cause, own in zip(causes, values, strict=True):
+            if cause.tolerated >= 0:
+                off[cause.tolerated] += own[0]
+            elif cause.effect is not None:
+                for number, value in zip(cause.numbers, own, strict=True):
+                    column = effect_column(cause.name, number.name)
+                    made[column] = _in_file(made.get(column), number.file, files, float(value))
+        for given, sds in zip(self.machine.inputs, off, strict=True):
+            value = float(self.machine.start.nominal(given.name)) + given.mean + float(sds) * given.sd
+            made[given.name] = _in_file(made.get(given.name), given.file, files, value)
+        return {name: np.broadcast_to(np.asarray(value, dtype=float), (size,)) for name, value in made.items()}
+
+
+def _in_file(held: Any, file: int, files: Any, value: float) -> Any:
+    """Return a value for all rows, or one per row that holds in its file."""
+    if file < 0:
+        return value
+    before = np.zeros(len(files)) if held is None else np.broadcast_to(held, (len(files),))
+    return np.where(files == file, value, before)
+
+
+def _of_shapes(machine: Machine, causes: Sequence[Cause], values: Sequence[Matrix], name: str) -> Any:
+    """Return what unregistered shapes add to a result, SI: an array (n,), or 0 where there are none."""
+    added: Any = 0.0
+    for cause, own in zip(causes, values, strict=True):
+        if cause.shape is not None:
+            added = added + shape_added(machine, cause, own).get(name, 0.0)
+    return added
+
+
+def shape_added(machine: Machine, cause: Cause, values: Matrix) -> dict[str, Matrix]:
+    """Return what a shape that nobody registered adds, by result it acts on, SI on all rows."""
+    shape = cause.shape
+    if shape is None:
+        return {}
+    terms = shape.terms([float(values[place]) for place in cause.shapes], machine.records.covariates)
+    amplitudes = iter([float(values[place]) for place in cause.amplitudes])
+    return {name: np.asarray(sum(next(amplitudes) * term.values for term in terms)) for name in shape.results}
+
+
+def elsewhere(extended: Extended, machine: Machine) -> Extended:
+    """Return the same extension on other rows."""
+    other = Extended(machine)
+    other._setups = dict(extended._setups)
+    return other
+
+
+def parts_of(causes: Sequence[Cause], flat: Matrix) -> list[Matrix]:
+    """Cut the numbers of all causes, one behind another, into those of each."""
+    ends = np.cumsum([cause.size for cause in causes])[:-1] if causes else []
+    return [np.asarray(part) for part in np.split(flat, ends)] if causes else []
+
+
+def switched_on(causes: Sequence[Cause], values: Sequence[Matrix], machine: Machine) -> Iterator[SwitchedOn]:
+    """Give the effects of an explanation as they are on, with their fitted unknowns (SI); of files, their mean."""
+    merged: dict[str, tuple[Cause, dict[str, list[float]]]] = {}
+    for cause, own in zip(causes, values, strict=True):
+        if cause.effect is not None:
+            _, known = merged.setdefault(cause.name, (cause, {}))
+            for number, value in zip(cause.numbers, own, strict=True):
+                known.setdefault(number.name, []).append(float(value))
+    for name, (cause, known) in merged.items():
+        effect = cause.effect
+        if effect is None:
+            continue
+        before: Mapping[str, float] = next(
+            (item.values for item in machine.start.effects if item.effect.name == name), {}
+        )
+        rest = {} if effect.parts and effect.takes_any else at_rest(replace(cause, numbers=cause.numbers), machine)
+        stated = {key: sum(every) / len(every) for key, every in known.items()}
+        yield SwitchedOn(effect, {**rest, **before, **stated})

@@ -1,0 +1,372 @@
+"""The rows as a fit sees them: readings in units of their noise, what the tolerated inputs draw, how many rows count.
+
+Least squares on the rows as they are, each result in its own noise. Where rows have an order that means something
+(a time, a path), what an explanation leaves is alike in neighbours, and only so many rows count as are independent.
+Rows that lie too far out are moved to where the tails of the noise end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import log
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from truing.diagnosis.columns import in_blocks
+from truing.diagnosis.machine import Machine, Predicted, gram_of
+from truing.diagnosis.noise import (
+    SETTINGS,
+    Setting,
+    Spread,
+    Tails,
+    clipped,
+    robust_sd,
+    spread_of,
+    standardised,
+    tails_of,
+    weights_of,
+    whiten,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+FEWEST_INDEPENDENT = 20.0
+"""So many rows count at least, or all there are: from fewer independent ones their memory is not known."""
+SMALLEST_SHARE = 1e-6
+"""Of the readings: noise is no smaller, or it is rounding."""
+FEWEST_OF_MEMORY = 20
+"""Rows from which on their memory is learnt."""
+FINER = 0.5
+"""Directions of the inputs are looked for anew when the noise turns out so much finer."""
+WHITENED = 0.9
+"""Up to this memory an explanation is estimated with the memory taken out; beyond it, it would be a difference only."""
+
+
+@dataclass(frozen=True)
+class Noise:
+    """What is known of the noise of one result: scale (SI), weights by row, readings moved in, memory, tails, spread.
+
+    ``given`` are the weights that a stated standard deviation of the readings asks for, in any case; ``weights`` and
+    ``values`` have shape (n,) over all rows of the records, ``values`` is SI, NaN where nothing was measured.
+    """
+
+    scale: float
+    given: Matrix
+    weights: Matrix
+    values: Matrix
+    memory: Setting = Setting()
+    tails: Tails = Tails(np.inf, 4.5, 0.0)
+    spread: Spread = Spread()
+
+    @property
+    def share(self) -> float:
+        """Independent rows per row; rows that were moved in say less."""
+        return self.memory.independent_share * (1 - self.tails.clipped) ** 2
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One measured result on the rows of a fit: their places among the records (n,), and where runs begin (n,).
+
+    ``values`` are SI, ``weights`` one over the relative standard deviation. ``least`` is the smallest mean square, in
+    units of the noise, that is more than rounding or the steps of the gauge. ``count`` is how many rows are independent.
+    """
+
+    name: str
+    rows: NDArray[np.intp]
+    starts: NDArray[np.bool_]
+    values: Matrix
+    weights: Matrix
+    scale: float
+    count: float
+    least: float
+    memory: Setting
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def left(self, predicted: Matrix) -> Matrix:
+        """Return what a prediction (..., all rows, SI) leaves of the readings, in units of the noise, (..., n)."""
+        return np.asarray((self.values - predicted[..., self.rows]) * (self.weights / self.scale))
+
+
+@dataclass(frozen=True)
+class Sample:
+    """All measured values of a fit, one result behind another, and the directions in which the inputs may move.
+
+    ``directions`` has shape (inputs, K): u of them move the inputs by ``directions @ u`` standard deviations from
+    their means. ``is_white``: what is left is taken without its memory.
+    """
+
+    machine: Machine
+    noise: Mapping[str, Noise]
+    channels: tuple[Channel, ...]
+    directions: Matrix
+    mask: NDArray[np.bool_]
+    is_white: bool = False
+
+    @property
+    def rows(self) -> int:
+        """Number of measured values."""
+        return sum(len(channel) for channel in self.channels)
+
+    @cached_property
+    def counts(self) -> Matrix:
+        """Independent rows by channel."""
+        return np.array([channel.count for channel in self.channels])
+
+    @property
+    def total(self) -> float:
+        """Independent rows of all channels."""
+        return float(self.counts.sum())
+
+    @cached_property
+    def parts(self) -> list[slice]:
+        """Where the values of each channel stand among all."""
+        ends = np.cumsum([0, *(len(channel) for channel in self.channels)])
+        return [slice(int(begin), int(end)) for begin, end in zip(ends[:-1], ends[1:], strict=True)]
+
+    def left(self, predicted: Predicted) -> Matrix:
+        """Return what is left of all readings in units of their noise, (rows,)."""
+        parts = [self._white(channel, channel.left(predicted[channel.name])) for channel in self.channels]
+        return np.concatenate(parts)
+
+    def curve(self, added: Predicted) -> Matrix:
+        """Return something that is added to predictions, in units of the noise, (rows,)."""
+        parts = [
+            self._white(channel, added[channel.name][channel.rows] * (channel.weights / channel.scale))
+            for channel in self.channels
+        ]
+        return np.concatenate(parts)
+
+    def _white(self, channel: Channel, values: Matrix) -> Matrix:
+        if not self.is_white or channel.memory.rho > WHITENED:
+            return values
+        return whiten(values, channel.starts, channel.memory)
+
+    @cached_property
+    def drawn(self) -> Matrix:
+        """What the directions of the inputs add to the predictions, in units of the noise, (rows, K)."""
+        machine = self.machine
+        parts = []
+        for channel in self.channels:
+            slopes = np.asarray(machine.slopes[channel.name][channel.rows] @ self.directions)
+            parts.append(self._white(channel, slopes * (channel.weights / channel.scale)[:, None]))
+        return np.concatenate(parts)
+
+    def mean_squares(self, left: Matrix) -> Matrix:
+        """Return the mean square of what is left by channel, no smaller than what is more than rounding."""
+        return np.array(
+            [
+                max(float(np.mean(left[part] ** 2)), channel.least)
+                for part, channel in zip(self.parts, self.channels, strict=True)
+            ]
+        )
+
+    def cost(self, left: Matrix, inputs: Matrix) -> float:
+        """Return -2 log likelihood of what is left, noise of every result free, plus the prior of the inputs."""
+        squares = self.mean_squares(left)
+        return float(self.counts @ np.log(squares)) + float(inputs @ inputs)
+
+    def roots(self, left: Matrix) -> Matrix:
+        """Return by row what makes squares of what is left count: its noise is the one that it shows, (rows,)."""
+        weights = np.sqrt(self.counts / np.array([len(channel) for channel in self.channels]))
+        weights = weights / np.sqrt(self.mean_squares(left))
+        return np.concatenate([np.full(len(channel), weight) for channel, weight in zip(self.channels, weights, strict=True)])
+
+    def white(self) -> Sample:
+        """Return the same rows with the memory of the noise taken out."""
+        return replace(self, is_white=True)
+
+    def of_rows(self, mask: NDArray[np.bool_]) -> Sample:
+        """Return some of the rows, with the same noise."""
+        return sample_of(self.machine, self.noise, self.mask & mask, self.directions)
+
+
+def has_order(machine: Machine) -> bool:
+    """Whether rows follow one another in a way that means something: a time that goes on, or an axis of the model."""
+    records = machine.records
+    times = [item for item in records.covariates.values() if item.role == "time" and not item.is_constant]
+    return bool(times) or bool(records.rows.series)
+
+
+def sample_of(
+    machine: Machine, noise: Mapping[str, Noise], mask: NDArray[np.bool_], directions: Matrix | None = None
+) -> Sample:
+    """Return the rows that are marked, where the model itself has an answer; directions are looked for if not given."""
+    channels = []
+    for name, own in noise.items():
+        rows = np.flatnonzero(mask & np.isfinite(own.values) & np.isfinite(machine.base[name]))
+        starts = starts_of(_pieces(machine, mask), rows)
+        count = max(len(rows) * own.share, min(float(len(rows)), FEWEST_INDEPENDENT))
+        channels.append(
+            Channel(
+                name, rows, starts, own.values[rows], own.weights[rows], own.scale, count,
+                _least(machine, name, rows, own.scale), own.memory,
+            )
+        )  # fmt: skip
+    if directions is None:
+        directions = directions_seen(machine, noise, mask)
+    return Sample(machine, noise, tuple(channels), directions, mask)
+
+
+def directions_seen(machine: Machine, noise: Mapping[str, Noise], mask: NDArray[np.bool_]) -> Matrix:
+    """Return the combinations of inputs that these rows can see in their noise."""
+    places = {name: np.flatnonzero(mask & np.isfinite(own.values)) for name, own in noise.items()}
+    gram = sum(gram_of(machine.slopes[name], rows) / noise[name].scale ** 2 for name, rows in places.items())
+    return machine.directions(np.asarray(gram), sum(len(rows) for rows in places.values()))
+
+
+def _least(machine: Machine, name: str, rows: NDArray[np.intp], scale: float) -> float:
+    """Return the smallest mean square, in units of the noise, that is more than rounding or the steps of the gauge."""
+    values = machine.records.measured[name][rows]
+    rounding = SMALLEST_SHARE * float(np.sqrt(np.mean((values - machine.base[name][rows]) ** 2))) if len(rows) else 0.0
+    return max(rounding**2, resolution_of(values) ** 2 / 12, 1e-300) / scale**2
+
+
+def resolution_of(values: Matrix) -> float:
+    """Return the step in which readings come where all of them are multiples of one, else 0."""
+    distinct = np.unique(values)
+    if len(distinct) < 3 or len(distinct) > len(values) / 2:
+        return 0.0
+    gaps = np.diff(distinct)
+    step = float(gaps.min())
+    steps = gaps / step
+    return step if step > 0 and bool(np.all(np.abs(steps - np.round(steps)) < 1e-3 * steps)) else 0.0
+
+
+def starts_of(run_of: NDArray[np.intp], rows: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Mark the first row of every run."""
+    runs = run_of[rows]
+    starts = np.ones(len(rows), dtype=bool)
+    starts[1:] = runs[1:] != runs[:-1]
+    return starts
+
+
+def _pieces(machine: Machine, mask: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Number the pieces of runs that are left when only some rows are taken: a gap starts the noise anew."""
+    runs = machine.records.run_of
+    gap = np.zeros(len(mask), dtype=np.intp)
+    gap[1:] = (runs[1:] != runs[:-1]) | (mask[1:] & ~mask[:-1])
+    return np.cumsum(gap)
+
+
+def residuals_of(machine: Machine) -> dict[str, Matrix]:
+    """Return measured minus predicted at the mean of the tolerances, SI, NaN where missing."""
+    measured = machine.records.measured
+    return {name: values - machine.base[name] - machine.shifts[name] for name, values in measured.items()}
+
+
+def first_noise(machine: Machine) -> dict[str, Noise]:
+    """Return a first idea of the noise: what the tolerated inputs and powers of all covariates cannot explain."""
+    made = {}
+    drivers = [standardised(item.values) for item in machine.records.covariates.values() if not item.is_constant]
+    for name, values in residuals_of(machine).items():
+        here = np.flatnonzero(np.isfinite(values) & ~machine.records.held_out)
+        triangle = np.zeros((0, machine.slopes[name].shape[1] + 2 * len(drivers) + 2))
+        for block in in_blocks(len(here)):
+            rows = here[block]
+            powers = [driver[rows] ** power for driver in drivers for power in (1, 2)]
+            columns = np.column_stack([machine.slopes[name][rows], np.ones(len(rows)), *powers, values[rows]])
+            triangle = np.asarray(np.linalg.qr(np.concatenate([triangle, columns]), mode="r"))
+        floor = SMALLEST_SHARE * float(np.sqrt(np.mean(values[here] ** 2))) if len(here) else 0.0
+        scale = max(_unexplained(triangle, len(here)), floor, 1e-300)
+        given = _stated(machine, name)
+        made[name] = Noise(scale, given, given, machine.records.measured[name])
+    return made
+
+
+def _unexplained(triangle: Matrix, rows: int) -> float:
+    """Return the standard deviation that columns leave of the last one, of the triangle of their QR decomposition."""
+    size = np.sqrt(np.sum(triangle[:, :-1] ** 2, axis=0))
+    design = triangle[:, :-1][:, size > 0] / size[size > 0]
+    left, singular, _ = np.linalg.svd(design, full_matrices=False)
+    left = left[:, singular > 1e-6 * singular[0]] if len(singular) else left
+    left = left[:, : max(1, rows // 3)]
+    rest = triangle[:, -1] - left @ (left.T @ triangle[:, -1])
+    return float(np.sqrt(rest @ rest / max(rows - left.shape[1], 1)))
+
+
+def _stated(machine: Machine, name: str) -> Matrix:
+    """Return the weights that stated standard deviations ask for: 1 where none is stated, less where it is larger."""
+    stated = machine.records.sigma.get(name)
+    if stated is None or not (stated > 0).any():
+        return np.ones(len(machine.records))
+    middle = float(np.median(stated[stated > 0]))
+    return np.where(stated > 0, middle / np.where(stated > 0, stated, middle), 1.0)
+
+
+def learnt(sample: Sample, predicted: Predicted, used: float) -> dict[str, Noise]:
+    """Learn scale, spread, tails and memory of the noise from what an explanation leaves, ``used`` its free numbers.
+
+    Readings that lie too far out are moved to where the tails end; they are looked at anew every time.
+    """
+    machine, drivers = sample.machine, _drivers(sample.machine)
+    made = {}
+    for channel in sample.channels:
+        before, rows = sample.noise[channel.name], channel.rows
+        left = machine.records.measured[channel.name][rows] - predicted[channel.name][rows]
+        own = {**drivers, f"size of {channel.name}": np.abs(machine.base[channel.name])}
+        spread = spread_of(left * before.given[rows], {name: values[rows] for name, values in own.items()})
+        weights = before.given * weights_of(spread, own.get(spread.driver), rows, len(machine.records))
+        weighted = left * weights[rows]
+        memory = memory_of(weighted, channel.starts) if has_order(machine) else Setting()
+        innovations = whiten(weighted, channel.starts, memory)
+        floor = channel.scale * channel.least**0.5
+        is_noise = robust_sd(innovations) > 2 * floor
+        tails = tails_of(innovations) if is_noise else before.tails
+        kept = _moved_in(weighted, innovations, tails) if is_noise else weighted
+        values = np.array(machine.records.measured[channel.name])
+        values[rows] = predicted[channel.name][rows] + kept / weights[rows]
+        free = used / len(sample.channels)
+        scale = float(np.sqrt(np.sum(kept**2) / max(len(rows) - free, 1.0)))
+        made[channel.name] = Noise(max(scale, floor, 1e-300), before.given, weights, values, memory, tails, spread)
+    return made
+
+
+def _moved_in(weighted: Matrix, innovations: Matrix, tails: Tails) -> Matrix:
+    """Return what is left with the rows that are too far from what their neighbours say moved to where tails end."""
+    return weighted + clipped(innovations, tails) - innovations
+
+
+def _drivers(machine: Machine) -> dict[str, Matrix]:
+    """Return what the spread of noise may depend on: every covariate, and its size where it changes sign."""
+    made: dict[str, Matrix] = {}
+    for name, item in machine.records.covariates.items():
+        if item.is_constant:
+            continue
+        made[name] = item.values
+        if np.nanmin(item.values) < 0 < np.nanmax(item.values):
+            made[f"size of {name}"] = np.abs(item.values)
+    return made
+
+
+def memory_of(left: Matrix, starts: NDArray[np.bool_]) -> Setting:
+    """Return the filter that makes what is left likeliest, its parameters paid for."""
+    if len(left) < FEWEST_OF_MEMORY:
+        return Setting()
+    costs = [memory_cost(left, starts, setting) for setting in SETTINGS]
+    return SETTINGS[int(np.argmin(costs))]
+
+
+def memory_cost(left: Matrix, starts: NDArray[np.bool_], setting: Setting) -> float:
+    """Return -2 log likelihood of what is left as noise of this filter, its size free, its parameters paid for."""
+    white = whiten(left, starts, setting)
+    square = max(float(np.mean(white**2)), 1e-300)
+    ratio = int(starts.sum()) * log(setting.variance_ratio)
+    return len(left) * log(square) + ratio + setting.size * log(max(len(left), 2))
+
+
+def as_noise(sample: Sample, left: Matrix) -> float:
+    """Return -2 log likelihood of what is left where every result has the memory that suits it best."""
+    total = 0.0
+    for part, channel in zip(sample.parts, sample.channels, strict=True):
+        settings: Sequence[Setting] = SETTINGS if has_order(sample.machine) else (Setting(),)
+        total += min(memory_cost(left[part], channel.starts, setting) for setting in settings)
+    return total

@@ -1,0 +1,243 @@
+"""Shapes that nobody registered, made from the covariates without physics, each with its numbers.
+
+Trends and products of covariates, orders of an angle, waves of any period, steps; where a covariate changes its sign a
+jump, a kink and a dead zone; in time a settling. Amplitudes are numbers without bounds, one for every term and result;
+a frequency, a place, a width or a time constant is looked for like a shape of any effect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import combinations
+from math import inf, pi
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from truing.diagnosis.causes import UNKNOWN, Cause, Number
+from truing.diagnosis.records import Covariate, Records
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+Kind = Literal["trend", "product", "order", "wave", "step", "jump", "kink", "dead zone", "settling"]
+DEGREES = (2, 4)
+HIGHEST_ORDER = 16
+FEWEST_VALUES = 12
+"""A covariate of fewer distinct values orders nothing: no wave, no step, no settling over it."""
+MOST_WAVES = 3000
+EITHER_SIDE = 0.1
+"""Share of the rows on each side of zero from which on something may happen where a covariate changes its sign."""
+ENDS = 0.02
+SHORTEST_SETTLING, LONGEST_SETTLING = 0.02, 1.0
+"""Time constants that are looked for, in lengths of the record."""
+
+
+@dataclass(frozen=True)
+class Term:
+    """One term of a shape: Python over covariates in SI, and its values on all rows of some records, (n,)."""
+
+    expression: str
+    values: Matrix
+
+
+@dataclass(frozen=True)
+class Shape:
+    """How a shape is calculated: ``terms`` of its shape numbers (SI) and the covariates of some records.
+
+    Its amplitudes are those of its terms, result after result.
+    """
+
+    kind: Kind
+    depends_on: tuple[str, ...]
+    results: tuple[str, ...]
+    terms: Callable[[Sequence[float], Mapping[str, Covariate]], list[Term]]
+
+    @property
+    def words(self) -> str:
+        """What it is, for rankings."""
+        return f"{self.kind} over {' and '.join(self.depends_on)}"
+
+
+def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_steps: bool) -> list[Cause]:
+    """Return the shapes over every covariate that moved, for every result alone and for all of them together.
+
+    ``registered`` holds the orders of each angle that an effect looks for already; ``has_steps`` says that steps in
+    time are looked for already. Of covariates that move as one the first has the shapes.
+    """
+    moved = _apart([item for item in records.covariates.values() if not item.is_constant])
+    results = tuple(records.measured)
+    groups = [(name,) for name in results] + ([results] if len(results) > 1 else [])
+    made = []
+    for kind, on, count, numbers, terms in _families(moved, registered, has_steps=has_steps, rows=len(records)):
+        for group in groups:
+            shape = Shape(kind, on, group, terms)
+            amplitudes = [Number(f"{name}:{place}", -inf, inf) for name in group for place in range(count)]
+            detail = f".{count}" if kind in {"trend", "product"} else ""
+            tag = f"{UNKNOWN}:{kind}{detail}:{','.join(on)}:{','.join(group)}"
+            made.append(Cause(UNKNOWN, tag, (*amplitudes, *numbers), 10**6, shape=shape))
+    return made
+
+
+def _apart(moved: Sequence[Covariate]) -> list[Covariate]:
+    """Return the covariates but those that another one moves as one with."""
+    kept: list[Covariate] = []
+    for item in moved:
+        both = [(item, other) for other in kept if not item.goes_round]
+        if not any(abs(_correlation(one.values, other.values)) > 0.99999 for one, other in both):
+            kept.append(item)
+    return kept
+
+
+def _correlation(one: Matrix, other: Matrix) -> float:
+    both = np.isfinite(one) & np.isfinite(other)
+    return float(np.corrcoef(one[both], other[both])[0, 1]) if both.sum() > 2 else 0.0
+
+
+Family = tuple[
+    Kind, tuple[str, ...], int, tuple[Number, ...], Callable[[Sequence[float], Mapping[str, Covariate]], list[Term]]
+]
+
+
+def _families(
+    moved: Sequence[Covariate], registered: Mapping[str, Sequence[int]], *, has_steps: bool, rows: int
+) -> Iterator[Family]:
+    """Give every family of shapes: kind, covariates, terms a result, shape numbers, and how its terms are made."""
+    for item in moved:
+        distinct = len(np.unique(np.round(item.values[np.isfinite(item.values)], 12)))
+        for degree in DEGREES:
+            if item.goes_round and item.is_angle:
+                if degree == DEGREES[0]:
+                    yield "trend", (item.name,), 3, (), partial(_harmonics, item.name)
+            elif distinct > degree:
+                yield "trend", (item.name,), degree + 1, (), partial(_powers, item.name, degree)
+        yield from _at_zero(item)
+        if distinct >= FEWEST_VALUES:
+            yield from _ordered(item, registered.get(item.name, ()), has_steps=has_steps, rows=rows)
+    for first, second in combinations(moved, 2):
+        for degree in (1, 2):
+            names = first.name, second.name
+            count = len(_exponents(degree))
+            yield "product", names, count, (), partial(_products, names, degree)
+
+
+def _at_zero(item: Covariate) -> Iterator[Family]:
+    """Give what may happen where a covariate changes its sign: a jump, a kink, a dead zone."""
+    values = item.values[np.isfinite(item.values)]
+    if min((values > 0).mean(), (values < 0).mean()) < EITHER_SIDE or item.goes_round:
+        return
+    on, largest = (item.name,), float(np.abs(values).max())
+    yield "jump", on, 1, (), partial(_jump, item.name)
+    yield "kink", on, 1, (), partial(_kink, item.name)
+    if len(np.unique(values)) >= FEWEST_VALUES:
+        width = Number("width", 0.02 * largest, 0.9 * largest, is_amplitude=False)
+        yield "dead zone", on, 1, (width,), partial(_dead_zone, item.name)
+
+
+def _ordered(
+    item: Covariate, registered: Sequence[int], *, has_steps: bool, rows: int
+) -> Iterator[Family]:
+    """Give waves of whole orders over an angle, of any period over all else, steps and settling in time."""
+    values = item.values[np.isfinite(item.values)]
+    span, on = float(np.ptp(values)), (item.name,)
+    if item.is_angle and item.goes_round:
+        low = max(registered, default=0) + 1
+        high = min(HIGHEST_ORDER, highest_order(item.values))
+        if high > low:
+            order = Number("order", low, high, is_amplitude=False, whole=True)
+            yield "order", on, 2, (order,), partial(_waves, item.name, 1.0)
+        return
+    most = min(0.5 * len(np.unique(values)), 0.5 * rows, MOST_WAVES)
+    frequency = Number("frequency", 1.0 / span, max(most, 2.0) / span, is_amplitude=False)
+    yield "wave", on, 2, (frequency,), partial(_waves, item.name, 2 * pi)
+    if item.role in {"time", "order"}:
+        if not has_steps:
+            ends = (float(values.min() + ENDS * span), float(values.max() - ENDS * span))
+            yield "step", on, 1, (Number("place", *ends, is_amplitude=False, along=item.name),), partial(_step, item.name)
+        reach = (SHORTEST_SETTLING * span, LONGEST_SETTLING * span)
+        yield "settling", on, 2, (Number("constant", *reach, is_amplitude=False),), partial(_settling, item.name)
+
+
+def highest_order(angle: Matrix) -> int:
+    """Return the highest order that this sampling of an angle shows as itself; above it, it folds back."""
+    places = np.unique(np.round(np.mod(angle[np.isfinite(angle)], 2 * pi), 9))
+    if len(places) < 3:
+        return 0
+    gaps = np.diff([*places, places[0] + 2 * pi])
+    inner = gaps[gaps < gaps.max()] if len(gaps) > 2 else gaps
+    is_regular = len(inner) > 0 and float(np.ptp(inner)) < 1e-3 * float(inner.mean())
+    if not is_regular:
+        return 10**6
+    return int(np.ceil(pi / float(inner.mean()) - 1e-6)) - 1  # places are rounded to 1e-9
+
+
+def _known(covariates: Mapping[str, Covariate], name: str) -> Matrix:
+    values = covariates[name].values
+    return np.where(np.isfinite(values), values, np.nanmean(values))
+
+
+def _scaled(covariates: Mapping[str, Covariate], name: str) -> tuple[str, Matrix, float, float]:
+    """Return a covariate from -1 to 1 over the record: as Python, its values, its middle and half of its range."""
+    values = _known(covariates, name)
+    middle, half = float(values.max() + values.min()) / 2, float(np.ptp(values)) / 2 or 1.0
+    return f"(({name} - {middle!r}) / {half!r})", (values - middle) / half, middle, half
+
+
+def _powers(name: str, degree: int, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
+    text, z, _, _ = _scaled(covariates, name)
+    return [Term("1" if not power else f"{text}**{power}", z**power) for power in range(degree + 1)]
+
+
+def _harmonics(name: str, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
+    return [Term("1", np.ones(len(covariates[name].values))), *_waves(name, 1.0, [1.0], covariates)]
+
+
+def _exponents(degree: int) -> list[tuple[int, int]]:
+    """Return the powers of two covariates in a product: bilinear, or with squares."""
+    return [(0, 0), (1, 0), (0, 1), (1, 1), *([(2, 0), (0, 2), (2, 1), (1, 2)] if degree > 1 else [])]
+
+
+def _products(
+    names: tuple[str, str], degree: int, shape: Sequence[float], covariates: Mapping[str, Covariate]
+) -> list[Term]:
+    (one, a, _, _), (other, b, _, _) = (_scaled(covariates, name) for name in names)
+    return [Term(f"{one}**{i} * {other}**{j}", a**i * b**j) for i, j in _exponents(degree)]
+
+
+def _waves(name: str, turn: float, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
+    angle = turn * float(shape[0])
+    values = _known(covariates, name)
+    return [Term(f"np.{word}({angle!r} * {name})", getattr(np, word)(angle * values)) for word in ("sin", "cos")]
+
+
+def _step(name: str, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
+    place = float(shape[0])
+    return [Term(f"({name} >= {place!r})", (_known(covariates, name) >= place).astype(float))]
+
+
+def _settling(name: str, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
+    values, constant = _known(covariates, name), float(shape[0])
+    start = float(values.min())
+    text = f"np.exp(-({name} - {start!r}) / {constant!r})"
+    return [Term("1", np.ones(len(values))), Term(text, np.exp(-(values - start) / constant))]
+
+
+def _jump(name: str, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
+    return [Term(f"np.sign({name})", np.sign(_known(covariates, name)))]
+
+
+def _kink(name: str, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
+    values = _known(covariates, name)
+    largest = float(np.abs(values).max())
+    return [Term(f"np.abs({name}) / {largest!r}", np.abs(values) / largest)]
+
+
+def _dead_zone(name: str, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
+    values, width = _known(covariates, name), float(shape[0])
+    largest = float(np.abs(values).max())
+    text = f"np.sign({name}) * np.maximum(np.abs({name}) - {width!r}, 0) / {largest!r}"
+    return [Term(text, np.sign(values) * np.maximum(np.abs(values) - width, 0) / largest)]
