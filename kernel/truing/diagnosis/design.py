@@ -1,33 +1,37 @@
 """The next measurement: settings that separate explanations which this data cannot tell apart.
 
 Every explanation is believed in turn while its rival refits to everything so far; a setting is worth what the rival
-then still gets wrong (greedy T-optimal design). The raw distance of two predictions would be the wrong criterion.
+then still gets wrong (greedy T-optimal design). The raw distance of two predictions would be the wrong criterion. The
+rival refits by its derivatives at its own exact fit.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import permutations
 from typing import TYPE_CHECKING
 
-from truing.diagnosis.candidates import new_curves
-from truing.diagnosis.contest import Contest, names_of
+import numpy as np
+
+from truing.diagnosis.causes import Cause, Number
+from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.competition import Competition
+from truing.diagnosis.curves import look
+from truing.diagnosis.exact import Fit, fit, moved_by, slopes_at, unit_of
+from truing.diagnosis.extended import Extended, elsewhere, parts_of
 from truing.diagnosis.findings import in_unit
-from truing.diagnosis.machine import Machine, machine_of
-from truing.diagnosis.noise import SETTINGS, whiten
+from truing.diagnosis.machine import Machine
 from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Amount, NextPoint
-from truing.diagnosis.rival_twins import TwinTerm, believed, is_physical, twins_of
-from truing.diagnosis.search import Solution
-from truing.diagnosis.settings import settings_of
+from truing.diagnosis.sample import Sample
+from truing.diagnosis.settings import machine_there, settings_of
 from truing.diagnosis.verdict import APART
-from truing.measurements import RowsFile
 from truing.numbers import format_number
 from truing.units import from_si
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     Matrix = NDArray[np.float64]
@@ -36,8 +40,10 @@ POINTS = 4
 MOST_POINTS = 100
 """Nobody measures more: explanations that so many points do not tell apart are told apart by a fact, or not at all."""
 RIVALS = 4
-FAINTEST = 0.01
-"""Curves that no setting sets apart by more, in units of the noise squared, are the same curve everywhere."""
+STEP = 1e-4
+"""Of a number, or of a hundredth of its range: by how much it is moved for its derivative at a setting."""
+UNSEEN = 1e-9
+"""Share of its own precision, or of one over its range squared, that is added to that of every number."""
 
 
 @dataclass
@@ -57,8 +63,6 @@ class _Duel:
 
     def gains(self) -> Matrix:
         """Return what every setting would add to the separation, shape (T,)."""
-        import numpy as np
-
         total = np.zeros(len(next(iter(self.signal.values()))))
         for name, signal in self.signal.items():
             rows = self.rows[name]
@@ -72,8 +76,6 @@ class _Duel:
         ``times`` readings at every setting leave the rival ``left' (1 / times + R inverse R')^-1 left`` more than now,
         R its rows there and ``left`` what it gets wrong before it is fitted to them.
         """
-        import numpy as np
-
         rows = np.concatenate([rows[list(places)] for rows in self.rows.values()])
         signal = np.concatenate([signal[list(places)] for signal in self.signal.values()])
         left, carried = signal - rows @ self.coefficients, rows @ self.inverse @ rows.T
@@ -106,64 +108,87 @@ class Proposal:
     tied: tuple[tuple[str, str], ...] = ()
 
 
-def next_points(full: Contest, winner: int, rivals: Sequence[int]) -> Proposal:
+def next_points(chosen: Chosen) -> Proposal:
     """Return up to four settings that separate the winner and its rivals, with the reason for each.
 
     Shapes that nobody registered say nothing beyond the rows they were fitted to, so they are no rivals here. Of
     results along an axis nothing is proposed: what could be set there is a whole record.
     """
-    places = [place for place in (winner, *rivals) if is_physical(full.found.hypotheses[place])][: RIVALS + 1]
-    chosen = full.found.hypotheses[winner]
-    twins = twins_of(full, chosen, full.solution(winner).coefficients.tolist()) if is_physical(chosen) else []
-    if len(places) < 2 and not twins:
+    several = rival_fits(chosen)
+    if len(several) < 2:
         return Proposal()
-    fields = full.problem.machine.start.model.own_result_fields
-    is_along = any(fields[name].along for name in full.problem.machine.records.measured)
-    settings = {} if is_along else settings_of(full)
-    named = [(twin, (_name_of(full, winner), _twin_name(full, winner, twin))) for twin in twins]
-    duels: list[_Duel] = []
+    machine = chosen.competition.sample.machine
+    fields = machine.start.model.own_result_fields
+    is_along = any(fields[name].along for name in machine.records.measured)
+    settings = {} if is_along else settings_of(machine)
+    live: list[_Duel] = []
     if settings:
-        there = _machine_there(full, settings)
-        duels = [_duel(full, there, a, b) for a in places for b in places if not _is_part(full, a, b)]
-        duels += [
-            duel for twin, names in named for duel in _twin_duels(full, there, full.solution(winner), twin, names)
-        ]
-    live = _live(_live(duels))  # what cannot be told apart chooses no setting for the others
-    every = [*_pairs(full, winner, places), *(names for _, names in named)]
+        live = _live(_live(_duels(chosen, several, settings)))  # what is the same chooses no setting for the others
+    winner = name_of(chosen.best)
+    pairs = [(winner, name_of(found)) for found in several[1:]] if is_physical(chosen.best) else []
     apart = {frozenset(duel.names) for duel in live}
-    tied = tuple(pair for pair in dict.fromkeys(every) if frozenset(pair) not in apart)
-    return Proposal(tuple(_points(full, settings, live)), tied)
+    tied = tuple(pair for pair in pairs if frozenset(pair) not in apart)
+    return Proposal(tuple(_points(chosen, settings, live)), tied)
+
+
+def is_physical(found: Fit) -> bool:
+    """Whether an explanation is made of effects and inputs alone, so that it says something at other settings."""
+    return bool(found.causes) and all(cause.is_registered for cause in found.causes)
+
+
+def name_of(found: Fit) -> str:
+    """Return what an explanation is called: the names of its causes, each once."""
+    return " + ".join(dict.fromkeys(cause.name for cause in found.causes))
+
+
+def rival_fits(chosen: Chosen) -> list[Fit]:
+    """Return the winner, the winner under its other names and the first rivals, one fit for every name.
+
+    Explanations with a shape that nobody registered are left out.
+    """
+    rivals = [rival.fit for rival in chosen.rivals if is_physical(rival.fit)][:RIVALS]
+    own = [chosen.best, *_renamed(chosen)] if is_physical(chosen.best) else []
+    by_name: dict[frozenset[str], Fit] = {}
+    for found in (*own, *rivals):
+        by_name.setdefault(frozenset(cause.name for cause in found.causes), found)
+    return list(by_name.values())
+
+
+def _renamed(chosen: Chosen) -> Iterator[Fit]:
+    """Give the winner with one cause exchanged for each that draws the same curve, as large as that is here."""
+    best, made = chosen.best, chosen.competition
+    for place, cause in enumerate(best.causes):
+        for name in chosen.same.get(cause.tag, ()):
+            others = [other for other in made.causes if other.name == name and other.tag not in best.key]
+            keys = [(best.key - {cause.tag}) | {other.tag} for other in others]
+            found = [made.known[key] for key in keys if key in made.known]
+            found = found or [each for other in others for each in _exchanged(made, best, place, other)]
+            if found:
+                yield min(found, key=lambda each: each.cost)
+
+
+def _exchanged(made: Competition, best: Fit, place: int, other: Cause) -> Iterator[Fit]:
+    """Give exact fits of an explanation with one cause exchanged for another, from where its curves say."""
+    causes, values = list(best.causes), list(best.values)
+    del causes[place], values[place]
+    (predicted,) = made.extended.at(causes, [(values, best.moved)])
+    held = replace(best, causes=tuple(causes), values=tuple(values), predicted=predicted).in_sample(made.sample)
+    seen = look(made.curves, held, [other]).get(other.tag) if np.isfinite(held.left).all() else None
+    for _, start in seen.starts if seen is not None else ():
+        several = (*causes[:place], other, *causes[place:])
+        found = fit(made.sample, made.extended, several, (*values[:place], start, *values[place:]), held.inputs)
+        if found is not None:
+            yield found
 
 
 def _live(duels: Sequence[_Duel]) -> list[_Duel]:
-    """Return the duels of the pairs that the settings best for all of them tell apart, whichever is believed."""
+    """Return the duels that the settings best for all of them decide."""
     taken = _greedy(duels)
-    tied = {frozenset(duel.names) for duel in duels if duel.needed(taken) is None}
-    return [duel for duel in duels if frozenset(duel.names) not in tied]
-
-
-def _pairs(full: Contest, winner: int, places: Sequence[int]) -> list[tuple[str, str]]:
-    """Return the winner beside every rival, by name; where the winner has no name nothing is paired with it."""
-    if winner not in places:
-        return []
-    return [(_name_of(full, winner), _name_of(full, place)) for place in places if place != winner]
-
-
-def _name_of(full: Contest, place: int) -> str:
-    return " + ".join(names_of(full.problem, full.found.hypotheses[place]))
-
-
-def _twin_name(full: Contest, winner: int, twin: TwinTerm) -> str:
-    """Return what the winner is called with one of its causes under its other name."""
-    hypothesis = full.found.hypotheses[winner]
-    replaced = full.problem.candidates[hypothesis.pieces[twin.piece].owner].name
-    return " + ".join(twin.name if name == replaced else name for name in names_of(full.problem, hypothesis))
+    return [duel for duel in duels if duel.needed(taken) is not None]
 
 
 def _greedy(duels: Sequence[_Duel]) -> list[int]:
     """Return the places of the settings that separate most, one after another, none twice."""
-    import numpy as np
-
     if not duels:
         return []
     now = [replace(duel) for duel in duels]
@@ -180,153 +205,116 @@ def _greedy(duels: Sequence[_Duel]) -> list[int]:
     return found
 
 
-def _points(full: Contest, settings: Mapping[str, Matrix], live: Sequence[_Duel]) -> Iterator[NextPoint]:
+def _points(chosen: Chosen, settings: Mapping[str, Matrix], live: Sequence[_Duel]) -> Iterator[NextPoint]:
     """Give the settings with what they are for, and how many like them are needed to tell all pairs apart."""
     taken = _greedy(live)
     needed = max((duel.needed(taken) or MOST_POINTS for duel in live), default=0)
     for count, place in enumerate(taken, start=1):
         weakest = min(live, key=lambda duel: duel.separation)
-        why = _why(full, settings, place, weakest)
+        why = _why(chosen, settings, place, weakest)
         for duel in live:
             duel.measure(place)
         if count == len(taken) < needed:
             why += f"; {needed} points like these would be needed to tell them apart"
         least = min(duel.separation for duel in live)
-        yield NextPoint(_amounts(full, settings, place), weakest.names, why, least, needed=needed)
+        yield NextPoint(_amounts(chosen, settings, place), weakest.names, why, least, needed=needed)
 
 
-def _is_part(full: Contest, believed: int, rival: int) -> bool:
-    """Whether a rival is the believed explanation itself, or that with something added: it is never wrong then."""
-    return set(full.found.hypotheses[believed].key) <= set(full.found.hypotheses[rival].key)
+@dataclass(frozen=True)
+class _Seen:
+    """An explanation on the data and at the settings that are tried.
+
+    ``there`` is what it predicts by result at the settings (T,), SI. Columns are derivatives by its free numbers, as
+    the fit sees them, and by the directions of the inputs: of the sample's rows in units of the noise, (rows, p), and
+    at the settings in SI, (T, p).
+    """
+
+    found: Fit
+    columns: Matrix
+    there: Mapping[str, Matrix]
+    columns_there: Mapping[str, Matrix]
 
 
-def _machine_there(full: Contest, settings: Mapping[str, Matrix]) -> Machine:
-    """Return the machine at the settings that are tried."""
-    import numpy as np
-
-    machine = full.problem.machine
-    count = len(next(iter(settings.values())))
-    columns = {
-        name: np.full(count, _middle(values))
-        for name, values in machine.records.rows.columns.items()
-        if _is_number(values)
-    }
-    columns |= settings
-    zeros = np.zeros(count, dtype=np.intp)
-    rows = RowsFile("", columns, {}, {}, tuple(range(count)))
-    covariates = {name: replace(machine.records.covariates[name], values=values) for name, values in settings.items()}
-    records = Records(
-        files=machine.records.files,
-        rows=rows,
-        file_of=zeros,
-        run_of=zeros,
-        lines=np.arange(count),
-        measured={name: np.zeros(count) for name in machine.records.measured},
-        sigma={},
-        covariates=covariates,
-        held_out=np.zeros(count, dtype=bool),
-        absent=machine.records.absent,
-    )
-    return machine_of(machine.start, records)
+def _duels(chosen: Chosen, several: Sequence[Fit], settings: Mapping[str, Matrix]) -> list[_Duel]:
+    """Set up every explanation, believed, against every other one, unless that is the same with something added."""
+    made = chosen.competition
+    tried = elsewhere(made.extended, machine_there(made.sample.machine, settings))
+    roots = made.sample.roots(chosen.best.in_sample(made.sample).left)
+    seen = [_seen(found.in_sample(made.sample), made.extended, tried) for found in several]
+    spreads = _spreads(made.sample, chosen.best)
+    return [_duel(a, b, roots, spreads) for a, b in permutations(seen, 2) if not a.found.key <= b.found.key]
 
 
-def _is_number(values: object) -> bool:
-    import numpy as np
-
-    return isinstance(values, np.ndarray) and values.dtype.kind == "f"
-
-
-def _middle(values: object) -> float:
-    import numpy as np
-
-    return float(np.nanmedian(np.asarray(values, dtype=float)))
+def _spreads(sample: Sample, best: Fit) -> dict[str, float]:
+    """Return the standard deviation of one new value of every result as the winner leaves it, SI."""
+    squares = sample.mean_squares(sample.left(best.predicted))
+    return {each.name: each.scale * float(square) ** 0.5 for each, square in zip(sample.channels, squares, strict=True)}
 
 
-def _duel(full: Contest, there: Machine, believed: int, rival: int) -> _Duel:
-    """Set up one believed explanation against one rival, with the rival refitted to the data there is."""
-    import numpy as np
+def _duel(true: _Seen, rival: _Seen, roots: Matrix, spreads: Mapping[str, float]) -> _Duel:
+    """Set up one believed explanation against one rival, which refits to what the believed one says of this data.
 
-    true, other = full.solution(believed), full.solution(rival)
-    evidence = full.evidence
-    k = evidence.directions.shape[1]
-    chosen = [products[place].matrix for products, place in zip(evidence.products, true.setting, strict=True)]
-    total = np.asarray(sum(chosen[1:], chosen[0]))
-    own = [*range(1, 1 + k), *(1 + k + column for column in other.hypothesis.columns)]
-    normal = total[np.ix_(own, own)].copy()
-    normal[:k, :k] += np.eye(k)
-    normal += 1e-9 * np.diag(np.diag(normal))
-    theirs = [1 + k + column for column in true.hypothesis.columns]
-    cross = total[np.ix_(own, theirs)] @ true.coefficients
+    The rival pays for its inputs what they are off their means, the believed one has paid for its own already.
+    """
+    k = len(rival.found.inputs)
+    design = rival.columns * roots[:, None]
+    count = design.shape[1]
+    at = np.concatenate([np.zeros(count - k), rival.found.inputs])  # coefficients are moves, of inputs all of them
+    apart = (rival.found.left - true.found.left) * roots + design @ at
+    normal = design.T @ design
+    normal += np.diag([0.0] * (count - k) + [1.0] * k) + UNSEEN * np.diag(np.maximum(np.diag(normal), 1.0))
     inverse: Matrix = np.asarray(np.linalg.inv(normal), dtype=np.float64)
-    size = float(true.coefficients @ total[np.ix_(theirs, theirs)] @ true.coefficients)
-    signal, rows = {}, {}
-    for place, channel in enumerate(evidence.channels):
-        spread = channel.scale * np.sqrt(SETTINGS[true.setting[place]].variance_ratio)
-        a, b = (_columns_there(full, there, each, channel.name) for each in (true, other))
-        signal[channel.name] = a @ true.coefficients / spread
-        u = there.slopes[channel.name] @ evidence.directions
-        rows[channel.name] = np.concatenate([u, b], axis=1) / spread
-    names = tuple(" + ".join(names_of(full.problem, each.hypothesis)) for each in (true, other))
-    return _Duel(
-        (names[0], names[1]), max(0.0, size - float(cross @ inverse @ cross)), inverse @ cross, inverse, signal, rows
+    start = inverse @ (design.T @ apart)
+    left = apart - design @ start
+    paid = float(start[count - k :] @ start[count - k :]) - float(true.found.inputs @ true.found.inputs)
+    rows = {name: rival.columns_there[name] / spread for name, spread in spreads.items()}
+    signal = {
+        name: (true.there[name] - rival.there[name]) / spread + rows[name] @ at for name, spread in spreads.items()
+    }
+    names = name_of(true.found), name_of(rival.found)
+    return _Duel(names, max(0.0, float(left @ left) + paid), start, inverse, signal, rows)
+
+
+def _seen(found: Fit, extended: Extended, tried: Extended) -> _Seen:
+    """Return what an explanation predicts and how it changes, on the data and at the settings that are tried."""
+    numbers = [number for cause in found.causes for number in cause.numbers]
+    free = np.array([number.is_free for number in numbers], dtype=bool)
+    own, inputs = slopes_at(found, extended)
+    there, slopes = _there(found, numbers, tried)
+    kept = np.concatenate([free, np.ones(len(found.inputs), dtype=bool)])
+    return _Seen(
+        found,
+        np.column_stack([own, inputs])[:, kept],
+        there,
+        {name: columns[:, kept] for name, columns in slopes.items()},
     )
 
 
-def _twin_duels(
-    full: Contest, there: Machine, solution: Solution, twin: TwinTerm, names: tuple[str, str]
-) -> list[_Duel]:
-    """Set up a named cause against one of the same curve here; none where no setting within reach tells them apart."""
-    import numpy as np
-
-    piece = solution.hypothesis.pieces[twin.piece]
-    before = sum(len(each.columns) for each in solution.hypothesis.pieces[: twin.piece])
-    own = slice(before, before + len(piece.columns))
-    curves = list(zip(twin.term.curves, new_curves(there, twin.candidate, twin.term), twin.term.per, strict=True))
-    expected, here = (
-        believed(full, machine, piece, solution.coefficients[own]) for machine in (there, full.problem.machine)
-    )
-    k = full.evidence.directions.shape[1]
-    normal, cross, size = np.zeros((k + len(curves),) * 2), np.zeros(k + len(curves)), 0.0
-    signal, rows = {}, {}
-    for place, channel in enumerate(full.evidence.channels):
-        setting = SETTINGS[solution.setting[place]]
-        rival = np.column_stack([curve[channel.name][channel.rows] * (per / channel.scale) for curve, _, per in curves])
-        made = np.column_stack([channel.directions, rival, here[channel.name][channel.rows] / channel.scale])
-        white = whiten(made * channel.weights[:, None], channel.starts, setting)
-        normal, cross = normal + white[:, :-1].T @ white[:, :-1], cross + white[:, :-1].T @ white[:, -1]
-        size += float(white[:, -1] @ white[:, -1])
-        spread = channel.scale * np.sqrt(setting.variance_ratio)
-        signal[channel.name] = expected[channel.name] / spread
-        u = there.slopes[channel.name] @ full.evidence.directions
-        new = np.column_stack([curve[channel.name] * per for _, curve, per in curves])
-        rows[channel.name] = np.concatenate([u, new], axis=1) / spread
-    prior = np.diag([1.0] * k + [0.0] * len(curves)) + 1e-9 * np.diag(np.diag(normal))
-    inverse: Matrix = np.asarray(np.linalg.inv(normal + prior), dtype=np.float64)
-    start = inverse @ cross
-    duel = _Duel(names, max(0.0, size - float(cross @ start)), start, inverse, signal, rows)
-    return [duel] if float(np.nanmax(duel.gains(), initial=0.0)) > FAINTEST else []
+def _there(found: Fit, numbers: Sequence[Number], tried: Extended) -> tuple[dict[str, Matrix], dict[str, Matrix]]:
+    """Return what a fit says at the settings that are tried, and its derivatives by all numbers and directions."""
+    sample, k, units = found.sample, len(found.inputs), unit_of(found)
+    flat = np.concatenate(found.values)
+    steps = STEP * np.maximum(np.abs(flat), 1e-2 * np.abs(units))
+    steps = np.where(flat + steps > [number.high for number in numbers], -steps, steps)
+    points = [(parts_of(found.causes, flat), found.moved)]
+    for place, step in enumerate(steps):
+        point = flat.copy()
+        point[place] += step if numbers[place].is_free else 0.0
+        points.append((parts_of(found.causes, point), found.moved))
+    for half in 0.5 * np.eye(k):
+        points += [(list(found.values), moved_by(sample, found.inputs + sign * half)) for sign in (1, -1)]
+    made = tried.at(found.causes, points)
+    base, own, ups, downs = made[0], made[1 : 1 + len(flat)], made[1 + len(flat) :: 2], made[2 + len(flat) :: 2]
+    slopes = {}
+    for name, shown in base.items():
+        columns = [(each[name] - shown) * unit / step for each, unit, step in zip(own, units, steps, strict=True)]
+        columns += [up[name] - down[name] for up, down in zip(ups, downs, strict=True)]
+        slopes[name] = np.column_stack(columns)
+    return base, slopes
 
 
-def _columns_there(full: Contest, there: Machine, solution: Solution, name: str) -> Matrix:
-    """Return the columns of an explanation at the settings that are tried, SI per coefficient, shape (T, k)."""
-    import numpy as np
-
-    problem = full.problem
-    made: list[Matrix] = []
-    for piece in solution.hypothesis.pieces:
-        if piece.kind == "input":
-            given = problem.machine.inputs[piece.owner]
-            place = next(number for number, item in enumerate(there.inputs) if item.name == given.name)
-            made.append(there.slopes[name][:, place])
-            continue
-        term = problem.terms[piece.place]
-        curves = new_curves(there, problem.candidates[piece.owner], term)
-        made += [curve[name] * per for curve, per in zip(curves, term.per, strict=True)]
-    return np.column_stack(made)
-
-
-def _amounts(full: Contest, settings: Mapping[str, Matrix], place: int) -> dict[str, Amount]:
-    start = full.problem.machine.start
+def _amounts(chosen: Chosen, settings: Mapping[str, Matrix], place: int) -> dict[str, Amount]:
+    start = chosen.competition.sample.machine.start
     known = start.model.known_conditions
     return {
         name: Amount(float(values[place]), known[name].unit if name in known else start.print_unit(name))
@@ -334,39 +322,41 @@ def _amounts(full: Contest, settings: Mapping[str, Matrix], place: int) -> dict[
     }
 
 
-def _followed(full: Contest, names: Sequence[str]) -> set[str]:
+def _followed(machine: Machine, names: Sequence[str]) -> set[str]:
     """Return the conditions and inputs that the effects of two explanations follow."""
-    known = full.problem.machine.start.model.known_effects
+    known = machine.start.model.known_effects
     effects = [known[each] for name in names for each in name.split(" + ") if each in known]
     return {key for effect in effects for key in (*(need.name for need in effect.needs), *effect.reads)}
 
 
-def _why(full: Contest, settings: Mapping[str, Matrix], place: int, duel: _Duel) -> str:
-    """Say what makes a setting worth measuring: where it leaves the record, and how far the two then differ."""
-    import numpy as np
-
-    evidence, units = full.evidence, full.problem.machine.start
+def _why(chosen: Chosen, settings: Mapping[str, Matrix], place: int, duel: _Duel) -> str:
+    """Say what makes a setting worth measuring: how far the two then differ, and where it leaves the record."""
+    sample = chosen.competition.sample
     gaps = {
-        channel.name: abs(float(duel.signal[channel.name][place] - duel.rows[channel.name][place] @ duel.coefficients))
-        for channel in evidence.channels
+        name: abs(float(signal[place] - duel.rows[name][place] @ duel.coefficients))
+        for name, signal in duel.signal.items()
     }
     name = max(gaps, key=lambda key: gaps[key])
-    channel = next(each for each in evidence.channels if each.name == name)
-    unit = readable_unit(units.print_unit(name), channel.scale)
-    words = f"{duel.names[0]} and {duel.names[1]} there differ by {in_unit(gaps[name] * channel.scale, unit)} in {name}"
-    farthest, reach = "", 0.0
-    asked = _followed(full, duel.names)
-    for key, values in settings.items():
-        if asked and key not in asked:
-            continue
-        item = full.problem.machine.records.covariates[key]
-        low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
-        out = max(low - values[place], values[place] - high) / max(high - low, 1e-300)
-        if out > max(reach, 0.05):
-            farthest, reach = key, float(out)
+    spread = _spreads(sample, chosen.best)[name]
+    unit = readable_unit(sample.machine.start.print_unit(name), spread)
+    words = f"{duel.names[0]} and {duel.names[1]} there differ by {in_unit(gaps[name] * spread, unit)} in {name}"
+    asked = _followed(sample.machine, duel.names)
+    farthest = _farthest(sample.machine.records, {key: values[place] for key, values in settings.items()}, asked)
     if not farthest:
         return words
-    item = full.problem.machine.records.covariates[farthest]
+    item = sample.machine.records.covariates[farthest]
     low, high = (float(from_si(each, item.unit)) for each in (np.nanmin(item.values), np.nanmax(item.values)))
     span = f"{format_number(low, 3)} to {format_number(high, 3)} {item.unit}".strip()
     return f"{words}; {farthest} was only {span} so far"
+
+
+def _farthest(records: Records, setting: Mapping[str, float], asked: set[str]) -> str:
+    """Return what leaves the range of the record farthest, of what is asked for; nothing where none does."""
+    farthest, reach = "", 0.05
+    for key, value in setting.items():
+        item = records.covariates[key]
+        low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
+        out = float(max(low - value, value - high)) / max(high - low, 1e-300)
+        if (not asked or key in asked) and out > reach:
+            farthest, reach = key, out
+    return farthest

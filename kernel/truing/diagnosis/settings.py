@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from math import pi
 from typing import TYPE_CHECKING
 
+import numpy as np
+from scipy.stats import qmc
+
 from truing.declare.fields import InputField
-from truing.diagnosis.contest import Contest
-from truing.diagnosis.records import Covariate
+from truing.diagnosis.machine import Machine
+from truing.diagnosis.records import Covariate, Records
+from truing.measurements import RowsFile
 from truing.units import same_dimension, to_si
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     Matrix = NDArray[np.float64]
@@ -20,14 +25,11 @@ TRIED = 512
 FEW_VALUES = 3
 
 
-def settings_of(full: Contest) -> dict[str, Matrix]:
+def settings_of(machine: Machine) -> dict[str, Matrix]:
     """Return the settings that are tried, by input or condition, SI: the corners of the box and points inside it."""
-    import numpy as np
-    from scipy.stats import qmc
-
     boxes = {}
-    for name, item in full.problem.machine.records.covariates.items():
-        box = _box(full, name, item)
+    for name, item in machine.records.covariates.items():
+        box = _box(machine, name, item)
         if box is not None and box[1] > box[0]:
             boxes[name] = box
     if not boxes:
@@ -39,18 +41,16 @@ def settings_of(full: Contest) -> dict[str, Matrix]:
     found = {}
     for column, (name, (low, high)) in enumerate(boxes.items()):
         values = low + (high - low) * every[:, column]
-        known = full.problem.machine.records.covariates[name].values
+        known = machine.records.covariates[name].values
         if len(np.unique(known[np.isfinite(known)])) <= FEW_VALUES:
             values = np.where(every[:, column] < 0.5, low, high)
         found[name] = values
     return found
 
 
-def _box(full: Contest, name: str, item: Covariate) -> tuple[float, float] | None:
+def _box(machine: Machine, name: str, item: Covariate) -> tuple[float, float] | None:
     """Return the range in which something can be set: asked for, declared, or half as wide again as measured."""
-    import numpy as np
-
-    start = full.problem.machine.start
+    start = machine.start
     if name in start.diagnose.box:
         return start.diagnose.box[name]
     low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
@@ -73,3 +73,32 @@ def _input_box(field: InputField, low: float, high: float) -> tuple[float, float
         return min(low, -pi), max(high, pi)
     reach = (high - low) / 2
     return max([low - reach, *lows]), min([high + reach, *highs])
+
+
+def machine_there(machine: Machine, settings: Mapping[str, Matrix]) -> Machine:
+    """Return the machine at the settings that are tried; what is not set has the middle of what was measured."""
+    count = len(next(iter(settings.values())))
+    columns = {
+        name: np.full(count, _middle(values))
+        for name, values in machine.records.rows.columns.items()
+        if isinstance(values, np.ndarray) and values.dtype.kind == "f"
+    }
+    zeros = np.zeros(count, dtype=np.intp)
+    known = machine.records.covariates
+    records = Records(
+        files=machine.records.files,
+        rows=RowsFile("", columns | dict(settings), {}, {}, tuple(range(count))),
+        file_of=zeros,
+        run_of=zeros,
+        lines=np.arange(count),
+        measured={name: np.zeros(count) for name in machine.records.measured},
+        sigma={},
+        covariates={name: replace(known[name], values=values) for name, values in settings.items()},
+        held_out=np.zeros(count, dtype=bool),
+        absent=machine.records.absent,
+    )
+    return replace(machine, records=records, base={}, slopes={})
+
+
+def _middle(values: Matrix) -> float:
+    return float(np.nanmedian(values))

@@ -13,31 +13,29 @@ from itertools import combinations
 from math import sqrt
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from truing.declare.goals import Maximise, Minimise, Require
 from truing.declare.specs import Axis
-from truing.diagnosis.candidates import si_bounds, stacked
-from truing.diagnosis.contest import Contest, names_of
-from truing.diagnosis.design import Proposal
+from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.design import Proposal, is_physical, name_of, rival_fits
+from truing.diagnosis.exact import Fit
+from truing.diagnosis.extended import switched_on
 from truing.diagnosis.findings import in_unit
-from truing.diagnosis.fit import Fit
 from truing.diagnosis.machine import Machine, machine_of, predict
-from truing.diagnosis.naming import causes_of, switched_on
 from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Amount, Fact, NextPoint, Tie
-from truing.diagnosis.rival_twins import TwinTerm, is_physical, twins_of
 from truing.diagnosis.verdict import APART
 from truing.setup import SwitchedOn
 from truing.units import read_quantity
 from truing.units.names import PURE
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     Matrix = NDArray[np.float64]
 
-RIVALS = 4
 ROWS = 40
 """So many rows of the record are asked what the rivals differ in."""
 CLEAR = sqrt(APART)
@@ -72,63 +70,33 @@ class _Gap:
         return self.size / self.scatter if self.scatter > 0 else 1e6
 
 
-def rival_explanations(full: Contest, best: Fit, rivals: Sequence[Fit]) -> list[Explanation]:
+def rival_explanations(chosen: Chosen) -> list[Explanation]:
     """Return the winner, the causes of the same curve and the rivals, each as it is fitted to this data."""
-    if not is_physical(best.hypothesis):
-        return []
-    winner = _fitted(full, best)
-    found = [winner, *(_twin(full, best, winner, twin) for twin in twins_of(full, best.hypothesis, _signs(best)))]
-    physical = [rival for rival in rivals if is_physical(rival.hypothesis)][:RIVALS]
-    return [*found, *(_fitted(full, rival) for rival in physical)]
+    return [_explanation(found) for found in rival_fits(chosen)] if is_physical(chosen.best) else []
 
 
-def _fitted(full: Contest, best: Fit) -> Explanation:
-    name, causes = " + ".join(names_of(full.problem, best.hypothesis)), causes_of(full, best)
-    off = {cause.unknowns[0].name: cause.unknowns[0].value for cause in causes if cause.effect.startswith("input:")}
-    return Explanation(name, switched_on(full, causes), off)
+def _explanation(found: Fit) -> Explanation:
+    machine, off = found.sample.machine, np.array(found.moved)
+    shifted = [cause for cause in found.causes if cause.tolerated >= 0]
+    for cause in shifted:
+        off[cause.tolerated] += found.of(cause)[0]
+    inputs: dict[str, float] = {}
+    for cause in shifted:
+        given = machine.inputs[cause.tolerated]
+        value = float(machine.start.nominal(given.name)) + given.mean + float(off[cause.tolerated]) * given.sd
+        inputs.setdefault(given.name, value)
+    return Explanation(name_of(found), tuple(switched_on(found.causes, found.values, machine)), inputs)
 
 
-def _signs(best: Fit) -> list[float]:
-    """Return the coefficient of every column of the hypothesis, in order."""
-    by_column = {item.column: float(value) for item, value in zip(best.parameters, best.values, strict=True)}
-    return [by_column.get(column, 0.0) for column in best.hypothesis.columns]
-
-
-def _twin(full: Contest, best: Fit, winner: Explanation, twin: TwinTerm) -> Explanation:
-    """Return the winner with one piece replaced by what draws the same curve, as large as that piece is."""
-    problem = full.problem
-    fitted = [twin.term.at] if twin.term.at else _as_large(full, best, twin)
-    replaced = problem.candidates[best.hypothesis.pieces[twin.piece].owner].name
-    values = {item.name: 0.0 if item.is_amplitude else si_bounds(item)[0] for item in twin.candidate.effect.unknowns}
-    values |= {**twin.term.shape, **dict(zip(twin.term.unknowns, fitted, strict=True))}
-    kept = tuple(item for item in winner.on if item.effect.name != replaced)
-    name = " + ".join(twin.name if each == replaced else each for each in winner.name.split(" + "))
-    return Explanation(name, (*kept, SwitchedOn(twin.candidate.effect, values)), winner.inputs)
-
-
-def _as_large(full: Contest, best: Fit, twin: TwinTerm) -> list[float]:
-    """Return the amplitudes (SI) with which the columns of a twin come nearest to the piece that it replaces."""
-    import numpy as np
-
-    scales, term = full.noise.scales, full.problem.terms[best.hypothesis.pieces[twin.piece].place]
-    sizes = {item.name: best.si_value(at) for at, item in enumerate(best.parameters) if item.piece == twin.piece}
-    parts = zip(term.curves, term.unknowns, strict=True)
-    wanted = sum((stacked(curve, scales) * sizes.get(name, 0.0) for curve, name in parts), np.zeros(1))
-    own = np.column_stack([stacked(curve, scales) for curve in twin.term.curves])
-    return [float(size) for size in np.linalg.lstsq(own, wanted, rcond=None)[0]]
-
-
-def with_results(
-    full: Contest, best: Fit, rivals: Sequence[Fit], proposal: Proposal
-) -> tuple[list[NextPoint], list[Tie]]:
+def with_results(chosen: Chosen, proposal: Proposal) -> tuple[list[NextPoint], list[Tie]]:
     """Return the next points with the result that separates the rivals, and what neither of them tells apart.
 
     The result comes first where settings leave something open that it does not.
     """
-    explanations = rival_explanations(full, best, rivals)
-    asked, apart = result_to_measure(full.problem.machine, explanations)
+    machine, explanations = chosen.competition.sample.machine, rival_explanations(chosen)
+    asked, apart = result_to_measure(machine, explanations)
     tied = [pair for pair in proposal.tied if frozenset(pair) not in apart]
-    ties = [_tie(full.problem.machine.start, names, explanations) for names in _joined(tied)]
+    ties = [_tie(machine.start, names, explanations) for names in _joined(tied)]
     points = list(proposal.points)
     if asked is not None:
         suffices = points and points[-1].needed <= len(points) and not proposal.tied
@@ -223,8 +191,6 @@ def _goals(model: Any) -> set[str]:
 
 def _few_rows(records: Records, names: Sequence[str]) -> Records:
     """Return some rows, evenly over the record, as if these results were what is measured there."""
-    import numpy as np
-
     few = slice(None, None, max(1, len(records) // ROWS))
     rows = records.rows
     columns = {name: values[few] for name, values in rows.columns.items()}
@@ -247,8 +213,6 @@ def _changes(there: Machine, explanation: Explanation) -> Mapping[str, Matrix]:
 
 def _gap(there: Machine, name: str, names: tuple[str, str], apart: Matrix) -> _Gap | None:
     """Return where two explanations are clearest apart in a result; None where they hardly are."""
-    import numpy as np
-
     apart = np.abs(apart)
     slopes = there.slopes[name] if there.together is None else there.slopes[name] @ there.together
     scatter = np.sqrt(np.sum(slopes**2, axis=1))
