@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 INPUT = "input:"
 UNKNOWN = "unknown"
+ENDS = 0.02
+"""Share of a record at each end within which nothing begins."""
 LITTLE = 1e-3
 """Share of its bound at which an effect is hardly there."""
 
@@ -141,10 +143,19 @@ def _numbers(effect: Effect[Any, Any], part: Sequence[str], machine: Machine) ->
         if unknown.name not in part:
             continue
         is_split = bool(per_file & {effect.name, f"{effect.name}.{unknown.name}"}) and files > 1
+        ends = _within_record(unknown, machine) if unknown.along else si_bounds(unknown)
         for file in range(files) if is_split and unknown.is_amplitude else (-1,):
-            yield Number(
-                unknown.name, *si_bounds(unknown), unknown.is_amplitude, unknown.whole, unknown.along, file
-            )
+            yield Number(unknown.name, *ends, unknown.is_amplitude, unknown.whole, unknown.along, file)
+
+
+def _within_record(unknown: Unknown, machine: Machine) -> tuple[float, float]:
+    """Return between which places of the record something may begin: not at its very ends."""
+    low, high = si_bounds(unknown)
+    item = machine.records.covariates.get(unknown.along)
+    if item is None or item.is_constant:
+        return low, high
+    first, last = float(np.nanmin(item.values)), float(np.nanmax(item.values))
+    return max(low, first + ENDS * (last - first)), min(high, last - ENDS * (last - first))
 
 
 def _is_offered(cause: Cause, machine: Machine) -> bool:

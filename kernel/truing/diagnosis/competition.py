@@ -43,6 +43,8 @@ MARGIN = 6.0
 """What every sign of a wrong explanation costs, in score: a Bayes factor of about 20."""
 UNREGISTERED = 4.0
 """What a shape that nobody registered costs beside its numbers."""
+ALIKE = 0.9
+"""Where neighbours are alike, causes are looked for both ways: an unknown cause may be what makes them alike."""
 LEAST_PROMISE = 4.0
 """A cause whose curves promise less, unpaid, is not fitted."""
 WITHIN = 60.0
@@ -79,7 +81,7 @@ class Competition:
     def price_of(self, cause: Cause) -> float:
         """Return what a cause pays for its numbers and for the choice among its independent curves."""
         own = cause.size * log(max(self.sample.total, 2.0)) + 2 * log(max(self.tries.get(cause.tag, 1.0), 1.0))
-        return own + (0.0 if cause.is_registered else UNREGISTERED)
+        return own + (UNREGISTERED if cause.shape is not None else MARGIN if cause.tolerated >= 0 else 0.0)
 
     def score(self, found: Fit) -> float:
         """Return how unlikely an explanation is: -2 log likelihood, prior of the inputs, price, signs of a wrong one."""
@@ -106,7 +108,10 @@ class Competition:
     @property
     def fairest(self) -> Fit:
         """What is best where every explanation has the noise that it leaves: the noise is learnt from it."""
-        return min(islice(self.ranked(), RENEWED), key=self.own_score)
+        alone = self.sample.as_independent()
+        by_rows = sorted(self.known.values(), key=lambda each: alone.cost(each.left, each.inputs) + self.price(each))
+        several = {found.key: found for found in (*self.ranked()[:RENEWED], *by_rows[:RENEWED])}
+        return min(several.values(), key=self.own_score)
 
     # ---- fits
 
@@ -136,9 +141,9 @@ class Competition:
             made = self.fitted((*at.causes, cause), (*at.values, values), at.inputs) or made
         return made
 
-    def look(self, at: Fit, causes: Sequence[Cause] | None = None) -> Mapping[str, Looked]:
+    def look(self, at: Fit, causes: Sequence[Cause] | None = None, *, all_rows: bool = False) -> Mapping[str, Looked]:
         """Compare the curves of causes with what an explanation leaves, and count their independent curves."""
-        made = look(self.curves, at, self.causes if causes is None else causes)
+        made = look(self.curves, at, self.causes if causes is None else causes, all_rows=all_rows)
         for tag, each in made.items():
             self.tries[tag] = max(self.tries.get(tag, 1.0), each.tries)
         return made
@@ -147,9 +152,13 @@ class Competition:
         """Fit the most promising causes beside an explanation."""
         if len(at.causes) >= MOST_CAUSES:
             return
-        seen = self.look(at, [cause for cause in self.causes if accept(cause)])
-        for cause in islice(self.promising(seen), count):
-            self.joined(at, cause, seen[cause.tag].starts)
+        accepted = [cause for cause in self.causes if accept(cause)]
+        ways = (False, True) if self.sample.total < ALIKE * self.sample.rows else (False,)
+        for all_rows in ways:
+            seen = self.look(at, accepted, all_rows=all_rows)
+            for cause in islice(self.promising(seen), count):
+                if at.key | {cause.tag} not in self.fresh:
+                    self.joined(at, cause, seen[cause.tag].starts)
 
     def promising(self, seen: Mapping[str, Looked]) -> Iterator[Cause]:
         """Give causes by what their curves promise once they are paid for, of those of one curve the weakest."""

@@ -39,6 +39,8 @@ ALIKE = 0.7
 """Neighbours of a sweep with a smaller cosine have another curve between them."""
 SPREAD = 64
 """Points over several numbers at once."""
+PLACES = 120
+"""Places of a record at which something may begin."""
 FAINT = 1e-9
 WAVES_PER_POINT = 0.25
 """Step of a frequency, in what one wave more over the record is: its curves are known to change by then."""
@@ -247,7 +249,7 @@ def _first_places(number: Number) -> Matrix:
         count = int(number.high - number.low) + 1
         return np.asarray((np.arange(min(count, FINEST)) + 0.5) / count)
     if number.along:
-        return np.linspace(0, 1, 50)
+        return np.linspace(0, 1, PLACES)
     if number.name == "frequency":
         waves = number.high / number.low
         return np.linspace(0, 1, int(min(FINEST, max(FIRST, waves / WAVES_PER_POINT))))
@@ -326,9 +328,10 @@ class Beside:
         return np.asarray(made - (rows @ self.taken[: len(self.index)]) @ self.taken.T)
 
 
-def beside_of(found: Fit, extended: Extended) -> Beside:
-    """Return an explanation as other causes see it."""
+def beside_of(found: Fit, extended: Extended, *, all_rows: bool = False) -> Beside:
+    """Return an explanation as other causes see it; ``all_rows`` takes every row as independent."""
     sample, k = found.sample, len(found.inputs)
+    sample = sample.as_independent() if all_rows else sample
     roots = sample.roots(found.left)
     if found.causes:
         own, inputs = slopes_at(found, extended)
@@ -431,9 +434,9 @@ def independent(basis: Matrix, *, is_sweep: bool) -> float:
     return float(np.trace(gram) ** 2 / max(float((gram**2).sum()), 1e-300) / q)
 
 
-def look(curves: Curves, at: Fit, causes: Sequence[Cause]) -> Mapping[str, Looked]:
+def look(curves: Curves, at: Fit, causes: Sequence[Cause], *, all_rows: bool = False) -> Mapping[str, Looked]:
     """Compare all causes with what an explanation leaves, by their tag."""
-    beside = beside_of(at, curves.extended)
+    beside = beside_of(at, curves.extended, all_rows=all_rows)
     on = at.key
     every = ((cause.tag, looked(curves.of(cause, at), beside)) for cause in causes if cause.tag not in on)
     return {tag: each for tag, each in every if each is not None}

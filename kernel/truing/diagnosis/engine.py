@@ -1,29 +1,31 @@
-"""The diagnosis from records to answer: machine, search, decision, exact fit, gain, next measurement."""
+"""The diagnosis from records to answer: machine, what competes, search, decision, gain, next measurement."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from truing.declare.near_miss import near_miss
-from truing.diagnosis.beside import second_beside_first
-from truing.diagnosis.contest import Contest, contest
-from truing.diagnosis.decide import Decision, decide, without_needless_inputs
+from truing.diagnosis.causes import effects_of, inputs_of
+from truing.diagnosis.choice import choose
+from truing.diagnosis.chosen import Chosen, Rival
+from truing.diagnosis.competition import Competition, competition_of, search
 from truing.diagnosis.design import next_points
+from truing.diagnosis.extended import Extended
 from truing.diagnosis.findings import wrong_of
-from truing.diagnosis.fit import Fit, fit, input_values, may_be_zero, shape_part
-from truing.diagnosis.gain import Nested, nested, sign_flip_p
-from truing.diagnosis.machine import machine_of
-from truing.diagnosis.naming import alternative_of, causes_of, extended_setup, remainder_of
-from truing.diagnosis.problem import Problem, problem_of
+from truing.diagnosis.gain import gains_of, nested
+from truing.diagnosis.machine import Machine, machine_of
+from truing.diagnosis.naming import alternative_of, calibrated_of, causes_of, extended_setup, remainder_of
+from truing.diagnosis.readable import readable_unit
+from truing.diagnosis.readings import followed_by
 from truing.diagnosis.records import FEWEST_READINGS, Records
-from truing.diagnosis.result import Alternative, Amount, Calibrated, Curves, Diagnosis, Gain
-from truing.diagnosis.rivals import Rival, rivals_of
-from truing.diagnosis.search import NoiseModel, first_noise, moved_to
-from truing.diagnosis.second_look import second_look
+from truing.diagnosis.result import Alternative, Curves, Diagnosis
+from truing.diagnosis.sample import first_noise, sample_of
 from truing.diagnosis.shares import by_share
 from truing.diagnosis.unmeasured import with_results
+from truing.diagnosis.unregistered import shapes_of
 from truing.diagnosis.visibility import inseparable, smallest_visible
 from truing.errors import UsageError
 from truing.setup import Setup
@@ -34,12 +36,9 @@ if TYPE_CHECKING:
     from truing.studies.bench import Progress
 
 RANKED = 8
-FITTED = 4
-SURELY = 30.0
-"""Twice the log-likelihood by which a single cause whose interval holds zero must be better than none."""
-LEAST_REDUCIBLE = 0.03
-"""Less than this share of the noise is not told from it, so there is nothing to remove."""
-SHARES = (0.0, 0.05, 0.35, 0.45, 0.5, 1.0)
+SIZED = 4
+"""Of so many alternatives it is told what their own fit says."""
+SHARES = (0.0, 0.05, 0.75, 0.85, 1.0)
 """What share of the time has passed when each stage ends, for whoever waits."""
 
 
@@ -49,69 +48,33 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
     The same records, setup and seed give the same answer. Raises UsageError where an option names what is not there.
     """
     _check_options(setup)
-    with one_thread():  # many small matrices: threads would only wait for one another
-        return _diagnose(setup, records, _Steps(progress))
+    step = _Steps(progress)
+    is_short = records.readings < FEWEST_READINGS  # what is calculated of them is not used
+    with one_thread(), np.errstate(all="ignore" if is_short else None):
+        machine = machine_of(setup, records)
+        step.done("columns")
+        competition = laid_out(machine)
+        search(competition, step.within())
+        step.done("search")
+        chosen = choose(competition, seed=setup.seed)
+        step.done("significance")
+        return _answer(chosen, setup, step)
 
 
-def _diagnose(setup: Setup, records: Records, step: _Steps) -> Diagnosis:
-    """Go through the stages; of few readings in silence, since what is calculated of them is not used."""
-    import numpy as np
-
-    with np.errstate(all="ignore" if records.readings < FEWEST_READINGS else None):
-        return _staged(setup, records, step)
-
-
-def _staged(setup: Setup, records: Records, step: _Steps) -> Diagnosis:
-    machine = machine_of(setup, records)
-    raw = first_noise(machine)
-    problem = problem_of(machine, raw.scales)
-    step.done("columns")
-    full = without_needless_inputs(contest(problem, raw, ~records.held_out, done=step.within()))
-    step.done("search")
-    decision = decide(full, seed=setup.seed)
-    step.done("significance")
-    best, decision = _certain(full, decision)
-    for look in (second_look, second_beside_first):
-        again = look(full, decision.winner, best, ~records.held_out)
-        if again is not None:
-            full = without_needless_inputs(again)
-            decision = decide(full, seed=setup.seed)
-            best, decision = _certain(full, decision)
-    step.done("fit")
-    raw = moved_to(raw, machine, full.problem.machine)
-    answer = _answer(full, decision, best, raw, done=step.within())
-    step.done("gain")
-    extended = None if answer.extended is None else replace(answer.extended, inputs=setup.inputs)
-    return replace(answer, setup=setup, extended=extended)
-
-
-def _certain(full: Contest, decision: Decision) -> tuple[Fit, Decision]:
-    """Fit the winner; a cause that may as well be zero is not named.
-
-    Of a pair with such a cause only the best single explanation is kept; in the place of a single one comes the next
-    best that explains as much as the search asks for, or nothing.
-    """
-    best = fit(full, decision.winner)
-    if not _is_doubtful(full, decision.winner, best):
-        return best, decision
-    found, limit = full.found, full.found.score[0] + decision.thresholds.first
-    singles = [place for place in found.ranked() if len(found.hypotheses[place].pieces) == 1]
-    for place in [each for each in singles if found.score[each] > limit][:FITTED]:
-        alone = fit(full, place)
-        if not _is_doubtful(full, place, alone):
-            return alone, replace(decision, winner=place)
-    return fit(full, 0), replace(decision, winner=0)
-
-
-def _is_doubtful(full: Contest, place: int, best: Fit) -> bool:
-    """Whether some cause may as well be zero: by its intervals and, where it stands alone, by what it is worth.
-
-    The interval of an amplitude that saturates may hold zero although nothing else will do.
-    """
-    found, pieces = full.found, best.hypothesis.pieces
-    if len(pieces) == 1 and found.likelihood[place] - found.likelihood[0] >= SURELY:
-        return False
-    return any(may_be_zero(best, number) for number, piece in enumerate(pieces) if piece.kind == "term")
+def laid_out(machine: Machine) -> Competition:
+    """Lay out what competes on the records of a machine, and fit the model as it is."""
+    records, effects = machine.records, effects_of(machine)
+    orders = {
+        followed_by(cause): range(int(number.low), int(number.high) + 1)
+        for cause in effects
+        if cause.is_kernel and cause.name.startswith("periodic_order")
+        for number in cause.numbers
+        if number.whole
+    }
+    has_steps = any(cause.is_kernel and cause.name == "step" for cause in effects)
+    causes = [*effects, *inputs_of(machine), *shapes_of(records, orders, has_steps=has_steps)]
+    sample = sample_of(machine, first_noise(machine), ~records.held_out)
+    return competition_of(Extended(machine), causes, sample)
 
 
 class _Steps:
@@ -142,137 +105,71 @@ def _check_options(setup: Setup) -> None:
             raise UsageError(f"[studies.diagnose] per_file: '{name}' is no effect, unknown or input.{near}")
 
 
-def _answer(full: Contest, decision: Decision, best: Fit, raw: NoiseModel, *, done: Done) -> Diagnosis:
-    problem = full.problem
-    machine, records, setting = problem.machine, problem.machine.records, best.setting
-    units = units_of(full)
-    causes = by_share(full, best, causes_of(full, best))
-    remainder = remainder_of(full, best, decision, units)
-    rivals = rivals_of(full, decision.winner, best)
-    judged = nested(full, decision.winner, decision.thresholds, raw, done=done)
-    wrong = wrong_of(full, best, decision.null, units)
-    has_cause = bool(causes or remainder)
-    fitted = [rival.own for rival in rivals if rival.own is not None]
-    places = [rival.place for rival in rivals]
-    points, ties = with_results(full, best, fitted, next_points(full, decision.winner, places))
+def _answer(chosen: Chosen, setup: Setup, step: _Steps) -> Diagnosis:
+    best = chosen.best
+    machine = best.sample.machine
+    units = units_of(chosen)
+    causes = by_share(chosen, causes_of(chosen, best))
+    judged = nested(chosen, step.within())
+    points, ties = with_results(chosen, next_points(chosen))
+    step.done("gain")
     return Diagnosis(
-        setup=machine.start,
-        records=records,
-        measured=tuple(records.measured),
+        setup=setup,
+        records=machine.records,
+        measured=tuple(machine.records.measured),
         units=units,
-        wrong=wrong,
+        wrong=wrong_of(chosen, units),
         causes=causes,
         alternatives=tuple(
-            alternative_of(full, decision.winner, rival, with_sizes=rank < FITTED) for rank, rival in enumerate(rivals)
+            alternative_of(chosen, rival, with_sizes=rank < SIZED) for rank, rival in enumerate(chosen.rivals)
         ),
-        remainder=remainder,
-        seen=tuple(smallest_visible(full, setting)),
-        not_measured=_not_measured(problem),
-        calibrated=_calibrated(full, best),
-        gain=tuple(_gains(full, best, judged, units, has_cause=has_cause)),
+        remainder=remainder_of(chosen, units),
+        seen=tuple(smallest_visible(chosen)),
+        not_measured=_not_measured(machine),
+        calibrated=calibrated_of(best),
+        gain=gains_of(chosen, judged, units),
         stability=judged.stability,
         next=tuple(points),
         ties=tuple(ties),
-        curves=tuple(_curves(full, best)),
-        p_any=decision.p_any,
-        p_second=decision.p_second,
-        ranking=_ranking(full, decision.winner),
-        inseparable=tuple(inseparable(full, setting)),
-        extended=extended_setup(full, best, causes) if has_cause else None,
+        curves=tuple(_curves(chosen)),
+        p_any=chosen.p_any,
+        p_second=chosen.p_second,
+        ranking=_ranking(chosen),
+        inseparable=tuple(inseparable(chosen)),
+        extended=extended_setup(chosen, causes) if best.causes else None,
     )
 
 
-def _ranking(full: Contest, winner: int) -> tuple[Alternative, ...]:
+def _ranking(chosen: Chosen) -> tuple[Alternative, ...]:
     """Return the best explanations, the winner first, every one with how far it lies behind."""
-    score, others = full.found.score, (place for place in full.found.ranked() if place != winner)
-    ranked = [Rival(place, None, max(0.0, float(score[winner] - score[place]))) for place in [winner, *others][:RANKED]]
-    return tuple(alternative_of(full, winner, each) for each in ranked)
+    made = chosen.competition
+    top = made.score(made.known[chosen.best.key])
+    others = [found for found in made.ranked() if found.key != chosen.best.key][: RANKED - 1]
+    ranked = [Rival(chosen.best, 0.0), *(Rival(found, max(0.0, made.score(found) - top)) for found in others)]
+    return tuple(alternative_of(chosen, each) for each in ranked)
 
 
-def units_of(full: Contest) -> dict[str, str]:
+def units_of(chosen: Chosen) -> dict[str, str]:
     """Return by result a unit in which its noise is neither tiny nor huge: 2.3 um rather than 0.0023 mm."""
-    from truing.diagnosis.readable import readable_unit
-
-    setup = full.problem.machine.start
+    setup = chosen.best.sample.machine.start
     return {
-        channel.name: readable_unit(setup.print_unit(channel.name), channel.scale) for channel in full.evidence.channels
+        channel.name: readable_unit(setup.print_unit(channel.name), channel.scale)
+        for channel in chosen.best.sample.channels
     }
 
 
-def _not_measured(problem: Problem) -> Mapping[str, tuple[str, ...]]:
-    machine = problem.machine
+def _not_measured(machine: Machine) -> Mapping[str, tuple[str, ...]]:
     absent = machine.records.absent
-    found = {}
-    for name, effect in machine.start.model.known_effects.items():
-        missing = tuple(need.name for need in effect.needs if need.name in absent)
-        if missing:
-            found[name] = missing
-    return found
+    needs = {
+        name: tuple(need.name for need in effect.needs if need.name in absent)
+        for name, effect in machine.start.model.known_effects.items()
+    }
+    return {name: missing for name, missing in needs.items() if missing}
 
 
-def _calibrated(full: Contest, best: Fit) -> tuple[Calibrated, ...]:
-    setup = full.problem.machine.start
-    values = input_values(full, best)
-    return tuple(Calibrated(name, value, setup.unit_of(name), moved) for name, (value, moved) in values.items())
-
-
-def _curves(full: Contest, best: Fit) -> list[Curves]:
-    from truing.diagnosis.gain import linear_prediction
-
-    machine = full.problem.machine
-    base = full.base()
-    found = []
-    for name, measured in machine.records.measured.items():
-        before = machine.base[name] + linear_prediction(full, base, name) + machine.shifts[name]
-        found.append(Curves(name, measured, before, best.predicted[name]))
-    return found
-
-
-def _gains(full: Contest, best: Fit, judged: Nested, units: Mapping[str, str], *, has_cause: bool) -> list[Gain]:
-    """Say what the extension is worth for every result, on rows it has not seen."""
-    import numpy as np
-
-    found = []
-    for place, channel in enumerate(full.evidence.channels):
-        name, unit, item = channel.name, units[channel.name], judged.judged[channel.name]
-        left = (full.problem.machine.records.measured[name] - best.predicted[name])[channel.rows]
-        used = (len(best.values) + len(best.directions)) / len(full.evidence.channels)
-        floor2 = float(left @ left) / max(len(left) - used, 1.0)
-        before2, after2 = (float(np.nanmean(errors**2)) for errors in (item.before, item.after))
-        reducible = before2 - floor2
-        removed = (before2 - after2) / reducible if has_cause and reducible > LEAST_REDUCIBLE * floor2 else 0.0
-        p_value = sign_flip_p(item.gain, judged.block_of, seed=full.problem.machine.start.seed + place)
-        found.append(
-            Gain(
-                name,
-                Amount(before2**0.5, unit),
-                Amount(after2**0.5, unit),
-                Amount(floor2**0.5, unit),
-                min(removed, 1.0),
-                float(np.nanmean(item.gain)),
-                p_value,
-                float(np.nanmean(item.inside)),
-                _held_out(full, best, name),
-            )
-        )
-    return found
-
-
-def _held_out(full: Contest, best: Fit, name: str) -> tuple[float, float] | None:
-    """Return root mean squares before and after on rows that were held out on request.
-
-    An unregistered shape was fitted to its own record and says nothing of another one.
-    """
-    import numpy as np
-
-    machine = full.problem.machine
-    rows = machine.records.held_out & np.isfinite(machine.records.measured[name])
-    if not rows.any():
-        return None
-    curve = next(item for item in _curves(full, best) if item.result == name)
-    fitted_runs = np.unique(machine.records.run_of[~machine.records.held_out])
-    is_other = ~np.isin(machine.records.run_of, fitted_runs)
-    extended = curve.after - np.where(is_other, shape_part(full, best, name), 0.0)
-    errors = [(curve.measured - values)[rows] for values in (curve.before, extended)]
-    before, after = (float(np.sqrt(np.mean(error**2))) for error in errors)
-    return before, after
+def _curves(chosen: Chosen) -> list[Curves]:
+    measured = chosen.best.sample.machine.records.measured
+    return [
+        Curves(name, values, chosen.null.predicted[name], chosen.best.predicted[name])
+        for name, values in measured.items()
+    ]

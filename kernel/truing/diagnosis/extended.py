@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from truing.diagnosis.causes import Cause, at_rest
-from truing.diagnosis.machine import Machine, Predicted, predict_each
+from truing.diagnosis.machine import Machine, Tolerated, predict_each
 from truing.evaluate import effect_column
 from truing.setup import Setup, SwitchedOn
 
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     Matrix = NDArray[np.float64]
 
+REMEMBERED = 64
+"""So many setups with moved inputs are kept."""
 Point = tuple[Sequence["Matrix"], "Matrix"]
 """The numbers of every cause, SI, and how far each tolerated input is moved, in standard deviations from its mean."""
 
@@ -29,11 +31,16 @@ class Extended:
         self.machine = machine
         self.calls = 0
         self._setups: dict[frozenset[str], Setup] = {}
+        self._machines: dict[tuple[frozenset[str], bytes], Setup] = {}
 
     def at(self, causes: Sequence[Cause], points: Sequence[Point]) -> list[dict[str, Matrix]]:
         """Return what the gauges show at several points, by result, SI on all rows; NaN where the model fails."""
-        setup = self._with(causes)
-        trials = [self._columns(causes, values, moved) for values, moved in points]
+        setup, is_one = self._with(causes), self._share_inputs(causes, points)
+        if is_one and points:
+            setup = self._moved(setup, frozenset(cause.tag for cause in causes), points[0][1])
+        trials = [_unknowns(self.machine, causes, values) for values, _ in points]
+        if not is_one:
+            trials = [{**own, **self._inputs(causes, *point)} for own, point in zip(trials, points, strict=True)]
         self.calls += len(points)
         made = predict_each(setup, self.machine.records, trials)
         return [
@@ -55,22 +62,49 @@ class Extended:
             self._setups[tags] = self.machine.start.with_effects(on) if on else self.machine.start
         return self._setups[tags]
 
-    def _columns(self, causes: Sequence[Cause], values: Sequence[Matrix], moved: Matrix) -> dict[str, Any]:
-        """Return the columns that set every unknown and every input, SI, (n,)."""
-        files, size = self.machine.records.file_of, len(self.machine.records)
+    def _share_inputs(self, causes: Sequence[Cause], points: Sequence[Point]) -> bool:
+        """Whether all points have the same inputs, each one value for all rows: then they are the machine's."""
+        is_plain = all(cause.tolerated < 0 for cause in causes) and all(item.file < 0 for item in self.machine.inputs)
+        return is_plain and all(np.array_equal(moved, points[0][1]) for _, moved in points)
+
+    def _moved(self, setup: Setup, tags: frozenset[str], moved: Matrix) -> Setup:
+        """Return a setup with its tolerated inputs moved."""
+        key = tags, np.asarray(moved).tobytes()
+        if key not in self._machines:
+            if len(self._machines) >= REMEMBERED:
+                self._machines.clear()
+            values = {item.name: self._value(item, sds) for item, sds in zip(self.machine.inputs, moved, strict=True)}
+            self._machines[key] = setup.changed(values)
+        return self._machines[key]
+
+    def _value(self, given: Tolerated, sds: float) -> float:
+        """Return a tolerated input so many standard deviations from its mean, SI."""
+        return float(self.machine.start.nominal(given.name)) + given.mean + float(sds) * given.sd
+
+    def _inputs(self, causes: Sequence[Cause], values: Sequence[Matrix], moved: Matrix) -> dict[str, Any]:
+        """Return the columns that set every tolerated input, SI, (n,)."""
+        files, off = self.machine.records.file_of, np.array(moved, dtype=float)
         made: dict[str, Any] = {}
-        off = np.array(moved, dtype=float)
         for cause, own in zip(causes, values, strict=True):
             if cause.tolerated >= 0:
                 off[cause.tolerated] += own[0]
-            elif cause.effect is not None:
-                for number, value in zip(cause.numbers, own, strict=True):
-                    column = effect_column(cause.name, number.name)
-                    made[column] = _in_file(made.get(column), number.file, files, float(value))
         for given, sds in zip(self.machine.inputs, off, strict=True):
-            value = float(self.machine.start.nominal(given.name)) + given.mean + float(sds) * given.sd
-            made[given.name] = _in_file(made.get(given.name), given.file, files, value)
-        return {name: np.broadcast_to(np.asarray(value, dtype=float), (size,)) for name, value in made.items()}
+            made[given.name] = _in_file(made.get(given.name), given.file, files, self._value(given, sds))
+        return _columns(made, len(files))
+
+
+def _unknowns(machine: Machine, causes: Sequence[Cause], values: Sequence[Matrix]) -> dict[str, Any]:
+    """Return the columns that set every unknown, SI, (n,)."""
+    made: dict[str, Any] = {}
+    for cause, own in zip(causes, values, strict=True):
+        for number, value in zip(cause.numbers, own, strict=True) if cause.effect is not None else ():
+            column = effect_column(cause.name, number.name)
+            made[column] = _in_file(made.get(column), number.file, machine.records.file_of, float(value))
+    return _columns(made, len(machine.records))
+
+
+def _columns(made: dict[str, Any], size: int) -> dict[str, Any]:
+    return {name: np.full(size, value) if np.ndim(value) == 0 else value for name, value in made.items()}
 
 
 def _in_file(held: Any, file: int, files: Any, value: float) -> Any:

@@ -1,33 +1,31 @@
-"""What the extension is worth on rows it has not seen: the whole search is repeated in every fold.
+"""What the extension is worth on rows it has not seen: in every fold what competes is fitted and chosen anew.
 
-Folds are interleaved blocks of consecutive rows; every gap starts the noise filter anew. The comparison is with the
-base model calibrated in the same fold, never with the nominal one: calibration is not the merit of a cause.
+The comparison is with the model calibrated in the same fold, never with the nominal one: calibration is not the merit
+of a cause.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import inf, log, pi, sqrt
 from typing import TYPE_CHECKING
 
-from truing.diagnosis.columns import times
-from truing.diagnosis.contest import Contest, contest
-from truing.diagnosis.decide import Thresholds, decide_again, without_needless_inputs
-from truing.diagnosis.noise import SETTINGS, Setting
-from truing.diagnosis.search import NoiseModel, Solution
-from truing.studies.bench import Done, unheard
+import numpy as np
+from scipy.special import gammaln
+
+from truing.diagnosis.choice import CLOSE
+from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.exact import Fit
+from truing.diagnosis.extended import shape_added
+from truing.diagnosis.folds import Folds, folds_of, refitted
+from truing.diagnosis.result import Amount, Gain
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     Matrix = NDArray[np.float64]
 
-FOLDS = 5
-SHORTEST_BLOCK = 6
-FEWEST_BLOCKS = 8
-"""A short record has shorter blocks rather than fewer: of four that all gain the best significance is 1/16."""
-BLOCKS = 20
 FLIPS = 999
 MOST_EXACT = 12
 """Of so many blocks all signs are tried, of more some that are drawn."""
@@ -35,7 +33,10 @@ ROUNDING = 1e-9
 COVERED = 0.9
 SMALLEST_GAIN = 1e-6
 """Less than this per row is rounding, not gain."""
-ROUNDS = 2
+CONTENDERS = 6
+"""So many explanations beside the chosen one are fitted in every fold."""
+LEAST_REDUCIBLE = 0.03
+"""Less than this share of the noise is not told from it, so there is nothing to remove."""
 
 
 @dataclass(frozen=True)
@@ -54,122 +55,82 @@ class Judged:
 
 @dataclass(frozen=True)
 class Nested:
-    """The cross-validation: answers by result, the block each row lay in, and the share of folds with the same name."""
+    """The cross-validation: answers by result, the folds, and the share of folds in which the same was chosen."""
 
     judged: dict[str, Judged]
-    block_of: NDArray[np.intp]
+    folds: Folds
     stability: float
 
 
-def blocks_of(full: Contest, setting: tuple[int, ...]) -> NDArray[np.intp]:
-    """Number blocks of consecutive rows inside each run: a twentieth of the rows, six, or three correlation times.
-
-    A record of fewer than 48 rows has blocks of an eighth of it. Rows held out on request are in no block (-1). Where
-    something is fitted file by file, a run has two blocks at least: no fold may leave out all that is known of a file.
-    """
-    import numpy as np
-
-    records = full.problem.machine.records
-    usable = np.flatnonzero(~records.held_out)
-    runs = records.run_of[usable]
-    first = np.flatnonzero(np.append(True, runs[1:] != runs[:-1]))
-    sizes = np.diff(np.append(first, len(runs)))
-    reach = max(_correlation_rows(SETTINGS[place]) for place in setting)
-    shortest = min(SHORTEST_BLOCK, max(2, len(runs) // FEWEST_BLOCKS))
-    length = int(max(shortest, len(runs) // BLOCKS, min(3 * reach, len(runs) // (2 * FOLDS))))
-    if full.problem.machine.start.diagnose.per_file:
-        length = min(length, max(int(sizes.min()) // 2, 1))
-    blocks = -(-sizes // length)
-    within = (np.arange(len(runs)) - np.repeat(first, sizes)) // length
-    block_of = np.full(len(records), -1, dtype=np.intp)
-    block_of[usable] = np.repeat(np.cumsum(blocks) - blocks, sizes) + within
-    return block_of
+def nested(chosen: Chosen, done: Callable[[int, int], None] = lambda count, of: None) -> Nested:
+    """Fit and choose anew in every fold, and judge on the rows left out."""
+    made = chosen.competition
+    folds = folds_of(made.sample)
+    size = len(made.sample.machine.records)
+    judged = {name: Judged(*(np.full(size, np.nan) for _ in range(4))) for name in made.sample.noise}
+    contenders, same = _contenders(chosen), 0
+    for fold in range(folds.count):
+        done(fold, folds.count)
+        test = folds.test(fold)
+        base = refitted(chosen.null, made.extended, test)
+        if base is None:
+            continue
+        best = _chosen_again(chosen, base, contenders, test)
+        same += best.key == chosen.best.key
+        for channel in base.sample.channels:
+            _judge(judged[channel.name], channel.name, (base, best), test)
+    return Nested(judged, folds, same / max(folds.count, 1))
 
 
-def _correlation_rows(setting: Setting) -> float:
-    return 0.0 if setting.rho <= 0 else -1.0 / log(setting.rho)
+def _contenders(chosen: Chosen) -> list[Fit]:
+    """Return what competes with the chosen explanation in a fold: named explanations where it is one itself."""
+    made, best = chosen.competition, chosen.best
+    if not best.causes:
+        return []
+    kinds = {(cause.shape is None, cause.tolerated < 0) for cause in best.causes}
+    plain = kinds == {(True, True)}
+    near = made.ranked(
+        lambda found: 0 < len(found.causes) <= len(best.causes)
+        and found.key != best.key
+        and (not plain or all(cause.effect is not None for cause in found.causes))
+    )
+    return [made.known[best.key], *near[:CONTENDERS]]
 
 
-def nested(full: Contest, winner: int, thresholds: Thresholds, raw: NoiseModel, *, done: Done = unheard) -> Nested:
-    """Repeat the search in every fold and judge it on the rows left out; ``raw`` is the first idea of the noise."""
-    import numpy as np
-
-    records = full.problem.machine.records
-    block_of = blocks_of(full, full.found.setting[winner])
-    usable = ~records.held_out
-    key = full.found.hypotheses[winner].key
-    size = len(records)
-    judged = {name: Judged(*(np.full(size, np.nan) for _ in range(4))) for name in records.measured}
-    same = 0
-    settings = list(dict.fromkeys(full.found.setting))  # under which some explanation does best on all rows
-    folds = min(FOLDS, int(block_of.max()) + 1)
-    for fold in range(folds):
-        done(fold, folds)
-        test = (block_of >= 0) & (block_of % folds == fold)
-        again = contest(full.problem, raw, usable & ~test, rounds=ROUNDS, settings=settings, sharpen=False)
-        again = without_needless_inputs(again)
-        place = decide_again(again, thresholds) if winner else 0
-        same += again.found.hypotheses[place].key == key
-        base = again.base()
-        extended = again.solution(place) if place else base
-        for channel, name in enumerate(judged):
-            _judge(judged[name], again, (base, extended), channel, test)
-    return Nested(judged, block_of, same / folds)
+def _chosen_again(chosen: Chosen, base: Fit, contenders: list[Fit], test: NDArray[np.bool_]) -> Fit:
+    """Return what is chosen without the rows of a fold: the choice, unless another one is better by ``CLOSE``."""
+    made = chosen.competition
+    again = [found for each in contenders if (found := refitted(each, made.extended, test)) is not None]
+    if not again:
+        return base
+    own = next((found for found in again if found.key == chosen.best.key), None)
+    top = min(again, key=made.score)
+    best = own if own is not None and made.score(own) < made.score(top) + CLOSE else top
+    return best if made.score(best) < made.score(base) else base
 
 
-def _judge(
-    judged: Judged, again: Contest, solutions: tuple[Solution, Solution], channel: int, test: NDArray[np.bool_]
-) -> None:
-    """Fill in the rows of one fold for one result."""
-    import numpy as np
-
-    item = again.evidence.channels[channel]
-    weights = again.noise.weights[item.name][test]
-    left_over = _residual(again, item.name)
+def _judge(judged: Judged, name: str, fits: tuple[Fit, Fit], test: NDArray[np.bool_]) -> None:
+    """Fill in the rows of one fold for one result, from the fits of base and extension without them."""
+    sample = fits[0].sample
+    place = [channel.name for channel in sample.channels].index(name)
+    channel, noise = sample.channels[place], sample.noise[name]
+    measured, weights = sample.machine.records.measured[name], noise.weights[test] / channel.scale
     logs = []
-    for solution, errors in zip(solutions, (judged.before, judged.after), strict=True):
-        off = left_over - linear_prediction(again, solution, item.name)
-        trained, error = off[item.rows] * item.weights, off[test]
-        errors[test] = error
-        left = solution.innovations[channel]
-        setting = SETTINGS[solution.setting[channel]]
-        sd = float(np.sqrt(np.mean(left**2) * setting.variance_ratio)) * item.scale
-        if setting.rho > 0:  # a misfit may remember longer than any filter
-            sd = max(sd, float(np.sqrt(np.mean(trained**2))))
-        logs.append(_log_density(error * weights / sd, again.noise.tails[item.name].freedom) + np.log(weights / sd))
+    for found, errors in zip(fits, (judged.before, judged.after), strict=True):
+        errors[test] = measured[test] - found.predicted[name][test]
+        left = found.left[sample.parts[place]]
+        sd = float(np.sqrt(max(np.mean(left**2), channel.least)))
+        logs.append(_log_density(errors[test] * weights / sd, noise.tails.freedom) + np.log(weights / sd))
     judged.gain[test] = logs[1] - logs[0]
-    limit = float(np.quantile(np.abs(trained), COVERED))  # of the extended model, which comes last
-    limit *= sqrt(len(trained) / max(len(trained) - len(solutions[1].coefficients) - len(solutions[1].directions), 1))
+    left = (measured[channel.rows] - fits[1].predicted[name][channel.rows]) * (channel.weights / channel.scale)
+    limit = float(np.quantile(np.abs(left), COVERED))
+    limit *= sqrt(len(left) / max(len(left) - fits[1].size - len(fits[1].inputs), 1))
     outside = np.abs(judged.after[test] * weights) > limit
     judged.inside[test] = np.where(np.isfinite(judged.after[test]), ~outside, np.nan)
 
 
-def _residual(again: Contest, name: str) -> Matrix:
-    """Return measured minus predicted at the mean of the tolerances, SI, never clipped."""
-    from truing.diagnosis.search import residuals_of
-
-    return residuals_of(again.problem.machine)[name]
-
-
-def linear_prediction(again: Contest, solution: Solution, name: str) -> Matrix:
-    """Return what a solution adds to the model at the mean of the tolerances, SI, on all rows of the records."""
-    import numpy as np
-
-    machine = again.problem.machine
-    u = solution.directions
-    made = times(machine.slopes[name], again.evidence.directions @ u) if len(u) else np.zeros(len(machine.records))
-    for column, value in zip(solution.hypothesis.columns, solution.coefficients, strict=True):
-        item = again.problem.columns[column]
-        if name in item.parts:
-            made = made + item.parts[name] * (item.per * value)
-    return np.asarray(made)
-
-
 def _log_density(z: Matrix, freedom: float) -> Matrix:
     """Return the log density of Student's t with unit variance, the normal law for many degrees of freedom."""
-    import numpy as np
-    from scipy.special import gammaln
-
     if freedom == inf or freedom >= 30:
         return np.asarray(-0.5 * z**2 - 0.5 * log(2 * pi))
     shrink = freedom / (freedom - 2)
@@ -177,11 +138,64 @@ def _log_density(z: Matrix, freedom: float) -> Matrix:
     return np.asarray(norm - (freedom + 1) / 2 * np.log1p(z**2 * shrink / freedom))
 
 
+def gains_of(chosen: Chosen, judged: Nested, units: Mapping[str, str]) -> tuple[Gain, ...]:
+    """Say what the extension is worth for every result, on rows it has not seen."""
+    made = []
+    best, start = chosen.best, chosen.competition.sample.machine.start
+    for place, channel in enumerate(best.sample.channels):
+        name, unit, answers = channel.name, units[channel.name], judged.judged[channel.name]
+        floor2 = floor_of(best, place) ** 2
+        before2, after2 = (float(np.nanmean(errors**2)) for errors in (answers.before, answers.after))
+        reducible = before2 - floor2
+        is_told = bool(best.causes) and reducible > LEAST_REDUCIBLE * floor2
+        made.append(
+            Gain(
+                name,
+                Amount(before2**0.5, unit),
+                Amount(after2**0.5, unit),
+                Amount(floor2**0.5, unit),
+                min((before2 - after2) / reducible, 1.0) if is_told else 0.0,
+                float(np.nanmean(answers.gain)),
+                sign_flip_p(answers.gain, judged.folds.block_of, seed=start.seed + place),
+                float(np.nanmean(answers.inside)),
+                _held_out(chosen, name),
+            )
+        )
+    return tuple(made)
+
+
+def floor_of(found: Fit, place: int) -> float:
+    """Return the root mean square that an explanation leaves of one result, SI, its numbers paid for."""
+    channel = found.sample.channels[place]
+    measured = found.sample.machine.records.measured[channel.name]
+    left = (measured - found.predicted[channel.name])[channel.rows]
+    used = (found.size + len(found.inputs)) / len(found.sample.channels)
+    return sqrt(float(left @ left) / max(len(left) - used, 1.0))
+
+
+def _held_out(chosen: Chosen, name: str) -> tuple[float, float] | None:
+    """Return root mean squares before and after on rows that were held out on request.
+
+    An unregistered shape was fitted to its own record and says nothing of another one.
+    """
+    best, records = chosen.best, chosen.competition.sample.machine.records
+    measured = records.measured[name]
+    rows = records.held_out & np.isfinite(measured)
+    if not rows.any():
+        return None
+    is_other = ~np.isin(records.run_of, np.unique(records.run_of[~records.held_out]))
+    shaped = np.zeros(len(records))
+    for cause, values in zip(best.causes, best.values, strict=True):
+        shaped = shaped + shape_added(best.sample.machine, cause, values).get(name, 0.0)
+    extended = best.predicted[name] - np.where(is_other, shaped, 0.0)
+    errors = [(measured - values)[rows] for values in (chosen.null.predicted[name], extended)]
+    before, after = (float(np.sqrt(np.mean(error**2))) for error in errors)
+    return before, after
+
+
 def sign_flip_p(gain: Matrix, block_of: NDArray[np.intp], *, seed: int) -> float:
     """Return the significance of a gain: how often random signs of the blocks give as much."""
-    import numpy as np
-
-    known = np.isfinite(gain)
+    known = np.isfinite(gain) & (block_of >= 0)
     sums = np.bincount(block_of[known], weights=gain[known])
     sums = sums[np.bincount(block_of[known]) > 0]
     total = float(sums.sum())

@@ -184,6 +184,10 @@ class Sample:
         """Return the same rows with the memory of the noise taken out."""
         return replace(self, is_white=True)
 
+    def as_independent(self) -> Sample:
+        """Return the same rows as if each of them told something new."""
+        return replace(self, channels=tuple(replace(each, count=float(len(each))) for each in self.channels))
+
     def of_rows(self, mask: NDArray[np.bool_]) -> Sample:
         """Return some of the rows, with the same noise."""
         return sample_of(self.machine, self.noise, self.mask & mask, self.directions)

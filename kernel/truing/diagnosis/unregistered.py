@@ -144,7 +144,7 @@ def _ordered(
     """Give waves of whole orders over an angle, of any period over all else, steps and settling in time."""
     values = item.values[np.isfinite(item.values)]
     span, on = float(np.ptp(values)), (item.name,)
-    if item.is_angle and item.goes_round:
+    if item.is_angle:
         low = max(registered, default=0) + 1
         high = min(HIGHEST_ORDER, highest_order(item.values))
         if high > low:

@@ -1,0 +1,97 @@
+"""How much the search gains from noise alone: the law of the largest gain over all curves, simulated.
+
+Noise has the memory and the innovations that the better explanation leaves, and the inputs are drawn from their
+tolerances, never taken from the fit, which has absorbed part of any effect like them. Every draw goes through the
+curves of all causes beside the simpler explanation, and pays what an explanation pays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import comb, log, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from truing.diagnosis.chosen import Law
+from truing.diagnosis.competition import Competition
+from truing.diagnosis.curves import Looked, beside_of
+from truing.diagnosis.exact import Fit
+from truing.diagnosis.noise import Setting, colour, whiten
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+DRAWS, FIRST_DRAWS = 299, 99
+HOPELESS = 12
+"""So many simulated gains above the measured one, of the first draws, settle that it is nothing."""
+LARGEST_RHO = 0.985
+
+
+def carried(rho: float, rows: int) -> float:
+    """Return the autocorrelation to simulate with: the fitted one, its bias and half a standard error more."""
+    rows = max(rows, 2)
+    return min(LARGEST_RHO, rho + (1 + 3 * rho) / rows + 0.5 * sqrt(max(1 - rho**2, 0.0) / rows)) if rho else 0.0
+
+
+def law_of(made: Competition, at: Fit, more: Fit, *, seed: int) -> Law:
+    """Simulate how much the best explanation with as many causes as ``more`` gains where ``at`` is all there is.
+
+    Stops early where the answer is plain.
+    """
+    generator = np.random.Generator(np.random.SFC64(seed))
+    seen, beside = made.look(at), beside_of(at, made.extended)
+    gain, steps = made.score(at) - made.score(more), len(more.causes) - len(at.causes)
+    many, on = len(made.causes), len(at.causes)
+    choice = 2 * (log(comb(many, on + steps)) - log(comb(many, on)))
+    gains: list[Matrix] = []
+    while (done := sum(len(each) for each in gains)) < DRAWS:
+        count = FIRST_DRAWS if done < FIRST_DRAWS else DRAWS - done
+        drawn = _drawn(at, more, count, generator)
+        drawn -= beside.taken @ (beside.taken.T @ drawn)
+        gains.append(_largest(made, seen, drawn, beside.total, steps) - choice)
+        if sum(int((each >= gain).sum()) for each in gains) >= HOPELESS:
+            break
+    together = np.concatenate(gains)
+    return Law(together, float((1 + (together >= gain).sum()) / (1 + len(together))))
+
+
+def _drawn(at: Fit, more: Fit, count: int, generator: np.random.Generator) -> Matrix:
+    """Draw noise as the better explanation leaves it, and inputs within their tolerances, (rows + K, draws)."""
+    sample = at.sample
+    parts = []
+    for part, channel in zip(sample.parts, sample.channels, strict=True):
+        memory = channel.memory
+        pool = whiten(more.left[part], channel.starts, memory)
+        pool = pool - pool.mean()
+        filtered = Setting(carried(memory.rho, len(pool)), memory.theta) if memory.rho else memory
+        noise = colour(generator.choice(pool, size=(len(channel), count)), channel.starts, filtered)
+        size = sqrt(channel.count / max(float(np.mean(pool**2)) * memory.variance_ratio * len(channel), 1e-300))
+        parts.append(noise * size)
+    return np.concatenate([*parts, generator.standard_normal((len(at.inputs), count))])
+
+
+def _largest(made: Competition, seen: Mapping[str, Looked], drawn: Matrix, total: float, steps: int) -> Matrix:
+    """Return by draw the largest gain of so many causes, one after another, each paid for, (draws,)."""
+    summed = np.zeros(drawn.shape[1])
+    prices = {cause.tag: made.price_of(cause) for cause in made.causes}
+    for _ in range(steps):
+        whole = np.sum(drawn**2, axis=0)
+        best = np.full(drawn.shape[1], -np.inf)
+        taken = np.zeros_like(drawn)
+        for tag, each in seen.items():
+            flat = each.basis.reshape(-1, each.basis.shape[-1])
+            inner = (flat @ drawn).reshape(*each.basis.shape[:2], -1)
+            squares = np.sum(inner**2, axis=1)
+            place = squares.argmax(axis=0)
+            lowered = np.take_along_axis(squares, place[None], 0)[0]
+            gain = -total * np.log(np.maximum(1 - lowered / np.maximum(whole, 1e-300), 1e-9)) - prices[tag]
+            better = np.flatnonzero(gain > best)
+            best[better] = gain[better]
+            for draw in better if steps > 1 else ():
+                taken[:, draw] = each.basis[place[draw]].T @ inner[place[draw], :, draw]
+        summed += best
+        drawn = drawn - taken
+    return summed

@@ -1,0 +1,108 @@
+"""Rows left out in turn: blocks of neighbours where rows have an order, else rows at random, in five folds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import log, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from truing.diagnosis.exact import ROUGHLY, Fit, fit
+from truing.diagnosis.extended import Extended
+from truing.diagnosis.noise import Setting
+from truing.diagnosis.sample import Sample, has_order
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+FOLDS = 5
+SHORTEST_BLOCK = 6
+FEWEST_BLOCKS = 8
+"""A short record has shorter blocks rather than fewer: of four that all gain the best significance is 1/16."""
+BLOCKS = 20
+
+
+@dataclass(frozen=True)
+class Folds:
+    """The block that each row of the records lies in (n,), -1 for rows that only judge, and the number of folds."""
+
+    block_of: NDArray[np.intp]
+    count: int
+
+    def test(self, fold: int) -> NDArray[np.bool_]:
+        """Mark the rows that one fold leaves out."""
+        return np.asarray((self.block_of >= 0) & (self.block_of % self.count == fold))
+
+
+def folds_of(sample: Sample, *, seed: int = 1) -> Folds:
+    """Number blocks of consecutive rows inside each run: a twentieth of the rows, six, or three correlation times.
+
+    A record of fewer than 48 rows has blocks of an eighth of it. Where something is fitted file by file, a run has two
+    blocks at least: no fold may leave out all that is known of a file. Rows without an order are blocks of their own.
+    """
+    records = sample.machine.records
+    usable = np.flatnonzero(sample.mask)
+    block_of = np.full(len(records), -1, dtype=np.intp)
+    if not has_order(sample.machine):
+        shuffled = np.random.Generator(np.random.SFC64(seed)).permutation(len(usable))
+        block_of[usable] = shuffled
+        return Folds(block_of, min(FOLDS, max(len(usable), 1)))
+    runs = records.run_of[usable]
+    first = np.flatnonzero(np.append(True, runs[1:] != runs[:-1]))
+    sizes = np.diff(np.append(first, len(runs)))
+    reach = max(_correlation_rows(channel.memory) for channel in sample.channels)
+    shortest = min(SHORTEST_BLOCK, max(2, len(runs) // FEWEST_BLOCKS))
+    length = int(max(shortest, len(runs) // BLOCKS, min(3 * reach, len(runs) // (2 * FOLDS))))
+    if sample.machine.start.diagnose.per_file:
+        length = min(length, max(int(sizes.min()) // 2, 1))
+    blocks = -(-sizes // length)
+    within = (np.arange(len(runs)) - np.repeat(first, sizes)) // length
+    block_of[usable] = np.repeat(np.cumsum(blocks) - blocks, sizes) + within
+    return Folds(block_of, min(FOLDS, int(block_of.max()) + 1))
+
+
+def _correlation_rows(setting: Setting) -> float:
+    return 0.0 if setting.rho <= 0 else -1.0 / log(setting.rho)
+
+
+def refitted(found: Fit, extended: Extended, test: NDArray[np.bool_]) -> Fit | None:
+    """Fit an explanation to the rows that are not left out, from where it is."""
+    sample = found.sample.of_rows(~test)
+    if not all(len(channel) for channel in sample.channels):
+        return None
+    return fit(sample, extended, found.causes, found.values, found.inputs, until=ROUGHLY)
+
+
+def errors_left_out(found: Fit, extended: Extended, folds: Folds) -> Matrix:
+    """Return the errors of all rows of the sample, each predicted without its fold, in units of the noise, (rows,).
+
+    NaN where the model fails without the fold.
+    """
+    made = np.full(found.sample.rows, np.nan)
+    rows = np.concatenate([channel.rows for channel in found.sample.channels])
+    for fold in range(folds.count):
+        test = folds.test(fold)
+        again = refitted(found, extended, test)
+        if again is not None:
+            made = np.where(test[rows], found.sample.left(again.predicted), made)
+    return made
+
+
+def carries_over(at: Fit, more: Fit, extended: Extended, folds: Folds) -> float:
+    """Return by how many standard errors rows left out are likelier under one explanation than under another.
+
+    What the inputs no longer have to move counts as well: an explanation that fits by moving them far predicts as well
+    as the true one, and is unlikely all the same.
+    """
+    before, after = (errors_left_out(each, extended, folds) for each in (at, more))
+    roots = more.sample.roots(more.left)  # every result in its own noise, every row as independent as it is
+    fallen = roots**2 * (before**2 - after**2)
+    fallen = fallen[np.isfinite(fallen)]
+    if len(fallen) < 2:
+        return 0.0
+    inputs = float(at.inputs @ at.inputs) - float(more.inputs @ more.inputs)
+    error = float(fallen.std()) * sqrt(len(fallen) * more.sample.rows / more.sample.total)
+    return (float(fallen.sum()) + inputs) / max(error, 1e-300)
