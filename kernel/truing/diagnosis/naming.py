@@ -2,227 +2,251 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from truing.declare.sources import Unknown
-from truing.diagnosis.contest import Contest, names_of
-from truing.diagnosis.findings import fitted_shape, shape_in_words
-from truing.diagnosis.fit import Fit, input_values, interval, si_covariance
-from truing.diagnosis.hypotheses import Piece
-from truing.diagnosis.profile import shape_interval
-from truing.diagnosis.result import Alternative, Cause, FittedUnknown, Remainder, ShapeTerm
-from truing.diagnosis.rivals import Rival
-from truing.diagnosis.search import Solution
+from truing.diagnosis.causes import INPUT, Number
+from truing.diagnosis.causes import Cause as Competitor
+from truing.diagnosis.chosen import Chosen, Rival
+from truing.diagnosis.exact import Fit
+from truing.diagnosis.extended import Extended, shape_added
+from truing.diagnosis.intervals import (
+    Certainty,
+    certainty_of,
+    interval,
+    numbers_of,
+    places_of,
+    shape_interval,
+    value_of,
+)
+from truing.diagnosis.machine import Machine
+from truing.diagnosis.result import Alternative, Calibrated, Cause, FittedUnknown, Remainder, ShapeTerm
+from truing.diagnosis.shape_words import shape_in_words
 from truing.diagnosis.visibility import separation
 from truing.setup import Setup, SwitchedOn
 
 if TYPE_CHECKING:
-    from truing.diagnosis.decide import Decision
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+Ends = tuple[float | None, float | None]
+Sized = tuple[float, float | None, float | None]
+"""A fitted value with its interval, SI."""
 
 
-def causes_of(full: Contest, best: Fit) -> tuple[Cause, ...]:
-    """Return the named causes; parts of one effect (offsets of two gauges) are one cause."""
-    by_name: dict[str, list[int]] = {}
-    for place, piece in enumerate(best.hypothesis.pieces):
-        if piece.kind == "term":
-            by_name.setdefault(full.problem.candidates[piece.owner].name, []).append(place)
-    found = [_cause(full, best, name, places) for name, places in by_name.items()]
-    return (*found, *_inputs(full, best))
+@dataclass(frozen=True)
+class _Known:
+    """A fit, the model that it is of, and how certain its numbers are."""
+
+    found: Fit
+    extended: Extended
+    certainty: Certainty
+
+    @property
+    def machine(self) -> Machine:
+        return self.extended.machine
+
+    def ends(self, place: int) -> Ends:
+        """Return the 95 % interval of a number, SI; of one that kept its start, what lies next to it."""
+        number = numbers_of(self.found)[place]
+        if not number.is_free:
+            return self._neighbours(number, value_of(self.found, place))
+        if number.is_amplitude:
+            return interval(self.found, self.certainty, place)
+        return shape_interval(self.found, self.extended, self.certainty, place)
+
+    def _neighbours(self, number: Number, value: float) -> tuple[float, float]:
+        """Return the places of the record before and behind a place; a whole number itself."""
+        item = self.machine.records.covariates.get(number.along)
+        if item is None:
+            return value, value
+        places = item.values[np.isfinite(item.values)]
+        before, behind = places[places < value], places[places > value]
+        return float(before.max()) if len(before) else value, float(behind.min()) if len(behind) else value
 
 
-def _inputs(full: Contest, best: Fit) -> list[Cause]:
-    """Return the inputs that lie outside their band, each with the interval of its value."""
-    machine = full.problem.machine
-    values = input_values(full, best)
-    found = []
-    for place, item in enumerate(best.parameters):
-        piece = best.hypothesis.pieces[item.piece]
-        if piece.kind != "input":
-            continue
-        given = machine.inputs[piece.owner]
-        reach = (interval(best, place)[1] - best.si_value(place)) * given.sd
-        value = values[given.name][0]
-        unknown = FittedUnknown(given.name, value, value - reach, value + reach, machine.start.unit_of(given.name))
-        found.append(Cause(f"input:{given.name}", (unknown,)))
-    return found
+def causes_of(chosen: Chosen, found: Fit) -> tuple[Cause, ...]:
+    """Return the named causes of an explanation; parts of one effect (offsets of two gauges) are one cause."""
+    if all(cause.shape is not None for cause in found.causes):
+        return ()
+    extended = chosen.competition.extended
+    known = _Known(found, extended, certainty_of(found, extended))
+    by_name: dict[str, list[Competitor]] = {}
+    for cause in found.causes:
+        if cause.is_registered:
+            by_name.setdefault(cause.name, []).append(cause)
+    effects = {name: parts for name, parts in by_name.items() if parts[0].effect is not None}
+    named = [_effect(known, chosen, name, parts) for name, parts in effects.items()]
+    return (*named, *(_input(known, parts) for name, parts in by_name.items() if name not in effects))
 
 
-def _cause(full: Contest, best: Fit, name: str, pieces: list[int]) -> Cause:
-    problem = full.problem
-    effect = problem.machine.start.model.known_effects[name]
-    numbers = [number for number, item in enumerate(best.parameters) if item.piece in pieces]
-    unknowns: list[FittedUnknown] = []
-    kept: list[int] = []
-    same = _same_curve(full, best, pieces)
-    for unknown in effect.unknowns:
-        own = [number for number in numbers if best.parameters[number].name == unknown.name]
-        if own:
-            unknowns.append(_fitted(full, best, unknown, own))
-            kept.append(own[0])
-        else:
-            unknowns += _fixed(full, best, unknown, pieces)
-    moving = [item.name for item in unknowns if any(best.parameters[number].name == item.name for number in kept)]
-    covariance = si_covariance(best, kept) if len(moving) == len(unknowns) and not _is_split(unknowns) else ()
-    return Cause(name, tuple(unknowns), covariance, tuple(other for other in same if other != name))
+def _input(known: _Known, parts: Sequence[Competitor]) -> Cause:
+    """Return an input that lies outside its band, with the interval of its value, in every file that has its own."""
+    found, machine, name = known.found, known.machine, parts[0].numbers[0].name
+    made: dict[str, Sized] = {}
+    for cause in parts:
+        given = machine.inputs[cause.tolerated]
+        own = np.zeros(len(known.certainty.covariance))
+        own[places_of(found, cause)[0]] = 1.0
+        if len(found.inputs):
+            own[-len(found.inputs) :] = found.sample.directions[cause.tolerated]
+        value, reach = _input_value(found, cause.tolerated), known.certainty.reach(own) * given.sd
+        made[machine.records.files[given.file] if given.file >= 0 else ""] = value, value - reach, value + reach
+    return Cause(parts[0].name, (_of_files(name, made, machine.start.unit_of(name)),))
 
 
-def _same_curve(full: Contest, best: Fit, pieces: list[int]) -> tuple[str, ...]:
-    """Return the names of what may be the curve of these pieces as well, at the signs that they have."""
-    found: list[str] = []
-    for place in pieces:
-        own = {item.column: float(value) for item, value in zip(best.parameters, best.values, strict=True)}
-        piece = best.hypothesis.pieces[place]
-        found += full.problem.same_curve(piece.owner, [own.get(column, 0.0) for column in piece.columns])
-    return tuple(dict.fromkeys(found))
-
-
-def _is_split(unknowns: list[FittedUnknown]) -> bool:
-    return any(unknown.per_file for unknown in unknowns)
-
-
-def _fitted(full: Contest, best: Fit, unknown: Unknown, own: list[int]) -> FittedUnknown:
+def _of_files(name: str, made: Mapping[str, Sized], unit: str) -> FittedUnknown:
     """Return an unknown with its interval; of one fitted file by file, the mean and every file's own."""
-    files = full.problem.machine.records.files
-    ends = [_ends(full, best, number) for number in own]
-    values = [best.si_value(number) for number in own]
-    if best.parameters[own[0]].file < 0:
-        return FittedUnknown(unknown.name, values[0], *ends[0], unknown.unit)
-    by_file = {
-        files[best.parameters[number].file]: (value, *end) for number, value, end in zip(own, values, ends, strict=True)
+    if "" in made:
+        return FittedUnknown(name, *made[""], unit)
+    return FittedUnknown(name, sum(value for value, _, _ in made.values()) / len(made), None, None, unit, made)
+
+
+def _effect(known: _Known, chosen: Chosen, name: str, parts: Sequence[Competitor]) -> Cause:
+    """Return an effect with all its unknowns that were fitted."""
+    places = [place for cause in parts for place in places_of(known.found, cause)]
+    numbers = numbers_of(known.found)
+    declared: tuple[Unknown, ...] = parts[0].effect.unknowns if parts[0].effect is not None else ()
+    unknowns, kept = [], []
+    for unknown in declared:
+        own = [place for place in places if numbers[place].name == unknown.name]
+        if own:
+            unknowns.append(_fitted(known, unknown, own))
+            kept.append(own[0])
+    is_whole = all(numbers[place].is_free and numbers[place].file < 0 for place in kept)
+    same = [other for cause in parts for other in chosen.same.get(cause.tag, ()) if other != name]
+    return Cause(name, tuple(unknowns), known.certainty.in_si(kept) if is_whole else (), tuple(dict.fromkeys(same)))
+
+
+def _fitted(known: _Known, unknown: Unknown, own: Sequence[int]) -> FittedUnknown:
+    numbers, files = numbers_of(known.found), known.machine.records.files
+    made = {
+        files[numbers[place].file] if numbers[place].file >= 0 else "": (
+            value_of(known.found, place),
+            *known.ends(place),
+        )
+        for place in own
     }
-    return FittedUnknown(unknown.name, sum(values) / len(values), None, None, unknown.unit, by_file)
+    return _of_files(unknown.name, made, unknown.unit)
 
 
-def _ends(full: Contest, best: Fit, number: int) -> tuple[float | None, float | None]:
-    if best.parameters[number].is_shape:
-        return shape_interval(full, best, number)
-    return interval(best, number)
-
-
-def _fixed(full: Contest, best: Fit, unknown: Unknown, pieces: list[int]) -> list[FittedUnknown]:
-    """Return a shape that was chosen from its grid (a whole number, the place of a step), with its neighbours."""
-    terms = full.problem.terms
-    for place in pieces:
-        piece = best.hypothesis.pieces[place]
-        shape = terms[piece.place].shape
-        if unknown.name in shape:
-            grid = sorted({term.shape[unknown.name] for term in terms if term.candidate == piece.owner})
-            at = grid.index(shape[unknown.name])
-            low, high = grid[max(at - 1, 0)], grid[min(at + 1, len(grid) - 1)]
-            value = shape[unknown.name]
-            ends = (value, value) if unknown.whole else (low, high)
-            return [FittedUnknown(unknown.name, value, *ends, unknown.unit)]
-    return []
-
-
-def switched_on(full: Contest, causes: tuple[Cause, ...]) -> tuple[SwitchedOn, ...]:
+def switched_on(chosen: Chosen, causes: Sequence[Cause]) -> tuple[SwitchedOn, ...]:
     """Return the named effects as they are switched on in the extended model; what was not excited is 0."""
-    start = full.problem.machine.start
+    start = chosen.best.sample.machine.start
     known, before = start.model.known_effects, {item.effect.name: item.values for item in start.effects}
-    found = []
+    made = []
     for cause in causes:
-        if cause.effect.startswith("input:"):
+        if cause.effect.startswith(INPUT):
             continue
         effect = known[cause.effect]
         values = {unknown.name: unknown.value for unknown in cause.unknowns}
         if not (effect.parts and effect.takes_any):
-            values = {
-                **dict.fromkeys((each.name for each in effect.unknowns), 0.0),
-                **before.get(cause.effect, {}),
-                **values,
-            }
+            rest = dict.fromkeys((each.name for each in effect.unknowns), 0.0)
+            values = {**rest, **before.get(cause.effect, {}), **values}
         sds = {}
         if cause.covariance:
             names = [unknown.name for unknown in cause.unknowns]
             sds = {name: cause.covariance[place][place] ** 0.5 for place, name in enumerate(names)}
         complete = cause.covariance if len(cause.unknowns) == len(values) > 1 else ()
-        found.append(SwitchedOn(effect, values, sds, complete))
-    return tuple(found)
+        made.append(SwitchedOn(effect, values, sds, complete))
+    return tuple(made)
 
 
-def extended_setup(full: Contest, best: Fit, causes: tuple[Cause, ...]) -> Setup:
+def extended_setup(chosen: Chosen, causes: Sequence[Cause]) -> Setup:
     """Return the model brought true: causes on, conditions as measured (their means), inputs calibrated."""
-    import numpy as np
-
-    machine = full.problem.machine
-    needed = {need.name for item in switched_on(full, causes) for need in item.effect.needs}
-    conditions = dict(machine.start.conditions)
+    machine, on = chosen.best.sample.machine, switched_on(chosen, causes)
+    start = machine.start
+    needed = {need.name for item in on for need in item.effect.needs}
+    conditions = dict(start.conditions)
     for name, item in machine.records.covariates.items():
         if name in conditions or name in needed:
             conditions[name] = float(np.nanmean(item.values))
-    calibrated = {name: value for name, (value, _) in input_values(full, best).items()}
-    setup = replace(machine.start, conditions=conditions).with_effects(switched_on(full, causes))
-    inputs = machine.start.inputs
-    return replace(setup, inputs=inputs, calibrated={**machine.start.calibrated, **calibrated})
+    calibrated = {name: value for name, (value, _) in input_values(chosen.best).items()}
+    setup = replace(start, conditions=conditions).with_effects(on)
+    return replace(setup, inputs=machine.design.inputs, calibrated={**start.calibrated, **calibrated})
 
 
-def remainder_of(full: Contest, best: Fit, decision: Decision, units: Mapping[str, str]) -> Remainder | None:
-    """Return the unregistered shape of the explanation in words, with its terms; None where there is none."""
-    piece = next((item for item in best.hypothesis.pieces if item.kind == "shape"), None)
-    if piece is None:
+def input_values(found: Fit) -> Mapping[str, tuple[float, float]]:
+    """Return every tolerated input as calibrated, SI, and how far it moved in units of its sd (the first file's)."""
+    made: dict[str, tuple[float, float]] = {}
+    for place, item in enumerate(found.sample.machine.inputs):
+        value = _input_value(found, place)
+        made.setdefault(item.name, (value, (value - item.design) / item.sd))
+    return made
+
+
+def _input_value(found: Fit, place: int) -> float:
+    """Return a tolerated input as calibrated and shifted, SI."""
+    machine = found.sample.machine
+    shifts = zip(found.causes, found.values, strict=True)
+    off = float(found.moved[place]) + sum(float(values[0]) for cause, values in shifts if cause.tolerated == place)
+    item = machine.inputs[place]
+    return float(machine.start.nominal(item.name)) + item.mean + off * item.sd
+
+
+def calibrated_of(found: Fit) -> tuple[Calibrated, ...]:
+    """Return every tolerated input as fitted to this machine."""
+    start = found.sample.machine.start
+    values = input_values(found)
+    return tuple(Calibrated(name, value, start.unit_of(name), off) for name, (value, off) in values.items())
+
+
+def remainder_of(chosen: Chosen, units: Mapping[str, str]) -> Remainder | None:
+    """Return the unregistered shapes of the explanation in words, with their terms; None where there are none."""
+    best, machine = chosen.best, chosen.best.sample.machine
+    words: dict[str, list[str]] = {}
+    terms: dict[str, tuple[ShapeTerm, ...]] = {}
+    for cause, values in zip(best.causes, best.values, strict=True):
+        if cause.shape is None:
+            continue
+        added = shape_added(machine, cause, values)
+        for name, own in _terms(machine, cause, values).items():
+            text = shape_in_words(machine, cause, values, added[name], units[name])
+            words.setdefault(name, []).append(text)
+            terms[name] = (*terms.get(name, ()), *own)
+    if not words:
         return None
-    place, results = full.problem.shape_results[piece.owner]
-    shape = full.problem.library.shapes[place]
-    alone = _alone(full.solution(decision.winner), piece)
-    words = [shape_in_words(full, shape, fitted_shape(full, alone, name), units[name]) for name in results]
-    named = [f"{name}: {word}" for name, word in zip(results, words, strict=True)]
-    p_value = decision.p_any if len(best.hypothesis.pieces) == 1 else decision.p_second
-    text = words[0] if len(words) == 1 else "; ".join(named)
-    return Remainder(shape.depends_on, text, results, p_value, _terms(full, best, piece))
+    spoken = {name: " and ".join(own) for name, own in words.items()}
+    named = [f"{name}: {word}" for name, word in spoken.items()] if len(spoken) > 1 else spoken.values()
+    p_value = chosen.p_any if len(best.causes) == 1 else chosen.p_second
+    return Remainder(_followed(best), "; ".join(named), tuple(words), p_value, terms)
 
 
-def _terms(full: Contest, best: Fit, piece: Piece) -> dict[str, tuple[ShapeTerm, ...]]:
+def _followed(found: Fit) -> tuple[str, ...]:
+    """Return what the unregistered shapes of an explanation depend on."""
+    shapes = [cause.shape for cause in found.causes if cause.shape is not None]
+    return tuple(dict.fromkeys(name for shape in shapes for name in shape.depends_on))
+
+
+def _terms(machine: Machine, cause: Competitor, values: Matrix) -> dict[str, tuple[ShapeTerm, ...]]:
     """Return the fitted terms of a shape by result, with coefficients in SI."""
-    values = {item.column: float(value) for item, value in zip(best.parameters, best.values, strict=True)}
-    bases = full.problem.library.bases
-    first = min(column for each in full.problem.shape_pieces for column in each.columns)
-    found: dict[str, list[ShapeTerm]] = {}
-    for column in piece.columns:
-        item = full.problem.columns[column]
-        expression = bases[(column - first) % len(bases)].expression
-        for name in item.parts:
-            found.setdefault(name, []).append(ShapeTerm(expression, values[column] * item.per))
-    return {name: tuple(terms) for name, terms in found.items()}
+    shape = cause.shape
+    if shape is None:
+        return {}
+    made = shape.terms([float(values[place]) for place in cause.shapes], machine.records.covariates)
+    sizes = iter([float(values[place]) for place in cause.amplitudes])
+    return {name: tuple(ShapeTerm(term.expression, next(sizes)) for term in made) for name in shape.results}
 
 
-def _alone(solution: Solution, piece: Piece) -> Solution:
-    """Return a solution with one of its pieces only, as it was fitted beside the others."""
-    import numpy as np
-
-    own = zip(solution.hypothesis.columns, solution.coefficients, strict=True)
-    kept = [float(value) for column, value in own if column in piece.columns]
-    only = replace(solution.hypothesis, pieces=(piece,))
-    return replace(solution, hypothesis=only, coefficients=np.array(kept))
-
-
-def alternative_of(full: Contest, winner: int, rival: Rival, *, with_sizes: bool = False) -> Alternative:
-    """Return a rival explanation: how far behind, how separable, and on demand what its own fit says if it has one."""
-    hypothesis = full.found.hypotheses[rival.place]
-    true = full.solution(winner)
-    depends: tuple[str, ...] = ()
-    for piece in hypothesis.pieces:
-        if piece.kind == "shape":
-            depends = full.problem.library.shapes[full.problem.shape_results[piece.owner][0]].depends_on
+def alternative_of(chosen: Chosen, rival: Rival, *, with_sizes: bool = False) -> Alternative:
+    """Return a rival explanation: how far behind, how separable, and on demand what its own fit says."""
+    found = rival.fit
+    sized = causes_of(chosen, found) if with_sizes else ()
+    same: dict[str, tuple[str, ...]] = {}
+    for cause in found.causes:
+        others = (*same.get(cause.name, ()), *chosen.same.get(cause.tag, ()))
+        if others:
+            same[cause.name] = tuple(dict.fromkeys(other for other in others if other != cause.name))
     return Alternative(
-        names_of(full.problem, hypothesis),
+        tuple(dict.fromkeys(cause.name for cause in found.causes)),
         rival.behind,
-        separation(full, true, hypothesis),
-        depends,
-        {cause.effect: cause.unknowns for cause in causes_of(full, rival.own)} if with_sizes and rival.own else {},
-        _same_as(full, full.solution(rival.place)),
+        separation(chosen.best, found, chosen.competition.extended),
+        _followed(found),
+        {cause.effect: cause.unknowns for cause in sized},
+        same,
     )
-
-
-def _same_as(full: Contest, solution: Solution) -> dict[str, tuple[str, ...]]:
-    """Return by cause the names of all that draw the same curve on this data, at the signs of a solution."""
-    found: dict[str, tuple[str, ...]] = {}
-    values = iter(solution.coefficients.tolist())
-    for piece in solution.hypothesis.pieces:
-        own = [next(values) for _ in piece.columns]
-        if piece.kind == "term":
-            name = full.problem.candidates[piece.owner].name
-            others = (*found.get(name, ()), *full.problem.same_curve(piece.owner, own))
-            found[name] = tuple(other for other in dict.fromkeys(others) if other != name)
-    return {name: others for name, others in found.items() if others}

@@ -5,52 +5,46 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from truing.diagnosis.contest import Contest
-from truing.diagnosis.fit import Fit, Fitter
+import numpy as np
+
+from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.result import Cause
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 
-def by_share(full: Contest, best: Fit, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
+def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
     """Return the causes with their shares, the largest first.
 
     What a cause adds is the extended model less the same without it, at every row, in units of the noise. Its share is
     that of its mean square in the sum of the mean squares of all.
     """
-    import numpy as np
-
     if len(causes) < 2:
         return causes
-    fitter = Fitter(full, best.hypothesis)
-    squares = np.array([np.sum(np.square(_part(fitter, best, cause))) for cause in causes])
+    best = chosen.best
+    points = [(_without(chosen, name), best.moved) for name in ("", *(cause.effect for cause in causes))]
+    whole, *rest = chosen.competition.extended.at(best.causes, points)
+    squares = np.array(
+        [
+            sum(
+                np.nansum(((whole[each.name] - less[each.name])[each.rows] / each.scale) ** 2)
+                for each in best.sample.channels
+            )
+            for less in rest
+        ]
+    )
     if not squares.sum() > 0:
         return causes
-    shares = squares / squares.sum()
-    weighed = [replace(cause, share=float(share)) for cause, share in zip(causes, shares, strict=True)]
+    weighed = [replace(cause, share=float(share)) for cause, share in zip(causes, squares / squares.sum(), strict=True)]
     return tuple(sorted(weighed, key=lambda cause: -cause.share))
 
 
-def _part(fitter: Fitter, best: Fit, cause: Cause) -> NDArray[np.float64]:
-    """Return what a cause adds to all results, one below the other, in units of their noise."""
-    import numpy as np
-
-    off = best.values.copy()
-    for place, item in enumerate(best.parameters):
-        if not item.is_shape and _owner(fitter.contest, best, item.piece) == cause.effect:
-            off[place] = 0.0
-    without = fitter.predicted(off, best.directions)
-    channels = fitter.contest.evidence.channels
-    return np.concatenate(
-        [(best.predicted[item.name] - without[item.name])[item.rows] / item.scale for item in channels]
-    )
-
-
-def _owner(full: Contest, best: Fit, place: int) -> str:
-    """Return the name of the cause that a piece of the explanation belongs to; nothing for a shape."""
-    piece = best.hypothesis.pieces[place]
-    if piece.kind == "term":
-        return full.problem.candidates[piece.owner].name
-    return f"input:{full.problem.machine.inputs[piece.owner].name}" if piece.kind == "input" else ""
+def _without(chosen: Chosen, name: str) -> list[NDArray[np.float64]]:
+    """Return the numbers of the explanation with the amplitudes of one name at zero."""
+    made = []
+    for cause, values in zip(chosen.best.causes, chosen.best.values, strict=True):
+        made.append(values.copy())
+        if cause.name == name:
+            made[-1][cause.amplitudes] = 0.0
+    return made

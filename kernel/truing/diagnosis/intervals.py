@@ -1,0 +1,224 @@
+"""How certain the numbers of a fit are: their covariance, intervals by Student's t, and profiles of shapes.
+
+Rows count as far as they are independent: all of them once the memory of the noise is taken out, else fewer. What is
+known of a time constant is seldom symmetric and often open on one side: the interval of a shape is that of its profile.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import exp, log, log1p, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import stdtrit
+
+from truing.diagnosis.causes import Cause, Number
+from truing.diagnosis.columns import in_blocks
+from truing.diagnosis.exact import Fit, fit, inward, slopes_at, unit_of
+from truing.diagnosis.extended import Extended, parts_of
+from truing.diagnosis.sample import WHITENED, Channel, Sample
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+LEVEL = 0.975
+"""Of Student's t at either end of an interval: together they hold 95 %."""
+LARGEST_LEVERAGE = 0.95
+FEWEST_FREE = 2.0
+SINGULAR = 1e-12
+"""Share of the largest eigenvalue, columns of unit length, below which a combination of numbers is not determined."""
+FARTHER = 2.0
+"""So many times as far is looked for the end of a profile that was not reached yet."""
+SHORTEST, LONGEST = 1e-3, 0.25
+"""Of the way to a bound: between these is the first step along a profile."""
+CLOSE = 5e-3
+"""Of its distance from the fitted value: how well the end of a profile is known."""
+HIGHEST = 100.0
+"""In units of what a profile may rise by: how high it is where the model fails."""
+
+
+@dataclass(frozen=True)
+class Certainty:
+    """Covariance of all numbers of a fit, as the fit sees them, with the directions of the inputs behind them.
+
+    ``units`` is what one unit of every number is in SI; ``variance`` is that of an independent row in units of what the
+    fit leaves, a little above 1 for what the numbers have used up; ``freedom`` counts the independent rows left.
+    """
+
+    covariance: Matrix
+    units: Matrix
+    variance: float
+    freedom: float
+    clipped: float
+
+    def reach(self, weights: Matrix) -> float:
+        """Return half of the 95 % interval of a weighted sum of numbers and directions, as the fit sees them."""
+        squared = max(float(weights @ self.covariance @ weights), 0.0)
+        return float(stdtrit(self.freedom, LEVEL)) * sqrt(squared)
+
+    def reach_of(self, place: int) -> float:
+        """Return half of the 95 % interval of one number, as the fit sees it."""
+        return self.reach(np.eye(len(self.covariance))[place])
+
+    def in_si(self, places: Sequence[int]) -> tuple[tuple[float, ...], ...]:
+        """Return the covariance of some numbers in SI."""
+        own = self.units[list(places)]
+        part = self.covariance[np.ix_(list(places), list(places))] * np.outer(own, own)
+        return tuple(tuple(row) for row in part.tolist())
+
+
+def numbers_of(found: Fit) -> list[Number]:
+    """Return the numbers of all causes of a fit, one behind another: the order of places."""
+    return [number for cause in found.causes for number in cause.numbers]
+
+
+def places_of(found: Fit, cause: Cause) -> range:
+    """Return the places of the numbers of a cause among those of all."""
+    place = [each.tag for each in found.causes].index(cause.tag)
+    begin = sum(each.size for each in found.causes[:place])
+    return range(begin, begin + cause.size)
+
+
+def value_of(found: Fit, place: int) -> float:
+    """Return one of all numbers, SI."""
+    return float(np.concatenate(found.values)[place])
+
+
+def certainty_of(found: Fit, extended: Extended) -> Certainty:
+    """Return how certain the numbers of a fit are.
+
+    The larger of the model-based covariance and the sandwich (HC3; J. G. MacKinnon, H. White, J. Econometrics 29, 1985,
+    305), number by number; widened by the share of clipped rows, as for any robust estimate.
+    """
+    noise = found.sample.noise
+    found = found.in_sample(_counted(found.sample))
+    sample, units = found.sample, unit_of(found)
+    slopes, roots = np.column_stack(slopes_at(found, extended)), sample.roots(found.left)
+    slopes *= roots[:, None]
+    prior = np.diag(np.append(np.zeros(len(units)), np.ones(len(found.inputs))))
+    normal = slopes.T @ slopes
+    inverse = _inverse(normal + prior)
+    used = float(np.trace(inverse @ normal))
+    variance = sample.total / max(sample.total - used, 1.0)
+    rows = np.concatenate([np.full(len(each), len(each) / each.count) for each in sample.channels])
+    scores = _scores(slopes, roots * found.left, inverse, rows)
+    plain, sandwich = inverse * variance, inverse @ (scores + variance * prior) @ inverse
+    ratio = np.sqrt(np.maximum(np.diag(sandwich) / np.maximum(np.diag(plain), 1e-300), 1.0))
+    clipped = max(noise[channel.name].tails.clipped for channel in sample.channels)
+    kept = sum(each.count * (1 - noise[each.name].tails.clipped) ** 2 for each in sample.channels)
+    covariance = plain * np.outer(ratio, ratio) / (1 - clipped) ** 2
+    return Certainty(covariance, units, variance, max(kept - used, FEWEST_FREE), clipped)
+
+
+def _counted(sample: Sample) -> Sample:
+    """Return the rows of a sample, each counted as far as it is independent, whether it was moved in or not."""
+
+    def count(channel: Channel) -> float:
+        if sample.is_white and channel.memory.rho <= WHITENED:
+            return float(len(channel))
+        kept = (1 - sample.noise[channel.name].tails.clipped) ** 2
+        return min(channel.count / max(kept, 1e-300), float(len(channel)))
+
+    return replace(sample, channels=tuple(replace(channel, count=count(channel)) for channel in sample.channels))
+
+
+def _inverse(normal: Matrix) -> Matrix:
+    """Return the inverse of a normal matrix; 0 for numbers that the rows say nothing of."""
+    size = np.sqrt(np.maximum(np.diag(normal), 1e-300))
+    scale = np.outer(size, size)
+    return np.asarray(np.linalg.pinv(normal / scale, rcond=SINGULAR, hermitian=True) / scale)
+
+
+def _scores(slopes: Matrix, left: Matrix, inverse: Matrix, rows: Matrix) -> Matrix:
+    """Return the covariance of the gradient as the rows show it; ``rows`` of them say what an independent one does."""
+    made = np.zeros_like(inverse)
+    for block in in_blocks(len(slopes)):
+        own = slopes[block]
+        leverage = rows[block] * np.einsum("ij,ij->i", own @ inverse, own)
+        scores = own * (left[block] * np.sqrt(rows[block]) / (1 - np.minimum(leverage, LARGEST_LEVERAGE)))[:, None]
+        made += scores.T @ scores
+    return made
+
+
+def interval(found: Fit, certainty: Certainty, place: int) -> tuple[float, float]:
+    """Return the 95 % interval of a number in SI, within its bounds."""
+    number, unit = numbers_of(found)[place], float(certainty.units[place])
+    value, reach = value_of(found, place), certainty.reach_of(place)
+    if number.is_log:
+        low, high = value * exp(-min(reach, 700.0)), value * exp(min(reach, 700.0))
+    else:
+        low, high = value - reach * unit, value + reach * unit
+    return max(low, min(number.low, value)), min(high, max(number.high, value))
+
+
+def may_be_zero(found: Fit, certainty: Certainty, cause: Cause) -> bool:
+    """Tell whether the 95 % interval of every amplitude of a cause contains zero."""
+    own = places_of(found, cause)
+    ends = [interval(found, certainty, own[place]) for place in cause.amplitudes]
+    return all(low <= 0 <= high for low, high in ends)
+
+
+def shape_interval(
+    found: Fit, extended: Extended, certainty: Certainty, place: int
+) -> tuple[float | None, float | None]:
+    """Return the 95 % profile interval of a shape in SI; an end is None where the profile stays open to its bound."""
+    profile = _Profile(found, extended, certainty, place)
+    low, high = (profile.end(bound) for bound in profile.bounds)
+    return low, high
+
+
+class _Profile:
+    """The least cost with one shape held, everything else fitted again from the nearest point that is known."""
+
+    def __init__(self, found: Fit, extended: Extended, certainty: Certainty, place: int) -> None:
+        self.extended, self.place, self.number = extended, place, numbers_of(found)[place]
+        self.unit = 1.0 if self.number.is_log else float(certainty.units[place])
+        self.bounds = inward(self.number, self.unit)
+        value = value_of(found, place)
+        self.start = log(value) if self.number.is_log else value / self.unit
+        found = found.in_sample(_counted(found.sample))
+        self.known = {self.start: self._fitted(found, self.start) or found}
+        student = float(stdtrit(certainty.freedom, LEVEL))
+        rows = found.sample.total
+        allowed = rows * log1p(student**2 * certainty.variance / rows)
+        self.allowed = allowed / (1 - certainty.clipped) ** 2
+        self.reach = certainty.reach_of(place)
+
+    def _fitted(self, near: Fit, u: float) -> Fit | None:
+        """Fit with the shape held, from a fit nearby."""
+        flat = np.concatenate(near.values)
+        flat[self.place] = self.outward(u)
+        values = parts_of(near.causes, flat)
+        return fit(near.sample, self.extended, near.causes, values, near.inputs, held=[self.number])
+
+    def outward(self, u: float) -> float:
+        """Return the shape in SI."""
+        return exp(u) if self.number.is_log else u * self.unit
+
+    def above(self, u: float) -> float:
+        """Return how far a place lies outside of the interval: by the root of what the cost rises, nearly a line."""
+        if u not in self.known:
+            made = self._fitted(self.known[min(self.known, key=lambda other: abs(other - u))], u)
+            if made is None:
+                return sqrt(HIGHEST * self.allowed)
+            self.known[u] = made
+        risen = self.known[u].cost - self.known[self.start].cost
+        return sqrt(min(max(risen, 0.0), HIGHEST * self.allowed)) - sqrt(self.allowed)
+
+    def end(self, bound: float) -> float | None:
+        """Return where the interval ends on the way to a bound; None where it does not."""
+        way = bound - self.start
+        if not way:
+            return None
+        step, before = float(np.clip(self.reach / abs(way), SHORTEST, LONGEST)), 0.0
+        while self.above(self.start + step * way) <= 0:
+            if step >= 1.0:
+                return None
+            before, step = step, min(FARTHER * step, 1.0)
+        at = brentq(lambda share: self.above(self.start + share * way), before, step, xtol=CLOSE * step)
+        return self.outward(self.start + float(at) * way)
