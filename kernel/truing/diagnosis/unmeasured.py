@@ -131,7 +131,8 @@ def _facts(start: Any, explanation: Explanation) -> Iterator[Fact]:
                 quantity = f"{on.effect.name}.{unknown.name}"
                 yield Fact(explanation.name, quantity, Amount(float(value), unknown.unit), unknown.note)
     for name, value in explanation.inputs.items():
-        note = start.model.input_fields[name].note
+        declared, known = start.model.input_fields.get(name), start.model.known_conditions
+        note = known[name].note if declared is None else declared.spec.note
         yield Fact(explanation.name, f"input:{name}", Amount(value, start.unit_of(name)), note)
 
 
