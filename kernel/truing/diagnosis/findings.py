@@ -28,6 +28,8 @@ FAR = 4.0
 LARGEST_COUNT = 4
 NOTICEABLE = 0.1
 BIASED = 3.0
+SHOWS = 3.0
+"""Standard errors from which on what a cause adds to a result is said to be in it."""
 BETTER = 6.0
 SHADOW = 0.3
 WAVE_LEVEL = 0.001
@@ -161,14 +163,20 @@ def _added(found: Fit, extended: Extended) -> dict[str, dict[str, Matrix]]:
 
 
 def _acting(chosen: Chosen) -> dict[str, tuple[Cause, ...]]:
-    """Return by result the registered effects of the explanation that act on it."""
+    """Return by result the registered effects of the explanation that show in it."""
     best = chosen.best
     added = _added(best, chosen.competition.extended) if best.causes else {}
     registered = [cause for cause in best.causes if cause.effect is not None]
     return {
-        channel.name: tuple(cause for cause in registered if np.any(added[cause.tag][channel.name][channel.rows]))
+        channel.name: tuple(cause for cause in registered if _shows(channel, added[cause.tag][channel.name]))
         for channel in best.sample.channels
     }
+
+
+def _shows(channel: Channel, added: Matrix) -> bool:
+    """Whether something that is added to a result is more than its noise would hide, all rows together."""
+    size = added[channel.rows] * (channel.weights / channel.scale)
+    return float(np.mean(size**2)) * channel.count > SHOWS**2
 
 
 def _with_named(chosen: Chosen, acting: tuple[Cause, ...], found: list[Finding]) -> list[Finding]:

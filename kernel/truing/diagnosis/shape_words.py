@@ -1,0 +1,104 @@
+"""What a shape looks like, in words with numbers and units: where it bends, jumps or turns, how long, how high."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from truing.diagnosis.causes import Cause
+from truing.diagnosis.machine import Machine
+from truing.diagnosis.readable import readable_unit
+from truing.diagnosis.records import Covariate
+from truing.numbers import format_number
+from truing.units import from_si
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+SHOWN_DIGITS = 2
+PLACE_DIGITS = 3
+ONE_WAY = 0.9
+"""Share of its range between the ends of a trend from which on it rises or falls; else it is curved."""
+
+
+def in_unit(value: float, unit: str) -> str:
+    """Write a difference with its unit, two digits."""
+    number = format_number(float(from_si(value, unit)), SHOWN_DIGITS)
+    return f"{number} {unit}".strip()
+
+
+def shape_in_words(machine: Machine, cause: Cause, values: Matrix, added: Matrix, unit: str) -> str:
+    """Describe a fitted shape that nobody registered by its numbers (SI) and what it adds to a result, SI, (n,)."""
+    shape = cause.shape
+    if shape is None:
+        return ""
+    items = [machine.records.covariates[name] for name in shape.depends_on]
+    item, size = items[0], in_unit(float(np.ptp(added)), unit)
+    number = float(values[cause.shapes[0]]) if cause.shapes else 0.0
+    if shape.kind == "order":
+        return order_in_words(item, number, added, unit)
+    if shape.kind == "step":
+        return step_in_words(item, number, added, unit)
+    if shape.kind == "wave":
+        return f"one wave per {_length(item, 1 / number)}, amplitude {in_unit(_amplitude(added), unit)}"
+    if shape.kind == "settling":
+        return f"settles with a time constant of {_length(item, number)}, by {in_unit(_change(item, added), unit)}"
+    if shape.kind == "jump":
+        return f"jumps by {in_unit(_change(item, added), unit)} where {item.name} changes its sign"
+    if shape.kind == "kink":
+        return f"has a kink where {item.name} changes its sign, range {size}"
+    if shape.kind == "dead zone":
+        return f"a dead zone of +-{_length(item, number)}, range {size}"
+    if shape.kind == "product":
+        return f"depends on {items[0].name} and {items[1].name} together, range {size}"
+    return _trend(item, added, unit)
+
+
+def order_in_words(item: Covariate, order: float, added: Matrix, unit: str) -> str:
+    """Describe waves of a whole order over an angle."""
+    return f"order {order:g} of {item.name}, amplitude {in_unit(_amplitude(added), unit)}"
+
+
+def step_in_words(item: Covariate, at: float, added: Matrix, unit: str) -> str:
+    """Describe a step at a place (SI) along a covariate."""
+    return f"step of {in_unit(float(added[np.argmax(np.abs(added))]), unit)} at {_place(item, at)}"
+
+
+def _amplitude(added: Matrix) -> float:
+    return float(np.ptp(added)) / 2
+
+
+def _change(item: Covariate, added: Matrix) -> float:
+    """Return by how much a curve differs between the smallest and the largest value of a covariate."""
+    return float(added[np.nanargmax(item.values)] - added[np.nanargmin(item.values)])
+
+
+def _place(item: Covariate, at: float) -> str:
+    return f"{item.name} = {format_number(float(from_si(at, item.unit)), PLACE_DIGITS)} {item.unit}".strip()
+
+
+def _length(item: Covariate, value: float) -> str:
+    """Write a distance along a covariate, in rows where it is the place in the record."""
+    if item.role == "order":
+        return f"{format_number(value, PLACE_DIGITS)} rows"
+    unit = readable_unit(item.unit, value)
+    length = f"{format_number(float(from_si(value, unit)), PLACE_DIGITS)} {unit}".strip()
+    return f"{length} of {item.name}" if item.role != "time" else length
+
+
+def _trend(item: Covariate, added: Matrix, unit: str) -> str:
+    """Describe a trend: rising or falling, or curved with its turning point."""
+    order = np.argsort(item.values)[: int(np.isfinite(item.values).sum())]
+    curve, at = added[order], item.values[order]
+    low, high = int(np.argmin(curve)), int(np.argmax(curve))
+    size = in_unit(float(np.ptp(curve)), unit)
+    ends = abs(curve[-1] - curve[0]) / max(float(np.ptp(curve)), 1e-300)
+    if ends > ONE_WAY:
+        way = "rises" if curve[-1] > curve[0] else "falls"
+        return f"{way} with {item.name}, by {size} over the record"
+    turning = low if 0 < low < len(curve) - 1 and abs(curve[low] - curve[0]) >= abs(curve[high] - curve[0]) else high
+    kind = "lowest" if turning == low else "highest"
+    return f"curved over {item.name}, {kind} at {_place(item, float(at[turning]))}, range {size}"
