@@ -180,7 +180,7 @@ def stands_still(cause: Cause, machine: Machine) -> bool:
 def inputs_of(machine: Machine) -> list[Cause]:
     """Return every tolerated input that moves a measured result, as a cause that shifts it by standard deviations."""
     return [
-        Cause(f"{INPUT}{item.name}", f"{INPUT}{item.name}.{item.file}", (Number(item.name, -inf, inf),), tolerated=place)
+        Cause(INPUT + item.name, f"{INPUT}{item.name}.{item.file}", (Number(item.name, -inf, inf),), tolerated=place)
         for place, item in enumerate(machine.inputs)
         if any(np.any(slopes[:, place]) for slopes in machine.slopes.values())
     ]

@@ -130,10 +130,8 @@ def _step(made: Competition, at: Fit, more: Fit, folds: Folds, *, seed: int) -> 
     gain = made.score(at) - made.score(more)
     if gain <= 0:
         return _Step(law_of(made, at, more, seed=seed) if not at.causes else Law(np.zeros(0), 1.0), False)
-    if at.causes and gain > CERTAIN:
-        law = Law(np.zeros(0), 1 / 300)
-    else:
-        law = law_of(made, at, more, seed=seed)
+    is_certain = bool(at.causes) and gain > CERTAIN
+    law = Law(np.zeros(0), 1 / 300) if is_certain else law_of(made, at, more, seed=seed)
     level = FURTHER_LEVEL if at.causes else ANY_LEVEL
     is_believed = (
         law.p_value <= level
@@ -172,9 +170,11 @@ def _registered(made: Competition, best: Fit) -> Fit:
     if all(cause.is_registered for cause in best.causes):
         return best
     near = made.ranked(
-        lambda found: 0 < len(found.causes) <= len(best.causes) + 1
-        and all(cause.effect is not None for cause in found.causes)
-        and made.score(found) < made.score(best) + CLOSE
+        lambda found: (
+            0 < len(found.causes) <= len(best.causes) + 1
+            and all(cause.effect is not None for cause in found.causes)
+            and made.score(found) < made.score(best) + CLOSE
+        )
     )
     return min(near, key=lambda found: (len(found.causes), made.score(found)), default=best)
 
@@ -234,7 +234,7 @@ def _is_near(made: Competition, best: Fit, found: Fit) -> bool:
     if best.key < found.key:
         added = [cause for cause in found.causes if cause.tag not in best.key]
         return behind < NEARLY and len(added) == 1 and added[0].effect is not None
-    if len(found.causes) > len(best.causes) or found.key < best.key and behind >= CLOSE:
+    if len(found.causes) > len(best.causes) or (found.key < best.key and behind >= CLOSE):
         return False
     if _shifts_inputs(found) and not _shifts_inputs(best):
         return False
@@ -296,4 +296,3 @@ def _polished(made: Competition, found: Fit) -> Fit:
 def _polished_rivals(made: Competition, best: Fit, rivals: list[Rival]) -> Iterator[Rival]:
     for rival in rivals:
         yield Rival(_polished(made, rival.fit), rival.behind)
-

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Law:
-    """Largest gains that a search makes of noise alone, simulated, shape (draws,), and the chance of the measured one."""
+    """Largest gains that a search makes of noise alone, simulated (draws,), and the chance of the measured one."""
 
     gains: NDArray[np.float64]
     p_value: float

@@ -84,7 +84,7 @@ class Competition:
         return own + (UNREGISTERED if cause.shape is not None else MARGIN if cause.tolerated >= 0 else 0.0)
 
     def score(self, found: Fit) -> float:
-        """Return how unlikely an explanation is: -2 log likelihood, prior of the inputs, price, signs of a wrong one."""
+        """Return how unlikely an explanation is: its cost, its price, and the signs of a wrong one."""
         return found.cost + self.price(found) + MARGIN * signs_of_wrong(found)
 
     def own_score(self, found: Fit) -> float:
@@ -325,7 +325,9 @@ def _less(several: tuple[Any, ...], place: int) -> tuple[Any, ...]:
 def _exactly(made: Competition) -> None:
     top = made.score(made.ranked()[0])
     near = [found for found in made.ranked()[:RENEWED] if made.score(found) < top + 4 * MARGIN]
-    made.again([made.null, *near, *(best for size in range(1, MOST_CAUSES) if (best := made.best(size)) is not None)], EXACTLY)
+    made.again(
+        [made.null, *near, *(best for size in range(1, MOST_CAUSES) if (best := made.best(size)) is not None)], EXACTLY
+    )
 
 
 def _are_exclusive(causes: Sequence[Cause]) -> bool:

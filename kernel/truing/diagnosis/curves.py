@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.stats import qmc
 
-from truing.diagnosis.causes import Cause, Number
+from truing.diagnosis.causes import Cause
 from truing.diagnosis.exact import Fit, slopes_at
-from truing.diagnosis.extended import Extended, shape_added
+from truing.diagnosis.extended import Extended
+from truing.diagnosis.points import LEVELS, SPREAD, first_places, middle, placed, refined, spread
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,23 +28,11 @@ if TYPE_CHECKING:
 
 KEPT = 3
 """So many points of a cause begin exact fits."""
-LEVELS = (1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001)
-"""Shares of its bound at which an amplitude that bends is asked for."""
 STRAIGHT = 1e-4
 """Share of its size by which chords of a cause may differ while it counts as proportional."""
 NEAR_LEVEL = 2.0
 """A curve that bends stands for amplitudes up to so many times its own, and down to one over it."""
-FIRST, FINEST = 9, 3000
-"""Points of a sweep to begin with, and at most."""
-ALIKE = 0.7
-"""Neighbours of a sweep with a smaller cosine have another curve between them."""
-SPREAD = 64
-"""Points over several numbers at once."""
-PLACES = 120
-"""Places of a record at which something may begin."""
 FAINT = 1e-9
-WAVES_PER_POINT = 0.25
-"""Step of a frequency, in what one wave more over the record is: its curves are known to change by then."""
 
 
 @dataclass(frozen=True)
@@ -128,12 +117,12 @@ class _Place:
         """Return what a cause changes at some points (M, numbers), (M, readings)."""
         if self.base is None:
             self.base = self._stacked([])[0]
-        return self._stacked([(cause, point) for point in points]) - self.base
+        return np.asarray(self._stacked([(cause, point) for point in points]) - self.base)
 
     def is_straight(self, cause: Cause) -> bool:
         """Whether a cause is proportional to its amplitudes, and several of them do no more than their sum."""
-        middle = np.array([_middle(number) for number in cause.numbers])
-        ends = [place for place in cause.amplitudes]
+        middle = np.array([middle(number) for number in cause.numbers])
+        ends = list(cause.amplitudes)
         points, shares = [], (1.0, 0.1, LEVELS[-1])
         for place in ends:
             for side in (cause.numbers[place].low, cause.numbers[place].high):
@@ -170,7 +159,7 @@ class _Place:
 
     def bent(self, cause: Cause) -> Bundle:
         """Return the curves of a cause that bends, at amplitudes of many sizes and at shapes all over."""
-        points = _spread(cause)
+        points = spread(cause)
         made = self.changes(cause, points)
         works = np.isfinite(_known(made)).all(axis=1)
         return Bundle(cause, points[works], np.nan_to_num(made[works])[:, None, :], is_straight=False)
@@ -201,109 +190,24 @@ def _known(made: Matrix) -> Matrix:
     return np.where(np.isnan(made).all(axis=0), 0.0, made)
 
 
-def _middle(number: Number) -> float:
-    """Return a number that is not looked at: no amplitude, the middle of a shape's range."""
-    if number.is_amplitude:
-        return 0.0
-    if number.whole:
-        return float(round((number.low + number.high) / 2))
-    return float((number.low * number.high) ** 0.5) if number.is_log else (number.low + number.high) / 2
-
-
-def _from_unit(number: Number, u: Matrix) -> Matrix:
-    """Return values of a shape number for places from 0 to 1 in its range."""
-    if number.whole:
-        return np.minimum(np.floor(number.low + u * (number.high - number.low + 1)), number.high)
-    if number.is_log and number.high / number.low > 10 and number.name != "frequency":
-        return np.asarray(number.low * (number.high / number.low) ** u)
-    return np.asarray(number.low + u * (number.high - number.low))
-
-
 def _swept(cause: Cause, make: Callable[[Matrix], Matrix], *, is_straight: bool) -> Bundle:
     """Return curves over all shapes of a cause; along one number as finely as they change."""
     shapes = [cause.numbers[place] for place in cause.shapes]
     if not shapes:
         u = np.zeros((1, 0))
     elif len(shapes) == 1:
-        u = _first_places(shapes[0])[:, None]
+        u = first_places(shapes[0])[:, None]
     else:
         u = qmc.Sobol(len(shapes), seed=1).random(SPREAD)
-    values = _placed(shapes, u)
+    values = placed(shapes, u)
     made = make(values)
     if len(shapes) == 1 and not shapes[0].whole and not shapes[0].along:
-        u, made = _refined(shapes, u, made, make)
-        values = _placed(shapes, u)
+        u, made = refined(shapes, u, made, make)
+        values = placed(shapes, u)
     works = np.isfinite(_known(made.reshape(len(made), -1))).all(axis=1)
     points = np.zeros((len(values), cause.size))
     points[:, cause.shapes] = values
     return Bundle(cause, points[works], np.nan_to_num(made[works]), is_straight)
-
-
-def _placed(shapes: Sequence[Number], u: Matrix) -> Matrix:
-    return np.column_stack([_from_unit(number, u[:, place]) for place, number in enumerate(shapes)]) if shapes else u
-
-
-def _first_places(number: Number) -> Matrix:
-    """Return where a sweep begins: every whole number, a frequency in steps that its curves are known to need."""
-    if number.whole:
-        count = int(number.high - number.low) + 1
-        return np.asarray((np.arange(min(count, FINEST)) + 0.5) / count)
-    if number.along:
-        return np.linspace(0, 1, PLACES)
-    if number.name == "frequency":
-        waves = number.high / number.low
-        return np.linspace(0, 1, int(min(FINEST, max(FIRST, waves / WAVES_PER_POINT))))
-    return np.linspace(0, 1, FIRST)
-
-
-def _refined(shapes: Sequence[Number], u: Matrix, made: Matrix, make: Callable[[Matrix], Matrix]) -> tuple[Matrix, Matrix]:
-    """Put points between neighbours that are no longer alike, until all are or there are enough."""
-    while shapes[0].name != "frequency" and len(u) < FINEST:
-        flat = np.nan_to_num(made.reshape(len(made), -1))
-        size = np.linalg.norm(flat, axis=1)
-        cosine = np.abs(np.einsum("ij,ij->i", flat[1:], flat[:-1])) / np.maximum(size[1:] * size[:-1], 1e-300)
-        gaps = np.flatnonzero((cosine < ALIKE) & (np.diff(u[:, 0]) > 1e-5) & (np.minimum(size[1:], size[:-1]) > 0))
-        if not len(gaps):
-            break
-        new = (u[gaps] + u[gaps + 1])[: FINEST - len(u)] / 2
-        order = np.argsort(np.concatenate([u, new])[:, 0], kind="stable")
-        made = np.concatenate([made, make(_placed(shapes, new))])[order]
-        u = np.concatenate([u, new])[order]
-    return u, made
-
-
-def _spread(cause: Cause) -> Matrix:
-    """Return points over amplitudes of many sizes, to both sides, and over all shapes."""
-    shapes = [cause.numbers[place] for place in cause.shapes]
-    ends = [(place, end) for place in cause.amplitudes for end in (cause.numbers[place].low, cause.numbers[place].high) if end]
-    points = []
-    if len(cause.amplitudes) == 1 and len(shapes) <= 1:
-        grid = _placed(shapes, _few_places(shapes)) if shapes else np.zeros((1, 0))
-        for place, end in ends:
-            for level in LEVELS:
-                for values in grid:
-                    point = np.zeros(cause.size)
-                    point[cause.shapes], point[place] = values, level * end
-                    points.append(point)
-        return np.array(points)
-    sampler = qmc.Sobol(cause.size + 1, seed=1).random(4 * SPREAD)
-    for u in sampler:
-        point = np.zeros(cause.size)
-        point[cause.shapes] = _placed(shapes, u[None, : len(shapes)])[0] if shapes else []
-        level = 10 ** (-3 * u[-1])
-        for column, place in enumerate(cause.amplitudes, start=len(shapes)):
-            number = cause.numbers[place]
-            v = u[column]
-            side = number.high if (v >= 0.5 or not number.low) and number.high else number.low
-            share = abs(2 * v - 1) if number.low and number.high else v
-            point[place] = level * side * (0.05 + 0.95 * share)
-        points.append(point)
-    return np.array(points)
-
-
-def _few_places(shapes: Sequence[Number]) -> Matrix:
-    places = _first_places(shapes[0])
-    return places[:: max(1, len(places) // FIRST)][:, None]
 
 
 @dataclass(frozen=True)

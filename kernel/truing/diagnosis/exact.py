@@ -1,4 +1,4 @@
-"""Exact fits: an explanation with the model itself, its numbers within their bounds, the inputs within their tolerances.
+"""Exact fits: an explanation with the model itself, numbers within their bounds, inputs within their tolerances.
 
 Levenberg-Marquardt steps on the numbers of the causes. The inputs are eliminated from every step: as far as the fit
 goes they act by their slopes about an anchor, which is moved when the fit has settled and the model bends in them.
@@ -160,7 +160,7 @@ class _Fitting:
         return self.sample.left(shown) + self.slopes @ self.anchor
 
     def begin(self, values: Matrix, inputs: Matrix | None) -> bool:
-        """Take a start, or so much nearer to no cause at all that the model does not fail; False where it always does."""
+        """Take a start, or so much nearer to no cause that the model does not fail; False where it always does."""
         u = np.where(self.log, np.log(np.where(self.log, values, 1.0)), values / self.sizes)
         u = np.clip(u, self.low, self.high)
         amplitudes = np.array([number.is_amplitude for number in self.numbers], dtype=bool)
@@ -204,7 +204,9 @@ class _Fitting:
         self.slope = np.zeros((len(self.left), len(self.u)))
         for place, shown in zip(places, self.shown(points, self.anchor) if points else [], strict=True):
             column = (self.bare(shown) - self.r0) / steps[place]
-            self.slope[:, place] = column if np.isfinite(column).all() else self._other_side(place, steps[place])
+            self.slope[:, place] = (
+                column if np.isfinite(column).all() else self._other_side(int(place), float(steps[place]))
+            )
         self.is_fresh = True
 
     def _other_side(self, place: int, step: float) -> Matrix:
@@ -281,7 +283,7 @@ class _Fitting:
                 return
 
     def _taken(self, moved: Matrix) -> float | None:
-        """Take a step if it leads down, and correct the derivatives by what it shows; return by how much it led down."""
+        """Take a step if it leads down, and correct the derivatives by what it shows; return how far it led down."""
         tried = np.clip(self.u + moved, self.low, self.high)
         (shown,) = self.shown([tried], self.anchor)
         bare = self.bare(shown)
@@ -306,7 +308,9 @@ class _Fitting:
         is_off = float(missed @ missed) > MOVED
         self.anchor, self.predicted = self.b, shown
         self.r0 = exact + self.slopes @ self.anchor
-        self.b, self.left, self.cost = self.calibrated(self.r0) if is_off else (self.b, exact, self.sample.cost(exact, self.b))
+        self.b, self.left, self.cost = (
+            self.calibrated(self.r0) if is_off else (self.b, exact, self.sample.cost(exact, self.b))
+        )
         return is_off
 
     def answer(self) -> Fit:
@@ -332,17 +336,19 @@ def _solved(normal: Matrix, right: Matrix) -> Matrix:
 
 
 def slopes_at(found: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
-    """Return the derivatives of what a fit predicts by its numbers and by the directions, in units of the noise.
+    """Return the derivatives of what a fit predicts, by its numbers and by the directions, in units of the noise.
 
-    Shapes (rows, numbers) per unit of the number as the fit sees it, 0 for what keeps its start, and (rows, K); those of
-    the inputs are taken where the fit has put them.
+    Shapes (rows, numbers) per unit of the number as the fit sees it, 0 for what keeps its start, and (rows, K); those
+    of the inputs are taken where the fit has put them.
     """
     state = _Fitting(found.sample, extended, found.causes, ())
     state.begin(np.concatenate(found.values) if found.causes else np.zeros(0), found.inputs)
     state.derivatives()
     sample, k = found.sample, len(found.inputs)
     own = parts_of(found.causes, state.outward(state.u))
-    points = [(own, moved_by(sample, found.inputs + sign * 0.5 * np.eye(k)[place])) for place in range(k) for sign in (1, -1)]
+    points = [
+        (own, moved_by(sample, found.inputs + sign * 0.5 * np.eye(k)[place])) for place in range(k) for sign in (1, -1)
+    ]
     made = extended.at(found.causes, points) if points else []
     columns = [sample.left(down) - sample.left(up) for up, down in zip(made[::2], made[1::2], strict=True)]
     inputs = np.column_stack(columns) if columns else np.zeros((sample.rows, 0))
@@ -365,5 +371,3 @@ def nothing(sample: Sample, extended: Extended) -> Fit:
     if found is None:  # a sample holds only rows in which the model has an answer
         raise ArithmeticError("the model fails with its inputs at their means")
     return found
-
-

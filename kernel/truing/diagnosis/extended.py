@@ -143,7 +143,7 @@ def elsewhere(extended: Extended, machine: Machine) -> Extended:
 
 def parts_of(causes: Sequence[Cause], flat: Matrix) -> list[Matrix]:
     """Cut the numbers of all causes, one behind another, into those of each."""
-    ends = np.cumsum([cause.size for cause in causes])[:-1] if causes else []
+    ends = np.cumsum([cause.size for cause in causes])[:-1]
     return [np.asarray(part) for part in np.split(flat, ends)] if causes else []
 
 

@@ -90,9 +90,11 @@ def _contenders(chosen: Chosen) -> list[Fit]:
     kinds = {(cause.shape is None, cause.tolerated < 0) for cause in best.causes}
     plain = kinds == {(True, True)}
     near = made.ranked(
-        lambda found: 0 < len(found.causes) <= len(best.causes)
-        and found.key != best.key
-        and (not plain or all(cause.effect is not None for cause in found.causes))
+        lambda found: (
+            0 < len(found.causes) <= len(best.causes)
+            and found.key != best.key
+            and (not plain or all(cause.effect is not None for cause in found.causes))
+        )
     )
     return [made.known[best.key], *near[:CONTENDERS]]
 
@@ -119,7 +121,7 @@ def _judge(judged: Judged, name: str, fits: tuple[Fit, Fit], test: NDArray[np.bo
     for found, errors in zip(fits, (judged.before, judged.after), strict=True):
         errors[test] = measured[test] - found.predicted[name][test]
         left = found.left[sample.parts[place]]
-        sd = float(np.sqrt(max(np.mean(left**2), channel.least)))
+        sd = sqrt(max(float(np.mean(left**2)), channel.least))
         logs.append(_log_density(errors[test] * weights / sd, noise.tails.freedom) + np.log(weights / sd))
     judged.gain[test] = logs[1] - logs[0]
     left = (measured[channel.rows] - fits[1].predicted[name][channel.rows]) * (channel.weights / channel.scale)

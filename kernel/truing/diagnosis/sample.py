@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from math import log
 from typing import TYPE_CHECKING
 
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 
     Matrix = NDArray[np.float64]
 
+WITHOUT_MEMORY, NORMAL, CONSTANT = Setting(), Tails(np.inf, 4.5, 0.0), Spread()
 FEWEST_INDEPENDENT = 20.0
 """So many rows count at least, or all there are: from fewer independent ones their memory is not known."""
 SMALLEST_SHARE = 1e-6
@@ -60,9 +62,9 @@ class Noise:
     given: Matrix
     weights: Matrix
     values: Matrix
-    memory: Setting = Setting()
-    tails: Tails = Tails(np.inf, 4.5, 0.0)
-    spread: Spread = Spread()
+    memory: Setting = WITHOUT_MEMORY
+    tails: Tails = NORMAL
+    spread: Spread = CONSTANT
 
     @property
     def share(self) -> float:
@@ -75,7 +77,7 @@ class Channel:
     """One measured result on the rows of a fit: their places among the records (n,), and where runs begin (n,).
 
     ``values`` are SI, ``weights`` one over the relative standard deviation. ``least`` is the smallest mean square, in
-    units of the noise, that is more than rounding or the steps of the gauge. ``count`` is how many rows are independent.
+    units of the noise, that is more than rounding or the steps of the gauge; ``count`` the number of independent rows.
     """
 
     name: str
@@ -130,7 +132,7 @@ class Sample:
     def parts(self) -> list[slice]:
         """Where the values of each channel stand among all."""
         ends = np.cumsum([0, *(len(channel) for channel in self.channels)])
-        return [slice(int(begin), int(end)) for begin, end in zip(ends[:-1], ends[1:], strict=True)]
+        return [slice(int(begin), int(end)) for begin, end in pairwise(ends)]
 
     def left(self, predicted: Predicted) -> Matrix:
         """Return what is left of all readings in units of their noise, (rows,)."""
@@ -178,11 +180,19 @@ class Sample:
         """Return by row what makes squares of what is left count: its noise is the one that it shows, (rows,)."""
         weights = np.sqrt(self.counts / np.array([len(channel) for channel in self.channels]))
         weights = weights / np.sqrt(self.mean_squares(left))
-        return np.concatenate([np.full(len(channel), weight) for channel, weight in zip(self.channels, weights, strict=True)])
+        return np.concatenate(
+            [np.full(len(channel), weight) for channel, weight in zip(self.channels, weights, strict=True)]
+        )
 
     def white(self) -> Sample:
         """Return the same rows with the memory of the noise taken out."""
-        return replace(self, is_white=True)
+        channels = [
+            replace(each, count=len(each) * (1 - self.noise[each.name].tails.clipped) ** 2)
+            if each.memory.rho <= WHITENED
+            else each
+            for each in self.channels
+        ]
+        return replace(self, channels=tuple(channels), is_white=True)
 
     def as_independent(self) -> Sample:
         """Return the same rows as if each of them told something new."""

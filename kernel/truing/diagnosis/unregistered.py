@@ -138,9 +138,7 @@ def _at_zero(item: Covariate) -> Iterator[Family]:
         yield "dead zone", on, 1, (width,), partial(_dead_zone, item.name)
 
 
-def _ordered(
-    item: Covariate, registered: Sequence[int], *, has_steps: bool, rows: int
-) -> Iterator[Family]:
+def _ordered(item: Covariate, registered: Sequence[int], *, has_steps: bool, rows: int) -> Iterator[Family]:
     """Give waves of whole orders over an angle, of any period over all else, steps and settling in time."""
     values = item.values[np.isfinite(item.values)]
     span, on = float(np.ptp(values)), (item.name,)
@@ -157,7 +155,13 @@ def _ordered(
     if item.role in {"time", "order"}:
         if not has_steps:
             ends = (float(values.min() + ENDS * span), float(values.max() - ENDS * span))
-            yield "step", on, 1, (Number("place", *ends, is_amplitude=False, along=item.name),), partial(_step, item.name)
+            yield (
+                "step",
+                on,
+                1,
+                (Number("place", *ends, is_amplitude=False, along=item.name),),
+                partial(_step, item.name),
+            )
         reach = (SHORTEST_SETTLING * span, LONGEST_SETTLING * span)
         yield "settling", on, 2, (Number("constant", *reach, is_amplitude=False),), partial(_settling, item.name)
 
