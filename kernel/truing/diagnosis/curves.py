@@ -121,16 +121,16 @@ class _Place:
 
     def is_straight(self, cause: Cause) -> bool:
         """Whether a cause is proportional to its amplitudes, and several of them do no more than their sum."""
-        middle = np.array([middle(number) for number in cause.numbers])
+        still = np.array([middle(number) for number in cause.numbers])
         ends = list(cause.amplitudes)
         points, shares = [], (1.0, 0.1, LEVELS[-1])
         for place in ends:
             for side in (cause.numbers[place].low, cause.numbers[place].high):
                 for share in shares if side else ():
-                    point = middle.copy()
+                    point = still.copy()
                     point[place] = side * share
                     points.append(point)
-        together = middle.copy()
+        together = still.copy()
         together[ends] = [0.5 * max((n.low, n.high), key=abs) for n in (cause.numbers[place] for place in ends)]
         made = self.changes(cause, np.array([*points, together]))
         if not np.isfinite(_known(made)).all():
