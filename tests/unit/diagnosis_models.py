@@ -14,16 +14,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
-from truing.diagnosis.contest import Contest, contest
-from truing.diagnosis.decide import Decision, decide, without_needless_inputs
-from truing.diagnosis.engine import diagnose
-from truing.diagnosis.hypotheses import Piece
-from truing.diagnosis.machine import machine_of
-from truing.diagnosis.problem import problem_of
+from truing.diagnosis.causes import Cause, si_bounds
+from truing.diagnosis.choice import choose
+from truing.diagnosis.chosen import Chosen, Law, Rival
+from truing.diagnosis.competition import Competition, search
+from truing.diagnosis.curves import Curves
+from truing.diagnosis.engine import diagnose, laid_out
+from truing.diagnosis.exact import EXACTLY, Fit, nothing
+from truing.diagnosis.intervals import numbers_of, value_of
+from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Diagnosis
-from truing.diagnosis.search import first_noise
+from truing.diagnosis.sample import Noise, first_noise, sample_of
 from truing.kernel import Offer, Origin
 from truing.setup import Setup, default_setup
 
@@ -140,8 +143,6 @@ ALL_EFFECTS = tuple(EFFECTS)
 
 def _in_si(effect: Effect[Any, Any]) -> Effect[Any, Any]:
     """The same effect with its unknowns and conditions declared in SI."""
-    from truing.diagnosis.candidates import si_bounds
-
     units = {"um/K": "m/K", "um": "m", "h": "s", "um/h": "m/s", "um/mm": "", "": ""}
     unknowns = [Unknown(one.name, *si_bounds(one), units[one.unit]) for one in effect.unknowns]
     needs = [replace(need, unit="s") if need.name == "time" else need for need in effect.needs]
@@ -149,7 +150,8 @@ def _in_si(effect: Effect[Any, Any]) -> Effect[Any, Any]:
     def acting(*held: Any, **known: Any) -> Any:
         return effect.function(*held, **known)
 
-    return Effect(effect.name, **{f"on_{effect.place}": acting}, unknowns=unknowns, needs=needs)
+    place: dict[str, Any] = {f"on_{effect.place}": acting}
+    return Effect(effect.name, unknowns=unknowns, needs=needs, **place)
 
 
 TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
@@ -164,7 +166,7 @@ def drive_model(
     """
     spreads = [Tolerance(name, normal(sd=sd), why="drawing") for name, sd in tolerances.items()]
     chosen = [EFFECTS[name] for name in effects]
-    errors = [*spreads, *(_in_si(effect) if in_si else effect for effect in chosen)]
+    errors: list[Any] = [*spreads, *(_in_si(effect) if in_si else effect for effect in chosen)]
     function = drive_in_si if in_si else drive
     return Model(name="drive", title="Deflection of a screw drive", function=function, errors=errors)
 
@@ -270,26 +272,55 @@ def name_sets(found: Diagnosis) -> list[set[str]]:
     return [{cause.effect, *cause.same_as} for cause in found.causes]
 
 
-def decided(setup: Setup, records: Records) -> tuple[Contest, Decision]:
-    """Search and decide, without the report: what a diagnosis does before it fits and judges."""
-    machine = machine_of(setup, records)
-    noise = first_noise(machine)
-    full = without_needless_inputs(contest(problem_of(machine, noise.scales), noise, ~records.held_out))
-    return full, decide(full, seed=setup.seed)
+def decided(setup: Setup, records: Records) -> Chosen:
+    """Search and choose, without the report: what a diagnosis does before it judges."""
+    made = laid_out(machine_of(setup, records))
+    search(made)
+    return choose(made, seed=setup.seed)
 
 
-def plain_contest(asked: Asked, records: Records, scale: float) -> Contest:
-    """All explanations on all rows with white noise of a known standard deviation (SI), nothing learnt or clipped."""
-    machine = machine_of(asked.setup, records)
-    noise = first_noise(machine)
-    known = replace(noise, scales=dict.fromkeys(noise.scales, scale))
-    return contest(problem_of(machine, known.scales), known, ~records.held_out, rounds=1, settings=[(0,)])
+def white_noise(machine: Machine, scale: float) -> dict[str, Noise]:
+    """White, normal noise of a known standard deviation (SI), for every result."""
+    return {name: replace(own, scale=scale) for name, own in first_noise(machine).items()}
 
 
-def names_of_piece(full: Contest, piece: Piece) -> tuple[str, ...]:
-    """The name of a cause, and those of the same curve."""
-    problem = full.problem
-    return (problem.candidates[piece.owner].name, *problem.same_as[piece.owner])
+def plain_competition(asked: Asked, records: Records, scale: float) -> Competition:
+    """Lay out what competes, in white noise of a known standard deviation (SI): nothing searched, learnt or clipped."""
+    begun = laid_out(machine_of(asked.setup, records))
+    machine = begun.extended.machine
+    sample = sample_of(machine, white_noise(machine, scale), ~records.held_out)
+    made = Competition(begun.extended, begun.causes, sample, Curves(begun.extended))
+    made.keep(nothing(sample, begun.extended))
+    return made
+
+
+def cause_of(made: Competition, name: str) -> Cause:
+    """The only cause of a name that somebody declared."""
+    (found,) = (cause for cause in made.causes if cause.name == name and cause.is_registered)
+    return found
+
+
+def fit_of(made: Competition, *names: str) -> Fit:
+    """An explanation by causes of these names, fitted exactly: one after another from where their curves say."""
+    found: Fit | None = made.null
+    for name in names:
+        assert found is not None
+        cause = cause_of(made, name)
+        found = made.joined(found, cause, made.look(found, [cause])[cause.tag].starts)
+    assert found is not None
+    made.again([found], EXACTLY)
+    return made.known[found.key]
+
+
+def size_of(found: Fit, name: str) -> float:
+    """One fitted number by its name, SI."""
+    (place,) = (place for place, number in enumerate(numbers_of(found)) if number.name == name)
+    return value_of(found, place)
+
+
+def chosen_as(made: Competition, best: Fit, *rivals: Fit) -> Chosen:
+    """An explanation as if it had been chosen, with rivals as near as itself."""
+    return Chosen(made, best, tuple(Rival(each, 0.0) for each in rivals), {}, Law(np.zeros(0), 1.0), None)
 
 
 @inputs

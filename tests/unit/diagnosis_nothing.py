@@ -51,5 +51,5 @@ def gross_errors(seed: int) -> tuple[dict[str, Array], set[int]]:
 def decision_on(columns: dict[str, Array], folder: Path, seed: int) -> tuple[bool, float]:
     """Whether anything was named or called unknown, and the significance of the whole search."""
     asked = Asked(drive_model(), seed=seed)
-    _, decision = decided(asked.setup, asked.records(folder, columns))
-    return decision.winner != 0, decision.p_any
+    chosen = decided(asked.setup, asked.records(folder, columns))
+    return bool(chosen.best.causes), chosen.p_any
