@@ -2,26 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import combinations
-from math import comb, sqrt
+from math import asin, comb, degrees, inf, log, sqrt
 from typing import TYPE_CHECKING
 
-from truing.diagnosis.candidates import si_bounds
-from truing.diagnosis.contest import Contest
-from truing.diagnosis.hypotheses import Hypothesis
+import numpy as np
+from scipy.optimize import lsq_linear
+from scipy.special import ndtri
+
+from truing.diagnosis.causes import Cause, Number, failure_of, idle_of
+from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.exact import Fit, slopes_at, unit_of
+from truing.diagnosis.extended import Extended
+from truing.diagnosis.machine import Machine
+from truing.diagnosis.points import LEVELS
 from truing.diagnosis.result import Amount, Seen, Sight
-from truing.diagnosis.search import Solution
+from truing.diagnosis.sample import Sample
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
 
 POWER = 0.9
 LEVEL = 0.05
 SWALLOWED = 0.1
 """Share of a curve, squared and in units of the noise, below which the tolerances have swallowed it."""
+FAINT = 1e-18
+"""A curve that is smaller, squared and in units of the noise at its bound, is rounding."""
 INSEPARABLE = 0.01
+SAME = 1e-9
+"""Squared sine of an angle below which two curves are one."""
 TIED = 0.995
+FEW_SHAPES = 5
+"""At so many shapes a cause that bends in several amplitudes is asked for each of them alone."""
+NEXT_LEVEL = 0.3
+"""An amplitude that bends is asked for again at so much of it: its curve stands for no sizes beyond that."""
 
 
 def needed(explanations: int) -> float:
@@ -29,119 +47,243 @@ def needed(explanations: int) -> float:
 
     22 for 78 explanations (12 effects and their pairs), 17 for 12.
     """
-    from scipy.special import ndtri
-
     return float((ndtri(1 - LEVEL / (2 * max(explanations, 1))) + ndtri(POWER)) ** 2)
 
 
-def smallest_visible(contest: Contest, setting: tuple[int, ...]) -> list[Seen]:
-    """Return for every candidate how small it may be, whether the tolerances hide it, whether it was excited."""
-    import numpy as np
+@dataclass(frozen=True)
+class _Eye:
+    """What a curve is on these rows: in units of the noise that the answer leaves, and without what inputs can draw.
 
-    problem, case = contest.problem, contest.evidence.case(setting)
-    owners = {term.candidate for term in problem.terms}
-    limit = needed(len(owners) + comb(len(owners), 2))
-    raw = _without_tolerances(contest, setting)
+    ``roots`` has shape (rows,); ``taken`` (rows + K, K) is an orthonormal basis of the inputs beside their prior.
+    """
+
+    sample: Sample
+    roots: Matrix
+    taken: Matrix
+
+    def raw(self, curve: Matrix) -> Matrix:
+        """Return a curve over all readings of the records, SI, as if nothing were tolerated, (rows,)."""
+        measured = list(self.sample.machine.records.measured)
+        parts = dict(zip(measured, np.split(curve, len(measured)), strict=True))
+        return self.roots * self.sample.curve(parts)
+
+    def without_inputs(self, raw: Matrix) -> Matrix:
+        """Return what only the cause can draw, (rows + K,)."""
+        made = np.concatenate([raw, np.zeros(len(self.taken) - len(raw))])
+        return np.asarray(made - self.taken @ (self.taken.T @ made))
+
+
+@dataclass(frozen=True)
+class _Look:
+    """How a cause is seen best by one of its amplitudes: the smallest size that shows, SI, and its curve there.
+
+    ``seen`` and ``raw`` are squares of the curve with and without what the inputs take; ``curve`` (rows + K,).
+    """
+
+    size: float
+    seen: float
+    raw: float
+    curve: Matrix
+
+
+def _eye(chosen: Chosen) -> _Eye:
+    """Return how curves are seen in the noise that the answer leaves."""
+    sample = chosen.best.sample
+    roots = sample.roots(chosen.best.left)
+    drawn = sample.drawn * roots[:, None]
+    taken, _ = np.linalg.qr(np.concatenate([drawn, np.eye(drawn.shape[1])]))
+    return _Eye(sample, roots, np.asarray(taken))
+
+
+def smallest_visible(chosen: Chosen) -> list[Seen]:
+    """Return for every effect how small it may be, whether the tolerances hide it, whether it was excited."""
+    machine, eye = chosen.competition.extended.machine, _eye(chosen)
+    effects = [cause for cause in chosen.competition.causes if cause.effect is not None]
+    failing = _failing(chosen, effects)
+    limit = needed(len(effects) + comb(len(effects), 2))
+    names = [cause.name for cause in effects]
     found: dict[str, Seen] = {}
-    names = [candidate.name for candidate in problem.candidates]
-    for piece in problem.term_pieces:
-        candidate, term = problem.candidates[piece.owner], problem.terms[piece.place]
-        several = names.count(candidate.name) > 1 or len(candidate.amplitudes) > 1
-        for column, name, per in zip(piece.columns, term.unknowns, term.per, strict=True):
-            unknown = next(each for each in candidate.amplitudes if each.name == name)
-            seen = float(case.total_h[column, column])
-            size = sqrt(limit / max(seen, 1e-300)) * per
-            key = f"{candidate.name}.{name}" if several else candidate.name
-            swallowed = seen < SWALLOWED * float(raw[column])
-            bounds = si_bounds(unknown)
-            sight: Sight = "hidden in the tolerances" if swallowed else "visible"
-            if size > max(abs(bounds[0]), abs(bounds[1])) or not np.isfinite(size):
-                sight = "not excited"
-            known = found.get(key)
-            if known is None or known.smallest is None or size < known.smallest.value:
-                found[key] = Seen(key, Amount(size, unknown.unit), sight)
-    still = [Seen(name, None, "not excited") for name in problem.unexcited if name not in problem.failing]
-    return [
-        *found.values(),
-        *still,
-        *(Seen(name, None, "cannot be fitted", why) for name, why in problem.failing.items()),
+    for cause in effects:
+        amplitudes = {cause.numbers[place].name for place in cause.amplitudes}
+        several = names.count(cause.name) > 1 or len(amplitudes) > 1
+        for place in cause.amplitudes if cause.name not in failing else ():
+            number = cause.numbers[place]
+            seen = _seen(f"{cause.name}.{number.name}" if several else cause.name, cause, number, _look(
+                chosen, eye, cause, place, limit,
+            ))  # fmt: skip
+            known = found.get(seen.name)
+            if known is None or _size_of(seen) < _size_of(known):
+                found[seen.name] = seen
+    still = [Seen(name, None, "not excited") for name in idle_of(machine) if name not in failing]
+    return [*found.values(), *still, *(Seen(name, None, "cannot be fitted", why) for name, why in failing.items())]
+
+
+def _failing(chosen: Chosen, effects: Sequence[Cause]) -> dict[str, str]:
+    """Return the reason by name of effects with which the model fails; what could be fitted does not."""
+    made = chosen.competition
+    unknown = [cause for cause in effects if frozenset({cause.tag}) not in made.known]
+    reasons = {cause.name: failure_of(made.extended.machine, cause) for cause in unknown}
+    return {name: why for name, why in reasons.items() if why}
+
+
+def _size_of(seen: Seen) -> float:
+    return inf if seen.smallest is None else seen.smallest.value
+
+
+def _seen(name: str, cause: Cause, number: Number, look: _Look | None) -> Seen:
+    """Say how an effect is seen by one of its amplitudes."""
+    if look is None or cause.effect is None:
+        return Seen(name, None, "not excited")
+    sight: Sight = "hidden in the tolerances" if look.seen < SWALLOWED * look.raw else "visible"
+    if look.size > max(abs(number.low), abs(number.high)):
+        sight = "not excited"
+    unit = next(unknown.unit for unknown in cause.effect.unknowns if unknown.name == number.name)
+    return Seen(name, Amount(look.size, unit), sight)
+
+
+def _look(chosen: Chosen, eye: _Eye, cause: Cause, place: int, limit: float) -> _Look | None:
+    """Return how an amplitude of a cause is seen best; None where nothing moves with it.
+
+    A curve that bends stands for sizes from its own down and up to the next level.
+    """
+    number, best = cause.numbers[place], None
+    for amplitude, curve in _curves(chosen, cause, place):
+        end = abs(number.high if amplitude > 0 else number.low) if amplitude else max(abs(number.low), abs(number.high))
+        own = abs(amplitude) or 1.0
+        raw = eye.raw(curve)
+        square, rest = float(raw @ raw), eye.without_inputs(raw)
+        if square * (end / own) ** 2 <= FAINT:
+            continue
+        seen = float(rest @ rest)
+        size = own * sqrt(limit / max(seen, 1e-300))
+        if amplitude and own < NEXT_LEVEL * end and size > own / NEXT_LEVEL:
+            continue
+        if own > 1.001 * LEVELS[-1] * end and amplitude:
+            size = max(size, NEXT_LEVEL * own)
+        if best is None or size < best.size:
+            best = _Look(size, seen, square, rest)
+    return best
+
+
+def _curves(chosen: Chosen, cause: Cause, place: int) -> Iterator[tuple[float, Matrix]]:
+    """Give the curves of one amplitude of a cause alone, (readings,), SI, with its size.
+
+    Of a cause in proportion the size is 0, and the curve is the one per unit.
+    """
+    bundle = chosen.competition.curves.of(cause, chosen.null)
+    if bundle.is_straight:
+        column = cause.amplitudes.index(place)
+        yield from ((0.0, curve) for curve in bundle.curves[:, column])
+    elif len(cause.amplitudes) == 1:
+        yield from zip(bundle.points[:, place].tolist(), bundle.curves[:, 0], strict=True)
+    elif len(bundle.points):
+        yield from _one_by_one(chosen, cause, place, bundle.points[:FEW_SHAPES])
+
+
+def _one_by_one(chosen: Chosen, cause: Cause, place: int, shapes: Matrix) -> Iterator[tuple[float, Matrix]]:
+    """Give the curves of one amplitude of a cause that bends in several, the others at zero."""
+    number, extended = cause.numbers[place], chosen.competition.extended
+    sizes = [level * end for end in (number.low, number.high) if end for level in LEVELS]
+    distinct = shapes if cause.shapes else shapes[:1]
+    still = np.zeros(len(extended.machine.inputs))
+    points = []
+    for values in distinct:
+        for size in sizes:
+            point = np.array(values)
+            point[cause.amplitudes] = 0.0
+            point[place] = size
+            points.append(point)
+    (base,) = extended.at((), [((), still)])
+    made = extended.at((cause,), [([point], still) for point in points])
+    for point, shown in zip(points, made, strict=True):
+        yield float(point[place]), np.nan_to_num(np.concatenate([shown[name] - base[name] for name in base]))
+
+
+def inseparable(chosen: Chosen) -> list[str]:
+    """Say which causes this design cannot separate whatever their size, and which covariates are tied."""
+    machine = chosen.competition.extended.machine
+    return [*_alike(chosen), *_tied(machine), *_one_sided(machine)]
+
+
+def _alike(chosen: Chosen) -> Iterator[str]:
+    """Say which causes without a shape of their own draw nearly the same."""
+    eye, angles = _eye(chosen), dict[tuple[str, str], float]()
+    plain = [
+        cause
+        for cause in chosen.competition.causes
+        if cause.effect is not None and len(cause.amplitudes) == 1 and not cause.shapes
     ]
+    looks = [(cause.name, _look(chosen, eye, cause, 0, needed(1))) for cause in plain]
+    drawn = [(name, look.curve) for name, look in looks if look is not None and look.seen > 1e-6 * look.raw]
+    for (one, first), (other, second) in combinations(drawn, 2):
+        apart = 1 - float(first @ second) ** 2 / float((first @ first) * (second @ second))
+        if one != other and apart < INSEPARABLE:
+            angles[one, other] = min(max(apart, 0.0), angles.get((one, other), inf))
+    for (one, other), apart in angles.items():
+        if apart < SAME:
+            yield f"{one} and {other} draw the same curve on this data: nothing in it tells them apart"
+        else:
+            yield (
+                f"{one} and {other} draw nearly the same curve on this data (angle {degrees(asin(sqrt(apart))):.1f} "
+                "degrees): only much larger effects than usual could be told apart"
+            )
 
 
-def _without_tolerances(contest: Contest, setting: tuple[int, ...]) -> NDArray[np.float64]:
-    """Return the squared size of every column, in units of the noise, if nothing were tolerated."""
-    import numpy as np
-
-    k = contest.evidence.directions.shape[1]
-    chosen = [products[place].matrix for products, place in zip(contest.evidence.products, setting, strict=True)]
-    return np.asarray(np.diag(sum(chosen[1:], chosen[0]))[1 + k :])
-
-
-def inseparable(contest: Contest, setting: tuple[int, ...]) -> list[str]:
-    """Say which candidates this design cannot separate whatever their size, and which covariates are tied."""
-    import numpy as np
-
-    problem, case = contest.problem, contest.evidence.case(setting)
-    h = case.total_h
-    angles: dict[tuple[str, str], float] = {}
-    alone = [
-        piece for piece in problem.term_pieces if len(piece.columns) == 1 and len(problem.terms[piece.place].shape) == 0
-    ]
-    for a, b in combinations(alone, 2):
-        i, j = a.columns[0], b.columns[0]
-        cosine2 = h[i, j] ** 2 / max(h[i, i] * h[j, j], 1e-300)
-        pair = problem.candidates[a.owner].name, problem.candidates[b.owner].name
-        if pair[0] != pair[1] and 1 - cosine2 < INSEPARABLE:
-            angle = float(np.degrees(np.arcsin(sqrt(max(0.0, 1 - cosine2)))))
-            angles[pair] = min(angle, angles.get(pair, angle))
-    sentences = [
-        f"{first} and {second} draw nearly the same curve on this data (angle {angle:.1f} degrees): "
-        "only much larger effects than usual could be told apart"
-        for (first, second), angle in angles.items()
-    ]
-    return [*sentences, *_tied(contest), *_one_sided(contest)]
-
-
-def _tied(contest: Contest) -> list[str]:
-    import numpy as np
-
-    moved = [item for item in contest.problem.machine.records.covariates.values() if not item.is_constant]
-    sentences = []
+def _tied(machine: Machine) -> Iterator[str]:
+    moved = [item for item in machine.records.covariates.values() if not item.is_constant]
     for first, second in combinations(moved, 2):
         both = np.isfinite(first.values) & np.isfinite(second.values)
         if both.sum() > 2 and abs(np.corrcoef(first.values[both], second.values[both])[0, 1]) > TIED:
-            sentences.append(
+            yield (
                 f"{first.name} and {second.name} move together in this record: what follows one cannot be told from "
                 "what follows the other"
             )
-    return sentences
 
 
-def _one_sided(contest: Contest) -> list[str]:
+def _one_sided(machine: Machine) -> Iterator[str]:
     """Say which conditions that can have either sign were measured with one sign only."""
-    import numpy as np
-
-    machine = contest.problem.machine
-    sentences = []
     for name, condition in machine.start.model.known_conditions.items():
         item = machine.records.covariates.get(name)
         if item is None or condition.low is None or condition.high is None or not condition.low < 0 < condition.high:
             continue
         low, high = np.nanmin(item.values), np.nanmax(item.values)
         if low >= 0 or high <= 0:
-            sentences.append(f"{name} never changed its sign: what jumps with the sign looks like a constant here")
-    return sentences
+            yield f"{name} never changed its sign: what jumps with the sign looks like a constant here"
 
 
-def separation(contest: Contest, true: Solution, rival: Hypothesis) -> float:
-    """Return lambda: the deviance that is lost if a solution is true and a rival is fitted in its place."""
-    import numpy as np
+def separation(true: Fit, rival: Fit, extended: Extended) -> float:
+    """Return lambda: the deviance that is lost if an explanation is true and a rival is refitted in its place.
 
-    h = contest.evidence.case(true.setting).total_h
-    a, b, c = list(true.hypothesis.columns), list(rival.columns), true.coefficients
-    own = float(c @ h[np.ix_(a, a)] @ c)
-    if not b:
-        return own
-    cross = h[np.ix_(b, a)] @ c
-    taken = np.linalg.lstsq(h[np.ix_(b, b)], cross, rcond=1e-10)[0]
-    return max(own - float(cross @ taken), 0.0)
+    Both are taken on the machine as the true one has calibrated it; the rival is linear about its own fit, within the
+    bounds of its numbers and the prior of the inputs. The noise is the one that the true one leaves.
+    """
+    sample, k = true.sample, len(true.inputs)
+    moved = replace(rival.in_sample(sample), inputs=true.inputs)
+    (shown,) = extended.at(rival.causes, [(rival.values, true.moved)])
+    roots = sample.roots(true.left)
+    apart = roots * np.nan_to_num(sample.left(shown) - sample.left(true.predicted))
+    own, inputs = slopes_at(moved, extended)
+    columns = np.concatenate(
+        [np.column_stack([own, inputs]) * roots[:, None], np.column_stack([np.zeros((k, own.shape[1])), np.eye(k)])]
+    )
+    low, high = _room(moved)
+    ends = np.concatenate([low, np.full(k, -inf)]), np.concatenate([high, np.full(k, inf)])
+    size = np.linalg.norm(columns, axis=0)
+    used = size > 0
+    target = np.concatenate([apart, np.zeros(k)])
+    if not used.any():
+        return float(target @ target)
+    low, high = (np.where(np.isfinite(end), end * size, end)[used] for end in ends)
+    return float(2 * lsq_linear(columns[:, used] / size[used], target, (low, high), method="bvls").cost)
+
+
+def _room(found: Fit) -> tuple[Matrix, Matrix]:
+    """Return how far every number may still go down and up, in units of the number as the fit sees it."""
+    numbers = [number for cause in found.causes for number in cause.numbers]
+    flat = np.concatenate(found.values).tolist() if found.causes else []
+    low, high = [], []
+    for number, value, unit in zip(numbers, flat, unit_of(found).tolist(), strict=True):
+        ends = [log(end / value) if number.is_log else (end - value) / unit for end in (number.low, number.high)]
+        low.append(min(ends[0], -1e-12))
+        high.append(max(ends[1], 1e-12))
+    return np.array(low), np.array(high)
