@@ -74,7 +74,7 @@ def choose(made: Competition, *, seed: int) -> Chosen:
     best = made.known[best.key]
     rivals = _rivals(made, best)
     same = _same(made, best)
-    return Chosen(made, _polished(made, best), tuple(_polished_rivals(made, best, rivals)), same, law, p_further)
+    return Chosen(made, polished(made, best), tuple(_polished_rivals(made, best, rivals)), same, law, p_further)
 
 
 def _steps(made: Competition, seed: int) -> tuple[Fit, Law, float | None]:
@@ -286,7 +286,7 @@ def _acts_beside(made: Competition, best: Fit, found: Fit) -> bool:
     return union is not None and made.score(union) < made.score(best) - CLOSE
 
 
-def _polished(made: Competition, found: Fit) -> Fit:
+def polished(made: Competition, found: Fit) -> Fit:
     """Fit an explanation with the memory of the noise taken out: better estimates, and intervals that hold."""
     white = made.sample.white()
     again = fit(white, made.extended, found.causes, found.values, found.inputs)
@@ -295,4 +295,4 @@ def _polished(made: Competition, found: Fit) -> Fit:
 
 def _polished_rivals(made: Competition, best: Fit, rivals: list[Rival]) -> Iterator[Rival]:
     for rival in rivals:
-        yield Rival(_polished(made, rival.fit), rival.behind)
+        yield Rival(polished(made, rival.fit), rival.behind)

@@ -16,6 +16,7 @@ from truing.diagnosis.design import next_points
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.findings import wrong_of
 from truing.diagnosis.gain import gains_of, nested
+from truing.diagnosis.long_records import machine_for_search, on_all_rows
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.naming import alternative_of, calibrated_of, causes_of, extended_setup, remainder_of
 from truing.diagnosis.readable import readable_unit
@@ -53,10 +54,10 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
     with one_thread(), np.errstate(all="ignore" if is_short else None):
         machine = machine_of(setup, records)
         step.done("columns")
-        competition = laid_out(machine)
+        competition = laid_out(machine_for_search(machine, seed=setup.seed))
         search(competition, step.within())
         step.done("search")
-        chosen = choose(competition, seed=setup.seed)
+        chosen = on_all_rows(choose(competition, seed=setup.seed), machine)
         step.done("significance")
         return _answer(chosen, setup, step)
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import pi
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
 
 from truing.measurements.row_count import RowCount
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from truing.measurements import RowsFile
@@ -42,16 +43,12 @@ class Covariate:
     @property
     def goes_round(self) -> bool:
         """Whether it covers nearly a whole turn, as an angle of a design never does."""
-        import numpy as np
-
         finite = self.values[np.isfinite(self.values)]
         return len(finite) > 0 and float(np.ptp(finite)) >= FULL_TURN
 
     @property
     def is_constant(self) -> bool:
         """Whether it never changed on this data, so that nothing can be seen of what depends on it."""
-        import numpy as np
-
         finite = self.values[np.isfinite(self.values)]
         return len(finite) == 0 or bool(np.ptp(finite) <= 1e-9 * np.abs(finite).max())
 
@@ -95,8 +92,6 @@ class Records:
     @cached_property
     def readings(self) -> int:
         """Number of measured values that may be fitted; those of rows that differ in their order alone count once."""
-        import numpy as np
-
         measured = np.column_stack([*self.measured.values()])[~self.held_out]
         settings = [item.values[~self.held_out] for item in self.covariates.values() if item.role != "order"]
         rows = np.ascontiguousarray(np.column_stack([measured, *settings]), dtype=float)
@@ -105,3 +100,29 @@ class Records:
 
     def __len__(self) -> int:
         return len(self.run_of)
+
+    def part(self, places: NDArray[np.intp]) -> Records:
+        """Return some of the rows, by their places in order."""
+        rows, lines = self.rows, np.asarray(self.rows.lines)[places].tolist()
+        columns: dict[str, Any] = {
+            name: [values[place] for place in places] if isinstance(values, list) else values[places]
+            for name, values in rows.columns.items()
+        }
+        few = replace(
+            rows,
+            columns=columns,
+            axes={name: values[places] for name, values in rows.axes.items()},
+            lines=tuple(lines),
+            runs=tuple(rows.runs[place] for place in places) if rows.runs else (),
+        )
+        return replace(
+            self,
+            rows=few,
+            file_of=self.file_of[places],
+            run_of=self.run_of[places],
+            lines=self.lines[places],
+            measured={name: values[places] for name, values in self.measured.items()},
+            sigma={name: values[places] for name, values in self.sigma.items()},
+            covariates={name: replace(item, values=item.values[places]) for name, item in self.covariates.items()},
+            held_out=self.held_out[places],
+        )

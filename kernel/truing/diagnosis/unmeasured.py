@@ -192,17 +192,8 @@ def _goals(model: Any) -> set[str]:
 
 def _few_rows(records: Records, names: Sequence[str]) -> Records:
     """Return some rows, evenly over the record, as if these results were what is measured there."""
-    few = slice(None, None, max(1, len(records) // ROWS))
-    rows = records.rows
-    columns = {name: values[few] for name, values in rows.columns.items()}
-    axes = {name: values[few] for name, values in rows.axes.items()}
-    part = replace(rows, columns=columns, axes=axes, lines=rows.lines[few], runs=rows.runs[few])
-    count = len(records.run_of[few])
-    return replace(
-        records, rows=part, file_of=records.file_of[few], run_of=records.run_of[few], lines=records.lines[few],
-        measured={name: np.zeros(count) for name in names}, sigma={}, held_out=records.held_out[few],
-        covariates={name: replace(item, values=item.values[few]) for name, item in records.covariates.items()},
-    )  # fmt: skip
+    few = records.part(np.arange(0, len(records), max(1, len(records) // ROWS)))
+    return replace(few, measured={name: np.zeros(len(few)) for name in names}, sigma={})
 
 
 def _changes(there: Machine, explanation: Explanation) -> Mapping[str, Matrix]:

@@ -1,0 +1,76 @@
+"""Long records: the search looks at some thousand rows, drawn evenly over the record; what it came to is fitted to all.
+
+One row is drawn of every stretch of equal length, so that no wave of the record is folded into another one by a regular
+step. The decision is that of these rows; estimates, intervals and gains are those of all rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from truing.diagnosis.choice import polished
+from truing.diagnosis.chosen import Chosen, Rival
+from truing.diagnosis.competition import Competition, competition_of
+from truing.diagnosis.exact import Fit
+from truing.diagnosis.extended import Extended
+from truing.diagnosis.machine import Machine, machine_of
+from truing.diagnosis.records import Records
+from truing.diagnosis.sample import first_noise, sample_of
+
+LONG = 4000
+"""A record of more rows is searched on about so many of them."""
+SINGLES = 12
+RANKED = 8
+"""So many of the best single causes, and of the best explanations, are fitted to all rows beside the chosen one."""
+
+
+def searched(records: Records, *, seed: int) -> Records:
+    """Return the rows that a search looks at: all of a record that is not long."""
+    if len(records) <= LONG or records.rows.series:
+        return records
+    edges = np.linspace(0, len(records), LONG + 1).astype(np.intp)
+    generator = np.random.Generator(np.random.SFC64(seed))
+    return records.part(edges[:-1] + (generator.random(LONG) * np.diff(edges)).astype(np.intp))
+
+
+def on_all_rows(chosen: Chosen, machine: Machine) -> Chosen:
+    """Return what a search of some rows came to, fitted to all rows of a machine."""
+    few = chosen.competition
+    if len(few.sample.machine.records) == len(machine.records):
+        return chosen
+    sample = sample_of(machine, first_noise(machine), ~machine.records.held_out)
+    made = competition_of(Extended(machine), few.causes, sample)
+    made.tries = dict(few.tries)
+    wanted = {found.key: found for found in _wanted(chosen)}
+    for found in wanted.values():
+        made.fitted(found.causes, found.values, None)
+    made.renew()
+    made.refresh()
+    best = made.known.get(chosen.best.key, made.null)
+    rivals = tuple(
+        Rival(
+            polished(made, made.known[rival.fit.key]),
+            max(0.0, made.score(made.known[rival.fit.key]) - made.score(best)),
+        )
+        for rival in chosen.rivals
+        if rival.fit.key in made.known
+    )
+    return replace(chosen, competition=made, best=polished(made, best), rivals=rivals)
+
+
+def _wanted(chosen: Chosen) -> Iterator[Fit]:
+    """Give the explanations that are fitted to all rows."""
+    few: Competition = chosen.competition
+    yield few.known[chosen.best.key]
+    yield from (few.known[rival.fit.key] for rival in chosen.rivals)
+    yield from few.ranked()[:RANKED]
+    yield from few.ranked(lambda found: len(found.causes) == 1)[:SINGLES]
+
+
+def machine_for_search(machine: Machine, *, seed: int) -> Machine:
+    """Return the machine on the rows that a search looks at."""
+    records = searched(machine.records, seed=seed)
+    return machine if records is machine.records else machine_of(machine.design, records)
