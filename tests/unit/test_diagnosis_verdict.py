@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -29,6 +29,7 @@ from hypothesis import HealthCheck, given, settings
 from truing.cli.diagnosis_printed import report
 from truing.declare.blocks import Words
 from truing.diagnosis.result import Alternative, Cause, Diagnosis, Finding
+from truing.diagnosis.verdict import shared_of
 from truing.report.chapters import Figures
 from truing.report.context import TableView
 from truing.report.diagnosis_chapters import diagnosis_chapters
@@ -179,6 +180,7 @@ def test_headline_terminal_sheet_and_json_say_one_thing(made: Diagnosis) -> None
     sure = ("no other explanation", "nothing left to separate", "; unique", "is unique", "cause named")
     assert verdict == "named" or not [words for words in sure if words in everything]
     _demand_all_named(made, said, document["explanations"])
+    _demand_shared(document, said, terminal, sheet_text(made))
     _demand_true_proposals(made, said, everything)
 
 
@@ -187,6 +189,19 @@ def _demand_all_named(made: Diagnosis, said: str, explanations: Sequence[Sequenc
     if made.verdict == "one_of":
         assert re.match(rf"One of {len(explanations)} (causes|explanations); this record cannot say which\.", said)
         assert not [names for names in explanations if together(names) not in said]
+
+
+def _demand_shared(document: Mapping[str, Any], *texts: str) -> None:
+    """What all of several explanations hold is said everywhere, and nothing else is said to be in them all."""
+    several = [set(names) for names in document["explanations"]]
+    shared = set.intersection(*several) if len(several) > 1 else set()
+    assert set(document["shared"]) == shared
+    for text in texts:
+        said = re.findall(r"([\w ,]+?) (?:is|are) in (?:both|all) of them", text)
+        assert len(said) >= bool(shared)
+        for names in said:
+            parts = re.split(r", | and ", names.strip().lower())
+            assert {part.strip() for part in parts} == {spoken(name).lower() for name in shared}
 
 
 def _demand_true_proposals(made: Diagnosis, said: str, everything: str) -> None:
@@ -206,6 +221,39 @@ def _demand_true_proposals(made: Diagnosis, said: str, everything: str) -> None:
 def test_every_sample_has_the_verdict_of_its_name(name: str) -> None:
     words = {"ambiguous": "one_of", "remainder": "named"}
     assert SAMPLES[name]().verdict == words.get(name, name)
+
+
+PLAY = CAUSES["joint_play"]
+STEP = Alternative(("joint_play", "step"), 2.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("causes", "rivals", "shared", "words"),
+    [
+        ((HEATING, PLAY), (STEP,), ("joint_play",), "Joint play is in both of them."),
+        ((replace(HEATING, same_as=("warm_up",)), PLAY), (STEP,), ("joint_play",), "Joint play is in all of them."),
+        ((PLAY,), (STEP,), ("joint_play",), "Joint play is in both of them."),
+        ((HEATING, PLAY), (replace(STEP, causes=("rod_heating", "joint_play", "step")),), ("rod_heating", "joint_play"),
+         "Rod heating and joint play are in both of them."),
+        ((HEATING, PLAY), (STEP, DRIFTING), (), ""),
+        ((HEATING, replace(PLAY, same_as=("gap",))), (STEP,), (), ""),
+        ((HEATING, PLAY), (), (), ""),
+        ((), (), (), ""),
+    ],
+)  # fmt: skip
+def test_what_several_explanations_share_is_said(
+    causes: Sequence[Cause], rivals: Sequence[Alternative], shared: Sequence[str], words: str
+) -> None:
+    """A name stands in every one of several explanations, under no other name of its curve."""
+    made = replace(named(), causes=tuple(causes), alternatives=tuple(rivals))
+    assert shared_of(made) == shared
+    assert diagnosis_document(made)["shared"] == list(shared)
+    said = [sentence for sentence in headline(made) if re.search(r" in (both|all) of them\.", sentence)]
+    assert said == ([words] if words else [])
+    for text in ("\n".join(report(made, Path("runs/x"))), sheet_text(made)):
+        flat = re.sub(r"\s+", " ", text).lower()
+        assert words.rstrip(".").lower() in flat
+        assert bool(words) is bool(re.search(r" in (both|all) of them", flat))
 
 
 (UNKNOWN,) = HEATING.unknowns

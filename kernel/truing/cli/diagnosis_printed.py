@@ -26,6 +26,7 @@ from truing.report.diagnosis_words import (
     reasons,
     score_text,
     settings_text,
+    shared_words,
     spoken,
     tie_text,
     verdict_word,
@@ -143,7 +144,7 @@ def _named(diagnosis: Diagnosis) -> str:
     if diagnosis.remainder is not None:
         parts.append(f"unregistered: {prose(diagnosis.remainder.shape)}")
     second = f", of a second cause {p_text(diagnosis.p_second)}" if diagnosis.p_second is not None else ""
-    one_of = f"; one of {len(explanations_of(diagnosis))}"
+    one_of = "; ".join(["", f"one of {len(explanations_of(diagnosis))}", *shared_words(diagnosis)])
     open_ones = {"named": "; unique", "undecided": "; in doubt", "one_of": one_of}
     return f"{' + '.join(parts)} ({p_text(diagnosis.p_any)}{second}{open_ones.get(diagnosis.verdict, '')})"
 

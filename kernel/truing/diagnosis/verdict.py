@@ -48,6 +48,12 @@ def _by_name(names: Sequence[str], same: Mapping[str, Sequence[str]]) -> Iterato
     yield from product(*((name, *same.get(name, ())) for name in names))
 
 
+def shared_of(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """Return the names that every one of several explanations holds: so much is sure where the rest is open."""
+    first, *others = explanations_of(diagnosis) or ((),)
+    return tuple(name for name in first if others and all(name in names for names in others))
+
+
 def verdict_of(diagnosis: Diagnosis) -> Verdict:
     """Return the verdict; "one_of" wherever a cause has another name or a rival is near, "none" without any doubt.
 

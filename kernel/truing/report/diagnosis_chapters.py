@@ -25,6 +25,7 @@ from truing.report.diagnosis_words import (
     readable,
     reasons,
     score_text,
+    shared_words,
     spoken,
     together,
 )
@@ -156,7 +157,8 @@ def _significance(diagnosis: Diagnosis) -> Iterator[str]:
         yield "The verdict is unique: no other explanation is near."
     if diagnosis.verdict == "one_of":
         names = [together(names) for names in explanations_of(diagnosis)]
-        yield f"The verdict is one of {len(names)}, and this record cannot say which: {listed(names, 'or')}."
+        which = "; ".join([listed(names, "or"), *shared_words(diagnosis)])
+        yield f"The verdict is one of {len(names)}, and this record cannot say which: {which}."
 
 
 def _named(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from truing.diagnosis.verdict import UNKNOWN, doubts, explanations_of
+from truing.diagnosis.verdict import UNKNOWN, doubts, explanations_of, shared_of
 from truing.numbers import ABSENT, format_number, format_value, pretty, with_unit
 
 if TYPE_CHECKING:
@@ -164,6 +164,14 @@ def verdict_word(diagnosis: Diagnosis) -> str:
     return f"{word}, a remainder left" if has_more and diagnosis.verdict == "named" else word
 
 
+def shared_words(diagnosis: Diagnosis) -> Iterator[str]:
+    """Say what all explanations hold, where there are several: friction is in all of them."""
+    shared, count = shared_of(diagnosis), len(explanations_of(diagnosis))
+    if shared:
+        names = listed([spoken(name) for name in shared])
+        yield f"{names} {'is' if len(shared) == 1 else 'are'} in {'both' if count == 2 else 'all'} of them"
+
+
 def headline(diagnosis: Diagnosis) -> list[str]:
     """Say what an engineer would tell a colleague: what is wrong, why, how much, what it is worth, what to do next."""
     if diagnosis.verdict == "none":
@@ -235,6 +243,7 @@ def _cause_sentences(diagnosis: Diagnosis) -> Iterator[str]:
     if is_open:
         names = [together(names) for names in explanations_of(diagnosis)]
         yield f"what the model misses in {results} is drawn alike by {listed(names, 'or')}."
+        yield from (f"{words}." for words in shared_words(diagnosis))
     if diagnosis.causes:
         causes = listed([cause_text(cause) for cause in diagnosis.causes])
         if is_open:

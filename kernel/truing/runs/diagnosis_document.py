@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
-from truing.diagnosis.verdict import doubts, explanations_of
+from truing.diagnosis.verdict import doubts, explanations_of, shared_of
 from truing.runs.documents import clean
 from truing.runs.provenance import provenance_of
 
@@ -44,6 +44,7 @@ def diagnosis_document(diagnosis: Diagnosis) -> dict[str, Any]:
         "wrong": {item.result: _wrong(item, _labels(diagnosis)) for item in diagnosis.wrong},
         "verdict": diagnosis.verdict,
         "explanations": [list(names) for names in explanations_of(diagnosis)],
+        "shared": list(shared_of(diagnosis)),
         "undecided": list(doubts(diagnosis)) if diagnosis.verdict == "undecided" else [],
         "p_any": clean(diagnosis.p_any),
         "p_second": clean(diagnosis.p_second),
