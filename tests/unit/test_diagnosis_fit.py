@@ -1,4 +1,4 @@
-"""The final fit of a diagnosis: sizes, intervals and calibrated inputs against least squares done by hand."""
+"""The exact fits of a diagnosis: sizes, intervals and calibrated inputs against least squares done by hand."""
 
 from __future__ import annotations
 
@@ -12,57 +12,61 @@ from diagnosis_models import (
     UM,
     Array,
     Asked,
+    Nothing,
+    Reading,
+    along_first,
+    cause_of,
     decided,
     drive_model,
+    fit_of,
     gauge,
-    names_of_piece,
-    plain_contest,
+    plain_competition,
+    size_of,
     twist_model,
+    wander,
     wide,
 )
 from numpy.testing import assert_allclose
-from scipy.optimize import brentq, least_squares
+from scipy.linalg import toeplitz
+from scipy.optimize import brentq, least_squares, minimize
 from scipy.stats import binom, f, t
 
-from truing.diagnosis.contest import Contest, contest
+from truing import Condition, Effect, Model, Tolerance, Unknown, normal
+from truing.diagnosis.competition import Competition
 from truing.diagnosis.engine import diagnose
-from truing.diagnosis.fit import Fit, fit, input_values, interval, si_covariance
-from truing.diagnosis.machine import machine_of, predict
-from truing.diagnosis.noise import Tails
-from truing.diagnosis.problem import problem_of
-from truing.diagnosis.profile import shape_interval
-from truing.diagnosis.search import first_noise
+from truing.diagnosis.exact import EXACTLY, Fit, fit
+from truing.diagnosis.intervals import Certainty, certainty_of, interval, may_be_zero, numbers_of, shape_interval
+from truing.diagnosis.machine import predict
+from truing.diagnosis.naming import input_values
+from truing.diagnosis.noise import Setting, Tails
+from truing.diagnosis.sample import sample_of
 from truing.gauge import one_machine
 
 TWIST = dict.fromkeys(("first", "second", "reading"), "-")
 
 
-def place_of(full: Contest, *names: str) -> int:
-    """The best hypothesis that is made of exactly these causes."""
-
-    def is_it(item: object) -> bool:
-        pieces = item.pieces  # type: ignore[attr-defined]
-        terms = [piece for piece in pieces if piece.kind == "term"]
-        return len(terms) == len(pieces) == len(names) and all(
-            any(name in names_of_piece(full, piece) for piece in terms) for name in names
-        )
-
-    return full.found.best(is_it)
-
-
-def drive_fit(folder: Path, error: Array, names: Sequence[str], **more: object) -> tuple[Contest, Fit]:
+def drive_competition(folder: Path, error: Array, **more: object) -> Competition:
+    """All causes of a drive that is off by this much (um), in white noise."""
     bench = wide(len(error), seed=21)
     asked = Asked(drive_model(**more))  # type: ignore[arg-type]
-    columns = bench.columns(gauge(bench.load, bench.travel) + error)
-    full = plain_contest(asked, asked.records(folder, columns), UM)
-    return full, fit(full, place_of(full, *names))
+    return plain_competition(asked, asked.records(folder, bench.columns(gauge(bench.load, bench.travel) + error)), UM)
+
+
+def drive_fit(folder: Path, error: Array, names: Sequence[str], **more: object) -> tuple[Competition, Fit]:
+    made = drive_competition(folder, error, **more)
+    return made, fit_of(made, *names)
+
+
+def place_of(found: Fit, name: str) -> int:
+    """Where a number stands among all of a fit."""
+    return [number.name for number in numbers_of(found)].index(name)
 
 
 def test_an_interval_is_that_of_least_squares_by_student(tmp_path: Path) -> None:
     rng = np.random.default_rng(21)
     bench = wide(60, seed=21)
     error = 0.02 * bench.travel + 2 * np.sign(bench.load) + rng.normal(0, 1, 60)
-    full, best = drive_fit(tmp_path, error, ["lead_error", "clearance"], tolerances={})
+    made, best = drive_fit(tmp_path, error, ["lead_error", "clearance"], tolerances={})
     design = np.column_stack([bench.travel, np.sign(bench.load)])
     expected = np.linalg.lstsq(design, error)[0]
     left = error - design @ expected
@@ -72,35 +76,82 @@ def test_an_interval_is_that_of_least_squares_by_student(tmp_path: Path) -> None
     scored = design * (left / (1 - leverage))[:, None]
     robust = np.sqrt(np.diag(inverse @ scored.T @ scored @ inverse))  # HC3, MacKinnon and White (1985)
     reach = t.ppf(0.975, 58) * np.maximum(plain, robust)
-    assert_allclose(best.freedom, 58, rtol=1e-6)
-    for name, value, half, unit in zip(("lead", "gap"), expected, reach, (UM / 1e-3, UM), strict=True):
-        number = next(place for place, item in enumerate(best.parameters) if item.name == name)
-        assert_allclose(best.si_value(number), value * unit, rtol=1e-6)
-        assert_allclose(interval(best, number), [(value - half) * unit, (value + half) * unit], rtol=1e-4)
-    covariance = np.array(si_covariance(best, [0, 1]))
+    certainty = certainty_of(best, made.extended)
+    assert_allclose(certainty.freedom, 58, rtol=1e-6)
+    units = np.array([UM / 1e-3, UM])
+    for place, (value, half, unit) in enumerate(zip(expected, reach, units, strict=True)):
+        assert numbers_of(best)[place].name == ("lead", "gap")[place]
+        assert_allclose(best.values[place][0], value * unit, rtol=1e-6)
+        assert_allclose(interval(best, certainty, place), [(value - half) * unit, (value + half) * unit], rtol=1e-5)
+    covariance = np.array(certainty.in_si([0, 1]))
     assert_allclose(covariance, covariance.T)
-    assert_allclose(np.sqrt(np.diag(covariance)) * t.ppf(0.975, 58), [h.item() for h in _in_si(best, reach)], rtol=1e-4)
-    assert full.evidence.rows == 60
+    assert_allclose(np.sqrt(np.diag(covariance)) * t.ppf(0.975, 58), reach * units, rtol=1e-5)
+    correlation = inverse[0, 1] / np.sqrt(inverse[0, 0] * inverse[1, 1])
+    assert_allclose(covariance[0, 1] / np.sqrt(covariance[0, 0] * covariance[1, 1]), correlation, rtol=1e-5)
 
 
-def _in_si(best: Fit, reach: Array) -> list[Array]:
-    units = {"lead": UM / 1e-3, "gap": UM}
-    order = {"lead": 0, "gap": 1}
-    return [reach[order[item.name]] * units[item.name] for item in best.parameters]
+@pytest.mark.parametrize(("size", "may_be"), [(0.25, True), (0.27, False)])
+def test_an_amplitude_may_be_zero_where_its_interval_holds_it(tmp_path: Path, size: float, may_be: bool) -> None:
+    """Noise of 1 um that is square to the curve: of 60 rows the clearance has the reach t(59) / sqrt(59) = 0.261 um."""
+    sign = np.sign(wide(60, seed=21).load)
+    noise = np.where(np.cumsum(sign > 0) % 2 == 0, 1.0, -1.0) * (sign > 0)
+    noise += np.where(np.cumsum(sign < 0) % 2 == 0, 1.0, -1.0) * (sign < 0)
+    noise -= sign * (sign @ noise) / 60
+    noise /= np.sqrt(np.mean(noise**2))
+    made, best = drive_fit(tmp_path, size * sign + noise, ["clearance"], tolerances={})
+    assert_allclose(size_of(best, "gap"), size * UM, rtol=1e-5)
+    assert may_be_zero(best, certainty_of(best, made.extended), best.causes[0]) is may_be
 
 
-def test_inputs_are_calibrated_by_their_prior(tmp_path: Path) -> None:
+def test_inputs_are_calibrated_by_their_prior_in_the_noise_that_is_left(tmp_path: Path) -> None:
+    """-2 log likelihood with its noise free, n ln(mean square), plus the square of the input: made least by scipy."""
     rng = np.random.default_rng(22)
     bench = wide(40, seed=21)
     contact = np.sign(bench.load) * np.abs(bench.load) ** (2 / 3)
     error = 0.15 * contact + 0.03 * bench.travel + rng.normal(0, 1, 40)
-    full, best = drive_fit(tmp_path, error, ["lead_error"], tolerances={"contact": "3 %"})
+    _, best = drive_fit(tmp_path, error, ["lead_error"], tolerances={"contact": "3 %"})
     design = np.column_stack([bench.travel, 0.09 * contact])  # the second counts standard deviations
-    joined = np.linalg.lstsq(np.concatenate([design, [[0, 1]]]), np.append(error, 0))[0]
-    assert_allclose(best.si_value(0), joined[0] * UM / 1e-3, rtol=1e-6)
-    ((name, (value, of_its_sd)),) = input_values(full, best).items()
+
+    def cost(x: Array) -> float:
+        return float(40 * np.log(np.mean((error - design @ x) ** 2)) + x[1] ** 2)
+
+    free = minimize(cost, [0.03, 1.0], method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-12, "maxiter": 4000})
+    assert_allclose(size_of(best, "lead"), free.x[0] * UM / 1e-3, rtol=1e-5)
+    assert_allclose(best.cost, free.fun, rtol=0, atol=1e-6)
+    ((name, (value, of_its_sd)),) = input_values(best).items()
     assert name == "contact"
-    assert_allclose([value / UM, of_its_sd], [3 + 0.09 * joined[1], joined[1]], rtol=1e-5)
+    assert_allclose([value / UM, of_its_sd], [3 + 0.09 * free.x[1], free.x[1]], rtol=1e-5)
+
+
+@pytest.mark.parametrize("stretched", [0.25, 0.5])
+def test_an_input_in_which_the_model_bends_is_fitted_with_the_model_itself(tmp_path: Path, stretched: float) -> None:
+    """(1 + stretched * size)^2 for a size of 0 +- 1, measured at 2: the slope there is 1.5 times, twice that at 0."""
+
+    def squared(nothing: Nothing) -> Reading:
+        return Reading(reading=16 * (1 + stretched * nothing.size) ** 2)
+
+    follow = Effect(
+        "along_first", on_results=along_first, needs=[Condition("first", "")], unknowns=[Unknown("one", -9, 9)]
+    )
+    spread = Tolerance("size", normal(sd="1"), why="drawing")
+    model = Model(name="bent", title="A bent input", function=squared, errors=[spread, follow])
+    first = np.linspace(-1, 1, 50)
+    reading = 16 * (1 + 2 * stretched) ** 2 + 2 * first + np.random.default_rng(29).normal(0, 0.5, 50)
+    asked = Asked(model, units=TWIST)
+    made = plain_competition(asked, asked.records(tmp_path, {"first": first, "reading": reading}), 1.0)
+    best = fit_of(made, "along_first")
+
+    def said(x: Array) -> Array:
+        return np.asarray(16 * (1 + stretched * x[0]) ** 2 + x[1] * first)
+
+    def cost(x: Array) -> float:
+        return float(50 * np.log(np.mean((reading - said(x)) ** 2)) + x[0] ** 2)
+
+    free = minimize(cost, [2.0, 2.0], method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-12, "maxiter": 4000})
+    (value, of_its_sd) = input_values(best)["size"]
+    assert_allclose([value, size_of(best, "one")], free.x, rtol=1e-4)
+    assert of_its_sd == value
+    assert_allclose(best.predicted["reading"], said(free.x), rtol=1e-4)
 
 
 def test_an_earlier_calibration_is_no_nominal_of_the_extended_model(tmp_path: Path) -> None:
@@ -120,34 +171,76 @@ def test_a_fit_of_an_effect_that_is_not_linear_is_exact(tmp_path: Path) -> None:
     bench = wide(80, seed=21)
     error = gauge(1.3 * bench.load, bench.travel) - gauge(bench.load, bench.travel)
     _, best = drive_fit(tmp_path, error, ["stiffness_loss"], tolerances={})
-    assert_allclose(best.si_value(0), 0.3, rtol=1e-6)
-    assert np.abs(best.innovations[0]).max() < 1e-5
+    assert_allclose(size_of(best, "loss"), 0.3, rtol=1e-6)
+    assert np.abs(best.left).max() < 1e-5
 
 
 def test_a_size_stays_inside_its_bounds(tmp_path: Path) -> None:
+    """700 um lie above the 500 um that were declared; the sizes beside it are those of least squares with it held."""
     bench = wide(60, seed=21)
-    error = 0.05 * np.random.default_rng(24).normal(size=60) + 700 * np.sign(bench.load)
-    asked = Asked(drive_model(tolerances={}))
-    records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
-    full = plain_contest(asked, records, 50 * UM)
-    assert place_of(full, "clearance") == -1  # 700 um is above the 500 um that were declared
-    place = next(number for number, item in enumerate(full.found.hypotheses) if _is(full, item, "clearance"))
-    best = fit(full, place)
-    assert_allclose(best.si_value(0), 500 * UM, rtol=1e-6)
+    error = np.random.default_rng(24).normal(0, 40, 60) + 700 * np.sign(bench.load) + 5 * bench.travel
+    made = drive_competition(tmp_path, error, tolerances={})
+    start = np.array([4000 * UM]), np.array([1e-3])  # outside as well
+    best = fit(made.sample, made.extended, [cause_of(made, name) for name in ("clearance", "lead_error")], start)
+    assert best is not None
+    assert_allclose(size_of(best, "gap"), 500 * UM, rtol=1e-9)
+    rest = error - 500 * np.sign(bench.load)
+    beside = rest @ bench.travel / (bench.travel @ bench.travel)
+    assert_allclose(size_of(best, "lead"), beside * UM / 1e-3, rtol=1e-5)
 
 
-def _is(full: Contest, item: object, name: str) -> bool:
-    pieces = item.pieces  # type: ignore[attr-defined]
-    return len(pieces) == 1 and pieces[0].kind == "term" and name in names_of_piece(full, pieces[0])
+def test_a_number_that_is_held_keeps_its_start(tmp_path: Path) -> None:
+    bench = wide(60, seed=21)
+    error = 3 * (1 - np.exp(-bench.time / 2)) + np.random.default_rng(30).normal(0, 0.1, 60)
+    made = drive_competition(tmp_path, error, tolerances={})
+    cause = cause_of(made, "warm_up")
+    start = np.array([UM, 5 * 3600.0])
+    best = fit(made.sample, made.extended, [cause], [start], held=[cause.numbers[1]])
+    assert best is not None
+    column = 1 - np.exp(-bench.time / 5)
+    assert size_of(best, "time_constant") == pytest.approx(5 * 3600, rel=1e-12)
+    assert_allclose(size_of(best, "rise"), column @ error / (column @ column) * UM, rtol=1e-5)
+
+
+def in_noise(made: Competition, found: Fit, *, white: bool = False, **more: object) -> tuple[Fit, Certainty]:
+    """A fit and its certainty as if the noise had been another one; ``white``: with its memory taken out."""
+    noise = {name: replace(own, **more) for name, own in made.sample.noise.items()}  # type: ignore[arg-type]
+    sample = sample_of(made.sample.machine, noise, made.sample.mask, made.sample.directions)
+    sample = sample.white() if white else sample
+    again = fit(sample, made.extended, found.causes, found.values, found.inputs)
+    assert again is not None
+    return again, certainty_of(again, made.extended)
 
 
 @pytest.mark.parametrize("clipped", [0.05, 0.2])
 def test_clipped_rows_widen_the_interval(tmp_path: Path, clipped: float) -> None:
     error = 0.02 * wide(60, seed=21).travel + np.random.default_rng(25).normal(0, 1, 60)
-    full, best = drive_fit(tmp_path, error, ["lead_error"], tolerances={})
-    heavy = replace(full, noise=replace(full.noise, tails={"deflection": Tails(3.0, 1.9, clipped)}))
-    wider = fit(heavy, place_of(full, "lead_error"))
-    assert_allclose(np.sqrt(wider.covariance / best.covariance), 1 / (1 - clipped), rtol=1e-9)
+    made, best = drive_fit(tmp_path, error, ["lead_error"], tolerances={})
+    _, wider = in_noise(made, best, tails=Tails(3.0, 1.9, clipped))
+    plain = certainty_of(best, made.extended)
+    assert_allclose(np.sqrt(wider.covariance / plain.covariance), 1 / (1 - clipped), rtol=1e-6)
+    assert_allclose(wider.freedom, 60 * (1 - clipped) ** 2 - 1, rtol=1e-6)
+
+
+def test_with_the_memory_taken_out_the_fit_is_that_of_generalised_least_squares(tmp_path: Path) -> None:
+    bench = wide(200, seed=21)
+    error = 0.3 * bench.time + wander(np.random.default_rng(31), 200, 0.6)
+    made = drive_competition(tmp_path, error, tolerances={})
+    best = fit_of(made, "sensor_drift")
+    white, certainty = in_noise(made, best, white=True, memory=Setting(0.6))
+    inverse = np.linalg.inv(toeplitz(0.6 ** np.arange(200.0)) / (1 - 0.36))
+    time = bench.time
+    precision = time @ inverse @ time
+    slope = time @ inverse @ error / precision
+    left = error - slope * time
+    variance = left @ inverse @ left / 199 / precision
+    assert_allclose(white.values[0], slope * UM / 3600, rtol=1e-5)
+    assert_allclose(certainty.freedom, 199, rtol=1e-6)
+    (own,) = np.diag(certainty.in_si([0]))
+    assert own >= variance * (UM / 3600) ** 2 * (1 - 1e-5)  # the sandwich may be larger
+    assert_allclose(own, variance * (UM / 3600) ** 2, rtol=0.3)
+    _, coarse = in_noise(made, best, memory=Setting(0.6))
+    assert_allclose(coarse.freedom, 200 / 4 - 1, rtol=1e-6)  # (1 + 0.6) / (1 - 0.6) rows say what one says alone
 
 
 @pytest.mark.parametrize(("time_constant", "is_open"), [(1.5, False), (60.0, True)])
@@ -155,15 +248,17 @@ def test_the_interval_of_a_time_constant_is_its_profile(tmp_path: Path, time_con
     bench = wide(120, seed=21)
     curve = 1 - np.exp(-bench.time / time_constant)
     error = 6 / curve.max() * curve + np.random.default_rng(26).normal(0, 0.5, 120)
-    full, best = drive_fit(tmp_path, error, ["warm_up"], tolerances={})
-    number = next(place for place, item in enumerate(best.parameters) if item.name == "time_constant")
-    low, high = shape_interval(full, best, number)
+    made, best = drive_fit(tmp_path, error, ["warm_up"], tolerances={})
+    low, high = shape_interval(best, made.extended, certainty_of(best, made.extended), place_of(best, "time_constant"))
 
     def cost(constant: float) -> float:
         column = 1 - np.exp(-bench.time / constant)
         return float(np.sum((error - column * (column @ error) / (column @ column)) ** 2))
 
-    free = least_squares(lambda x: error - x[0] * (1 - np.exp(-bench.time / x[1])), [6, 2], bounds=([-99, 0.1], 20))
+    def left(x: Array) -> Array:
+        return np.asarray(error - x[0] * (1 - np.exp(-bench.time / x[1])))
+
+    free = least_squares(left, [6, 2], bounds=([-99, 0.1], 20))
     least = 2 * free.cost
     level = least * (1 + f.ppf(0.95, 1, 118) / 118)
     assert low is not None
@@ -182,10 +277,12 @@ def test_intervals_cover_what_is_true(tmp_path: Path, tails: str) -> None:
         first, second = rng.uniform(-1, 1, (2, 100))
         noise = rng.normal(size=100) if tails == "normal" else rng.standard_t(3, 100)
         records = asked.records(tmp_path, {"first": first, "second": second, "reading": 2 * first + noise})
-        there = machine_of(asked.setup, records)
-        raw = first_noise(there)
-        full = contest(problem_of(there, raw.scales), raw, ~records.held_out)
-        low, high = interval(fit(full, place_of(full, "along_first")), 0)
+        made = plain_competition(asked, records, 1.0)
+        fit_of(made, "along_first")
+        made.renew()
+        made.again(made.ranked(), EXACTLY)
+        best = made.known[frozenset({"along_first"})]
+        low, high = interval(best, certainty_of(best, made.extended), 0)
         covered += low <= 2 <= high
     assert covered >= binom.ppf(0.01, records_made, 0.90)
 
@@ -202,8 +299,7 @@ def test_the_extended_model_says_what_was_fitted(tmp_path: Path) -> None:
     assert found.extended is not None
     again = predict(one_machine(found.extended), records)["deflection"]
     assert_allclose(again, found.curves[0].after, rtol=0, atol=1e-3 * UM)
-    full, decision = decided(asked.setup, records)
-    best = fit(full, decision.winner)
+    best = decided(asked.setup, records).best
     assert_allclose(found.curves[0].after, best.predicted["deflection"], rtol=0, atol=1e-6 * UM)
     left = found.curves[0].measured - found.curves[0].after
     assert np.sqrt(np.mean(left**2)) < 1.2 * UM
