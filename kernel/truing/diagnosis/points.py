@@ -42,7 +42,8 @@ def _from_unit(number: Number, u: Matrix) -> Matrix:
     """Return values of a shape number for places from 0 to 1 in its range."""
     if number.whole:
         return np.minimum(np.floor(number.low + u * (number.high - number.low + 1)), number.high)
-    if number.is_log and number.high / number.low > 10 and number.name != "frequency":
+    is_even = bool(number.along) or number.name == "frequency"
+    if number.is_log and not is_even and number.high / number.low > 10:
         return np.asarray(number.low * (number.high / number.low) ** u)
     return np.asarray(number.low + u * (number.high - number.low))
 
