@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, hookimpl, inputs, normal, results
-from truing.diagnosis.beside import Placed
+from truing.diagnosis.causes import effects_of
 from truing.diagnosis.engine import diagnose
+from truing.diagnosis.exact import EXACTLY, fit
+from truing.diagnosis.extended import Extended
 from truing.diagnosis.machine import machine_of
-from truing.diagnosis.problem import problem_of
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.sample import first_noise, sample_of
 from truing.inputs_file import read_setup
 from truing.kernel import Kernel
 
@@ -168,7 +170,14 @@ def test_an_amplitude_that_the_record_does_not_excite_is_zero_beside_the_others(
     (tmp_path / "inputs.toml").write_text("[inputs]\n", encoding="utf-8")
     setup = read_setup(tmp_path / "inputs.toml", offer)
     machine = machine_of(setup, read_records([tmp_path / "measured.csv"], offer, setup))
-    candidates = problem_of(machine, {"angle": 1e-4}).candidates
-    candidate = next(each for each in candidates if each.name == "two_sided")
-    there = Placed(0, candidate, {"right": 0.04}, {}).switched_on(machine)
-    np.testing.assert_allclose(there.base["angle"], 1.04 * machine.base["angle"], rtol=1e-12)
+    cause = next(each for each in effects_of(machine) if each.name == "two_sided")
+    assert [number.name for number in cause.numbers] == ["left", "right"]
+    extended = Extended(machine)
+    (there,) = extended.at([cause], [([np.array([0.3, 0.04])], np.zeros(len(machine.inputs)))])
+    np.testing.assert_allclose(there["angle"], 1.04 * machine.base["angle"], rtol=1e-12)
+    sample = sample_of(machine, first_noise(machine), np.ones(40, dtype=bool))
+    found = fit(sample, extended, [cause], [np.array([0.0, 0.01])])
+    assert found is not None
+    (left, right), reach = found.of(cause), 0.02 * EXACTLY**0.5  # of the rigidity, within what a fit takes as exact
+    assert left == 0.0
+    assert right == pytest.approx(0.04, abs=2 * reach)  # 2.6 mrad are 4 % more than 1e3/400

@@ -10,13 +10,15 @@ import pytest
 from numpy.typing import NDArray
 
 from truing import Effect, Float, Model, Unknown, found, given, inputs, results
-from truing.diagnosis.chords import are_faint, late_terms
+from truing.diagnosis.causes import Cause, effects_of
+from truing.diagnosis.curves import Curves, look
 from truing.diagnosis.engine import diagnose
-from truing.diagnosis.grids import terms_of
+from truing.diagnosis.exact import Fit, nothing
+from truing.diagnosis.extended import Extended
 from truing.diagnosis.machine import machine_of
-from truing.diagnosis.problem import problem_of
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.sample import first_noise, sample_of
 from truing.kernel import Offer, Origin
 from truing.setup import Setup, default_setup
 
@@ -116,27 +118,45 @@ def test_a_film_that_is_not_there_is_not_found(tmp_path: Path) -> None:
     assert (answer.causes, answer.remainder) == ((), None)
 
 
-def test_chords_are_those_of_the_exact_curve(tmp_path: Path) -> None:
-    offer, setup, file = setup_and_file(tmp_path, 0.0, 0.0)
+def curves_of(folder: Path, film: float = 0.0) -> tuple[dict[str, Cause], Curves, Fit, Array, Array]:
+    """The effects by name, their curves, the model as it is, and path and speed of every row, SI."""
+    offer, setup, file = setup_and_file(folder, film, 0.0)
     records = read_records([file], offer, setup)
-    machine, scales = machine_of(setup, records), {"lost": NOISE * 1e-6}
-    problem = problem_of(machine, scales)
-    place = next(at for at, item in enumerate(problem.candidates) if item.name == "filmed")
-    candidate = problem.candidates[place]
-    assert are_faint(terms_of(place, candidate, machine, scales), scales)
-    chords = late_terms(place, candidate, machine, scales)
-    assert [term.at for term in chords] == pytest.approx([20.0, 12.0, 7.0, 4.0])  # of 2.0 nothing is felt
+    machine = machine_of(setup, records)
+    extended = Extended(machine)
+    sample = sample_of(machine, first_noise(machine), np.ones(len(records), dtype=bool))
+    causes = {cause.name: cause for cause in effects_of(machine) if not cause.is_kernel}
     path, speed = (np.asarray(records.rows.columns[name], dtype=float) for name in ("path", "speed"))
-    for term in chords:
-        change = 1e-6 * (worn(path / 1e3, speed, term.at, 0.0) - worn(path / 1e3, speed, 0.0, 0.0))
-        assert np.asarray(term.curves[0]["lost"]) * term.at == pytest.approx(change, abs=1e-15)
-        assert (term.low[0], term.high[0] * term.per[0]) == pytest.approx((0.0, 20.0))
+    return causes, Curves(extended), nothing(sample, extended), path, speed
 
 
-def test_an_effect_whose_slope_shows_has_no_late_chords(tmp_path: Path) -> None:
-    offer, setup, file = setup_and_file(tmp_path, 0.0, 0.0)
-    problem = problem_of(machine_of(setup, read_records([file], offer, setup)), {"lost": NOISE * 1e-6})
-    for name, many in (("filmed", 4), ("hastened", 1)):
-        own = [term for term in problem.terms if problem.candidates[term.candidate].name == name]
-        assert len(own) == many
-        assert all((term.at != 0) == (name == "filmed") for term in own)
+def test_curves_of_what_bends_are_those_of_the_model_at_sizes_up_to_the_bound(tmp_path: Path) -> None:
+    """Of what goes in proportion there is one, per unit of its amplitude: a share takes the path away, 1 um per km."""
+    causes, curves, null, path, speed = curves_of(tmp_path)
+    plain = worn(path / 1e3, speed, 0.0, 0.0)
+    film, growth, share = (curves.of(causes[name], null) for name in ("filmed", "hastened", "slowed"))
+    assert (film.is_straight, growth.is_straight, share.is_straight) == (False, False, True)
+    films = [worn(path / 1e3, speed, size, 0.0) for size in film.points[:, 0]]
+    growths = [worn(path / 1e3, speed, 0.0, size * 1e3) for size in growth.points[:, 0]]
+    for bundle, bent in ((film, films), (growth, growths), (share, [0.0 * plain])):
+        np.testing.assert_allclose(bundle.curves[:, 0], 1e-6 * (np.array(bent) - plain), rtol=1e-9, atol=1e-15)
+    assert film.points.max() == pytest.approx(20.0)
+    assert growth.points.max() == pytest.approx(0.5e-3)
+    assert np.sum(film.points * speed.max() > FIRST_FELT) >= 2  # below nothing is felt: a fit cannot begin there
+
+
+def test_a_fit_of_a_film_begins_with_a_size_at_which_it_is_felt(tmp_path: Path) -> None:
+    """Of the sizes asked for, each stretched as a line: the best by plain least squares is the first start."""
+    causes, curves, null, *_ = curves_of(tmp_path, film=8.0)
+    starts = look(curves, null, list(causes.values()))["filmed"].starts
+    bundle = curves.of(causes["filmed"], null)
+    left = null.left * null.sample.channels[0].scale
+    drawn = bundle.curves[:, 0]
+    inner, square = drawn @ left, np.maximum(np.sum(drawn**2, axis=1), 1e-300)
+    stretched = np.clip(inner / square, 0.5, 2.0)
+    gain = 2 * stretched * inner - stretched**2 * square
+    best = int(np.argmax(gain))
+    (worth, (size,)) = starts[0]
+    assert size == pytest.approx(min(bundle.points[best, 0] * stretched[best], 20.0), rel=1e-9)
+    rows = null.sample.total
+    assert worth == pytest.approx(-rows * np.log(1 - gain[best] / (left @ left)), rel=1e-6)
