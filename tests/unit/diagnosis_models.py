@@ -28,7 +28,7 @@ from truing.diagnosis.records import Records
 from truing.diagnosis.result import Diagnosis
 from truing.diagnosis.sample import Noise, first_noise, sample_of
 from truing.kernel import Offer, Origin
-from truing.setup import Setup, default_setup
+from truing.setup import DiagnoseOptions, Setup, default_setup
 
 Array = NDArray[np.float64]
 KN, UM = 1e3, 1e-6
@@ -245,11 +245,12 @@ class Asked:
     model: Model[Any, Any]
     seed: int = 0
     units: Mapping[str, str] = field(default_factory=lambda: HEADER)
+    diagnose: DiagnoseOptions = field(default_factory=DiagnoseOptions)
 
     @property
     def setup(self) -> Setup:
         """The setup at the defaults of the model."""
-        return replace(default_setup(self.model), seed=self.seed)
+        return replace(default_setup(self.model), seed=self.seed, diagnose=self.diagnose)
 
     def records(self, path: Path, columns: Mapping[str, Array], runs: Sequence[str] = ()) -> Records:
         """Write the columns to a file in a folder and read it as records."""
@@ -318,9 +319,16 @@ def size_of(found: Fit, name: str) -> float:
     return value_of(found, place)
 
 
-def chosen_as(made: Competition, best: Fit, *rivals: Fit) -> Chosen:
-    """An explanation as if it had been chosen, with rivals as near as itself."""
-    return Chosen(made, best, tuple(Rival(each, 0.0) for each in rivals), {}, Law(np.zeros(0), 1.0), None)
+def chosen_as(made: Competition, best: Fit, *rivals: Fit, same: Mapping[str, tuple[str, ...]] | None = None) -> Chosen:
+    """An explanation as if it had been chosen, with rivals as near as itself; ``same`` names what draws its curves."""
+    near = tuple(Rival(each, 0.0) for each in rivals)
+    return Chosen(made, best, near, same or {}, Law(np.zeros(0), 1.0), None)
+
+
+def of_size_one(rng: np.random.Generator, n: int) -> Array:
+    """Noise whose mean square is 1 to the last digit."""
+    noise = rng.normal(size=n)
+    return np.asarray(noise / np.sqrt(np.mean(noise**2)))
 
 
 @inputs

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import inf
 from pathlib import Path
@@ -9,23 +10,38 @@ from typing import Any
 
 import numpy as np
 import pytest
-from diagnosis_models import UM, Array, Asked, decided, drive_model, gauge, names_of_piece, plain_contest, wide
+from diagnosis_models import (
+    UM,
+    Array,
+    Asked,
+    chosen_as,
+    drive_model,
+    fit_of,
+    gauge,
+    of_size_one,
+    plain_competition,
+    wander,
+    white_noise,
+    wide,
+)
 from numpy.testing import assert_allclose, assert_array_equal
+from numpy.typing import NDArray
 from scipy.linalg import toeplitz
 from scipy.stats import binom, kstest, norm
 from scipy.stats import t as student
 
-from truing.diagnosis.contest import Contest
+from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.competition import Competition
 from truing.diagnosis.design import MOST_POINTS, POINTS, Proposal, next_points
 from truing.diagnosis.engine import diagnose
-from truing.diagnosis.gain import FOLDS, SHORTEST_BLOCK, _log_density, blocks_of, nested, sign_flip_p
-from truing.diagnosis.noise import SETTINGS
-from truing.diagnosis.search import first_noise, residuals_of
+from truing.diagnosis.exact import Fit
+from truing.diagnosis.folds import FOLDS, SHORTEST_BLOCK, Folds, carries_over, errors_left_out, folds_of
+from truing.diagnosis.gain import _log_density, nested, sign_flip_p
+from truing.diagnosis.noise import Setting
+from truing.diagnosis.sample import Sample, sample_of
 from truing.diagnosis.verdict import APART
 from truing.diagnosis.visibility import needed, smallest_visible
 from truing.setup import DiagnoseOptions
-
-WHITE = (0,)
 
 
 def test_a_gain_by_chance_is_significant_as_often_as_promised() -> None:
@@ -77,12 +93,19 @@ def test_densities_are_of_unit_variance(freedom: float) -> None:
     assert_allclose(_log_density(z, freedom), law.logpdf(z), rtol=1e-12)
 
 
-def ready(folder: Path, error: Array, n: int, runs: list[str], **more: Any) -> tuple[Asked, Contest]:
-    """A contest with white noise of 1 um on a wide record."""
-    bench = wide(n, seed=33)
-    asked = Asked(drive_model(**more))
-    records = asked.records(folder, bench.columns(gauge(bench.load, bench.travel) + error), runs)
-    return asked, plain_contest(asked, records, UM)
+def ready(folder: Path, error: Array, runs: list[str] | None = None, **more: Any) -> Competition:
+    """What competes on a wide record that is off by this much (um), in white noise."""
+    bench = wide(len(error), seed=33)
+    options = more.pop("diagnose", DiagnoseOptions())
+    asked = Asked(drive_model(**more), diagnose=options)
+    records = asked.records(folder, bench.columns(gauge(bench.load, bench.travel) + error), runs or [])
+    return plain_competition(asked, records, UM)
+
+
+def remembering(sample: Sample, rho: float, *, held: NDArray[np.bool_] | None = None) -> Sample:
+    """The same rows, some held out, as if their noise carried this much over."""
+    noise = {name: replace(own, memory=Setting(rho)) for name, own in white_noise(sample.machine, UM).items()}
+    return sample_of(sample.machine, noise, sample.mask if held is None else ~held, sample.directions)
 
 
 @pytest.mark.parametrize(
@@ -91,71 +114,109 @@ def ready(folder: Path, error: Array, n: int, runs: list[str], **more: Any) -> t
 def test_folds_are_blocks_of_consecutive_rows_of_one_run(tmp_path: Path, rho: float, rows: int, length: int) -> None:
     """Six rows, a twentieth of the record, or three times 1/ln(1/rho) rows, but no more than a tenth of the record."""
     runs = ["a"] * (rows // 3) + ["b"] * (rows - rows // 3)
-    _, full = ready(tmp_path, np.zeros(rows), rows, runs)
-    setting = next(place for place, item in enumerate(SETTINGS) if item.rho == rho and item.theta == 0)
-    found = blocks_of(full, (setting,))
-    run_of = full.problem.machine.records.run_of
-    assert_array_equal(np.diff(found) >= 0, True)
-    assert set(np.diff(found)) <= {0, 1}
-    for block in np.unique(found):
-        here = np.flatnonzero(found == block)
+    folds = folds_of(remembering(ready(tmp_path, np.zeros(rows), runs).sample, rho))
+    assert folds.count == FOLDS
+    assert_array_equal(np.diff(folds.block_of) >= 0, True)
+    assert set(np.diff(folds.block_of)) <= {0, 1}
+    for block in np.unique(folds.block_of):
+        here = np.flatnonzero(folds.block_of == block)
         assert_array_equal(np.diff(here), 1)
-        assert len(set(run_of[here])) == 1
-        assert len(here) == length or run_of[min(here[-1] + 1, rows - 1)] != run_of[here[0]] or here[-1] == rows - 1
-    assert np.bincount(found).max() == length
+        assert len({runs[row] for row in here}) == 1
+        assert len(here) == length or here[-1] == rows - 1 or runs[here[-1] + 1] != runs[here[0]]
+    assert np.bincount(folds.block_of).max() == length
 
 
 def test_a_short_record_has_shorter_blocks_rather_than_fewer(tmp_path: Path) -> None:
-    _, full = ready(tmp_path, np.zeros(24), 24, [])
-    assert np.bincount(blocks_of(full, WHITE)).tolist() == [3] * 8
+    folds = folds_of(ready(tmp_path, np.zeros(24)).sample)
+    assert np.bincount(folds.block_of).tolist() == [3] * 8
 
 
 def test_rows_held_out_are_in_no_block_and_no_file_is_left_out_whole(tmp_path: Path) -> None:
-    """Of two runs of 60 rows the first 20 of each may be used: blocks of six of these, or of ten and less per file."""
-    _, full = ready(tmp_path, np.zeros(120), 120, ["a"] * 60 + ["b"] * 60)
-    machine = full.problem.machine
-    held = np.arange(120) % 60 >= 20
-    there = replace(machine, records=replace(machine.records, held_out=held))
-    found = blocks_of(replace(full, problem=replace(full.problem, machine=there)), WHITE)
-    assert_array_equal(found < 0, held)
-    assert np.bincount(found[~held]).tolist() == [5, 5, 5, 5] * 2
-    per_file = replace(there, start=replace(there.start, diagnose=DiagnoseOptions(per_file=("lead_error",))))
-    slow = next(place for place, item in enumerate(SETTINGS) if item.rho == 0.95 and item.theta == 0)
-    split = blocks_of(replace(full, problem=replace(full.problem, machine=per_file)), (slow,))
+    """Of two runs of 60 rows the first 20 of each may be used: blocks of an eighth of these, of ten or less per file."""
+    runs, held = ["a"] * 60 + ["b"] * 60, np.arange(120) % 60 >= 20
+    folds = folds_of(remembering(ready(tmp_path, np.zeros(120), runs).sample, 0.0, held=held))
+    assert_array_equal(folds.block_of < 0, held)
+    assert not any(folds.test(fold)[held].any() for fold in range(folds.count))
+    assert np.bincount(folds.block_of[~held]).tolist() == [5, 5, 5, 5] * 2
+    per_file = ready(tmp_path, np.zeros(120), runs, diagnose=DiagnoseOptions(per_file=("lead_error",)))
+    split = folds_of(remembering(per_file.sample, 0.95, held=held)).block_of
     assert all(len(set(split[rows][~held[rows]])) >= 2 for rows in (slice(0, 60), slice(60, 120)))
 
 
-def test_what_is_judged_was_not_used(tmp_path: Path) -> None:
-    """Other values in the rows of one fold change nothing in what is predicted there."""
+def test_rows_without_an_order_are_left_out_at_random(tmp_path: Path) -> None:
+    bench = wide(53, seed=33)
+    columns = bench.columns(gauge(bench.load, bench.travel))
+    asked = Asked(drive_model(("clearance",), {}))
+    records = asked.records(tmp_path, {name: values for name, values in columns.items() if name != "time"})
+    folds = folds_of(plain_competition(asked, records, UM).sample, seed=5)
+    assert_array_equal(np.sort(folds.block_of), np.arange(53))
+    assert [int(folds.test(fold).sum()) for fold in range(folds.count)] == [11, 11, 11, 10, 10]
+    assert np.abs(np.diff(folds.block_of)).min() > 0
+    assert abs(np.corrcoef(folds.block_of, np.arange(53))[0, 1]) < 0.4  # 3 / sqrt(53)
+
+
+def left_out(error: Array, columns: Sequence[Array], folds: Folds) -> Array:
+    """What least squares on the other rows leaves of the rows of each fold."""
+    design, found = np.column_stack(columns), np.full(len(error), np.nan)
+    for fold in range(folds.count):
+        test = folds.test(fold)
+        found[test] = error[test] - design[test] @ np.linalg.lstsq(design[~test], error[~test])[0]
+    return found
+
+
+def test_errors_of_rows_left_out_are_those_of_fits_without_them(tmp_path: Path) -> None:
+    """A fit without a fold ends within a hundredth of a score unit: a tenth of the standard error of its size."""
     rng = np.random.default_rng(34)
     bench = wide(120, seed=33)
-    asked, full = ready(tmp_path, 0.03 * bench.travel + rng.normal(0, 1, 120), 120, [])
-    _, decision = decided(asked.setup, full.problem.machine.records)
-    raw = first_noise(full.problem.machine)
-    winner = full.found.best(lambda item: item.kind == "one" and _named(full, item) == "lead_error")
-    first = nested(full, winner, decision.thresholds, raw)
-    fold = first.block_of % FOLDS == 0
-    changed = _with_values(full, np.where(fold, rng.normal(0, 3 * UM, 120), 0.0))
-    other = replace(raw, residuals=residuals_of(changed.problem.machine))
-    second = nested(changed, winner, decision.thresholds, other)
-    assert_array_equal(second.block_of, first.block_of)
-    for before in ("before", "after"):
-        one, two = (getattr(item.judged["deflection"], before) for item in (first, second))
-        measured = [item.problem.machine.records.measured["deflection"] for item in (full, changed)]
-        assert_allclose((measured[0] - one)[fold], (measured[1] - two)[fold], rtol=0, atol=1e-9 * UM)
-        assert np.abs((measured[0] - one)[~fold] - (measured[1] - two)[~fold]).max() > 1e-3 * UM
-    assert np.isfinite(first.judged["deflection"].gain).all()
+    error = 0.01 * bench.travel + rng.normal(0, 1, 120)
+    made = ready(tmp_path, error, tolerances={})
+    less, more = fit_of(made, "lead_error"), fit_of(made, "lead_error", "clearance")
+    folds = folds_of(made.sample)
+    curves = bench.travel, np.sign(bench.load)
+    before, after = left_out(error, curves[:1], folds), left_out(error, curves, folds)
+    assert_allclose(errors_left_out(less, made.extended, folds), before, rtol=0, atol=0.005)
+    assert_allclose(errors_left_out(more, made.extended, folds), after, rtol=0, atol=0.005)
+    kept = error - np.column_stack(curves) @ np.linalg.lstsq(np.column_stack(curves), error)[0]
+    fallen = (before**2 - after**2) / np.mean(kept**2)
+    ours = carries_over(less, more, made.extended, folds)
+    assert_allclose(ours, fallen.sum() / (fallen.std() * np.sqrt(120)), rtol=0, atol=0.02)
+    assert ours < 0  # nothing there is a clearance
+    assert carries_over(made.null, less, made.extended, folds) > 1
 
 
-def _named(full: Contest, item: Any) -> str:
-    return names_of_piece(full, item.pieces[0])[0]
+def test_what_is_judged_was_not_used(tmp_path: Path) -> None:
+    """Held against least squares by hand without the rows of every fold, for the calibrated model and the extended."""
+    rng = np.random.default_rng(34)
+    bench = wide(120, seed=33)
+    error = 0.03 * bench.travel + rng.normal(0, 1, 120)
+    made = ready(tmp_path, error, tolerances={})
+    judged = nested(chosen_as(made, fit_of(made, "lead_error")))
+    answers = judged.judged["deflection"]
+    after = left_out(error, [bench.travel], judged.folds)
+    assert_allclose(answers.before / UM, error, rtol=0, atol=1e-9)
+    assert_allclose(answers.after / UM, after, rtol=0, atol=0.005)
+    assert np.abs(after - (error - bench.travel * (bench.travel @ error) / (bench.travel @ bench.travel))).max() > 0.05
+    assert judged.stability == 1
+    for fold in range(judged.folds.count):
+        test = judged.folds.test(fold)
+        rest = np.linalg.lstsq(bench.travel[~test, None], error[~test])[1] / (~test).sum()
+        expected = norm(0, np.sqrt(rest)).logpdf(after[test])
+        expected -= norm(0, np.sqrt(np.mean(error[~test] ** 2))).logpdf(error[test])
+        assert_allclose(answers.gain[test], expected, rtol=0, atol=0.01)
 
 
-def _with_values(full: Contest, added: Array) -> Contest:
-    machine = full.problem.machine
-    measured = {"deflection": machine.records.measured["deflection"] + added}
-    there = replace(machine, records=replace(machine.records, measured=measured))
-    return replace(full, problem=replace(full.problem, machine=there))
+def test_what_is_chosen_without_a_fold_is_counted(tmp_path: Path) -> None:
+    """A clearance in the rows of one fold only: without these nothing is there to be chosen, with them it is."""
+    bench = wide(120, seed=33)
+    noise = of_size_one(np.random.default_rng(38), 120)
+    folds = folds_of(ready(tmp_path, noise, tolerances={}).sample)
+    error = noise + np.where(folds.test(2), 12.0, 0.0) * np.sign(bench.load)
+    made = ready(tmp_path, error, tolerances={})
+    judged = nested(chosen_as(made, fit_of(made, "clearance")))
+    own = judged.folds.test(2)
+    assert judged.stability == pytest.approx(0.8)
+    assert_array_equal(judged.judged["deflection"].after[own], judged.judged["deflection"].before[own])
+    assert not np.any(judged.judged["deflection"].after[~own] == judged.judged["deflection"].before[~own])
 
 
 def test_a_gain_is_held_against_the_calibrated_model_and_the_noise_floor(tmp_path: Path) -> None:
@@ -179,22 +240,35 @@ def test_a_gain_is_held_against_the_calibrated_model_and_the_noise_floor(tmp_pat
     assert binom.ppf(0.001, 200, 0.9) <= 200 * gain.coverage90 <= binom.ppf(0.999, 200, 0.9)
 
 
+def unmoved(made: Competition) -> Chosen:
+    """The model as it was drawn, as if it had been chosen: what it leaves is the error that a test has made."""
+    base = made.extended.machine.base
+    left, still = made.sample.left(base), np.zeros(made.sample.directions.shape[1])
+    return chosen_as(made, Fit((), (), still, dict(base), left, made.sample.cost(left, still), made.sample))
+
+
+def limit_of(made: Competition) -> float:
+    """What must be seen of an effect where all effects and their pairs were looked for."""
+    effects = sum(cause.effect is not None for cause in made.causes)
+    return needed(effects + effects * (effects - 1) // 2)
+
+
 @pytest.mark.parametrize("tolerances", [{}, {"contact": "3 %", "zero": "5 um"}])
-@pytest.mark.parametrize("place", [0, 4])
-def test_the_smallest_visible_size_by_dense_algebra(tmp_path: Path, tolerances: dict[str, str], place: int) -> None:
+@pytest.mark.parametrize("rho", [0.0, 0.6])
+def test_the_smallest_visible_size_by_dense_algebra(tmp_path: Path, tolerances: dict[str, str], rho: float) -> None:
+    """In noise whose innovations have the mean square 1 to the last digit."""
     bench = wide(60, seed=33)
-    _, full = ready(tmp_path, np.zeros(60), 60, [], tolerances=tolerances, effects=("lead_error", "clearance"))
-    rho = SETTINGS[place].rho
-    assert SETTINGS[place].theta == 0
-    seen = {item.name: item for item in smallest_visible(full, (place,))}
     noise = toeplitz(rho ** np.arange(60.0)) / (1 - rho**2)
+    error = wander(np.random.default_rng(33), 60, rho)
+    error /= np.sqrt(error @ np.linalg.solve(noise, error) / 60)
+    made = ready(tmp_path, error, tolerances=tolerances, effects=("lead_error", "clearance"))
+    made.sample = remembering(made.sample, rho).white()
+    seen = {item.name: item for item in smallest_visible(unmoved(made))}
     contact = np.sign(bench.load) * np.abs(bench.load) ** (2 / 3)
     if tolerances:
         noise = noise + np.outer(0.09 * contact, 0.09 * contact) + 25.0
-    owners = {piece.owner for piece in full.problem.term_pieces}
-    limit = needed(len(owners) + len(owners) * (len(owners) - 1) // 2)
     for name, curve, unit in (("lead_error", bench.travel, UM / 1e-3), ("clearance", np.sign(bench.load), UM)):
-        smallest = np.sqrt(limit / (curve @ np.linalg.solve(noise, curve)))
+        smallest = np.sqrt(limit_of(made) / (curve @ np.linalg.solve(noise, curve)))
         found = seen[name].smallest
         assert found is not None
         assert_allclose(found.value, smallest * unit, rtol=1e-5)
@@ -202,72 +276,69 @@ def test_the_smallest_visible_size_by_dense_algebra(tmp_path: Path, tolerances: 
 
 
 def test_an_offset_the_tolerances_would_take_is_hidden_in_them(tmp_path: Path) -> None:
-    _, full = ready(tmp_path, np.zeros(60), 60, [], tolerances={"zero": "50 um"})
-    sight = {item.name: item.sight for item in smallest_visible(full, WHITE)}
+    made = ready(tmp_path, of_size_one(np.random.default_rng(33), 60), tolerances={"zero": "50 um"})
+    sight = {item.name: item.sight for item in smallest_visible(unmoved(made))}
     assert sight["sensor_offset"] == "hidden in the tolerances"
     assert sight["clearance"] == "visible"
 
 
-@pytest.mark.parametrize(("noise", "sight"), [(0.8, "visible"), (1.2, "not excited")])
-def test_a_bound_below_the_smallest_visible_size_is_not_excited(tmp_path: Path, noise: float, sight: str) -> None:
+@pytest.mark.parametrize(("size", "sight"), [(0.8, "visible"), (1.2, "not excited")])
+def test_a_bound_below_the_smallest_visible_size_is_not_excited(tmp_path: Path, size: float, sight: str) -> None:
     """Of 60 rows with this noise a clearance shows from sqrt(limit / 60) of it; 500 um are the largest it may be."""
-    bench = wide(60, seed=33)
-    asked = Asked(drive_model(("clearance",), {}))
-    records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel)))
-    causes = len({piece.owner for piece in plain_contest(asked, records, UM).problem.term_pieces})
-    limit = needed(causes + causes * (causes - 1) // 2)
-    loud = plain_contest(asked, records, noise * 500 * UM * np.sqrt(60 / limit))
-    seen = {item.name: item for item in smallest_visible(loud, WHITE)}
+    noise = of_size_one(np.random.default_rng(33), 60)
+    limit = limit_of(ready(tmp_path, noise, effects=("clearance",), tolerances={}))
+    loud = ready(tmp_path, size * 500 * np.sqrt(60 / limit) * noise, effects=("clearance",), tolerances={})
+    seen = {item.name: item for item in smallest_visible(unmoved(loud))}
     assert seen["clearance"].smallest is not None
-    assert_allclose(seen["clearance"].smallest.value, noise * 500 * UM, rtol=1e-9)
+    assert_allclose(seen["clearance"].smallest.value, size * 500 * UM, rtol=1e-9)
     assert seen["clearance"].sight == sight
 
 
-def one_sign(folder: Path, box: dict[str, tuple[float, float]], noise: float = 1.0) -> tuple[Contest, int, Array]:
-    """A clearance of 3 um under a load of one sign: the offset is the same curve."""
+def one_sign(folder: Path, box: dict[str, tuple[float, float]], noise: float, *, is_named: bool = False) -> Chosen:
+    """A clearance of 3 um under a load of one sign: the offset is the same curve. The noise is square to both.
+
+    ``is_named``: as another name for the winner; else as a rival.
+    """
     bench = wide(40, seed=36)
     bench = replace(bench, load=np.abs(bench.load) + 1)
-    asked = Asked(drive_model(("clearance",), {}))
-    columns = bench.columns(gauge(bench.load, bench.travel) + 3 + 0.1 * np.random.default_rng(36).normal(size=40))
-    full = plain_contest(asked, asked.records(folder, columns), noise * UM)
-    start = replace(full.problem.machine.start, diagnose=DiagnoseOptions(box=box))
-    full = replace(full, problem=replace(full.problem, machine=replace(full.problem.machine, start=start)))
-    return full, full.found.best(lambda item: item.kind == "one" and _named(full, item) == "sensor_offset"), bench.load
+    asked = Asked(drive_model(("clearance",), {}), diagnose=DiagnoseOptions(box=box))
+    columns = bench.columns(gauge(bench.load, bench.travel) + 3 + noise * np.resize([1, -1], 40))
+    made = plain_competition(asked, asked.records(folder, columns), UM)
+    best = fit_of(made, "sensor_offset")
+    if is_named:
+        return chosen_as(made, best, same={best.causes[0].tag: ("clearance",)})
+    return chosen_as(made, best, fit_of(made, "clearance"))
 
 
-def test_the_separation_that_is_promised_is_that_of_a_refit_with_the_points_added(tmp_path: Path) -> None:
-    full, winner, _ = one_sign(tmp_path, {"load": (-10e3, 20e3)})
-    size = float(full.solution(winner).coefficients[0]) * full.problem.columns[0].per / UM
-    points = next_points(full, winner, []).points
+@pytest.mark.parametrize("is_named", [True, False])
+def test_the_separation_that_is_promised_is_that_of_a_refit_with_the_points_added(
+    tmp_path: Path, is_named: bool
+) -> None:
+    points = next_points(one_sign(tmp_path, {"load": (-10e3, 20e3)}, 1.0, is_named=is_named)).points
     assert len(points) == POINTS
     for count, point in enumerate(points, start=1):
         assert set(point.separates) == {"sensor_offset", "clearance"}
         assert -10e3 <= point.settings["load"].value < 0
         signs = np.array([1.0] * 40 + [-1.0] * count)  # of the load: clearance turns round, an offset does not
-        offset = np.full(40 + count, abs(size))
+        offset = np.full(40 + count, 3.0)
         left = offset - signs * (signs @ offset) / (signs @ signs)
         assert_allclose(point.separation, left @ left, rtol=1e-4)
 
 
-def test_where_no_setting_separates_two_causes_none_is_proposed(tmp_path: Path) -> None:
-    full, winner, load = one_sign(tmp_path, {"load": (1e3, 20e3)})
-    assert load.min() > 0
-    assert next_points(full, winner, []) == Proposal((), (("sensor_offset", "clearance"),))
+@pytest.mark.parametrize("is_named", [True, False])
+def test_where_no_setting_separates_two_causes_none_is_proposed(tmp_path: Path, is_named: bool) -> None:
+    chosen = one_sign(tmp_path, {"load": (1e3, 20e3)}, 1.0, is_named=is_named)
+    assert next_points(chosen) == Proposal((), (("sensor_offset", "clearance"),))
 
 
 def test_rivals_are_separated_inside_the_box(tmp_path: Path) -> None:
     bench = wide(80, seed=37)
     narrow = replace(bench, travel=140 + bench.travel / 15)
-    asked = Asked(drive_model(("lead_error",), {}))
+    asked = Asked(drive_model(("lead_error",), {}), diagnose=DiagnoseOptions(box={"travel": (0.0, 0.3)}))
     error = 0.01 * narrow.travel + np.random.default_rng(37).normal(0, 0.5, 80)
-    full = plain_contest(asked, asked.records(tmp_path, narrow.columns(gauge(narrow.load, narrow.travel) + error)), UM)
-    start = replace(full.problem.machine.start, diagnose=DiagnoseOptions(box={"travel": (0.0, 0.3)}))
-    full = replace(full, problem=replace(full.problem, machine=replace(full.problem.machine, start=start)))
-    winner, rival = (
-        full.found.best(lambda item, name=name: item.kind == "one" and _named(full, item) == name)
-        for name in ("lead_error", "sensor_offset")
-    )
-    points = next_points(full, winner, [rival]).points
+    records = asked.records(tmp_path, narrow.columns(gauge(narrow.load, narrow.travel) + error))
+    made = plain_competition(asked, records, UM)
+    points = next_points(chosen_as(made, fit_of(made, "lead_error"), fit_of(made, "sensor_offset"))).points
     assert points
     travel = [point.settings["travel"].value for point in points]
     assert all(-1e-12 <= value <= 0.3 + 1e-12 for value in travel)
@@ -279,8 +350,7 @@ def test_rivals_are_separated_inside_the_box(tmp_path: Path) -> None:
 @pytest.mark.parametrize("size", [3.0, 0.8, 0.3, 0.05])
 def test_it_is_said_how_many_points_would_be_needed(tmp_path: Path, size: float) -> None:
     """After 40 rows of one sign c rows of the other leave 4 * 40 c / (40 + c) of an offset as large as the noise."""
-    full, winner, _ = one_sign(tmp_path, {"load": (-10e3, 20e3)}, noise=3.0 / size)
-    proposal = next_points(full, winner, [])
+    proposal = next_points(one_sign(tmp_path, {"load": (-10e3, 20e3)}, noise=3.0 / size))
     counts = [*range(1, POINTS + 1), *range(2 * POINTS, MOST_POINTS + 1, POINTS)]
     enough = [count for count in counts if 4 * size**2 * 40 * count / (40 + count) >= APART]
     assert {point.needed for point in proposal.points} == set(enough[:1])

@@ -21,6 +21,7 @@ from diagnosis_models import (
     drive_model,
     fit_of,
     gauge,
+    of_size_one,
     plain_competition,
     size_of,
     twist_model,
@@ -47,12 +48,6 @@ def one_run(n: int) -> NDArray[np.bool_]:
     starts = np.zeros(n, dtype=bool)
     starts[0] = True
     return starts
-
-
-def of_size_one(rng: np.random.Generator, n: int) -> Array:
-    """Noise whose mean square is 1 to the last digit."""
-    noise = rng.normal(size=n)
-    return np.asarray(noise / np.sqrt(np.mean(noise**2)))
 
 
 def seen_angle(made: Competition, first: str, second: str) -> float:
