@@ -87,7 +87,7 @@ def _apart(moved: Sequence[Covariate]) -> list[Covariate]:
     """Return the covariates but those that another one moves as one with."""
     kept: list[Covariate] = []
     for item in moved:
-        both = [(item, other) for other in kept if not item.goes_round]
+        both = [(item, other) for other in kept if not (item.is_angle and item.goes_round)]
         if not any(abs(_correlation(one.values, other.values)) > 0.99999 for one, other in both):
             kept.append(item)
     return kept
@@ -128,7 +128,7 @@ def _families(
 def _at_zero(item: Covariate) -> Iterator[Family]:
     """Give what may happen where a covariate changes its sign: a jump, a kink, a dead zone."""
     values = item.values[np.isfinite(item.values)]
-    if min((values > 0).mean(), (values < 0).mean()) < EITHER_SIDE or item.goes_round:
+    if min((values > 0).mean(), (values < 0).mean()) < EITHER_SIDE or (item.is_angle and item.goes_round):
         return
     on, largest = (item.name,), float(np.abs(values).max())
     yield "jump", on, 1, (), partial(_jump, item.name)
