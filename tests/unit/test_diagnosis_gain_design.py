@@ -132,7 +132,7 @@ def test_a_short_record_has_shorter_blocks_rather_than_fewer(tmp_path: Path) -> 
 
 
 def test_rows_held_out_are_in_no_block_and_no_file_is_left_out_whole(tmp_path: Path) -> None:
-    """Of two runs of 60 rows the first 20 of each may be used: blocks of an eighth of these, of ten or less per file."""
+    """Of two runs of 60 rows the first 20 of each may be used: blocks of an eighth of these, or fewer per file."""
     runs, held = ["a"] * 60 + ["b"] * 60, np.arange(120) % 60 >= 20
     folds = folds_of(remembering(ready(tmp_path, np.zeros(120), runs).sample, 0.0, held=held))
     assert_array_equal(folds.block_of < 0, held)
