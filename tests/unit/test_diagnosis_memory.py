@@ -6,8 +6,6 @@ import os
 import re
 import subprocess
 import sys
-import tracemalloc
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +15,6 @@ import pytest
 from diagnosis_models import (
     EFFECTS,
     TOLERANCES,
-    Array,
     Asked,
     Deflection,
     Drive,
@@ -25,142 +22,16 @@ from diagnosis_models import (
     drive_model,
     gauge,
     name_sets,
-    plain_contest,
     wide,
 )
-from numpy.testing import assert_allclose, assert_array_equal
+from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Model, Tolerance, Unknown, normal, trials
-from truing.diagnosis import contest as contest_module
-from truing.diagnosis import evidence, machine
-from truing.diagnosis.columns import FEW, MANY, Column, Design, Made, stored, times, when_asked
+from truing.diagnosis import competition, machine
+from truing.diagnosis.columns import times
 from truing.diagnosis.engine import diagnose
-from truing.diagnosis.evidence import Channel, products_of, starts_of
-from truing.diagnosis.filtered import grams_of, mixture, parts_of
-from truing.diagnosis.gain import blocks_of
 from truing.diagnosis.machine import predict
-from truing.diagnosis.noise import SETTINGS, whiten
-from truing.diagnosis.search import first_noise
-
-RUNS = np.array([1, 1, 18, 30, 9, 1])
-"""Lengths of runs, of one row too."""
-
-
-def starts() -> Any:
-    """Mark the first row of each run."""
-    found = np.zeros(RUNS.sum(), dtype=bool)
-    found[np.cumsum([0, *RUNS[:-1]])] = True
-    return found
-
-
-@pytest.mark.parametrize("place", range(len(SETTINGS)))
-def test_the_parts_of_all_filters_give_the_inner_products_of_each(place: int) -> None:
-    rng = np.random.default_rng(1)
-    columns, others = rng.normal(size=(4, RUNS.sum())), 3 + rng.normal(size=(2, RUNS.sum()))
-    white, white_others = (whiten(values.T, starts(), SETTINGS[place]) for values in (columns, others))
-    taken = mixture(SETTINGS)[place]
-    own = np.tensordot(taken, list(grams_of(columns, starts(), SETTINGS)), 1)
-    cross = np.tensordot(taken, [columns @ part.T for part in parts_of(others, starts(), SETTINGS)], 1)
-    assert_allclose(own, white.T @ white, rtol=1e-11, atol=1e-11)
-    assert_allclose(cross, white.T @ white_others, rtol=1e-11, atol=1e-11)
-
-
-def test_a_steady_column_keeps_its_digits_under_a_slow_filter() -> None:
-    """1 - rho is 0.05: a difference of large numbers would lose what is left of a constant."""
-    steady, slow = np.full((1, 400), 1e3), next(item for item in SETTINGS if (item.rho, item.theta) == (0.95, 0.0))
-    begin = np.arange(400) == 0
-    (found,) = np.tensordot(mixture([slow]), list(grams_of(steady, begin, [slow])), 1).ravel()
-    exact = 1e6 * (399 * (1 - 0.95) ** 2 + (1 - 0.95**2))  # rows after the first leave 0.05 of it, the first 1 - rho^2
-    assert_allclose(found, exact, rtol=1e-13)
-
-
-def long_channel(rows: int, *, is_made: bool, seed: int = 2) -> Channel:
-    """Twelve waves over a record of runs of 700 rows, one gap, uneven weights."""
-    rng = np.random.default_rng(seed)
-    angle = rng.uniform(0, 6, rows)
-
-    def wave(order: int) -> Callable[[Any], Array]:
-        return lambda places: np.asarray(np.sin(order * angle[places]))
-
-    values = [Made(wave(order), rows) if is_made else wave(order)(slice(None)) for order in range(1, 13)]
-    taken = np.delete(np.arange(rows), [5, 6])
-    return Channel(
-        "gauge",
-        0.5,
-        taken,
-        starts_of(np.arange(rows) // 700, taken),
-        rng.uniform(0.5, 2, len(taken)),
-        rng.normal(size=len(taken)),
-        rng.normal(size=(rows, 2)),
-        np.eye(2),
-        Design("gauge", [Column({"gauge": each}, 0.1) for each in values], rows),
-    )
-
-
-def test_blocks_give_the_inner_products_of_one_block(monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = products_of(long_channel(3000, is_made=False))
-    for is_made in (False, True):
-        monkeypatch.setattr(evidence, "LONGEST", 700)
-        item = long_channel(3000, is_made=is_made)
-        assert len(item.blocks) == 4
-        for found, known in zip(products_of(item), whole, strict=True):
-            assert_allclose(found.matrix, known.matrix, rtol=1e-10, atol=1e-9)
-            assert_allclose(found.constant, known.constant, rtol=1e-12)
-        monkeypatch.undo()
-
-
-def test_inner_products_are_kept_until_rows_or_weights_change() -> None:
-    item = long_channel(1500, is_made=False)
-    first = products_of(item)[4].matrix
-    kept = next(iter(item.design.known.values()))
-    other = replace(item, residual=-item.residual)
-    again = products_of(other)[4].matrix
-    assert next(iter(other.design.known.values())) is kept
-    assert_array_equal(again[0, 1:], -first[0, 1:])
-    heavier = products_of(replace(item, weights=2 * item.weights))[4].matrix
-    assert_allclose(heavier, 4 * first, rtol=1e-12)
-
-
-def test_memory_of_the_inner_products_does_not_grow_with_the_rows() -> None:
-    peaks = []
-    for rows in (20_000, 80_000):
-        item = long_channel(rows, is_made=True)
-        item = replace(item, design=Design("gauge", item.design.columns * 5, rows))
-        tracemalloc.start()
-        products_of(item)
-        peaks.append(tracemalloc.get_traced_memory()[1])
-        tracemalloc.stop()
-    assert peaks[1] < 1.1 * peaks[0]
-
-
-def test_columns_of_many_rows_are_made_when_asked_for() -> None:
-    few, many = (when_asked(lambda rows, size=size: np.arange(float(size))[rows], size) for size in (FEW, FEW + 1))
-    assert isinstance(few, np.ndarray)
-    assert isinstance(many, Made)
-    assert_array_equal(many[3:6], [3, 4, 5])
-    assert_array_equal((many * 2)[-2:], [2 * FEW - 2, 2 * FEW])
-    assert_array_equal(np.asarray(many)[np.array([7, 9])], [7, 9])
-
-
-def test_curves_of_many_rows_are_stored_in_few_bytes() -> None:
-    curve = np.random.default_rng(3).normal(size=MANY + 1)
-    assert stored(curve[:-1]) is not None
-    assert np.asarray(stored(curve[:-1])).dtype == np.float64
-    kept = stored(curve)
-    assert isinstance(kept, np.ndarray)
-    assert kept.nbytes == 4 * len(curve)
-    assert_allclose(kept, curve, rtol=6e-8)
-    switch = stored((curve > 0).astype(float))
-    assert isinstance(switch, Made)
-    assert_array_equal(np.asarray(switch), curve > 0)
-    assert_array_equal(switch[11:23], (curve > 0)[11:23])
-    assert_array_equal(switch[np.array([3, MANY])], (curve > 0)[[3, MANY]])
-    gap = np.where(np.arange(5) == 2, np.nan, 1.5)
-    assert np.asarray(stored(gap)).tolist() == [1.5, 1.5, 0, 1.5, 1.5]
-    nothing = stored(np.zeros(MANY + 1))
-    assert isinstance(nothing, np.ndarray)
-    assert nothing.strides == (0,)
-    assert not np.any(nothing)
+from truing.diagnosis.sample import first_noise
 
 
 def test_many_rows_times_a_vector_are_summed_in_double_precision() -> None:
@@ -192,18 +63,9 @@ def test_the_first_idea_of_the_noise_is_what_least_squares_leave(
     left = measured - gauge(bench.load, bench.travel)
     rest = left - design @ np.linalg.lstsq(design, left)[0]
     expected = 1e-6 * np.sqrt(rest @ rest / (400 - design.shape[1]))
-    assert_allclose(first_noise(there).scales["deflection"], expected, rtol=1e-6)
+    assert_allclose(first_noise(there)["deflection"].scale, expected, rtol=1e-6)
     monkeypatch.setattr("truing.diagnosis.columns.BLOCK", 60)
-    assert_allclose(first_noise(there).scales["deflection"], expected, rtol=1e-6)
-
-
-def test_blocks_of_a_cross_validation_lie_inside_runs(tmp_path: Path) -> None:
-    bench, asked = wide(130), Asked(drive_model(("lead_error",)))
-    columns = bench.columns(gauge(bench.load, bench.travel) + np.random.default_rng(6).normal(size=130))
-    records = asked.records(tmp_path, columns, ["a"] * 20 + ["b"] * 110)
-    found = blocks_of(plain_contest(asked, records, 1e-6), (0,))
-    sizes = [6, 6, 6, 2, *[6] * 18, 2]  # a twentieth of 130 rows
-    assert_array_equal(found, np.repeat(np.arange(len(sizes)), sizes))
+    assert_allclose(first_noise(there)["deflection"].scale, expected, rtol=1e-6)
 
 
 def test_twenty_thousand_rows_are_named(tmp_path: Path) -> None:
@@ -268,20 +130,27 @@ def test_effects_on_results_cost_no_call_of_a_slow_model_however_many_pairs_ther
     """What acts after the model needs it for the rows alone, whatever the size of the effect."""
     calls = [calls_of(tmp_path, extra) for extra in (0, 5, 10)]
     assert 0 < calls[0] == calls[1] == calls[2] < 30
-    monkeypatch.setattr(contest_module, "pairs", lambda terms, beside: [])
+    monkeypatch.setattr(competition, "_pairs", lambda made: None)
     assert [calls_of(tmp_path, extra) for extra in (0, 10)] == [calls[0], calls[2]]
 
 
 def test_every_linear_algebra_has_one_thread_in_a_fresh_process() -> None:
     """Small matrices on several threads cost ten times the processor, and numpy and scipy each bring their own."""
     code = """
+from types import SimpleNamespace
 from threadpoolctl import threadpool_info
 from truing.diagnosis import engine
+class Held(Exception):
+    pass
+def begun(setup, records):
+    raise Held([(pool["internal_api"], pool["num_threads"]) for pool in threadpool_info()])
 engine._check_options = lambda setup: None
-engine._diagnose = lambda *given: [(pool["internal_api"], pool["num_threads"]) for pool in threadpool_info()]
-held = engine.diagnose(None, None)
-import scipy.linalg
-print(held, len(threadpool_info()))
+engine.machine_of = begun
+try:
+    engine.diagnose(None, SimpleNamespace(readings=99))
+except Held as held:
+    import scipy.linalg
+    print(held, len(threadpool_info()))
 """
     several = {"OMP_NUM_THREADS": "2", "OPENBLAS_NUM_THREADS": "2", "MKL_NUM_THREADS": "2"}
     said = subprocess.run(
