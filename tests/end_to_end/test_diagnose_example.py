@@ -13,7 +13,7 @@ import pytest
 from measured import CONTRACT, Diagnosed, calc_here, names, read_document
 from shown_in_docs import EXAMPLES, ROOT
 
-from truing.diagnosis import decide, significance
+from truing.diagnosis import chance, choice
 from truing.diagnosis.noise import SETTINGS
 
 PLAY = EXAMPLES / "press_off_by_40_um"
@@ -155,10 +155,10 @@ def test_the_explanation_states_the_levels_in_force() -> None:
     text = " ".join(METHOD.read_text(encoding="utf-8").split())
     words = {13: "Thirteen"}
     for said in (
-        f"Something is there if it is at most {decide.ANY_LEVEL}",
-        f"with the best single cause as what is true, at {decide.SECOND_LEVEL}",
-        f"{significance.DRAWS} records are simulated",
-        f"whose score is within {decide.CLOSE:g} (",
+        f"Something is there if it is at most {choice.ANY_LEVEL}",
+        f"with what is believed so far as what is true, at {choice.FURTHER_LEVEL}",
+        f"{chance.DRAWS} records are simulated",
+        f"whose score is within {choice.CLOSE:g} (",
         f"{words[len(SETTINGS)]} such filters are tried",
     ):
         assert said in text
