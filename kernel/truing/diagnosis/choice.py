@@ -50,6 +50,8 @@ CARRIED = 1.0
 ROUGH, MENDED = 0.25, 45.0
 """A registered cause beside a shape must gain such a share of what the shape gains, or so much: a shape is rough, and
 what mends it a little is no cause."""
+NEARLY_ALL = 0.97
+"""Share of the sum of squares that a shape takes away from which on what is registered stands in its place."""
 ALIKE = 1.0
 """Sum of squares, in units of the noise, by which two explanations differ that are one on this record."""
 TWIN = 0.98
@@ -85,14 +87,14 @@ def _steps(made: Competition, seed: int) -> tuple[Fit, Law, float | None]:
     while len(at.causes) < MOST_CAUSES:
         taken = None
         for steps in (1, 2):
-            more = _best(made, len(at.causes) + steps)
-            if more is None:
-                continue
-            step = _step(made, at, more, folds, seed=seed + 10 * len(at.causes) + steps)
-            if not at.causes and steps == 1:
-                first = step.law
-            if step.is_believed and not is_short:
-                taken = more, step.law
+            for more in _candidates(made, at, len(at.causes) + steps):
+                step = _step(made, at, more, folds, seed=seed + 10 * len(at.causes) + steps)
+                if not at.causes and steps == 1:
+                    first = step.law
+                if step.is_believed and not is_short:
+                    taken = more, step.law
+                    break
+            if taken is not None:
                 break
         if taken is None:
             break
@@ -102,6 +104,42 @@ def _steps(made: Competition, seed: int) -> tuple[Fit, Law, float | None]:
             first = taken[1]
         at = taken[0]
     return at, first, p_further
+
+
+def _candidates(made: Competition, at: Fit, size: int) -> Iterator[Fit]:
+    """Give what may follow an explanation: the best of so many causes; before a shape, what is registered and near it.
+
+    A shape that nobody registered draws anything. What is registered and draws nearly all of it is the better word, and
+    a shape is then what is left beside it.
+    """
+    best = _best(made, size)
+    if best is None or not any(cause.shape is not None and cause.tag not in at.key for cause in best.causes):
+        yield from [] if best is None else [best]
+        return
+    null = made.null
+    drawn = NEARLY_ALL * (_squares(best, null) - _squares(best, best))
+    named = made.ranked(
+        lambda found: (
+            len(at.causes) < len(found.causes) <= size + 1
+            and all(cause.effect is not None for cause in found.causes)
+            and _squares(best, null) - _squares(best, found) >= drawn
+        )
+    )
+    yield from named[:1]
+    if at.causes and all(cause.effect is not None for cause in at.causes) and _is_nearly(best, at, null, drawn):
+        yield from made.ranked(lambda found: len(found.causes) == size and found.key > at.key)[:1]
+        return
+    yield best
+
+
+def _is_nearly(best: Fit, at: Fit, null: Fit, drawn: float) -> bool:
+    """Whether what is registered draws nearly all that the best explanation draws, so that it stays."""
+    return _squares(best, null) - _squares(best, at) >= drawn
+
+
+def _squares(judge: Fit, found: Fit) -> float:
+    """Return the sum of squares that an explanation leaves, in the noise that another one leaves."""
+    return float(np.sum((judge.sample.roots(judge.left) * found.left) ** 2))
 
 
 def _best(made: Competition, size: int) -> Fit | None:
@@ -157,12 +195,21 @@ def _exchanged(made: Competition, best: Fit) -> Fit:
     for _ in range(2):
         for place in range(len(best.causes)):
             exchange(made, best, place)
-        top = _best(made, len(best.causes)) or best
+        kinds = _kinds(best)
+        alike = [found for found in made.ranked(_is_sensible) if _kinds(found) == kinds]
+        top = alike[0] if alike else best
         made.again([top], EXACTLY)
         if top.key == best.key:
             break
         best = made.known[top.key]
     return best
+
+
+def _kinds(found: Fit) -> tuple[int, int, int]:
+    """Return how many effects, inputs and shapes an explanation has."""
+    shapes = sum(cause.shape is not None for cause in found.causes)
+    inputs = sum(cause.tolerated >= 0 for cause in found.causes)
+    return len(found.causes) - shapes - inputs, inputs, shapes
 
 
 def _registered(made: Competition, best: Fit) -> Fit:

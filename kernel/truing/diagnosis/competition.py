@@ -67,6 +67,7 @@ class Competition:
     known: dict[frozenset[str], Fit] = field(default_factory=dict)
     tries: dict[str, float] = field(default_factory=dict)
     fits: int = 0
+    owned: dict[frozenset[str], tuple[Matrix, float]] = field(default_factory=dict)
     fresh: set[frozenset[str]] = field(default_factory=set)
     """What was fitted in the present noise."""
 
@@ -89,8 +90,19 @@ class Competition:
 
     def own_score(self, found: Fit) -> float:
         """Return the same where what is left counts as noise with the memory that suits it best."""
+        known = self.owned.get(found.key)
+        if known is None or known[0] is not found.left:
+            known = self.owned[found.key] = found.left, as_noise(self.sample, found.left)
         inputs = float(found.inputs @ found.inputs)
-        return as_noise(self.sample, found.left) + inputs + self.price(found) + MARGIN * signs_of_wrong(found)
+        return known[1] + inputs + self.price(found) + MARGIN * signs_of_wrong(found)
+
+    @property
+    def judges(self) -> tuple[Callable[[Fit], float], ...]:
+        """By what the search goes on: the score and, where neighbours are alike, the noise of each explanation too.
+
+        An unknown cause may be what makes them alike; then few rows count, and nothing seems to be worth its numbers.
+        """
+        return (self.score, self.own_score) if self.sample.total < ALIKE * self.sample.rows else (self.score,)
 
     def ranked(self, accept: Callable[[Fit], bool] = lambda _: True) -> list[Fit]:
         """Return what was fitted and is accepted, the best first."""
@@ -244,10 +256,11 @@ def _singles(made: Competition) -> None:
         made.joined(made.null, cause, seen[cause.tag].starts)
 
 
-def _distinct(made: Competition, size: int, count: int) -> list[Fit]:
+def _distinct(made: Competition, size: int, count: int, judge: Callable[[Fit], float] | None = None) -> list[Fit]:
     """Return the best explanations of one size that do not draw the same."""
     kept: list[Fit] = []
-    for found in made.ranked(lambda each: len(each.causes) == size):
+    sized = [found for found in made.known.values() if len(found.causes) == size]
+    for found in sorted(sized, key=judge or made.score):
         if all(differ(found, other) > 1.0 for other in kept):
             kept.append(found)
         if len(kept) == count:
@@ -278,29 +291,34 @@ def _is_quick(cause: Cause) -> bool:
 
 
 def _more(made: Competition) -> None:
-    now = made.ranked()[0]
+    for judge in made.judges:
+        _grown(made, judge)
+
+
+def _grown(made: Competition, judge: Callable[[Fit], float]) -> None:
+    """Give the best explanations one more cause and one more, as long as that is better."""
+    now = min(made.known.values(), key=judge)
     while 1 <= len(now.causes) < MOST_CAUSES:
-        size = len(now.causes)
-        for at in _distinct(made, size, STARTS):
+        for at in _distinct(made, len(now.causes), STARTS, judge):
             made.forward(at, JOINED)
-        best = made.best(size + 1)
-        if best is None:
+        larger = [found for found in made.known.values() if len(found.causes) == len(now.causes) + 1]
+        best = min(larger, key=judge, default=now)
+        if best is now or judge(best) >= judge(now):
             return
         made.backward(best)
-        if made.score(best) >= made.score(now):
-            return
         made.renew()
         made.refresh()
-        now = made.ranked()[0]
+        now = min(made.known.values(), key=judge)
 
 
 def _exchanged(made: Competition) -> None:
-    for _ in range(2):
-        now = made.ranked()[0]
-        for place in range(len(now.causes)):
-            exchange(made, now, place)
-        if made.ranked()[0].key == now.key:
-            return
+    for judge in made.judges:
+        for _ in range(2):
+            now = min(made.known.values(), key=judge)
+            for place in range(len(now.causes)):
+                exchange(made, now, place)
+            if min(made.known.values(), key=judge).key == now.key:
+                break
 
 
 def exchange(made: Competition, now: Fit, place: int) -> None:

@@ -56,8 +56,8 @@ class Setting:
 
 
 SETTINGS = (
-    *(Setting(rho) for rho in (0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.87, 0.95)),
-    Setting(0.8, 0.4), Setting(0.9, 0.5), Setting(0.9, 0.7), Setting(0.96, 0.6), Setting(0.96, 0.8),
+    *(Setting(rho) for rho in (0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.87, 0.92)),
+    Setting(0.8, 0.4), Setting(0.9, 0.5), Setting(0.9, 0.7), Setting(0.92, 0.6), Setting(0.92, 0.8),
 )  # fmt: skip
 
 
