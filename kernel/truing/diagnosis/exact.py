@@ -84,7 +84,8 @@ class Fit:
         """Return the same numbers judged in other noise or on other rows."""
         left = sample.left(self.predicted)
         if sample.directions.shape != self.sample.directions.shape or sample.directions is not self.sample.directions:
-            solved = np.linalg.lstsq(sample.directions, self.moved, rcond=None)[0] if self.inputs.size else np.zeros(0)
+            is_seen = sample.directions.size > 0
+            solved = np.linalg.lstsq(sample.directions, self.moved, rcond=None)[0] if is_seen else np.zeros(0)
             inputs = np.asarray(solved)[: sample.directions.shape[1]]
         else:
             inputs = self.inputs
