@@ -66,7 +66,7 @@ class Tolerance:
 class Unknown:
     """A number that only measurement can tell; bounds in ``unit``.
 
-    Bounds that contain 0 make it an amplitude, any others a shape (positive ones are searched on a logarithmic grid).
+    Bounds that contain 0 make it an amplitude, any others a shape (positive ones are looked for by their logarithm).
     A shape may be a ``whole`` number, which is tried one by one, or a place ``along`` a condition (when does the step
     come?), which is tried at places of the record; such an unknown is no amplitude whatever its bounds.
     """

@@ -233,7 +233,8 @@ class Curves:
 
 @dataclass(frozen=True, kw_only=True)
 class Diagnosis:
-    """Everything one diagnosis found. ``p_any`` and ``p_second`` are the significance of a first and second cause.
+    """Everything one diagnosis found. ``p_any`` is the significance of the first step, ``p_second`` that of the last
+    further one.
 
     ``not_measured`` holds, by effect, the conditions that no column gives; ``inseparable`` are sentences about pairs
     that this design of the experiment cannot separate whatever their size.
