@@ -21,7 +21,7 @@ from truing.diagnosis.chance import law_of
 from truing.diagnosis.chosen import Chosen, Law, Rival
 from truing.diagnosis.competition import MOST_CAUSES, Competition, differ, exchange
 from truing.diagnosis.exact import EXACTLY, Fit, fit
-from truing.diagnosis.folds import Folds, carries_over, folds_of
+from truing.diagnosis.folds import Folds, carries_over, ends_of, folds_of
 from truing.diagnosis.records import FEWEST_READINGS
 
 if TYPE_CHECKING:
@@ -41,12 +41,16 @@ the rows contradict one another, because something else is wrong, the standard e
 """
 NEARLY = 4.0
 """An addition to the winner that is less far behind in score may well be a further cause."""
+LEAST_GAIN = 3.0
+"""What a step must be better by in any case: below it, that there is nothing more is hardly less likely."""
 WANDER = 6.0
 """What a cause must be better by, in score, than noise with a memory of its own."""
 CERTAIN = 60.0
 """A gain that needs no simulation."""
 CARRIED = 1.0
 """Standard errors by which the error of rows left out must fall."""
+MANY_CURVES = 20
+"""A cause with more independent curves is a wave of any period."""
 ROUGH, MENDED = 0.25, 45.0
 """A registered cause beside a shape must gain such a share of what the shape gains, or so much: a shape is rough, and
 what mends it a little is no cause."""
@@ -109,11 +113,11 @@ def _steps(made: Competition, seed: int) -> tuple[Fit, Law, float | None]:
 def _candidates(made: Competition, at: Fit, size: int) -> Iterator[Fit]:
     """Give what may follow an explanation: the best of so many causes; before a shape, what is registered and near it.
 
-    A shape that nobody registered draws anything. What is registered and draws nearly all of it is the better word, and
-    a shape is then what is left beside it.
+    A polynomial draws anything. What is registered and draws nearly all of it is the better word, and a shape is then
+    what is left beside it.
     """
     best = _best(made, size)
-    if best is None or not any(cause.shape is not None and cause.tag not in at.key for cause in best.causes):
+    if best is None or not any(_draws_anything(cause) and cause.tag not in at.key for cause in best.causes):
         yield from [] if best is None else [best]
         return
     null = made.null
@@ -130,6 +134,11 @@ def _candidates(made: Competition, at: Fit, size: int) -> Iterator[Fit]:
         yield from made.ranked(lambda found: len(found.causes) == size and found.key > at.key)[:1]
         return
     yield best
+
+
+def _draws_anything(cause: Cause) -> bool:
+    """Whether a cause is a polynomial of covariates that nobody registered."""
+    return cause.shape is not None and cause.shape.kind in {"trend", "product"}
 
 
 def _is_nearly(best: Fit, at: Fit, null: Fit, drawn: float) -> bool:
@@ -173,11 +182,19 @@ def _step(made: Competition, at: Fit, more: Fit, folds: Folds, *, seed: int) -> 
     level = FURTHER_LEVEL if at.causes else ANY_LEVEL
     is_believed = (
         law.p_value <= level
+        and gain >= LEAST_GAIN
         and made.own_score(at) - made.own_score(more) >= (WANDER if at.causes else 0.0)
         and not _mends(made, at, more, gain)
         and carries_over(at, more, made.extended, folds) >= CARRIED
+        and not _beats(made, at, more)
     )
     return _Step(law, is_believed)
+
+
+def _beats(made: Competition, at: Fit, more: Fit) -> bool:
+    """Whether a further wave only beats with one that is there: then it does not carry over to the ends."""
+    before, after = (sum(made.tries.get(cause.tag, 1.0) > MANY_CURVES for cause in each.causes) for each in (at, more))
+    return after > before > 0 and carries_over(at, more, made.extended, ends_of(made.sample)) < 2 * CARRIED
 
 
 def _mends(made: Competition, at: Fit, more: Fit, gain: float) -> bool:

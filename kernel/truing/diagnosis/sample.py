@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     Matrix = NDArray[np.float64]
 
 WITHOUT_MEMORY, NORMAL, CONSTANT = Setting(), Tails(np.inf, 4.5, 0.0), Spread()
-FEWEST_INDEPENDENT = 20.0
+FEWEST_INDEPENDENT = 8.0
 """So many rows count at least, or all there are: from fewer independent ones their memory is not known."""
 SMALLEST_SHARE = 1e-6
 """Of the readings: noise is no smaller, or it is rounding."""
@@ -280,7 +280,8 @@ def residuals_of(machine: Machine) -> dict[str, Matrix]:
 def first_noise(machine: Machine) -> dict[str, Noise]:
     """Return a first idea of the noise: what the tolerated inputs and powers of all covariates cannot explain."""
     made = {}
-    drivers = [standardised(item.values) for item in machine.records.covariates.values() if not item.is_constant]
+    moved = [item for item in machine.records.covariates.values() if not item.is_constant and item.role != "order"]
+    drivers = [standardised(item.values) for item in moved]
     for name, values in residuals_of(machine).items():
         here = np.flatnonzero(np.isfinite(values) & ~machine.records.held_out)
         triangle = np.zeros((0, machine.slopes[name].shape[1] + 2 * len(drivers) + 2))
@@ -353,7 +354,7 @@ def _drivers(machine: Machine) -> dict[str, Matrix]:
     """Return what the spread of noise may depend on: every covariate, and its size where it changes sign."""
     made: dict[str, Matrix] = {}
     for name, item in machine.records.covariates.items():
-        if item.is_constant:
+        if item.is_constant or item.role == "order":
             continue
         made[name] = item.values
         if np.nanmin(item.values) < 0 < np.nanmax(item.values):

@@ -67,9 +67,10 @@ def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_
     """Return the shapes over every covariate that moved, for every result alone and for all of them together.
 
     ``registered`` holds the orders of each angle that an effect looks for already; ``has_steps`` says that steps in
-    time are looked for already. Of covariates that move as one the first has the shapes.
+    time are looked for already. Of covariates that move as one the first has the shapes; the place of a row in a file is
+    no covariate.
     """
-    moved = _apart([item for item in records.covariates.values() if not item.is_constant])
+    moved = _apart([item for item in records.covariates.values() if not item.is_constant and item.role != "order"])
     results = tuple(records.measured)
     groups = [(name,) for name in results] + ([results] if len(results) > 1 else [])
     made = []
@@ -152,7 +153,7 @@ def _ordered(item: Covariate, registered: Sequence[int], *, has_steps: bool, row
     most = min(0.5 * len(np.unique(values)), 0.5 * rows, MOST_WAVES)
     frequency = Number("frequency", 1.0 / span, max(most, 2.0) / span, is_amplitude=False)
     yield "wave", on, 2, (frequency,), partial(_waves, item.name, 2 * pi)
-    if item.role in {"time", "order"}:
+    if item.role == "time":
         if not has_steps:
             ends = (float(values.min() + ENDS * span), float(values.max() - ENDS * span))
             yield (
