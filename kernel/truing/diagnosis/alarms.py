@@ -19,7 +19,7 @@ AT_BOUND = 5e-3
 """Of the declared range of an unknown: what lies nearer to an end of it lies there."""
 OUTSIDE = 3.0
 """An input is off its band beyond this many standard deviations of its tolerance."""
-RANDOM_WALK = 0.95
+RANDOM_WALK = 0.92
 """From this AR coefficient on noise is nearly a random walk, which draws any slow curve (the largest that is tried)."""
 STABLE = 0.5
 """Less than this share of the folds that name the same causes is another verdict on parts of the record."""

@@ -35,6 +35,8 @@ STEP = 1e-4
 MOVED = 1.0
 """Sum of squares, in units of the noise, that slopes of the inputs may miss before their anchor is moved."""
 MOST_ANCHORS = 6
+SETTLED = 1e-6
+"""Standard deviations: inputs that move less from round to round go with the noise that they leave."""
 NEARER = 30
 """So often a start at which the model fails is halved: what is left of it is rounding."""
 FIRST_DAMPING = 1e-3
@@ -178,7 +180,7 @@ class _Fitting:
                 return True
         return False
 
-    def calibrated(self, bare: Matrix, rounds: int = 2) -> tuple[Matrix, Matrix, float]:
+    def calibrated(self, bare: Matrix, rounds: int = 20) -> tuple[Matrix, Matrix, float]:
         """Return the inputs that go best with what is left without them, what is then left, and its cost."""
         b = self.b
         left = bare - self.slopes @ b
@@ -188,8 +190,10 @@ class _Fitting:
             roots = self.sample.roots(left)
             weighted = self.slopes * roots[:, None]
             normal = weighted.T @ weighted + np.eye(len(b))
-            b = cho_solve(cho_factor(normal), weighted.T @ (roots * bare))
+            before, b = b, cho_solve(cho_factor(normal), weighted.T @ (roots * bare))
             left = bare - self.slopes @ b
+            if np.abs(b - before).max() < SETTLED:
+                break
         return b, left, self.sample.cost(left, b)
 
     def derivatives(self) -> None:

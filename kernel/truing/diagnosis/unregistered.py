@@ -67,8 +67,8 @@ def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_
     """Return the shapes over every covariate that moved, for every result alone and for all of them together.
 
     ``registered`` holds the orders of each angle that an effect looks for already; ``has_steps`` says that steps in
-    time are looked for already. Of covariates that move as one the first has the shapes; the place of a row in a file is
-    no covariate.
+    time are looked for already. Of covariates that move as one the first has the shapes; the place of a row in a file
+    is none.
     """
     moved = _apart([item for item in records.covariates.values() if not item.is_constant and item.role != "order"])
     results = tuple(records.measured)

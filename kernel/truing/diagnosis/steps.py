@@ -1,0 +1,194 @@
+"""One cause more: whether it is believed, and what may follow an explanation.
+
+One more cause is believed where its gain is larger than noise alone would give the search, where noise with a memory is
+no better word for it, and where it carries over to rows left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from truing.diagnosis.alarms import OUTSIDE
+from truing.diagnosis.causes import Cause
+from truing.diagnosis.chance import law_of
+from truing.diagnosis.chosen import Law
+from truing.diagnosis.competition import MARGIN, MOST_CAUSES, Competition
+from truing.diagnosis.exact import Fit
+from truing.diagnosis.folds import Folds, carries_over, ends_of, folds_of
+from truing.diagnosis.records import FEWEST_READINGS
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+ANY_LEVEL = 0.015
+FURTHER_LEVEL = 0.01
+LEAST_GAIN = 3.0
+"""What a step must be better by in any case: below it, that there is nothing more is hardly less likely."""
+WANDER = 6.0
+"""What a cause must be better by, in score, than noise with a memory of its own."""
+CERTAIN = 60.0
+"""A gain that needs no simulation."""
+CARRIED = 1.0
+"""Standard errors by which the error of rows left out must fall."""
+MANY_CURVES = 20
+"""A cause with more independent curves is a wave of any period."""
+ROUGH, MENDED = 0.25, 45.0
+"""A registered cause beside a shape must gain such a share of what the shape gains, or so much: a shape is rough, and
+what mends it a little is no cause."""
+NEARLY_ALL = 0.97
+"""Share of the sum of squares that a shape takes away from which on what is registered stands in its place."""
+
+
+@dataclass(frozen=True)
+class Decision:
+    """How far the steps have come: the explanation, the law of the first step, the chance of the last further cause."""
+
+    at: Fit
+    law: Law
+    p_further: float | None = None
+
+
+@dataclass(frozen=True)
+class _Step:
+    """One step of the decision: where it leads, the law of its gains, and whether it was believed."""
+
+    more: Fit
+    law: Law
+    is_believed: bool
+
+
+def steps_from(made: Competition, start: Decision, *, seed: int) -> Decision:
+    """Go from an explanation to more and more causes, as long as a step is believed; a step may be of two at once."""
+    now = start
+    is_short = min(made.sample.rows, made.sample.machine.records.readings) < FEWEST_READINGS
+    folds = folds_of(made.sample)
+    while len(now.at.causes) < MOST_CAUSES:
+        tried = list(_tried(made, now.at, folds, seed))
+        first = now.law if now.at.causes or not tried else tried[0].law
+        taken = tried[-1] if tried and tried[-1].is_believed and not is_short else None
+        if taken is None:
+            return Decision(now.at, first, now.p_further)
+        now = Decision(taken.more, now.law, taken.law.p_value) if now.at.causes else Decision(taken.more, taken.law)
+    return now
+
+
+def _tried(made: Competition, at: Fit, folds: Folds, seed: int) -> Iterator[_Step]:
+    """Give the steps that are judged, up to the first one that is believed."""
+    for steps in (1, 2):
+        for more in _candidates(made, at, len(at.causes) + steps):
+            step = _step(made, at, more, folds, seed=seed + 10 * len(at.causes) + steps)
+            yield step
+            if step.is_believed:
+                return
+
+
+def _candidates(made: Competition, at: Fit, size: int) -> Iterator[Fit]:
+    """Give what may follow an explanation: the best of so many causes; before a shape, what is registered and near it.
+
+    A polynomial draws anything. What is registered and draws nearly all of it is the better word, and a shape is then
+    what is left beside it.
+    """
+    best = _best(made, at, size)
+    if best is None or not any(_draws_anything(cause) and cause.tag not in at.key for cause in best.causes):
+        yield from [] if best is None else [best]
+        return
+    null = made.null
+    drawn = NEARLY_ALL * (_squares(best, null) - _squares(best, best))
+    named = made.ranked(
+        lambda found: (
+            len(at.causes) < len(found.causes) <= size + 1
+            and all(cause.effect is not None for cause in found.causes)
+            and _squares(best, null) - _squares(best, found) >= drawn
+        )
+    )
+    yield from named[:1]
+    if at.causes and all(cause.effect is not None for cause in at.causes) and _is_nearly(best, at, null, drawn):
+        yield from made.ranked(lambda found: len(found.causes) == size and found.key > at.key)[:1]
+        return
+    yield best
+
+
+def _draws_anything(cause: Cause) -> bool:
+    """Whether a cause is a polynomial of covariates that nobody registered."""
+    return cause.shape is not None and cause.shape.kind in {"trend", "product"}
+
+
+def _is_nearly(best: Fit, at: Fit, null: Fit, drawn: float) -> bool:
+    """Whether what is registered draws nearly all that the best explanation draws, so that it stays."""
+    return _squares(best, null) - _squares(best, at) >= drawn
+
+
+def _squares(judge: Fit, found: Fit) -> float:
+    """Return the sum of squares that an explanation leaves, in the noise that another one leaves."""
+    return float(np.sum((judge.sample.roots(judge.left) * found.left) ** 2))
+
+
+def _best(made: Competition, at: Fit, size: int) -> Fit | None:
+    """Return the best explanation of so many causes, with one new shape at most, no input named without need."""
+    sized = made.ranked(
+        lambda found: len(found.causes) == size and is_sensible(found) and shapes_in(found) <= shapes_in(at) + 1
+    )
+    if not sized:
+        return None
+    named = next((found for found in sized if not shifts_inputs(found)), None)
+    if shifts_inputs(sized[0]) and named is not None and made.score(named) < made.score(sized[0]) + MARGIN:
+        return named
+    return sized[0]
+
+
+def shapes_in(found: Fit) -> int:
+    """Return how many shapes that nobody registered an explanation has."""
+    return sum(cause.shape is not None for cause in found.causes)
+
+
+def shifts_inputs(found: Fit) -> bool:
+    """Whether an explanation names an input that lies outside of its band."""
+    return any(cause.tolerated >= 0 for cause in found.causes)
+
+
+def is_sensible(found: Fit) -> bool:
+    """Whether inputs that are named lie outside of their bands: what lies inside is calibrated, not named."""
+    pairs = zip(found.causes, found.values, strict=True)
+    return all(abs(float(values[0])) > OUTSIDE for cause, values in pairs if cause.tolerated >= 0)
+
+
+def _step(made: Competition, at: Fit, more: Fit, folds: Folds, *, seed: int) -> _Step:
+    """Judge one step: chance, memory, rows left out; a registered cause that mends a rough shape is none."""
+    gain = made.score(at) - made.score(more)
+    if gain <= 0:
+        law = Law(np.zeros(0), 1.0) if at.causes else law_of(made, at, more, seed=seed)
+        return _Step(more, law, False)
+    is_certain = bool(at.causes) and gain > CERTAIN
+    law = Law(np.zeros(0), 1 / 300) if is_certain else law_of(made, at, more, seed=seed)
+    level = FURTHER_LEVEL if at.causes else ANY_LEVEL
+    is_believed = (
+        law.p_value <= level
+        and gain >= LEAST_GAIN
+        and made.own_score(at) - made.own_score(more) >= (WANDER if at.causes else 0.0)
+        and not _mends(made, at, more, gain)
+        and carries_over(at, more, made.extended, folds) >= CARRIED
+        and not _beats(made, at, more)
+    )
+    return _Step(more, law, is_believed)
+
+
+def _beats(made: Competition, at: Fit, more: Fit) -> bool:
+    """Whether a further wave only beats with one that is there: then it does not carry over to the ends."""
+    before, after = (sum(made.tries.get(cause.tag, 1.0) > MANY_CURVES for cause in each.causes) for each in (at, more))
+    return after > before > 0 and carries_over(at, more, made.extended, ends_of(made.sample)) < 2 * CARRIED
+
+
+def _mends(made: Competition, at: Fit, more: Fit, gain: float) -> bool:
+    """Whether what is added only mends what a shape that nobody registered leaves."""
+    shapes = [place for place, cause in enumerate(more.causes) if cause.shape is not None]
+    if not shapes or not at.key < more.key or not at.causes:
+        return False
+    rest = [made.without(more, place) for place in shapes]
+    worth = max((made.score(each) - made.score(more) for each in rest if each is not None), default=0.0)
+    return gain < min(ROUGH * worth, MENDED)
