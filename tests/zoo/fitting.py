@@ -1,0 +1,142 @@
+"""A calculation of the zoo fitted to a record by a plain least-squares search: no part of the diagnosis is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from truing import Unknown
+from truing.diagnosis.records import Records
+from truing.gauge import read_by_gauge
+from truing.setup import Setup, SwitchedOn
+from truing.testing import recorded
+from truing.testing.hidden import MEASURED, records_of
+from truing.units import to_si
+from zoo.zoo import Array, Measured, model_of
+
+STARTS = 12
+"""Searches for one fit at the most; they start all over the bounds of the unknowns."""
+GOOD = 0.3
+"""Root mean square of what is left, in standard deviations of the noise, at which no further search is begun."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where an unknown of an effect may lie, in SI."""
+
+    effect: str
+    unknown: Unknown
+
+    def value(self, share: float) -> float:
+        """The value at a share of the way from bound to bound; a shape goes by ratios, a whole one by ones."""
+        low, high = (to_si(bound, self.unknown.unit) for bound in (self.unknown.low, self.unknown.high))
+        if self.unknown.whole:
+            return float(np.round(low + (high - low) * share))
+        if low > 0:
+            return float(low * (high / low) ** share)
+        return low + (high - low) * share
+
+
+@dataclass(frozen=True)
+class Fitting:
+    """A record read by the calculation of its family with some effects on.
+
+    ``noise`` is in SI, ``spreads`` holds the standard deviations of the tolerated inputs, SI.
+    """
+
+    setup: Setup
+    records: Records
+    result: str
+    noise: float
+    spreads: dict[str, float]
+    places: tuple[Place, ...]
+
+    def left(self, moved: Array, shares: Array) -> Array:
+        """What the calculation does not meet, row by row, in standard deviations of the noise.
+
+        ``moved`` are the tolerated inputs in standard deviations, ``shares`` where the unknowns lie in their bounds.
+        """
+        spreads = zip(self.spreads.items(), moved.tolist(), strict=True)
+        inputs = {name: self.setup.nominal(name) + sd * away for (name, sd), away in spreads}
+        values: dict[str, dict[str, float]] = {}
+        for place, share in zip(self.places, shares.tolist(), strict=True):
+            values.setdefault(place.effect, {})[place.unknown.name] = place.value(share)
+        known = self.setup.model.known_effects
+        on = tuple(SwitchedOn(known[name], unknowns) for name, unknowns in values.items())
+        machine = replace(self.setup.changed(inputs), effects=on)
+        shown = read_by_gauge(machine, self.records.rows, {self.result}).results[self.result]
+        return np.asarray((self.records.measured[self.result] - shown) / self.noise)
+
+    def best(self) -> Array:
+        """What is left of the best fit: inputs held by their tolerances, unknowns within their bounds."""
+        fits = []
+        for start in self._starts():
+            fits.append(self._fitted(start))
+            if np.sqrt(np.mean(fits[-1] ** 2)) < GOOD:
+                break
+        return min(fits, key=lambda left: float(np.sum(left**2)))
+
+    def _starts(self) -> Iterator[Array]:
+        """Where the unknowns start: the middle, then places of a fixed draw; without unknowns there is one search."""
+        yield np.full(len(self.places), 0.5)
+        drawn = np.random.default_rng(1).uniform(0.02, 0.98, (STARTS - 1, len(self.places)))
+        yield from drawn if self.places else ()
+
+    def _fitted(self, start: Array) -> Array:
+        """What is left of a search from one start; whole numbers stay where they start."""
+        count, free = len(self.spreads), np.array([not place.unknown.whole for place in self.places], dtype=bool)
+
+        def parted(numbers: Array) -> tuple[Array, Array]:
+            shares = start.copy()
+            shares[free] = numbers[count:]
+            return numbers[:count], shares
+
+        def cost(numbers: Array) -> Array:
+            return np.concatenate([self.left(*parted(numbers)), numbers[:count]])
+
+        first = np.concatenate([np.zeros(count), start[free]])
+        edges = (np.repeat([-6.0, 0.0], [count, free.sum()]), np.repeat([6.0, 1.0], [count, free.sum()]))
+        if not len(first):
+            return self.left(*parted(first))
+        found = least_squares(
+            cost, first, bounds=edges, diff_step=np.full(len(first), 1e-4), x_scale="jac", max_nfev=60
+        )
+        return self.left(*parted(found.x))
+
+
+def csv_of(measured: Measured) -> str:
+    """The record as a file, without noise."""
+    lines = [",".join(measured.columns)]
+    lines += [",".join(repr(float(cell)) for cell in row) for row in zip(*measured.columns.values(), strict=True)]
+    return "\n".join(lines) + "\n"
+
+
+def fitting(family: str, measured: Measured, effects: Sequence[str] = ()) -> Fitting:
+    """Read a record without noise by the calculation of its family, with these effects on."""
+    model = model_of(family)
+    setup = recorded(model, inputs=f'plugin = "{family}"\n', measured="").setup
+    result = measured.result.split(" [")[0]
+    unit = model.result_fields[result].unit
+    inner = [item for spread in setup.distributions().values() for item in spread.items()]
+    return Fitting(
+        setup=setup,
+        records=records_of(setup, csv_of(measured), MEASURED, with_slips=False),
+        result=result,
+        noise=to_si(measured.noise, unit) - to_si(0.0, unit),
+        spreads={name: one.sd for name, one in inner if name in model.input_fields},
+        places=tuple(Place(name, one) for name in effects for one in _looked_for(family, name, result)),
+    )
+
+
+def _looked_for(family: str, effect: str, result: str) -> tuple[Unknown, ...]:
+    """The unknowns of an effect; of one that has a part for each gauge those of the measured result."""
+    unknowns = model_of(family).known_effects[effect].unknowns
+    return tuple(one for one in unknowns if one.name.startswith(result)) or unknowns
+
+
+def root_mean_square(left: Array) -> float:
+    """The root mean square of what is left."""
+    return float(np.sqrt(np.mean(left**2)))
