@@ -34,12 +34,12 @@ class Defect:
 
 @results
 class Reading:
-    """What is seen of the defect, and what the gauge shows."""
+    """What the gauge shows."""
 
-    seen: Float = found("mil", symbol="d_b", note="what the beam sees", formula="lab_size / (1 + beam * lab_size)")
     field_size: Float = found(
         "mil", symbol="d_f", note="depth of the defect, from the field",
-        formula="gauge_factor * hypot(set_size * (seen / set_size)**(1 - compression), smallest)",
+        formula="gauge_factor * hypot(set_size * (lab_size / (1 + beam * lab_size) / set_size)**(1 - compression), "
+        "smallest)",
     )  # fmt: skip
 
 
@@ -47,7 +47,7 @@ def pipeline_defects(defect: Defect) -> Reading:
     """Field equals laboratory: compression, beam and smallest depth are 0 until an effect says otherwise."""
     seen = defect.lab_size / (1 + defect.beam * defect.lab_size)
     echo = defect.set_size * (seen / defect.set_size) ** (1 - defect.compression)
-    return Reading(seen=seen, field_size=defect.gauge_factor * np.hypot(echo, defect.smallest))
+    return Reading(field_size=defect.gauge_factor * np.hypot(echo, defect.smallest))
 
 
 BATCH = Condition("batch_number", "", reference=1, note="the batch in which a defect was sized, in their order")
@@ -98,11 +98,13 @@ PIPELINE_DEFECTS = Model(
             Unknown("set_size", 2, 100, "mil", note="where field and laboratory agree"),
             looks_like="a straight line in a plot of the logarithms, with another slope than 1",
         ),
-        effect(narrow_beam, Unknown("beam", 0, 0.05, "1/mil"), looks_like="true for small defects, too little for large"),
+        effect(
+            narrow_beam, Unknown("beam", 0, 0.05, "1/mil"), looks_like="true for small defects, too little for large"
+        ),
         effect(rough_wall, Unknown("smallest", 0, 20, "mil"), looks_like="small defects are too deep, large ones true"),
         effect(worn_probe, Unknown("per_batch", -0.2, 0.2), needs=(BATCH,), looks_like="follows the batches"),
     ],
-    sheet=[Section("Reading", "seen", "field_size")],
+    sheet=[Section("Reading", "field_size")],
 )
 
 
