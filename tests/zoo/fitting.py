@@ -41,6 +41,14 @@ class Place:
 
 
 @dataclass(frozen=True)
+class Fitted:
+    """The root mean square of what a fit leaves and the most that its effects move, in standard deviations of noise."""
+
+    error: float
+    moved: float
+
+
+@dataclass(frozen=True)
 class Fitting:
     """A record read by the calculation of its family with some effects on.
 
@@ -54,8 +62,8 @@ class Fitting:
     spreads: dict[str, float]
     places: tuple[Place, ...]
 
-    def left(self, moved: Array, shares: Array) -> Array:
-        """What the calculation does not meet, row by row, in standard deviations of the noise.
+    def shown(self, moved: Array, shares: Array, *, with_effects: bool = True) -> Array:
+        """What the gauge would show, in standard deviations of the noise.
 
         ``moved`` are the tolerated inputs in standard deviations, ``shares`` where the unknowns lie in their bounds.
         """
@@ -65,19 +73,18 @@ class Fitting:
         for place, share in zip(self.places, shares.tolist(), strict=True):
             values.setdefault(place.effect, {})[place.unknown.name] = place.value(share)
         known = self.setup.model.known_effects
-        on = tuple(SwitchedOn(known[name], unknowns) for name, unknowns in values.items())
+        on = tuple(SwitchedOn(known[name], unknowns) for name, unknowns in values.items()) if with_effects else ()
         machine = replace(self.setup.changed(inputs), effects=on)
-        shown = read_by_gauge(machine, self.records.rows, {self.result}).results[self.result]
-        return np.asarray((self.records.measured[self.result] - shown) / self.noise)
+        return np.asarray(read_by_gauge(machine, self.records.rows, {self.result}).results[self.result] / self.noise)
 
-    def best(self) -> Array:
-        """What is left of the best fit: inputs held by their tolerances, unknowns within their bounds."""
-        fits = []
+    def best(self) -> Fitted:
+        """The best fit: inputs held by their tolerances, unknowns within their bounds."""
+        fits: list[Fitted] = []
         for start in self._starts():
             fits.append(self._fitted(start))
-            if np.sqrt(np.mean(fits[-1] ** 2)) < GOOD:
+            if fits[-1].error < GOOD:
                 break
-        return min(fits, key=lambda left: float(np.sum(left**2)))
+        return min(fits, key=lambda one: one.error)
 
     def _starts(self) -> Iterator[Array]:
         """Where the unknowns start: the middle, then places of a fixed draw; without unknowns there is one search."""
@@ -85,9 +92,10 @@ class Fitting:
         drawn = np.random.default_rng(1).uniform(0.02, 0.98, (STARTS - 1, len(self.places)))
         yield from drawn if self.places else ()
 
-    def _fitted(self, start: Array) -> Array:
-        """What is left of a search from one start; whole numbers stay where they start."""
+    def _fitted(self, start: Array) -> Fitted:
+        """A search from one start; whole numbers stay where they start."""
         count, free = len(self.spreads), np.array([not place.unknown.whole for place in self.places], dtype=bool)
+        read = self.records.measured[self.result] / self.noise
 
         def parted(numbers: Array) -> tuple[Array, Array]:
             shares = start.copy()
@@ -95,16 +103,15 @@ class Fitting:
             return numbers[:count], shares
 
         def cost(numbers: Array) -> Array:
-            return np.concatenate([self.left(*parted(numbers)), numbers[:count]])
+            return np.concatenate([read - self.shown(*parted(numbers)), numbers[:count]])
 
-        first = np.concatenate([np.zeros(count), start[free]])
+        best = np.concatenate([np.zeros(count), start[free]])
         edges = (np.repeat([-6.0, 0.0], [count, free.sum()]), np.repeat([6.0, 1.0], [count, free.sum()]))
-        if not len(first):
-            return self.left(*parted(first))
-        found = least_squares(
-            cost, first, bounds=edges, diff_step=np.full(len(first), 1e-4), x_scale="jac", max_nfev=60
-        )
-        return self.left(*parted(found.x))
+        if len(best):
+            steps = np.full(len(best), 1e-4)
+            best = least_squares(cost, best, bounds=edges, diff_step=steps, x_scale="jac", max_nfev=60).x
+        shown, without = self.shown(*parted(best)), self.shown(*parted(best), with_effects=False)
+        return Fitted(error=float(np.sqrt(np.mean((read - shown) ** 2))), moved=float(np.max(np.abs(shown - without))))
 
 
 def csv_of(measured: Measured) -> str:
@@ -135,8 +142,3 @@ def _looked_for(family: str, effect: str, result: str) -> tuple[Unknown, ...]:
     """The unknowns of an effect; of one that has a part for each gauge those of the measured result."""
     unknowns = model_of(family).known_effects[effect].unknowns
     return tuple(one for one in unknowns if one.name.startswith(result)) or unknowns
-
-
-def root_mean_square(left: Array) -> float:
-    """The root mean square of what is left."""
-    return float(np.sqrt(np.mean(left**2)))
