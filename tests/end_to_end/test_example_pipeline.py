@@ -100,9 +100,8 @@ def gain_alone(unknowns: Values) -> Values:
 
 
 def test_an_offset_or_a_gain_alone_is_far_behind_a_parabola_by_hand() -> None:
-    bent, offset, gain = (
-        likelihood(parabola, [-0.004, 1.0, 0.0])[0], likelihood(offset_alone, [-1.0])[0], likelihood(gain_alone, [0.9])[0],
-    )  # fmt: skip
+    bent = likelihood(parabola, [-0.004, 1.0, 0.0])[0]
+    offset, gain = likelihood(offset_alone, [-1.0])[0], likelihood(gain_alone, [0.9])[0]
     assert 2 * (bent - offset) - 2 * np.log(107) > 40
     assert 2 * (bent - gain) - 2 * np.log(107) > 20
 
