@@ -139,6 +139,7 @@ def fitting(family: str, measured: Measured, effects: Sequence[str] = ()) -> Fit
 
 
 def _looked_for(family: str, effect: str, result: str) -> tuple[Unknown, ...]:
-    """The unknowns of an effect; of one that has a part for each gauge those of the measured result."""
-    unknowns = model_of(family).known_effects[effect].unknowns
-    return tuple(one for one in unknowns if one.name.startswith(result)) or unknowns
+    """The unknowns of an effect; of one of the kernel's, which has a part for each gauge, those of the result."""
+    model = model_of(family)
+    unknowns = model.known_effects[effect].unknowns
+    return unknowns if effect in model.effects else tuple(one for one in unknowns if one.name.startswith(result))

@@ -16,6 +16,7 @@ from zoo.fitting import fitting
 from zoo.zoo import (
     HALVES,
     NOISES,
+    ROWS,
     Case,
     Measured,
     diagnosis_of,
@@ -27,7 +28,6 @@ from zoo.zoo import (
     rig_of,
 )
 
-ROWS = 80
 SEEDS = (1, 2, 3)
 """Chosen before any record was seen, and kept."""
 AGREES = 0.5
@@ -46,7 +46,7 @@ MISSED: dict[str, str] = {}
 
 def record(family: str, hidden: str | None, seed: int) -> Measured:
     """A record without noise."""
-    return measured_of(Case(family, hidden, True, "white", seed), ROWS)
+    return measured_of(Case(family, hidden, True, "white", seed))
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -79,7 +79,7 @@ def test_the_right_effects_draw_what_is_hidden_and_that_is_much(family: str, hid
 @pytest.mark.parametrize("family", FAMILIES)
 def test_a_record_is_the_same_again_and_finite(family: str) -> None:
     case = Case(family, None, True, "white", SEEDS[0])
-    first, again = measured_of(case, ROWS), measured_of(case, ROWS)
+    first, again = measured_of(case), measured_of(case)
     assert list(first.columns) == list(again.columns)
     for name, values in first.columns.items():
         assert values.shape == (ROWS,)
