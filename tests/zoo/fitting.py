@@ -87,10 +87,18 @@ class Fitting:
         return min(fits, key=lambda one: one.error)
 
     def _starts(self) -> Iterator[Array]:
-        """Where the unknowns start: the middle, then places of a fixed draw; without unknowns there is one search."""
-        yield np.full(len(self.places), 0.5)
+        """Where the unknowns start: the middle, then places of a fixed draw; every whole number is a start."""
         drawn = np.random.default_rng(1).uniform(0.02, 0.98, (STARTS - 1, len(self.places)))
-        yield from drawn if self.places else ()
+        starts = [np.full(len(self.places), 0.5), *(drawn if self.places else ())]
+        for column, place in enumerate(self.places):
+            if place.unknown.whole:
+                count = round(place.unknown.high - place.unknown.low) + 1
+                starts = [
+                    np.where(np.arange(len(one)) == column, share, one)
+                    for share in np.linspace(0, 1, count)
+                    for one in starts[:2]
+                ]
+        yield from starts
 
     def _fitted(self, start: Array) -> Fitted:
         """A search from one start; whole numbers stay where they start."""
