@@ -19,7 +19,7 @@ from zoo.zoo import Array, Measured, model_of
 
 STARTS = 12
 """Searches for one fit at the most; they start all over the bounds of the unknowns."""
-GOOD = 0.3
+GOOD = 0.5
 """Root mean square of what is left, in standard deviations of the noise, at which no further search is begun."""
 
 

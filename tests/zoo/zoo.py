@@ -219,16 +219,10 @@ class Verdict:
 
 
 def judged(case: Case, diagnosis: Diagnosis) -> Verdict:
-    """Judge a diagnosis by what is hidden.
-
-    right: the hidden ones are named and nothing else; "none" where nothing is hidden; "unknown" where what is hidden is
-    not registered. open: the truth is among the explanations that are left; of nothing hidden: undecided without any.
-    silent: no explanation is left although something is hidden. partly: every explanation is a part of the truth, or
-    the truth and more. wrong: anything else; so is "unknown" where what is hidden is registered.
-    """
+    """Judge a diagnosis by what is hidden."""
     explanations = explanations_of(diagnosis)
     sets = [frozenset(_plain(name) for name in names) for names in explanations]
-    return Verdict(_judged(_truth(case), diagnosis.verdict, sets), diagnosis.verdict, explanations)
+    return Verdict(judgement(_truth(case), diagnosis.verdict, sets), diagnosis.verdict, explanations)
 
 
 def _plain(name: str) -> str:
@@ -243,7 +237,14 @@ def _truth(case: Case) -> frozenset[str]:
     return frozenset(rig_of(case.family).HIDDEN[case.hidden] if case.registered else (UNKNOWN,))
 
 
-def _judged(truth: frozenset[str], verdict: str, sets: Sequence[frozenset[str]]) -> Judged:
+def judgement(truth: frozenset[str], verdict: str, sets: Sequence[frozenset[str]]) -> Judged:
+    """Judge a verdict with the explanations it leaves, as sets of names, by the names that should stand there.
+
+    right: the truth alone is left; "none" where nothing is hidden; "unknown" where what is hidden is not registered.
+    open: the truth is among those left; where nothing is hidden: undecided without any. silent: none is left although
+    something is hidden. partly: each is a part of the truth, or the truth and more. wrong: anything else; so is a cause
+    where nothing is hidden, and "unknown" where what is hidden is registered.
+    """
     if not sets:
         if truth:
             return "silent"
