@@ -1,4 +1,4 @@
-"""A plate heat exchanger on a bench, marched cell by cell along the plates; its cold outlet is found by shooting.
+"""A plate heat exchanger on a bench, marched cell by cell along the plates from two guesses of its cold outlet.
 
 The films are better where the water is warm, the heat capacity depends on the temperature, and a slipped gasket is an
 orifice beside the plates: how much it takes follows from equal losses of pressure.
@@ -22,7 +22,7 @@ NOISE = 0.12
 """Standard deviation of the thermometer, K."""
 MOST = 15.0
 """What an exponent can do at most, in standard deviations of the noise: below 0.05 there is no such film."""
-CELLS, SHOTS = 60, 40
+CELLS, ROUNDS = 50, 8
 RATED, WALL = 2.0, 180e3
 """Flow of the data sheet, kg/s, and conductance of the plates, W/K."""
 WARMER = 0.005
@@ -67,33 +67,39 @@ def through_plates(flow: Array, gasket: float) -> Array:
     return np.asarray((low + high) / 2)
 
 
-def marched(plates: Plates, points: Points, hot_flow: Array, cold_outlet: Array) -> tuple[Array, Array]:
-    """March from where the hot side enters: hot outlet, and the cold inlet that this cold outlet would need, °C."""
-    hot, cold = points.hot_inlet.copy(), cold_outlet.copy()
-    hot_film = plates.hot_film * (hot_flow / RATED) ** plates.exponent / CELLS
-    cold_film = plates.cold_film * (points.cold_flow / RATED) ** 0.7 / CELLS
-    for _ in range(CELLS):
-        ahead = [np.zeros(1), np.zeros(1)]
-        for _ in range(2):  # the second time with the temperatures in the middle of the cell
-            warm, cool = hot - ahead[0] / 2, cold - ahead[1] / 2
-            films = 1 / (hot_film * (1 + WARMER * (warm - 60))) + 1 / (cold_film * (1 + WARMER * (cool - 35)))
-            heat = (warm - cool) / (films + CELLS / WALL)
-            ahead = [heat / (hot_flow * heat_capacity(warm)), heat / (points.cold_flow * heat_capacity(cool))]
-        hot, cold = hot - ahead[0], cold - ahead[1]
-    return hot, cold
+def marched(cells: tuple[Array, Array], points: Points, cold_outlet: Array) -> Array:
+    """March from where the hot side enters: temperatures of both sides at the edges of all cells, (2, CELLS + 1, rows).
+
+    ``cells`` (CELLS, rows) say by how much a cell cools the hot side, and warms the cold one, per kelvin between them.
+    """
+    both = np.empty((2, CELLS + 1, len(cold_outlet)))
+    both[:, 0] = points.hot_inlet, cold_outlet
+    for place, (cooling, warming) in enumerate(zip(*cells, strict=True)):
+        between = (both[0, place] - both[1, place]) / (1 + (cooling - warming) / 2)  # in the middle of the cell
+        both[:, place + 1] = both[:, place] - np.stack([cooling, warming]) * between
+    return both
+
+
+def conducting(plates: Plates, points: Points, hot_flow: Array, both: Array) -> tuple[Array, Array]:
+    """What each cell cools and warms per kelvin, with the water as it is at these temperatures."""
+    hot, cold = (both[:, :-1] + both[:, 1:]) / 2
+    hot_film = plates.hot_film * (hot_flow / RATED) ** plates.exponent * (1 + WARMER * (hot - 60))
+    cold_film = plates.cold_film * (points.cold_flow / RATED) ** 0.7 * (1 + WARMER * (cold - 35))
+    cell = 1 / (1 / hot_film + 1 / cold_film + 1 / WALL) / CELLS
+    return cell / (hot_flow * heat_capacity(hot)), cell / (points.cold_flow * heat_capacity(cold))
 
 
 def outlet(plates: Plates, points: Points) -> Array:
-    """Temperature of the hot side where it leaves, °C: bisected over the cold outlet until the cold inlet is met."""
+    """Temperature of the hot side where it leaves, °C: two shots are mixed until they meet the cold inlet."""
     hot_flow = through_plates(points.hot_flow, plates.gasket)
-    low, high = points.cold_inlet.copy(), points.hot_inlet.copy()
-    for _ in range(SHOTS):
-        middle = (low + high) / 2
-        too_high = marched(plates, points, hot_flow, middle)[1] > points.cold_inlet
-        low, high = np.where(too_high, low, middle), np.where(too_high, middle, high)
-    cooled = marched(plates, points, hot_flow, (low + high) / 2)[0]
+    both = np.stack([np.full((CELLS + 1, len(hot_flow)), level) for level in (60.0, 35.0)])
+    for _ in range(ROUNDS):
+        cells = conducting(plates, points, hot_flow, both)
+        low, high = (marched(cells, points, shot) for shot in (points.cold_inlet, points.hot_inlet))
+        share = (points.cold_inlet - low[1, -1]) / (high[1, -1] - low[1, -1])
+        both = low + share * (high - low)
     past = 1 - hot_flow / points.hot_flow
-    return np.asarray(past * points.hot_inlet + (1 - past) * cooled)
+    return np.asarray(past * points.hot_inlet + (1 - past) * both[0, -1])
 
 
 def programme(generator: np.random.Generator, rows: int) -> Points:

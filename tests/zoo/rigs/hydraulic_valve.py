@@ -17,11 +17,11 @@ Array = NDArray[np.float64]
 NOISE = 0.6
 """Standard deviation of the flow meter, l/min."""
 EDGE, STROKE, DENSITY = 20e-3, 1e-3, 860.0
-ELEMENTS = np.array([0.7, 0.85, 1.0, 1.15, 1.3])
+ELEMENTS = np.array([0.8, 0.9, 1.0, 1.1, 1.2])
 """Forces at which the elements of friction slip, relative to their mean; each bears an equal part."""
-GIVE = 0.08
+GIVE = 0.06
 """How far the seals give before they slip, as a share of what friction can hold back."""
-FINEST = 0.01
+FINEST = 0.03
 """Longest step of the command while the spool is followed, V."""
 ORIFICE = 0.15
 """Share of the loss of pressure of a worn land that is that of an orifice, at 70 bar."""

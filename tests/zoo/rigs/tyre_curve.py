@@ -28,7 +28,7 @@ HALF_LENGTH = 0.06
 """Half the length of the contact at 4 kN, m; it grows with the root of the load."""
 AHEAD, BLOCK = 0.04, 0.85
 """By how much the pressure leans to the front; share of its own pressure that a block of the tread evens out."""
-LONGEST_STEP = 0.02
+LONGEST_STEP = 0.06
 """Longest way that the wheel rolls in a step of the integration, over the relaxation length."""
 LONGER = 0.15
 """Exponent of the relaxation length over the load."""
