@@ -31,7 +31,7 @@ from zoo.zoo import (
 
 SEEDS = (1, 2, 3)
 """Chosen before any record was seen, and kept."""
-AGREES = 0.5
+AGREES = 0.3
 """Root mean square, in standard deviations of the noise, up to which rig and baseline calculation are the same."""
 SHOWS = 3.0
 """What a hidden effect, as fitted, must move somewhere, in standard deviations of the noise."""
@@ -41,8 +41,13 @@ FAMILIES = families()
 HIDDEN = [(family, hidden) for family in FAMILIES for hidden in rig_of(family).HIDDEN]
 PROMISES = [check for check in CHECKS if check.name != "serial equals parallel"]
 """A worker reads these files as any other, which is tested elsewhere; here it would take as long as all the rest."""
-MISSED: dict[str, str] = {}
-"""Why the diagnosis misses what is hidden in an open family, by family."""
+MISSED = {
+    (
+        "bolted_joint",
+        "yielding",
+    ): "an effect without a slope at zero that has a shape beside its amplitude is not tried",
+}
+"""Why the diagnosis misses a single effect that is hidden in an open family."""
 
 
 def record(family: str, hidden: str | None, seed: int) -> Measured:
@@ -153,12 +158,13 @@ def test_an_answer_is_judged_by_the_truth(truth: str, verdict: str, left: list[s
 
 
 def singles() -> list[object]:
-    """The first single effect that can be hidden in every open family; where the engine fails, with the reason."""
+    """Every single effect that can be hidden in an open family; where the diagnosis misses it, with the reason."""
     found: list[object] = []
     for family in families("open"):
-        hidden = next(name for name, right in rig_of(family).HIDDEN.items() if len(right) == 1)
-        marks = [pytest.mark.xfail(strict=True, reason=MISSED[family])] if family in MISSED else []
-        found.append(pytest.param(family, hidden, marks=marks, id=family))
+        for hidden in (name for name, right in rig_of(family).HIDDEN.items() if len(right) == 1):
+            reason = MISSED.get((family, hidden))
+            marks = [pytest.mark.xfail(strict=True, reason=reason)] if reason else []
+            found.append(pytest.param(family, hidden, marks=marks, id=f"{family}-{hidden}"))
     return found
 
 

@@ -39,7 +39,7 @@ def warmed(heating: Array, spindle: dict[str, float]) -> tuple[Array, Array]:
     rises, lags = np.empty(len(heating)), np.empty(len(heating))
     for place, heat in enumerate(heating.tolist()):
         rises[place], lags[place] = np.mean(rod), np.mean(housing)
-        lost = rod / spindle["constant"] * (1 + 0.0005 * np.abs(rod))
+        lost = rod / spindle["constant"] * (1 + 0.0002 * np.abs(rod))
         rod = rod + STEP * (along(rod) + heat * share - lost)
         into = (np.mean(rod[2:9]) - housing) / spindle["housing_constant"]
         housing = housing + STEP * (along(housing) + into)
