@@ -42,10 +42,7 @@ HIDDEN = [(family, hidden) for family in FAMILIES for hidden in rig_of(family).H
 PROMISES = [check for check in CHECKS if check.name != "serial equals parallel"]
 """A worker reads these files as any other, which is tested elsewhere; here it would take as long as all the rest."""
 MISSED = {
-    (
-        "bolted_joint",
-        "yielding",
-    ): "an effect without a slope at zero that has a shape beside its amplitude is not tried",
+    ("bolted_joint", "yielding"): "an effect that has no slope at zero and a shape beside its amplitude is never tried",
 }
 """Why the diagnosis misses a single effect that is hidden in an open family."""
 
