@@ -25,7 +25,7 @@ from truing.kernel.loading import load_file
 from truing.testing import CHECKS, ConformanceCheck, assert_finds, assert_finds_nothing, recorded
 from truing.testing.subject import Subject
 
-NAMES = ("cycloid_torsion", "cycloid_ripple", "harmonic_stall")
+NAMES = ("cycloid_torsion", "cycloid_ripple", "harmonic_stall", "cycloid_drag")
 Values = NDArray[np.float64]
 
 
@@ -91,6 +91,14 @@ def test_a_wave_of_the_eccentric_shaft_is_found() -> None:
     columns = {"time [s]": 0.32 * turned, "angle [rad]": 0.4 + turned, "torque [N*m]": torque}
     truth = {"sine_2": 0.6 * np.cos(0.8), "cosine_2": 0.6 * np.sin(0.8)}
     assert_finds(record("cycloid_ripple", columns, effect="eccentric_shaft", truth=truth))
+
+
+def test_a_brake_is_found_beside_grease() -> None:
+    speed = ramps([10, -10, 0], 120)[1:-1] + 0.01
+    brake = np.where(speed > 0, 2.5, -2.5)  # a pad that is dragged, either way
+    torque = brake + 0.12 * speed + np.random.default_rng(5).normal(0, 0.1, len(speed))
+    columns = {"time [s]": np.arange(len(speed)) / 2, "speed [rad/s]": speed, "torque [N*m]": torque}
+    assert_finds(record("cycloid_drag", columns, effect="dry_friction", truth={"torque": 2.5}))
 
 
 def ladder(held: Values, per_decade: float) -> Values:
@@ -193,6 +201,23 @@ def test_the_first_third_of_a_plateau_is_fitted(prepare: Callable[[str, str], in
     assert last < float(geared[-1]["held [s]"]) / 3 < last + 0.4
 
 
+def drag_record(rows: int) -> str:
+    """Ten rows a second of a ramp that gains 0.3 rad/s in a second, in the columns of the published record."""
+    lines = [f"{n / 10},{0.03 * n},{0.03 * n},{1 + n}" for n in range(rows)]
+    return "\n".join(["time [s],speed [rad/s],speed_command [rad/s],torque [N*m]", *lines])
+
+
+def test_every_second_stretch_of_the_drag_judges(prepare: Callable[[str, str], int], tmp_path: Path) -> None:
+    assert prepare("cycloid_drag", drag_record(240)) == 0
+    rows = made(tmp_path)
+    assert [float(row["time [s]"]) for row in rows] == pytest.approx(
+        [2.35 + 1.6 * n for n in range(14)]
+    )  # first too slow
+    assert [row["record"] for row in rows] == ["fit"] * 5 + ["validation"] * 7 + ["fit"] * 2
+    assert [float(row["acceleration [rad/s^2]"]) for row in rows] == pytest.approx([0.3] * 14)
+    assert float(rows[0]["torque [N*m]"]) == pytest.approx(24.5)  # the mean of 17 to 32
+
+
 NO_FILE = "this is no table"
 REFUSED = [
     ("cycloid_torsion", NO_FILE, r"data.csv:1: no column 'time \[s\]'; README.md says which file is meant"),
@@ -208,6 +233,9 @@ REFUSED = [
         stall_record(1).replace("19.9,2", "19.9,much"),
         r"data.csv:201: lever_torque 'much' is no number",
     ),
+    ("cycloid_drag", NO_FILE, r"data.csv:1: no column 'time \[s\]'; README.md says which file is meant"),
+    ("cycloid_drag", drag_record(80), r"data.csv: shorter than two stretches of 10 s, so that no row is left to judge"),
+    ("cycloid_drag", drag_record(240).replace(",9\n", ",slip\n"), r"data.csv:10: torque 'slip' is no number"),
     ("harmonic_stall", "\n".join(stall_record(1).splitlines()[:25]), r"data.csv: the plateau of run 1 is too short"),
 ]
 

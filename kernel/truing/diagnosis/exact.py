@@ -267,9 +267,11 @@ class _Fitting:
         self.derivatives()
         for _ in range(MOST_STEPS):
             moved, promised = self.step()
+            if promised < until and (self.is_fresh or promised < 1e-3 * until):
+                if until <= EXACTLY and promised > 0:
+                    self._taken(moved)
+                return
             if promised < until:
-                if self.is_fresh or promised < 1e-3 * until:
-                    return
                 self.derivatives()
                 continue
             gained = self._taken(moved)
@@ -304,7 +306,7 @@ class _Fitting:
         return gained
 
     def _anchored(self) -> bool:
-        """Move the anchor to the inputs as they are; whether the slopes had missed enough to go on."""
+        """Move the anchor to the inputs as they are; whether the slopes had missed enough to go on with new ones."""
         (shown,) = self.shown([self.u], self.b)
         exact = self.sample.left(shown)
         if not np.isfinite(exact).all():
@@ -312,11 +314,25 @@ class _Fitting:
         missed = self.sample.roots(self.left) * (exact - self.left)
         is_off = float(missed @ missed) > MOVED
         self.anchor, self.predicted = self.b, shown
+        if is_off:
+            self.slopes = self.slopes_of_inputs()
         self.r0 = exact + self.slopes @ self.anchor
-        self.b, self.left, self.cost = (
-            self.calibrated(self.r0) if is_off else (self.b, exact, self.sample.cost(exact, self.b))
-        )
+        self.left, self.cost = exact, self.sample.cost(exact, self.b)
+        if is_off:
+            self.b, self.left, self.cost = self.calibrated(self.r0)
         return is_off
+
+    def slopes_of_inputs(self) -> Matrix:
+        """Return what the directions of the inputs draw about the anchor, (rows, K), in one call of the model."""
+        k = len(self.anchor)
+        own = parts_of(self.causes, self.outward(self.u))
+        ends = [self.anchor + sign * 0.5 * np.eye(k)[place] for place in range(k) for sign in (1, -1)]
+        made = self.extended.at(self.causes, [(own, moved_by(self.sample, end)) for end in ends])
+        columns = [
+            self.sample.left(down) - self.sample.left(up) for up, down in zip(made[::2], made[1::2], strict=True)
+        ]
+        slopes = np.column_stack(columns) if columns else self.slopes
+        return np.where(np.isfinite(slopes), slopes, self.slopes)
 
     def answer(self) -> Fit:
         """Return the fit, its predictions with the inputs where they are."""
@@ -349,15 +365,7 @@ def slopes_at(found: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
     state = _Fitting(found.sample, extended, found.causes, ())
     state.begin(np.concatenate(found.values) if found.causes else np.zeros(0), found.inputs)
     state.derivatives()
-    sample, k = found.sample, len(found.inputs)
-    own = parts_of(found.causes, state.outward(state.u))
-    points = [
-        (own, moved_by(sample, found.inputs + sign * 0.5 * np.eye(k)[place])) for place in range(k) for sign in (1, -1)
-    ]
-    made = extended.at(found.causes, points) if points else []
-    columns = [sample.left(down) - sample.left(up) for up, down in zip(made[::2], made[1::2], strict=True)]
-    inputs = np.column_stack(columns) if columns else np.zeros((sample.rows, 0))
-    return -state.slope, np.where(np.isfinite(inputs), inputs, state.slopes)
+    return -state.slope, state.slopes_of_inputs()
 
 
 def unit_of(found: Fit) -> Matrix:

@@ -1,0 +1,187 @@
+"""The worked example of the pipeline: NIST's straight lines, likelihoods computed apart, a response that is concave."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from example_rows import ExampleRows, as_they_stand, every_other, explanations, shuffled, the_others
+from measured import Document
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from truing.kernel.loading import load_file
+from truing.testing import failures
+
+ALASKA = ExampleRows("pipeline_defects", "alaska.csv")
+CONCAVE = {"narrow_beam", "compressed_echo"}
+STRAIGHT = {"sensor_gain", "sensor_offset"}
+ALL = "studies.diagnose.hold_out="
+"""Every row takes part: none is held out."""
+Values = NDArray[np.float64]
+
+
+@pytest.fixture(scope="module")
+def pipeline() -> Any:
+    return load_file(ALASKA.folder / "pipeline_defects.py")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Document:
+    return ALASKA.diagnosed(tmp_path_factory.mktemp("whole"), as_they_stand, "--set", ALL).document
+
+
+# NIST/SEMATECH e-Handbook, section 4.6.2.3 (straight line) and 4.6.2.4 (both logarithms)
+def test_the_rows_are_those_of_the_handbook() -> None:
+    lab, field, batch = ALASKA.numbers(0, 1, 2)
+    assert len(lab) == 107
+    assert sorted(set(batch)) == [1, 2, 3, 4, 5, 6]
+    assert np.polyfit(lab, field, 1) == pytest.approx([0.731, 4.99], rel=1e-3)
+    assert np.polyfit(np.log(lab), np.log(field), 1) == pytest.approx([0.885, 0.281], rel=2e-3)
+
+
+def test_the_data_are_said_to_be_free() -> None:
+    assert "Public domain" in ALASKA.lines[0]
+    assert "**public\ndomain**" in (ALASKA.folder / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_plugin_passes_the_kit(pipeline: Any) -> None:
+    assert failures(pipeline.PIPELINE_DEFECTS) == {}
+
+
+# Likelihoods apart from any diagnosis: the spread grows as a power of the size, chosen for every law
+
+
+def likelihood(law: Callable[[Values], Values], start: list[float]) -> tuple[float, Values, float]:
+    """Return the largest log-likelihood of a law of the size, its unknowns, and the power of the spread."""
+    lab, field, _ = ALASKA.numbers(0, 1, 2)
+    best = (-np.inf, np.array(start), 0.0)
+    for power in np.linspace(0, 1.5, 31):
+        weight = (lab / 40) ** power
+        fitted = least_squares(_weighted(law, field, weight), start).x
+        left = (law(fitted) - field) / weight
+        size = -len(lab) / 2 * (1 + np.log(np.mean(left**2))) - np.sum(np.log(weight))
+        best = max(best, (float(size), fitted, float(power)), key=lambda each: each[0])
+    return best
+
+
+def _weighted(law: Callable[[Values], Values], field: Values, weight: Values) -> Callable[[Values], Values]:
+    return lambda unknowns: (law(unknowns) - field) / weight
+
+
+LAB_SIZES: Values = ALASKA.numbers(0, 1)[0]
+
+
+def beam_law(unknowns: Values) -> Values:
+    return np.asarray(LAB_SIZES / (1 + unknowns[0] * LAB_SIZES))
+
+
+def power_law(unknowns: Values) -> Values:
+    return np.asarray(unknowns[1] * (LAB_SIZES / unknowns[1]) ** (1 - unknowns[0]))
+
+
+def straight_line(unknowns: Values) -> Values:
+    return np.asarray(unknowns[0] * LAB_SIZES + unknowns[1])
+
+
+def parabola(unknowns: Values) -> Values:
+    return np.asarray(np.polyval(unknowns, LAB_SIZES))
+
+
+def offset_alone(unknowns: Values) -> Values:
+    return np.asarray(LAB_SIZES + unknowns[0])
+
+
+def gain_alone(unknowns: Values) -> Values:
+    return np.asarray(LAB_SIZES * unknowns[0])
+
+
+def test_an_offset_or_a_gain_alone_is_far_behind_a_parabola_by_hand() -> None:
+    bent = likelihood(parabola, [-0.004, 1.0, 0.0])[0]
+    offset, gain = likelihood(offset_alone, [-1.0])[0], likelihood(gain_alone, [0.9])[0]
+    assert 2 * (bent - offset) - 2 * np.log(107) > 40
+    assert 2 * (bent - gain) - 2 * np.log(107) > 20
+
+
+def test_a_straight_line_is_excluded_and_the_spread_grows_by_hand() -> None:
+    (line, _, of_line), (power, _, _), (beam, _, of_beam) = (
+        likelihood(straight_line, [0.7, 5.0]), likelihood(power_law, [0.1, 12.0]), likelihood(beam_law, [0.003]),
+    )  # fmt: skip
+    assert 2 * (power - line) > 6  # of as many unknowns
+    assert 2 * (beam - line) + np.log(107) > 10  # of one unknown less
+    assert abs(2 * (power - beam)) < 6  # these rows do not tell them apart by their likelihood
+    assert (of_line, of_beam) == pytest.approx((0.75, 0.75), abs=0.2)
+
+
+def test_every_explanation_is_concave_and_more_than_one_is_left(whole: Document) -> None:
+    assert whole["verdict"] == "one_of"
+    assert all(causes & CONCAVE for causes in explanations(whole))
+    assert {frozenset({"narrow_beam"}), frozenset({"compressed_echo"})} <= explanations(whole)
+
+
+def test_the_spread_grows_with_size_and_neighbours_are_not_alike(whole: Document) -> None:
+    noise = whole["wrong"]["field_size"]["noise"]
+    assert noise["spread"] == "grows with lab_size"
+    assert abs(noise["autocorrelation"]) < 0.2  # the order of the file says nothing
+    assert whole["files"][0]["used"] == 107  # three rows that repeat others are coarse readings, no copies
+
+
+def test_sizes_are_those_computed_by_hand(whole: Document) -> None:
+    (cause,) = whole["causes"]
+    assert cause["effect"] == "narrow_beam"
+    found = cause["unknowns"]["beam"]
+    assert found["unit"] == "1/mil"
+    by_hand = float(likelihood(beam_law, [0.003])[1][0])
+    low, high = found["interval95"]
+    assert low < by_hand < high
+    assert found["value"] == pytest.approx(by_hand, abs=(high - low) / 4)
+
+
+def test_the_extended_model_grows_as_the_handbook_says(whole: Document, pipeline: Any) -> None:
+    """The slope of the logarithms, 0.885 with a standard error of 0.023, by rows of the extended model."""
+    per_inch = float(whole["causes"][0]["unknowns"]["beam"]["value"]) * 1000
+    lab, _ = ALASKA.numbers(0, 1)
+    defects = pipeline.PIPELINE_DEFECTS.inputs(lab_size=lab * 25.4e-6, beam=per_inch / 25.4e-3)
+    shown = pipeline.pipeline_defects(defects).field_size / 25.4e-6
+    assert np.polyfit(np.log(lab), np.log(shown), 1)[0] == pytest.approx(0.885, abs=2 * 0.023)
+
+
+def test_the_order_of_the_rows_means_nothing(whole: Document, tmp_path: Path) -> None:
+    other = ALASKA.diagnosed(tmp_path, shuffled, "--set", ALL).document
+    assert other["verdict"] == whole["verdict"]
+    assert explanations(other) == explanations(whole)
+
+
+@pytest.mark.parametrize("taken", [every_other, the_others])
+def test_half_of_the_rows_say_the_same(taken: Any, tmp_path: Path) -> None:
+    half = ALASKA.diagnosed(tmp_path, taken, "--set", ALL).document
+    assert half["verdict"] in {"named", "one_of"}
+    assert all(causes & CONCAVE for causes in explanations(half))
+
+
+@pytest.mark.xfail(strict=False, reason="an offset alone is not excluded, though its likelihood is far behind")
+def test_without_a_concave_effect_the_rows_say_that_something_is_missing(tmp_path: Path) -> None:
+    """A curve over the size is left, and no offset or gain alone: both are far behind it, as computed by hand above."""
+
+    def without(text: str) -> str:
+        head, _, rest = text.partition("        effect(\n            compressed_echo,")
+        _, _, tail = rest.partition("        effect(rough_wall")
+        return head + "        effect(rough_wall" + tail
+
+    left = ALASKA.diagnosed(tmp_path, as_they_stand, "--set", ALL, declared=without).document
+    assert left["verdict"] != "none"
+    assert not CONCAVE & {name for causes in explanations(left) for name in causes}
+    assert not any(causes < STRAIGHT for causes in explanations(left))
+
+
+def test_rows_held_out_are_better_than_by_the_straight_line(tmp_path: Path) -> None:
+    lab, field = ALASKA.numbers(0, 1)
+    judge = np.array(ALASKA.words(3)) == "judge"
+    line = np.polyfit(lab[~judge], field[~judge], 1)
+    by_line = float(np.sqrt(np.mean((np.polyval(line, lab) - field)[judge] ** 2)))
+    gain = ALASKA.diagnosed(tmp_path).document["gain"]["field_size"]["held_out"]
+    assert gain["rmse_before"]["value"] == pytest.approx(np.sqrt(np.mean((lab - field)[judge] ** 2)), rel=1e-6)
+    assert gain["rmse_after"]["value"] < by_line
