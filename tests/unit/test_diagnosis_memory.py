@@ -1,4 +1,4 @@
-"""A long record: rows in blocks, columns made when asked for, a model that is called once per unknown."""
+"""A long record: rows in blocks, a search on some of them, a model that is seldom called."""
 
 from __future__ import annotations
 
@@ -37,7 +37,9 @@ from truing.diagnosis.sample import first_noise
 def test_many_rows_times_a_vector_are_summed_in_double_precision() -> None:
     rng = np.random.default_rng(4)
     matrix = rng.normal(size=(20_000, 3)).astype(np.float32)
-    assert_allclose(times(matrix, np.array([1.0, 1e-6, -1.0])), matrix.astype(float) @ [1.0, 1e-6, -1.0], rtol=1e-12)
+    vector = np.array([1.0, 1e-6, -1.0])
+    made: Any = times(matrix, vector)  # type: ignore[arg-type]
+    assert_allclose(made, matrix.astype(float) @ vector, rtol=1e-12)
 
 
 def test_rows_in_batches_are_predicted_as_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -112,7 +114,7 @@ def calls_of(tmp_path: Path, extra: int) -> int:
         return slow(screw)
 
     spreads = [Tolerance(name, normal(sd=sd), why="drawing") for name, sd in TOLERANCES.items()]
-    errors = [*spreads, EFFECTS["lead_error"], *(ripple(order) for order in range(1, extra + 1))]
+    errors: list[Any] = [*spreads, EFFECTS["lead_error"], *(ripple(order) for order in range(1, extra + 1))]
     asked = Asked(Model(name="drive", title="Deflection of a screw drive", function=counting, errors=errors))
     bench = wide(80)
     error = 0.03 * bench.travel + np.random.default_rng(8).normal(size=80)

@@ -138,12 +138,12 @@ def test_an_input_far_outside_of_its_tolerance_is_a_sign_unless_it_is_the_cause(
     slopes, weight, moved = np.column_stack([0.09 * cube, 0.015 * BENCH.load * BENCH.travel / 150]), 1.0, np.zeros(2)
     for _ in range(40):
         moved = np.linalg.solve(weight * slopes.T @ slopes + np.eye(2), weight * slopes.T @ (error + NOISE))
-        weight = 1 / np.mean((error + NOISE - slopes @ moved) ** 2)
-    assert_allclose(made.null.moved, moved, rtol=2e-2)
+        weight = float(1 / np.mean((error + NOISE - slopes @ moved) ** 2))
+    assert_allclose(made.null.moved, moved, rtol=1e-4)
     assert moved[0] > 5
     assert far_inputs(made.null) == [0]
     assert far_inputs(fit_of(made, "input:contact")) == []
-    assert far_inputs(competing(tmp_path, 0.3 * error, ["input:contact"], tolerated=True).null) == [0]
+    assert far_inputs(competing(tmp_path, 0.45 * error, ["input:contact"], tolerated=True).null) == [0]
     assert far_inputs(competing(tmp_path, 0.2 * error, ["input:contact"], tolerated=True).null) == []
 
 
