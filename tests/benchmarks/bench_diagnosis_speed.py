@@ -31,9 +31,9 @@ from hidden_effects.asking import INPUTS, press_offer, table  # noqa: E402
 from hidden_effects.designs import Noise, wide  # noqa: E402
 from hidden_effects.press_machine import POSITION, SCATTER, TILT, Array, shown  # noqa: E402
 from hidden_effects.press_machine import Rows as Setting  # noqa: E402
-from truing.diagnosis import contest, machine  # noqa: E402
-from truing.diagnosis.candidates import candidates_of  # noqa: E402
-from truing.diagnosis.engine import diagnose  # noqa: E402
+from truing import trials  # noqa: E402
+from truing.diagnosis import competition  # noqa: E402
+from truing.diagnosis.engine import diagnose, laid_out  # noqa: E402
 from truing.diagnosis.machine import machine_of, predict  # noqa: E402
 from truing.diagnosis.reading import read_records  # noqa: E402
 from truing.diagnosis.records import Covariate, Records, Role  # noqa: E402
@@ -145,9 +145,9 @@ def model_calls(results: tuple[str, ...], *, with_pairs: bool) -> int:
         return read_by_gauge(*held, **known)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(machine, "read_by_gauge", counting)
+        patch.setattr(trials, "read_by_gauge", counting)
         if not with_pairs:
-            patch.setattr(contest, "pairs", lambda terms: [])
+            patch.setattr(competition, "_pairs", lambda made: None)
         diagnose(press_setup(), in_memory(300, results))
     return calls
 
@@ -195,8 +195,8 @@ def test_a_diagnosis_costs_at_most_eight_gaussian_processes(results: tuple[str, 
 
 
 def counted(results: tuple[str, ...]) -> str:
-    many = len(candidates_of(machine_of(press_setup(), in_memory(300, results))))
-    return f"300 rows, {len(results)} result(s), {many} candidates"
+    many = len(laid_out(machine_of(press_setup(), in_memory(300, results))).causes)
+    return f"300 rows, {len(results)} result(s), {many} causes"
 
 
 @pytest.mark.parametrize("results", [ALONE, BOTH], ids=["position", "position and tilt"])
