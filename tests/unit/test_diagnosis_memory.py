@@ -27,7 +27,7 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Model, Tolerance, Unknown, normal, trials
-from truing.diagnosis import competition, machine
+from truing.diagnosis import competition, long_records, machine
 from truing.diagnosis.columns import times
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.machine import predict
@@ -83,6 +83,30 @@ def test_twenty_thousand_rows_are_named(tmp_path: Path) -> None:
     assert size.low < 0.02e-6 < size.high
     wide_apart = 2 * 1.96e-6 / np.sqrt(np.sum((bench.temperature - 20) ** 2))  # of a slope through zero
     assert_allclose(size.high - size.low, wide_apart, rtol=0.05)
+
+
+def test_a_search_looks_at_one_row_of_every_stretch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(long_records, "LONG", 40)
+    bench, asked = wide(130), Asked(drive_model(("lead_error",)))
+    records = asked.records(tmp_path, bench.columns(0.0 * bench.time), ["a"] * 30 + ["b"] * 100)
+    few = long_records.searched(records, seed=1)
+    taken = np.searchsorted(bench.time * 3600, few.covariates["time"].values - 1e-6)
+    assert (np.floor((taken + 1) * 40 / 130 - 1e-9).astype(int) == np.arange(40)).all()  # stretches of 3.25 rows
+    assert_allclose(few.covariates["travel"].values, bench.travel[taken] * 1e-3)
+    assert [few.rows.runs[place] for place in (0, -1)] == [records.rows.runs[0], records.rows.runs[-1]]
+    assert (few.lines == records.lines[taken]).all()
+    assert len(np.unique(np.diff(taken))) > 3  # no regular step, which would fold a wave into another one
+    assert long_records.searched(few, seed=1) is few
+
+
+def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(long_records, "LONG", 80)
+    bench, asked = wide(300), Asked(drive_model(("lead_error",), {}))
+    error = 0.03 * bench.travel + np.random.default_rng(9).normal(size=300)
+    found = asked.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
+    assert name_sets(found) == [{"lead_error"}]
+    exact = bench.travel @ error / (bench.travel @ bench.travel)  # by all rows
+    assert_allclose(found.causes[0].unknowns[0].value, exact * 1e-3, rtol=1e-5)
 
 
 class Slow:
