@@ -64,11 +64,13 @@ def _drawn(at: Fit, more: Fit, count: int, generator: np.random.Generator) -> Ma
     parts = []
     for part, channel in zip(sample.parts, sample.channels, strict=True):
         memory = channel.memory
-        pool = whiten(more.left[part], channel.starts, memory)
-        pool = pool - pool.mean()
-        filtered = Setting(carried(memory.rho, len(pool)), memory.theta) if memory.rho else memory
-        noise = colour(generator.choice(pool, size=(len(channel), count)), channel.starts, filtered)
-        size = sqrt(channel.count / max(float(np.mean(pool**2)) * memory.variance_ratio * len(channel), 1e-300))
+        pool = more.left[part] - more.left[part].mean()
+        drawn = generator.choice(pool, size=(len(channel), count))
+        if memory.rho:  # the memory is known but for its error
+            filtered = Setting(carried(memory.rho, len(pool)), memory.theta)
+            drawn = whiten(colour(drawn, channel.starts, filtered), channel.starts, memory)
+        noise = drawn
+        size = sqrt(channel.count / max(float(np.mean(pool**2)) * len(channel), 1e-300))
         parts.append(noise * size)
     return np.concatenate([*parts, generator.standard_normal((len(at.inputs), count))])
 

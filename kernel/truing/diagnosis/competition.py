@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations, islice
-from math import inf, lgamma, log
+from math import inf, lgamma, log, log1p
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +20,7 @@ from truing.diagnosis.alarms import AT_BOUND, OUTSIDE
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.curves import Curves, Looked, look
 from truing.diagnosis.exact import EXACTLY, ROUGHLY, Fit, fit, is_too_large, nothing
-from truing.diagnosis.extended import Extended
+from truing.diagnosis.extended import Extended, shape_added
 from truing.diagnosis.sample import Sample, as_noise, learnt, sample_of
 
 if TYPE_CHECKING:
@@ -77,12 +77,27 @@ class Competition:
         """Return what an explanation pays for its numbers, for the choice of its causes and of their curves."""
         many, most = len(found.causes), max(len(self.causes), len(found.causes))
         choice = 2 * (lgamma(most + 1) - lgamma(many + 1) - lgamma(most - many + 1))
-        return choice + sum(self.price_of(cause) for cause in found.causes)
+        return choice + sum(self.price_of(cause) for cause in found.causes) + self.price_of_size(found)
 
     def price_of(self, cause: Cause) -> float:
         """Return what a cause pays for its numbers and for the choice among its independent curves."""
         own = cause.size * log(max(self.sample.total, 2.0)) + 2 * log(max(self.tries.get(cause.tag, 1.0), 1.0))
         return own + (UNREGISTERED if cause.shape is not None else MARGIN if cause.tolerated >= 0 else 0.0)
+
+    def price_of_size(self, found: Fit) -> float:
+        """Return what shapes that nobody registered pay for how much they draw: a large remainder is less likely.
+
+        With a scale of its own every amplitude costs the logarithm of what it draws over the noise.
+        """
+        total = 0.0
+        for cause, values in zip(found.causes, found.values, strict=True):
+            if cause.shape is not None:
+                added = shape_added(self.sample.machine, cause, values)
+                curves = {name: added.get(name, np.zeros(len(shown))) for name, shown in found.predicted.items()}
+                drawn = self.sample.roots(found.left) * self.sample.curve(curves)
+                share = self.sample.total / self.sample.rows
+                total += len(cause.amplitudes) * log1p(float(np.mean(drawn**2)) / share)
+        return total
 
     def score(self, found: Fit) -> float:
         """Return how unlikely an explanation is: its cost, its price, and the signs of a wrong one."""
@@ -92,7 +107,7 @@ class Competition:
         """Return the same where what is left counts as noise with the memory that suits it best."""
         known = self.owned.get(found.key)
         if known is None or known[0] is not found.left:
-            known = self.owned[found.key] = found.left, as_noise(self.sample, found.left)
+            known = self.owned[found.key] = found.left, as_noise(self.sample, found.predicted)
         inputs = float(found.inputs @ found.inputs)
         return known[1] + inputs + self.price(found) + MARGIN * signs_of_wrong(found)
 
@@ -233,7 +248,6 @@ def competition_of(extended: Extended, causes: Sequence[Cause], sample: Sample) 
     """Begin a competition with the model as it is."""
     made = Competition(extended, tuple(causes), sample, Curves(extended))
     made.keep(nothing(sample, extended))
-    made.renew()
     return made
 
 
@@ -256,10 +270,16 @@ def _singles(made: Competition) -> None:
         made.joined(made.null, cause, seen[cause.tag].starts)
 
 
-def _distinct(made: Competition, size: int, count: int, judge: Callable[[Fit], float] | None = None) -> list[Fit]:
-    """Return the best explanations of one size that do not draw the same."""
+def _distinct(
+    made: Competition,
+    size: int,
+    count: int,
+    judge: Callable[[Fit], float] | None = None,
+    accept: Callable[[Fit], bool] = lambda _: True,
+) -> list[Fit]:
+    """Return the best accepted explanations of one size that do not draw the same."""
     kept: list[Fit] = []
-    sized = [found for found in made.known.values() if len(found.causes) == size]
+    sized = [found for found in made.known.values() if len(found.causes) == size and accept(found)]
     for found in sorted(sized, key=judge or made.score):
         if all(differ(found, other) > 1.0 for other in kept):
             kept.append(found)
@@ -276,13 +296,26 @@ def differ(one: Fit, other: Fit) -> float:
 
 
 def _pairs(made: Competition) -> None:
-    for one, other in combinations(_distinct(made, 1, BEAM), 2):
-        made.fitted(one.causes + other.causes, one.values + other.values, one.inputs)
+    several = {found.key: found for found in (*_distinct(made, 1, BEAM), *_registered(made, BEAM))}
+    for one, other in combinations(several.values(), 2):
+        if _is_pair_of_note(one, other):
+            made.fitted(one.causes + other.causes, one.values + other.values, one.inputs)
+
+
+def _is_pair_of_note(one: Fit, other: Fit) -> bool:
+    """Whether a pair is fitted: of two shapes none is, since what is unregistered needs no second name."""
+    return any(cause.is_registered for cause in (*one.causes, *other.causes))
+
+
+def _registered(made: Competition, count: int) -> list[Fit]:
+    """Return the best single causes that somebody registered and that do not draw the same."""
+    return _distinct(made, 1, count, accept=lambda found: found.causes[0].is_registered)
 
 
 def _beside_firsts(made: Competition) -> None:
-    for at in _distinct(made, 1, FIRSTS):
-        made.forward(at, JOINED, lambda cause: _is_quick(cause))
+    firsts = {found.key: found for found in (*_distinct(made, 1, FIRSTS), *_registered(made, FIRSTS // 2))}
+    for at in firsts.values():
+        made.forward(at, JOINED, _is_quick)
 
 
 def _is_quick(cause: Cause) -> bool:

@@ -33,6 +33,8 @@ STRAIGHT = 1e-4
 NEAR_LEVEL = 2.0
 """A curve that bends stands for amplitudes up to so many times its own, and down to one over it."""
 FAINT = 1e-9
+OWN = 0.03
+"""Share of a curve that must be left beside an explanation for it to count as one more that was tried."""
 
 
 @dataclass(frozen=True)
@@ -263,6 +265,7 @@ def looked(bundle: Bundle, beside: Beside) -> Looked | None:
     kept = ((size > 1e-6 * raw) & (raw > FAINT)).any(axis=1)
     if not kept.any():
         return None
+    is_own = (size > OWN * raw).any(axis=1)[kept]
     weighed, points = weighed[kept], bundle.points[kept]
     basis = _orthonormal(weighed)
     gains, values = _starts(bundle, points, weighed, beside)
@@ -274,7 +277,9 @@ def looked(bundle: Bundle, beside: Beside) -> Looked | None:
         if len(chosen) == KEPT:
             break
     starts = tuple((_score(float(gains[place]), beside.total), values[place]) for place in chosen)
-    return Looked(starts, independent(basis, is_sweep=bundle.is_straight and len(bundle.cause.shapes) <= 1), basis)
+    return Looked(
+        starts, independent(basis[is_own], is_sweep=bundle.is_straight and len(bundle.cause.shapes) <= 1), basis
+    )
 
 
 def _score(gain: float, total: float) -> float:

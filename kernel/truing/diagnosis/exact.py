@@ -254,6 +254,11 @@ class _Fitting:
 
     def settle(self, until: float) -> None:
         """Step down until little is promised; then move the anchor of the inputs, where slopes miss what they do."""
+        if until <= EXACTLY and len(self.b) and self.causes:  # with the causes on, and where the inputs begin
+            self.slopes = self.slopes_of_inputs()
+            (shown,) = self.shown([self.u], self.anchor)
+            self.r0 = self.bare(shown)
+            self.b, self.left, self.cost = self.calibrated(self.r0)
         for _ in range(MOST_ANCHORS):
             self._descend(until)
             if not len(self.b) or (until > EXACTLY and float(np.abs(self.b - self.anchor).max()) < 1.0):

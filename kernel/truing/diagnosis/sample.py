@@ -7,7 +7,7 @@ Rows that lie too far out are moved to where the tails of the noise end.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -46,7 +46,7 @@ FEWEST_OF_MEMORY = 20
 """Rows from which on their memory is learnt."""
 FINER = 0.5
 """Directions of the inputs are looked for anew when the noise turns out so much finer."""
-WHITENED = 0.9
+WHITENED = 0.95
 """Up to this memory an explanation is estimated with the memory taken out; beyond it, it would be a difference only."""
 
 
@@ -218,7 +218,7 @@ def sample_of(
     for name, own in noise.items():
         rows = np.flatnonzero(mask & np.isfinite(own.values) & np.isfinite(machine.base[name]))
         starts = starts_of(_pieces(machine, mask), rows)
-        count = max(len(rows) * own.share, min(float(len(rows)), FEWEST_INDEPENDENT))
+        count = max(len(rows) * (1 - own.tails.clipped) ** 2, 1.0)
         channels.append(
             Channel(
                 name, rows, starts, own.values[rows], own.weights[rows], own.scale, count,
@@ -227,7 +227,7 @@ def sample_of(
         )  # fmt: skip
     if directions is None:
         directions = directions_seen(machine, noise, mask)
-    return Sample(machine, noise, tuple(channels), directions, mask)
+    return Sample(machine, noise, tuple(channels), directions, mask, is_white=True)
 
 
 def directions_seen(machine: Machine, noise: Mapping[str, Noise], mask: NDArray[np.bool_]) -> Matrix:
@@ -331,9 +331,10 @@ def learnt(sample: Sample, predicted: Predicted, used: float) -> dict[str, Noise
         spread = spread_of(left * before.given[rows], {name: values[rows] for name, values in own.items()})
         weights = before.given * weights_of(spread, own.get(spread.driver), rows, len(machine.records))
         weighted = left * weights[rows]
-        memory = memory_of(weighted, channel.starts) if has_order(machine) else Setting()
-        innovations = whiten(weighted, channel.starts, memory)
         floor = channel.scale * channel.least**0.5
+        is_known = has_order(machine) and robust_sd(weighted) > 2 * floor
+        memory = memory_of(weighted, channel.starts) if is_known else Setting()
+        innovations = whiten(weighted, channel.starts, memory)
         is_noise = robust_sd(innovations) > 2 * floor
         tails = tails_of(innovations) if is_noise else before.tails
         kept = _moved_in(weighted, innovations, tails) if is_noise else weighted
@@ -378,10 +379,11 @@ def memory_cost(left: Matrix, starts: NDArray[np.bool_], setting: Setting) -> fl
     return len(left) * log(square) + ratio + setting.size * log(max(len(left), 2))
 
 
-def as_noise(sample: Sample, left: Matrix) -> float:
+def as_noise(sample: Sample, predicted: Predicted) -> float:
     """Return -2 log likelihood of what is left where every result has the memory that suits it best."""
+    settings = SETTINGS if has_order(sample.machine) else (Setting(),)
     total = 0.0
-    for part, channel in zip(sample.parts, sample.channels, strict=True):
-        settings: Sequence[Setting] = SETTINGS if has_order(sample.machine) else (Setting(),)
-        total += min(memory_cost(left[part], channel.starts, setting) for setting in settings)
+    for channel in sample.channels:
+        left = channel.left(predicted[channel.name])
+        total += min(memory_cost(left, channel.starts, setting) for setting in settings)
     return total

@@ -30,19 +30,23 @@ ANY_LEVEL = 0.015
 FURTHER_LEVEL = 0.01
 LEAST_GAIN = 3.0
 """What a step must be better by in any case: below it, that there is nothing more is hardly less likely."""
+LEAST_IN_PLACE = 12.0
+"""What a step must be better by that puts other causes in the place of some: twice what counts as near."""
 WANDER = 6.0
 """What a cause must be better by, in score, than noise with a memory of its own."""
 CERTAIN = 60.0
 """A gain that needs no simulation."""
 CARRIED = 1.0
 """Standard errors by which the error of rows left out must fall."""
+NEARLY_ALL = 0.98
+"""Share of the sum of squares that a shape takes away from which on what is registered stands in its place."""
+FURTHER = 6
+"""So many causes are fitted beside what stays."""
 MANY_CURVES = 20
 """A cause with more independent curves is a wave of any period."""
 ROUGH, MENDED = 0.25, 45.0
 """A registered cause beside a shape must gain such a share of what the shape gains, or so much: a shape is rough, and
 what mends it a little is no cause."""
-NEARLY_ALL = 0.97
-"""Share of the sum of squares that a shape takes away from which on what is registered stands in its place."""
 
 
 @dataclass(frozen=True)
@@ -91,37 +95,36 @@ def _tried(made: Competition, at: Fit, folds: Folds, seed: int) -> Iterator[_Ste
 def _candidates(made: Competition, at: Fit, size: int) -> Iterator[Fit]:
     """Give what may follow an explanation: the best of so many causes; before a shape, what is registered and near it.
 
-    A polynomial draws anything. What is registered and draws nearly all of it is the better word, and a shape is then
-    what is left beside it.
+    A polynomial draws anything. What the model itself declares and draws nearly all of it is the better word, and a
+    shape is then what is left beside it.
     """
     best = _best(made, at, size)
     if best is None or not any(_draws_anything(cause) and cause.tag not in at.key for cause in best.causes):
         yield from [] if best is None else [best]
         return
     null = made.null
-    drawn = NEARLY_ALL * (_squares(best, null) - _squares(best, best))
+    least = NEARLY_ALL * (_squares(best, null) - _squares(best, best))
     named = made.ranked(
         lambda found: (
-            len(at.causes) < len(found.causes) <= size + 1
-            and all(cause.effect is not None for cause in found.causes)
-            and _squares(best, null) - _squares(best, found) >= drawn
+            len(found.causes) == size and _is_own(found) and _squares(best, null) - _squares(best, found) >= least
         )
     )
     yield from named[:1]
-    if at.causes and all(cause.effect is not None for cause in at.causes) and _is_nearly(best, at, null, drawn):
+    if at.causes and _is_own(at) and _squares(best, null) - _squares(best, at) >= least:
+        made.forward(at, FURTHER)
         yield from made.ranked(lambda found: len(found.causes) == size and found.key > at.key)[:1]
         return
     yield best
 
 
+def _is_own(found: Fit) -> bool:
+    """Whether an explanation is made of effects that the model itself declares."""
+    return all(cause.effect is not None and not cause.is_kernel for cause in found.causes)
+
+
 def _draws_anything(cause: Cause) -> bool:
     """Whether a cause is a polynomial of covariates that nobody registered."""
     return cause.shape is not None and cause.shape.kind in {"trend", "product"}
-
-
-def _is_nearly(best: Fit, at: Fit, null: Fit, drawn: float) -> bool:
-    """Whether what is registered draws nearly all that the best explanation draws, so that it stays."""
-    return _squares(best, null) - _squares(best, at) >= drawn
 
 
 def _squares(judge: Fit, found: Fit) -> float:
@@ -169,10 +172,10 @@ def _step(made: Competition, at: Fit, more: Fit, folds: Folds, *, seed: int) -> 
     level = FURTHER_LEVEL if at.causes else ANY_LEVEL
     is_believed = (
         law.p_value <= level
-        and gain >= LEAST_GAIN
+        and gain >= (LEAST_GAIN if at.key < more.key else LEAST_IN_PLACE)
         and made.own_score(at) - made.own_score(more) >= (WANDER if at.causes else 0.0)
         and not _mends(made, at, more, gain)
-        and carries_over(at, more, made.extended, folds) >= CARRIED
+        and carries_over(at, more, made.extended, folds) >= CARRIED * (len(more.causes) - len(at.causes))
         and not _beats(made, at, more)
     )
     return _Step(more, law, is_believed)
