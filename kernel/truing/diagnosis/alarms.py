@@ -33,6 +33,7 @@ def alarms_of(diagnosis: Diagnosis) -> Iterator[str]:
             moved_inputs(diagnosis),
             _growing(diagnosis),
             _unstable(diagnosis),
+            _contradicting(diagnosis),
             wandering(diagnosis),
         )
 
@@ -97,6 +98,14 @@ def _unstable(diagnosis: Diagnosis) -> Iterator[str]:
         yield (
             f"the same causes are named in {100 * diagnosis.stability:.0f} % of the folds only: parts of the record "
             "say something else; look at the ranking, and measure more rows"
+        )
+
+
+def _contradicting(diagnosis: Diagnosis) -> Iterator[str]:
+    for each in diagnosis.contradictions:
+        yield (
+            f"{each.unknown} of {each.effect} is {_amount(each.first)} in one half of the rows and "
+            f"{_amount(each.second)} in the other: the two contradict one another; look at what changed between them"
         )
 
 

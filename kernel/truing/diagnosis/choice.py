@@ -187,13 +187,22 @@ def _is_vaguer(made: Competition, best: Fit, found: Fit) -> bool:
     """Whether a shape that nobody registered draws what the winner has in its place."""
     shapes = [cause for cause in found.causes if cause.shape is not None and cause.tag not in best.key]
     gone = [place for place, cause in enumerate(best.causes) if cause.tag not in found.key]
-    if not shapes or any(best.causes[place].shape is not None for place in gone):
-        return False
+    if not shapes or all(best.causes[place].shape is not None for place in gone):
+        return _says_the_same(best, found)
     wanted = _curve_of(made, best, gone)
     columns = [column for cause in shapes for column in _columns_of(made, found, cause)]
     basis = np.linalg.qr(np.column_stack([*columns, made.sample.drawn]))[0]
     drawn = basis.T @ wanted
     return float(drawn @ drawn) >= TWIN * float(wanted @ wanted)
+
+
+def _says_the_same(best: Fit, found: Fit) -> bool:
+    """Whether two explanations have the same registered causes, and shapes over the same covariates."""
+    said = [
+        {cause.name if cause.shape is None else cause.shape.depends_on for cause in each.causes}
+        for each in (best, found)
+    ]
+    return said[0] == said[1] and shapes_in(best) > 0
 
 
 def _curve_of(made: Competition, found: Fit, places: list[int]) -> Matrix:

@@ -11,17 +11,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations, islice
-from math import inf, lgamma, log, log1p
+from math import lgamma, log, log1p
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from truing.diagnosis.alarms import AT_BOUND, OUTSIDE
-from truing.diagnosis.causes import Cause, Number
+from truing.diagnosis.causes import Cause
 from truing.diagnosis.curves import Curves, Looked, look
 from truing.diagnosis.exact import EXACTLY, ROUGHLY, Fit, fit, is_too_large, nothing
 from truing.diagnosis.extended import Extended, shape_added
 from truing.diagnosis.sample import Sample, as_noise, learnt, sample_of
+from truing.diagnosis.signs import signs_of_wrong
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -386,35 +386,3 @@ def _are_exclusive(causes: Sequence[Cause]) -> bool:
     shapes = [cause.shape for cause in causes if cause.shape is not None]
     kinds = [(shape.kind, shape.depends_on) for shape in shapes if shape.kind != "wave"]
     return len(kinds) != len(set(kinds)) or len({cause.tag for cause in causes}) != len(causes)
-
-
-def signs_of_wrong(found: Fit) -> int:
-    """Count what a wrong explanation looks like: unknowns at their bounds, inputs far outside of their tolerances."""
-    at_bound = sum(
-        is_at_bound(number, float(value))
-        for cause, values in zip(found.causes, found.values, strict=True)
-        if cause.effect is not None
-        for number, value in zip(cause.numbers, values, strict=True)
-    )
-    return at_bound + len(far_inputs(found))
-
-
-def is_at_bound(number: Number, value: float) -> bool:
-    """Whether a fitted number lies at an end of its declared range, other than at zero."""
-    if not number.is_free:
-        return False
-    reach = AT_BOUND * (number.high - number.low)
-    return any(end and abs(end) < inf and abs(value - end) <= reach for end in (number.low, number.high))
-
-
-def far_inputs(found: Fit) -> list[int]:
-    """Return the places of inputs that no cause shifts and that were moved far beyond their tolerances."""
-    shifted = {cause.tolerated for cause in found.causes}
-    inputs, moved = found.sample.machine.inputs, found.moved
-    start = found.sample.machine.start
-    made = []
-    for place, item in enumerate(inputs):
-        off = (float(start.nominal(item.name)) + item.mean + float(moved[place]) * item.sd - item.design) / item.sd
-        if place not in shifted and abs(off) > OUTSIDE:
-            made.append(place)
-    return made

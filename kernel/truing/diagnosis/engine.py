@@ -16,6 +16,7 @@ from truing.diagnosis.design import next_points
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.findings import wrong_of
 from truing.diagnosis.gain import gains_of, nested
+from truing.diagnosis.halves import contradictions_of
 from truing.diagnosis.long_records import machine_for_search, on_all_rows
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.naming import alternative_of, calibrated_of, causes_of, extended_setup, remainder_of
@@ -132,6 +133,7 @@ def _answer(chosen: Chosen, setup: Setup, step: _Steps) -> Diagnosis:
         stability=judged.stability,
         next=tuple(points),
         ties=tuple(ties),
+        contradictions=contradictions_of(chosen),
         curves=tuple(_curves(chosen)),
         p_any=chosen.p_any,
         p_second=chosen.p_second,

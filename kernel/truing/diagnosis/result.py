@@ -219,6 +219,16 @@ class Seen:
 
 
 @dataclass(frozen=True)
+class Contradiction:
+    """An amplitude of a named cause that is not the same in both halves of the record: in the first, in the second."""
+
+    effect: str
+    unknown: str
+    first: Amount
+    second: Amount
+
+
+@dataclass(frozen=True)
 class Curves:
     """What the figures show of one result, SI, shape (n,), NaN where missing: measured, and the model before and after.
 
@@ -260,6 +270,7 @@ class Diagnosis:
     ranking: tuple[Alternative, ...] = ()
     inseparable: tuple[str, ...] = ()
     ties: tuple[Tie, ...] = ()
+    contradictions: tuple[Contradiction, ...] = ()
     extended: Setup | None = None
     """The setup with the causes on, conditions as measured and inputs calibrated; None where nothing was named."""
 
