@@ -16,7 +16,7 @@ import numpy as np
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.chosen import Chosen, Law, Rival
 from truing.diagnosis.competition import Competition, differ, exchange
-from truing.diagnosis.exact import EXACTLY, Fit, fit
+from truing.diagnosis.exact import Fit
 from truing.diagnosis.intervals import certainty_of, may_be_zero
 from truing.diagnosis.steps import Decision, is_sensible, shapes_in, shifts_inputs, steps_from
 
@@ -57,10 +57,9 @@ def choose(made: Competition, *, seed: int) -> Chosen:
     best = _certain(made, decision.at)
     if best.causes:
         best = _named_weakest(made, _registered(made, best))
-    made.again([best], EXACTLY)
-    best = made.known[best.key]
-    near = [Rival(polished(made, rival.fit), rival.behind) for rival in _rivals(made, best)]
-    return Chosen(made, polished(made, best), tuple(near), _same(made, best), decision.law, decision.p_further)
+    best = made.exact(best)
+    near = [Rival(made.exact(rival.fit), rival.behind) for rival in _rivals(made, best)]
+    return Chosen(made, best, tuple(near), _same(made, best), decision.law, decision.p_further)
 
 
 def _certain(made: Competition, best: Fit) -> Fit:
@@ -69,12 +68,13 @@ def _certain(made: Competition, best: Fit) -> Fit:
     The interval of an amplitude that saturates may hold zero although nothing else will do.
     """
     while best.causes:
-        certainty = certainty_of(polished(made, best), made.extended)
+        best = made.exact(best)
+        certainty = certainty_of(best, made.extended)
         for place, cause in enumerate(best.causes):
             less = made.without(best, place) if cause.effect is not None else None
             if less is None or made.score(less) - made.score(best) >= SURELY:
                 continue
-            if may_be_zero(polished(made, best), certainty, cause):
+            if may_be_zero(best, certainty, cause):
                 best = less
                 break
         else:
@@ -90,9 +90,8 @@ def _exchanged(made: Competition, best: Fit) -> Fit:
         kinds = _kinds(best)
         alike = [found for found in made.ranked(is_sensible) if _kinds(found) == kinds]
         top = alike[0] if alike else best
-        made.again([top], EXACTLY)
         is_same = top.key == best.key
-        best = made.known[top.key]
+        best = made.exact(top)
         if is_same:
             break
     return best
@@ -233,10 +232,3 @@ def _acts_beside(made: Competition, best: Fit, found: Fit) -> bool:
     """Whether a rival draws something else than the winner does: both together are far better than the winner."""
     union = made.known.get(best.key | found.key)
     return union is not None and made.score(union) < made.score(best) - CLOSE
-
-
-def polished(made: Competition, found: Fit) -> Fit:
-    """Fit an explanation with the memory of the noise taken out: better estimates, and intervals that hold."""
-    white = made.sample.white()
-    again = fit(white, made.extended, found.causes, found.values, found.inputs)
-    return again if again is not None else replace(found.in_sample(white))

@@ -43,8 +43,6 @@ MARGIN = 6.0
 """What every sign of a wrong explanation costs, in score: a Bayes factor of about 20."""
 UNREGISTERED = 4.0
 """What a shape that nobody registered costs beside its numbers."""
-ALIKE = 0.9
-"""Where neighbours are alike, causes are looked for both ways: an unknown cause may be what makes them alike."""
 LEAST_PROMISE = 4.0
 """A cause whose curves promise less, unpaid, is not fitted."""
 WITHIN = 60.0
@@ -95,8 +93,7 @@ class Competition:
                 added = shape_added(self.sample.machine, cause, values)
                 curves = {name: added.get(name, np.zeros(len(shown))) for name, shown in found.predicted.items()}
                 drawn = self.sample.roots(found.left) * self.sample.curve(curves)
-                share = self.sample.total / self.sample.rows
-                total += len(cause.amplitudes) * log1p(float(np.mean(drawn**2)) / share)
+                total += len(cause.amplitudes) * log1p(float(np.mean(drawn**2)))
         return total
 
     def score(self, found: Fit) -> float:
@@ -110,14 +107,6 @@ class Competition:
             known = self.owned[found.key] = found.left, as_noise(self.sample, found.predicted)
         inputs = float(found.inputs @ found.inputs)
         return known[1] + inputs + self.price(found) + MARGIN * signs_of_wrong(found)
-
-    @property
-    def judges(self) -> tuple[Callable[[Fit], float], ...]:
-        """By what the search goes on: the score and, where neighbours are alike, the noise of each explanation too.
-
-        An unknown cause may be what makes them alike; then few rows count, and nothing seems to be worth its numbers.
-        """
-        return (self.score, self.own_score) if self.sample.total < ALIKE * self.sample.rows else (self.score,)
 
     def ranked(self, accept: Callable[[Fit], bool] = lambda _: True) -> list[Fit]:
         """Return what was fitted and is accepted, the best first."""
@@ -135,10 +124,7 @@ class Competition:
     @property
     def fairest(self) -> Fit:
         """What is best where every explanation has the noise that it leaves: the noise is learnt from it."""
-        alone = self.sample.as_independent()
-        by_rows = sorted(self.known.values(), key=lambda each: alone.cost(each.left, each.inputs) + self.price(each))
-        several = {found.key: found for found in (*self.ranked()[:RENEWED], *by_rows[:RENEWED])}
-        return min(several.values(), key=self.own_score)
+        return min(self.known.values(), key=self.own_score)
 
     # ---- fits
 
@@ -168,9 +154,9 @@ class Competition:
             made = self.fitted((*at.causes, cause), (*at.values, values), at.inputs) or made
         return made
 
-    def look(self, at: Fit, causes: Sequence[Cause] | None = None, *, all_rows: bool = False) -> Mapping[str, Looked]:
+    def look(self, at: Fit, causes: Sequence[Cause] | None = None) -> Mapping[str, Looked]:
         """Compare the curves of causes with what an explanation leaves, and count their independent curves."""
-        made = look(self.curves, at, self.causes if causes is None else causes, all_rows=all_rows)
+        made = look(self.curves, at, self.causes if causes is None else causes)
         for tag, each in made.items():
             self.tries[tag] = max(self.tries.get(tag, 1.0), each.tries)
         return made
@@ -179,13 +165,10 @@ class Competition:
         """Fit the most promising causes beside an explanation."""
         if len(at.causes) >= MOST_CAUSES:
             return
-        accepted = [cause for cause in self.causes if accept(cause)]
-        ways = (False, True) if self.sample.total < ALIKE * self.sample.rows else (False,)
-        for all_rows in ways:
-            seen = self.look(at, accepted, all_rows=all_rows)
-            for cause in islice(self.promising(seen), count):
-                if at.key | {cause.tag} not in self.fresh:
-                    self.joined(at, cause, seen[cause.tag].starts)
+        seen = self.look(at, [cause for cause in self.causes if accept(cause)])
+        for cause in islice(self.promising(seen), count):
+            if at.key | {cause.tag} not in self.fresh:
+                self.joined(at, cause, seen[cause.tag].starts)
 
     def promising(self, seen: Mapping[str, Looked]) -> Iterator[Cause]:
         """Give causes by what their curves promise once they are paid for, of those of one curve the weakest."""
@@ -227,6 +210,11 @@ class Competition:
             self.again(self.ranked()[:3])
             if change < SETTLED and scale < SETTLED:
                 break
+
+    def exact(self, found: Fit) -> Fit:
+        """Return an explanation fitted to the end."""
+        self.again([found], EXACTLY)
+        return self.known[found.key]
 
     def again(self, several: Iterable[Fit], until: float = ROUGHLY) -> None:
         """Fit explanations again from where they are, in the present noise."""
@@ -274,13 +262,12 @@ def _distinct(
     made: Competition,
     size: int,
     count: int,
-    judge: Callable[[Fit], float] | None = None,
     accept: Callable[[Fit], bool] = lambda _: True,
 ) -> list[Fit]:
     """Return the best accepted explanations of one size that do not draw the same."""
     kept: list[Fit] = []
     sized = [found for found in made.known.values() if len(found.causes) == size and accept(found)]
-    for found in sorted(sized, key=judge or made.score):
+    for found in sorted(sized, key=made.score):
         if all(differ(found, other) > 1.0 for other in kept):
             kept.append(found)
         if len(kept) == count:
@@ -324,34 +311,26 @@ def _is_quick(cause: Cause) -> bool:
 
 
 def _more(made: Competition) -> None:
-    for judge in made.judges:
-        _grown(made, judge)
-
-
-def _grown(made: Competition, judge: Callable[[Fit], float]) -> None:
-    """Give the best explanations one more cause and one more, as long as that is better."""
-    now = min(made.known.values(), key=judge)
+    now = made.ranked()[0]
     while 1 <= len(now.causes) < MOST_CAUSES:
-        for at in _distinct(made, len(now.causes), STARTS, judge):
+        for at in _distinct(made, len(now.causes), STARTS):
             made.forward(at, JOINED)
-        larger = [found for found in made.known.values() if len(found.causes) == len(now.causes) + 1]
-        best = min(larger, key=judge, default=now)
-        if best is now or judge(best) >= judge(now):
+        best = made.best(len(now.causes) + 1)
+        if best is None or made.score(best) >= made.score(now):
             return
         made.backward(best)
         made.renew()
         made.refresh()
-        now = min(made.known.values(), key=judge)
+        now = made.ranked()[0]
 
 
 def _exchanged(made: Competition) -> None:
-    for judge in made.judges:
-        for _ in range(2):
-            now = min(made.known.values(), key=judge)
-            for place in range(len(now.causes)):
-                exchange(made, now, place)
-            if min(made.known.values(), key=judge).key == now.key:
-                break
+    for _ in range(2):
+        now = made.ranked()[0]
+        for place in range(len(now.causes)):
+            exchange(made, now, place)
+        if made.ranked()[0].key == now.key:
+            return
 
 
 def exchange(made: Competition, now: Fit, place: int) -> None:

@@ -234,10 +234,9 @@ class Beside:
         return np.asarray(made - (rows @ self.taken[: len(self.index)]) @ self.taken.T)
 
 
-def beside_of(found: Fit, extended: Extended, *, all_rows: bool = False) -> Beside:
-    """Return an explanation as other causes see it; ``all_rows`` takes every row as independent."""
+def beside_of(found: Fit, extended: Extended) -> Beside:
+    """Return an explanation as other causes see it."""
     sample, k = found.sample, len(found.inputs)
-    sample = sample.as_independent() if all_rows else sample
     roots = sample.roots(found.left)
     if found.causes:
         own, inputs = slopes_at(found, extended)
@@ -343,9 +342,9 @@ def independent(basis: Matrix, *, is_sweep: bool) -> float:
     return float(np.trace(gram) ** 2 / max(float((gram**2).sum()), 1e-300) / q)
 
 
-def look(curves: Curves, at: Fit, causes: Sequence[Cause], *, all_rows: bool = False) -> Mapping[str, Looked]:
+def look(curves: Curves, at: Fit, causes: Sequence[Cause]) -> Mapping[str, Looked]:
     """Compare all causes with what an explanation leaves, by their tag."""
-    beside = beside_of(at, curves.extended, all_rows=all_rows)
+    beside = beside_of(at, curves.extended)
     on = at.key
     every = ((cause.tag, looked(curves.of(cause, at), beside)) for cause in causes if cause.tag not in on)
     return {tag: each for tag, each in every if each is not None}

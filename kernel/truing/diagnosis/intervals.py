@@ -19,7 +19,7 @@ from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.columns import in_blocks
 from truing.diagnosis.exact import Fit, fit, inward, slopes_at, unit_of
 from truing.diagnosis.extended import Extended, parts_of
-from truing.diagnosis.sample import WHITENED, Channel, Sample
+from truing.diagnosis.sample import Sample
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -116,15 +116,8 @@ def certainty_of(found: Fit, extended: Extended) -> Certainty:
 
 
 def _counted(sample: Sample) -> Sample:
-    """Return the rows of a sample, each counted as far as it is independent, whether it was moved in or not."""
-
-    def count(channel: Channel) -> float:
-        if sample.is_white and channel.memory.rho <= WHITENED:
-            return float(len(channel))
-        kept = (1 - sample.noise[channel.name].tails.clipped) ** 2
-        return min(channel.count / max(kept, 1e-300), float(len(channel)))
-
-    return replace(sample, channels=tuple(replace(channel, count=count(channel)) for channel in sample.channels))
+    """Return the rows of a sample, each counted in full, whether it was moved in or not."""
+    return replace(sample, channels=tuple(replace(each, count=float(len(each))) for each in sample.channels))
 
 
 def _inverse(normal: Matrix) -> Matrix:

@@ -11,7 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing.diagnosis.choice import polished
 from truing.diagnosis.chosen import Chosen, Rival
 from truing.diagnosis.competition import Competition, competition_of
 from truing.diagnosis.exact import Fit
@@ -52,13 +51,13 @@ def on_all_rows(chosen: Chosen, machine: Machine) -> Chosen:
     best = made.known.get(chosen.best.key, made.null)
     rivals = tuple(
         Rival(
-            polished(made, made.known[rival.fit.key]),
+            made.exact(made.known[rival.fit.key]),
             max(0.0, made.score(made.known[rival.fit.key]) - made.score(best)),
         )
         for rival in chosen.rivals
         if rival.fit.key in made.known
     )
-    return replace(chosen, competition=made, best=polished(made, best), rivals=rivals)
+    return replace(chosen, competition=made, best=made.exact(best), rivals=rivals)
 
 
 def _wanted(chosen: Chosen) -> Iterator[Fit]:

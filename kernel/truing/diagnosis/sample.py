@@ -1,14 +1,15 @@
 """The rows as a fit sees them: readings in units of their noise, what the tolerated inputs draw, how many rows count.
 
-Least squares on the rows as they are, each result in its own noise. Where rows have an order that means something
-(a time, a path), what an explanation leaves is alike in neighbours, and only so many rows count as are independent.
-Rows that lie too far out are moved to where the tails of the noise end.
+Each result in its own noise. Where rows have an order that means something (a time, a path), what an explanation leaves
+is alike in neighbours: this memory of the noise is taken out, so that a slow curve counts for the few independent rows
+that it has, and a jump for all of them. All explanations have the memory that the fairest of them leaves. Rows that lie
+too far out are moved to where the tails of the noise end.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import log
@@ -38,16 +39,10 @@ if TYPE_CHECKING:
     Matrix = NDArray[np.float64]
 
 WITHOUT_MEMORY, NORMAL, CONSTANT = Setting(), Tails(np.inf, 4.5, 0.0), Spread()
-FEWEST_INDEPENDENT = 8.0
-"""So many rows count at least, or all there are: from fewer independent ones their memory is not known."""
 SMALLEST_SHARE = 1e-6
 """Of the readings: noise is no smaller, or it is rounding."""
 FEWEST_OF_MEMORY = 20
 """Rows from which on their memory is learnt."""
-FINER = 0.5
-"""Directions of the inputs are looked for anew when the noise turns out so much finer."""
-WHITENED = 0.95
-"""Up to this memory an explanation is estimated with the memory taken out; beyond it, it would be a difference only."""
 
 
 @dataclass(frozen=True)
@@ -66,18 +61,14 @@ class Noise:
     tails: Tails = NORMAL
     spread: Spread = CONSTANT
 
-    @property
-    def share(self) -> float:
-        """Independent rows per row; rows that were moved in say less."""
-        return self.memory.independent_share * (1 - self.tails.clipped) ** 2
-
 
 @dataclass(frozen=True)
 class Channel:
     """One measured result on the rows of a fit: their places among the records (n,), and where runs begin (n,).
 
     ``values`` are SI, ``weights`` one over the relative standard deviation. ``least`` is the smallest mean square, in
-    units of the noise, that is more than rounding or the steps of the gauge; ``count`` the number of independent rows.
+    units of the noise, that is more than rounding or the steps of the gauge. ``count`` is what the rows are worth:
+    those that were moved in say less.
     """
 
     name: str
@@ -103,7 +94,7 @@ class Sample:
     """All measured values of a fit, one result behind another, and the directions in which the inputs may move.
 
     ``directions`` has shape (inputs, K): u of them move the inputs by ``directions @ u`` standard deviations from
-    their means. ``is_white``: what is left is taken without its memory.
+    their means. What is left, and what is drawn, is taken without the memory of the noise.
     """
 
     machine: Machine
@@ -111,7 +102,6 @@ class Sample:
     channels: tuple[Channel, ...]
     directions: Matrix
     mask: NDArray[np.bool_]
-    is_white: bool = False
 
     @property
     def rows(self) -> int:
@@ -148,8 +138,6 @@ class Sample:
         return np.concatenate(parts)
 
     def _white(self, channel: Channel, values: Matrix) -> Matrix:
-        if not self.is_white or channel.memory.rho > WHITENED:
-            return values
         return whiten(values, channel.starts, channel.memory)
 
     @cached_property
@@ -184,20 +172,6 @@ class Sample:
             [np.full(len(channel), weight) for channel, weight in zip(self.channels, weights, strict=True)]
         )
 
-    def white(self) -> Sample:
-        """Return the same rows with the memory of the noise taken out."""
-        channels = [
-            replace(each, count=len(each) * (1 - self.noise[each.name].tails.clipped) ** 2)
-            if each.memory.rho <= WHITENED
-            else each
-            for each in self.channels
-        ]
-        return replace(self, channels=tuple(channels), is_white=True)
-
-    def as_independent(self) -> Sample:
-        """Return the same rows as if each of them told something new."""
-        return replace(self, channels=tuple(replace(each, count=float(len(each))) for each in self.channels))
-
     def of_rows(self, mask: NDArray[np.bool_]) -> Sample:
         """Return some of the rows, with the same noise."""
         return sample_of(self.machine, self.noise, self.mask & mask, self.directions)
@@ -227,7 +201,7 @@ def sample_of(
         )  # fmt: skip
     if directions is None:
         directions = directions_seen(machine, noise, mask)
-    return Sample(machine, noise, tuple(channels), directions, mask, is_white=True)
+    return Sample(machine, noise, tuple(channels), directions, mask)
 
 
 def directions_seen(machine: Machine, noise: Mapping[str, Noise], mask: NDArray[np.bool_]) -> Matrix:
