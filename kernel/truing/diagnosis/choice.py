@@ -49,7 +49,10 @@ def choose(made: Competition, *, seed: int) -> Chosen:
     """Decide how many causes there are and which, and gather what is near."""
     decision = steps_from(made, Decision(made.null, Law(np.zeros(0), 1.0)), seed=seed)
     for _ in range(ROUNDS if decision.at.causes else 0):
+        before = len(made.known)
         best = _exchanged(made, decision.at)
+        if best.key == decision.at.key and len(made.known) == before:
+            break
         again = steps_from(made, replace(decision, at=best), seed=seed + 1)
         if again.at.key == decision.at.key:
             break

@@ -66,6 +66,7 @@ class Competition:
     tries: dict[str, float] = field(default_factory=dict)
     fits: int = 0
     owned: dict[frozenset[str], tuple[Matrix, float]] = field(default_factory=dict)
+    looked: dict[frozenset[str], tuple[Matrix, dict[str, Looked | None]]] = field(default_factory=dict)
     fresh: set[frozenset[str]] = field(default_factory=set)
     """What was fitted in the present noise."""
 
@@ -156,7 +157,14 @@ class Competition:
 
     def look(self, at: Fit, causes: Sequence[Cause] | None = None) -> Mapping[str, Looked]:
         """Compare the curves of causes with what an explanation leaves, and count their independent curves."""
-        made = look(self.curves, at, self.causes if causes is None else causes)
+        wanted = [cause for cause in (self.causes if causes is None else causes) if cause.tag not in at.key]
+        left, known = self.looked.get(at.key, (None, {}))
+        if left is not at.left:
+            known = {}
+        new = [cause for cause in wanted if cause.tag not in known]
+        known = {**known, **dict.fromkeys((cause.tag for cause in new), None), **look(self.curves, at, new)}
+        self.looked = {at.key: (at.left, known)}  # the last one only: waves have many curves
+        made = {cause.tag: each for cause in wanted if (each := known[cause.tag]) is not None}
         for tag, each in made.items():
             self.tries[tag] = max(self.tries.get(tag, 1.0), each.tries)
         return made
