@@ -262,7 +262,7 @@ def test_the_smallest_visible_size_by_dense_algebra(tmp_path: Path, tolerances: 
     error = wander(np.random.default_rng(33), 60, rho)
     error /= np.sqrt(error @ np.linalg.solve(noise, error) / 60)
     made = ready(tmp_path, error, tolerances=tolerances, effects=("lead_error", "clearance"))
-    made.sample = remembering(made.sample, rho).white()
+    made.sample = remembering(made.sample, rho)
     seen = {item.name: item for item in smallest_visible(unmoved(made))}
     contact = np.sign(bench.load) * np.abs(bench.load) ** (2 / 3)
     if tolerances:

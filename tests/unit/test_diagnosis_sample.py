@@ -21,7 +21,7 @@ from truing.diagnosis.extended import Extended
 from truing.diagnosis.machine import Machine, directions_of, machine_of
 from truing.diagnosis.noise import SETTINGS, Setting, Tails, robust_sd
 from truing.diagnosis.sample import (
-    FEWEST_INDEPENDENT,
+    FEWEST_OF_MEMORY,
     Noise,
     Sample,
     has_order,
@@ -99,18 +99,24 @@ def test_rows_of_which_some_are_moved_in_count_less(tmp_path: Path, clipped: flo
     """
     made = sample(machine(tmp_path, noise()), tails=Tails(3.0, 1.9, clipped))
     assert_allclose(made.total, worth)
-    assert_allclose(made.white().total, worth)
     assert made.rows == 150
-    assert made.as_independent().total == 150
+    few = made.of_rows(np.arange(150) < 20)
+    assert_allclose(few.total, 20 * worth / 150)
 
 
-@pytest.mark.parametrize(("rho", "worth"), [(0.0, 150), (0.6, 37.5), (0.95, FEWEST_INDEPENDENT)])
-def test_rows_that_carry_over_count_as_those_that_are_independent(tmp_path: Path, rho: float, worth: float) -> None:
-    """(1 - rho) / (1 + rho) of them, for the mean of a long record."""
+@pytest.mark.parametrize("rho", [0.0, 0.6, 0.92])
+def test_a_slow_curve_counts_for_the_few_independent_rows_that_it_has_and_a_jump_for_all(
+    tmp_path: Path, rho: float
+) -> None:
+    """Information of an offset: 1' C^-1 1 = 1 - rho^2 + (n - 1)(1 - rho)^2; of what alternates (1 + rho)^2 a row.
+
+    C is the covariance of an autoregression with unit innovations. All rows are counted, whatever their memory.
+    """
     made = sample(machine(tmp_path, noise()), memory=Setting(rho))
-    assert_allclose(made.total, worth)
-    few = made.of_rows(np.arange(150) < FEWEST_INDEPENDENT - 2)
-    assert_allclose(few.total, FEWEST_INDEPENDENT - 2)  # no more than there are
+    assert made.total == 150
+    slow, fast = (made.curve({"deflection": each * UM}) for each in (np.ones(150), (-1.0) ** np.arange(150)))
+    assert_allclose(slow @ slow, 1 - rho**2 + 149 * (1 - rho) ** 2, rtol=1e-9)
+    assert_allclose(fast @ fast, 1 - rho**2 + 149 * (1 + rho) ** 2, rtol=1e-9)
 
 
 def test_the_cost_is_the_likelihood_profiled_over_the_noise_and_the_prior_of_the_inputs(tmp_path: Path) -> None:
@@ -127,15 +133,16 @@ def test_the_cost_is_the_likelihood_profiled_over_the_noise_and_the_prior_of_the
 
 def test_with_the_memory_taken_out_rows_are_independent(tmp_path: Path) -> None:
     there = machine(tmp_path, noise(), ["a"] * 60 + ["b"] * 90)
-    made = sample(there, memory=AR).white()
+    made = sample(there, memory=AR)
     root = inverse_root(0.6, [60, 90])
     plain = sample(there)
     assert_allclose(made.left(there.base), root @ noise(), atol=1e-6)
     drawn = root @ plain.drawn
     assert_allclose(made.drawn @ made.drawn.T, drawn @ drawn.T, rtol=1e-9, atol=1e-9)
+    added = {"deflection": BENCH.travel * UM}
+    assert_allclose(made.curve(added), root @ BENCH.travel, rtol=1e-9, atol=1e-9)
     assert made.total == 150
-    walk = sample(there, memory=Setting(0.95)).white()  # would leave differences only
-    assert_allclose(walk.left(there.base), noise(), atol=1e-6)
+    assert max(setting.rho for setting in SETTINGS) < 0.95  # or differences alone would be left
 
 
 @pytest.mark.parametrize(
@@ -218,7 +225,9 @@ def test_a_memory_is_found_where_there_is_one_and_enough_rows() -> None:
     rng = np.random.default_rng(9)
     assert memory_of(wander(rng, 400, 0.6), starts) in {Setting(0.6), Setting(0.45)}
     assert memory_of(rng.normal(size=400), starts) == Setting()
-    assert memory_of(np.linspace(0, 1, 19), starts[:19]) == Setting()
+    few = FEWEST_OF_MEMORY - 1
+    assert memory_of(np.linspace(0, 1, few), starts[:few]) == Setting()
+    assert memory_of(np.linspace(0, 1, few + 1), starts[: few + 1]) != Setting()
 
 
 def own_score(there: Machine) -> float:
@@ -280,4 +289,3 @@ def test_a_memory_is_learnt_with_the_rows_in_order(tmp_path: Path) -> None:
     error = wander(np.random.default_rng(12), 150, 0.75)
     found = learn(machine(tmp_path, error))
     assert found.memory.rho > 0.4
-    assert_allclose(found.share, found.memory.independent_share * (1 - found.tails.clipped) ** 2)

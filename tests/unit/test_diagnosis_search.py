@@ -26,10 +26,11 @@ from numpy.testing import assert_allclose
 
 from truing.diagnosis.causes import Number
 from truing.diagnosis.chance import DRAWS, FIRST_DRAWS, HOPELESS, LARGEST_RHO, _drawn, _largest, carried, law_of
-from truing.diagnosis.competition import Competition, _are_exclusive, differ, far_inputs, is_at_bound, search
+from truing.diagnosis.competition import Competition, _are_exclusive, differ, search
 from truing.diagnosis.curves import Looked, beside_of
 from truing.diagnosis.noise import Setting
 from truing.diagnosis.sample import sample_of
+from truing.diagnosis.signs import far_inputs, is_at_bound
 
 ROWS = 150
 NAMES = ("lead_error", "clearance", "wear", "thermal_growth", "sensor_offset", "sensor_gain", "sensor_drift")
@@ -169,21 +170,21 @@ def test_simulations_carry_over_a_little_more_than_was_fitted() -> None:
 
 @pytest.mark.parametrize("rho", [0.0, 0.6])
 def test_noise_is_drawn_by_the_recursion_from_what_is_left(tmp_path: Path, rho: float) -> None:
-    """Innovations are drawn from those of the better explanation; squares count as independent rows do."""
+    """Innovations are drawn from those of the better explanation, carried on, and freed of the memory that is known."""
     made = competing(tmp_path, 0.02 * BENCH.travel, tolerated=True)
     noise = {name: replace(own, memory=Setting(rho)) for name, own in made.sample.noise.items()}
     sample = sample_of(made.sample.machine, noise, made.sample.mask)
     at, more = made.null.in_sample(sample), fit_of(made, "lead_error").in_sample(sample)
     drawn = _drawn(at, more, 7, np.random.default_rng(11))
-    pool = np.append(more.left[0] * np.sqrt(1 - rho**2), more.left[1:] - rho * more.left[:-1])
-    pool = pool - pool.mean()
+    pool = more.left - more.left.mean()  # the memory is taken out
     generator, rho_used = np.random.default_rng(11), carried(rho, ROWS)
     innovations, by_hand = generator.choice(pool, size=(ROWS, 7)), np.zeros((ROWS, 7))
     by_hand[0] = innovations[0] / np.sqrt(1 - rho_used**2)
     for row in range(1, ROWS):
         by_hand[row] = rho_used * by_hand[row - 1] + innovations[row]
-    size = np.sqrt(sample.total / ROWS / np.mean(pool**2) * (1 - rho**2))
-    assert_allclose(drawn[:ROWS], by_hand * size, rtol=1e-9, atol=1e-12)
+    by_hand[1:] -= rho * by_hand[:-1]
+    by_hand[0] *= np.sqrt(1 - rho**2)
+    assert_allclose(drawn[:ROWS], by_hand / np.sqrt(np.mean(pool**2)), rtol=1e-9, atol=1e-12)
     assert_allclose(drawn[ROWS:], generator.standard_normal((2, 7)))
 
 
