@@ -13,7 +13,7 @@ import pytest
 from measured import CONTRACT, Diagnosed, calc_here, names, read_document
 from shown_in_docs import EXAMPLES, ROOT
 
-from truing.diagnosis import chance, choice
+from truing.diagnosis import chance, choice, steps
 from truing.diagnosis.noise import SETTINGS
 
 PLAY = EXAMPLES / "press_off_by_40_um"
@@ -155,8 +155,8 @@ def test_the_explanation_states_the_levels_in_force() -> None:
     text = " ".join(METHOD.read_text(encoding="utf-8").split())
     words = {13: "Thirteen"}
     for said in (
-        f"Something is there if it is at most {choice.ANY_LEVEL}",
-        f"with what is believed so far as what is true, at {choice.FURTHER_LEVEL}",
+        f"Something is there if it is at most {steps.ANY_LEVEL}",
+        f"with what is believed so far as what is true, at {steps.FURTHER_LEVEL}",
         f"{chance.DRAWS} records are simulated",
         f"whose score is within {choice.CLOSE:g} (",
         f"{words[len(SETTINGS)]} such filters are tried",
