@@ -113,13 +113,17 @@ def test_a_straight_line_is_excluded_and_the_spread_grows_by_hand() -> None:
     assert 2 * (power - line) > 6  # of as many unknowns
     assert 2 * (beam - line) + np.log(107) > 10  # of one unknown less
     assert abs(2 * (power - beam)) < 6  # these rows do not tell them apart by their likelihood
+    assert np.log(107) - 2 * (power - beam) > 6  # but a power has a number more, and its price makes it no alternative
     assert (of_line, of_beam) == pytest.approx((0.75, 0.75), abs=0.2)
 
 
-def test_every_explanation_is_concave_and_more_than_one_is_left(whole: Document) -> None:
-    assert whole["verdict"] == "one_of"
+def test_every_explanation_is_concave_and_the_bend_of_one_number_stands_first(whole: Document) -> None:
+    """A power of two numbers fits no better, as computed by hand above: it is ranked, but need not be among them."""
+    assert whole["verdict"] in {"named", "one_of"}
     assert all(causes & CONCAVE for causes in explanations(whole))
-    assert {frozenset({"narrow_beam"}), frozenset({"compressed_echo"})} <= explanations(whole)
+    assert whole["explanations"][0] == ["narrow_beam"]
+    behind = {frozenset(item["causes"]): item["behind"] for item in whole["ranking"]}
+    assert frozenset({"compressed_echo"}) in explanations(whole) or 6 < behind[frozenset({"compressed_echo"})] < 12
 
 
 def test_the_spread_grows_with_size_and_neighbours_are_not_alike(whole: Document) -> None:
@@ -162,7 +166,6 @@ def test_half_of_the_rows_say_the_same(taken: Any, tmp_path: Path) -> None:
     assert all(causes & CONCAVE for causes in explanations(half))
 
 
-@pytest.mark.xfail(strict=False, reason="an offset alone is not excluded, though its likelihood is far behind")
 def test_without_a_concave_effect_the_rows_say_that_something_is_missing(tmp_path: Path) -> None:
     """A curve over the size is left, and no offset or gain alone: both are far behind it, as computed by hand above."""
 
