@@ -166,7 +166,7 @@ def test_a_gain_and_a_loss_of_stiffness_are_three_degrees_apart(tmp_path: Path) 
     assert "(angle 3.3 degrees)" in said[0]
 
 
-def test_three_hundred_rows_that_carry_over_are_worth_seventy_five(tmp_path: Path) -> None:
+def test_three_hundred_rows_that_carry_over_say_of_an_offset_what_seventy_five_do(tmp_path: Path) -> None:
     setting = Setting(0.6)
     assert_allclose(300 * setting.independent_share, 75, rtol=1e-12)
     made = colour(np.eye(4000), one_run(4000), setting)  # columns: the answer to one innovation each
@@ -179,9 +179,11 @@ def test_three_hundred_rows_that_carry_over_are_worth_seventy_five(tmp_path: Pat
     plain = plain_competition(asked, records, UM).sample
     noise = {name: replace(own, memory=setting) for name, own in white_noise(plain.machine, UM).items()}
     sample = sample_of(plain.machine, noise, plain.mask)
-    assert_allclose(sample.total, 75, rtol=1e-12)
-    assert_allclose(sample.cost(left, np.zeros(0)), 75 * np.log(np.mean(left**2)), rtol=1e-9)
-    assert_allclose(np.sum((sample.roots(left) * left) ** 2), 75, rtol=1e-9)
+    offset = sample.curve({"deflection": np.full(300, UM)})
+    assert_allclose(offset @ offset * setting.variance_ratio, 1 + 299 / 4, rtol=1e-9)  # in noise of 1 um
+    assert sample.total == 300  # the memory is taken out: no row counts less than another
+    assert_allclose(sample.cost(left, np.zeros(0)), 300 * np.log(np.mean(left**2)), rtol=1e-9)
+    assert_allclose(np.sum((sample.roots(left) * left) ** 2), 300, rtol=1e-9)
 
 
 @pytest.mark.parametrize(("rho", "seen"), [(0.3, 0.837), (0.6, 0.632), (0.9, 0.316)])

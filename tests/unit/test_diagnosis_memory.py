@@ -28,8 +28,9 @@ from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Model, Tolerance, Unknown, normal, trials
 from truing.diagnosis import competition, long_records, machine
+from truing.diagnosis.choice import choose
 from truing.diagnosis.columns import times
-from truing.diagnosis.engine import diagnose
+from truing.diagnosis.engine import diagnose, laid_out
 from truing.diagnosis.machine import predict
 from truing.diagnosis.sample import first_noise
 
@@ -97,6 +98,41 @@ def test_a_search_looks_at_one_row_of_every_stretch(tmp_path: Path, monkeypatch:
     assert (few.lines == records.lines[taken]).all()
     assert len(np.unique(np.diff(taken))) > 3  # no regular step, which would fold a wave into another one
     assert long_records.searched(few, seed=1) is few
+
+
+def test_a_record_along_an_axis_of_the_model_is_searched_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its rows are one path: of some of them the model would draw another one."""
+    bench, asked = wide(130), Asked(drive_model(("lead_error",)))
+    records = asked.records(tmp_path, bench.columns(0.0 * bench.time))
+    assert long_records.searched(records, seed=1) is records
+    monkeypatch.setattr(long_records, "LONG", 40)
+    assert len(long_records.searched(records, seed=1)) == 40
+    along = replace(records, rows=replace(records.rows, series=("travel",)))
+    assert long_records.searched(along, seed=1) is along
+
+
+def test_a_decision_on_some_rows_is_kept_and_its_rivals_are_fitted_to_all(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Growth and a drift of the gauge draw one curve: both, and what is ranked, are those of all rows."""
+    monkeypatch.setattr(long_records, "LONG", 100)
+    bench, asked = wide(400), Asked(drive_model(("lead_error", "thermal_growth"), {}))
+    error = 0.3 * (bench.temperature - 20) + np.random.default_rng(9).normal(size=400)
+    records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
+    whole = machine.machine_of(asked.setup, records)
+    few = laid_out(long_records.machine_for_search(whole, seed=1))
+    competition.search(few)
+    chosen = choose(few, seed=1)
+    assert few.sample.rows == 100
+    found = long_records.on_all_rows(chosen, whole)
+    assert found.best.key == chosen.best.key
+    assert found.competition.sample.rows == found.best.sample.rows == found.null.sample.rows == 400
+    assert all(rival.fit.sample.rows == 400 and rival.behind >= 0 for rival in found.rivals)
+    assert {rival.fit.key for rival in found.rivals} <= {rival.fit.key for rival in chosen.rivals}
+    wanted = {each.key for each in few.ranked()[: long_records.RANKED]}
+    assert wanted <= set(found.competition.known)
+    assert found.law is chosen.law
+    assert long_records.on_all_rows(found, whole) is found
 
 
 def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,18 @@ from diagnosis_models import UM, Array, Asked, decided, drive_model, fit_of, gau
 from numpy.testing import assert_allclose
 
 from truing.diagnosis import choice
-from truing.diagnosis.choice import CLOSE, SURE, _rivals, _same, unsure
+from truing.diagnosis.choice import (
+    CLOSE,
+    SURE,
+    SURELY,
+    TWIN,
+    _certain,
+    _is_vaguer,
+    _rivals,
+    _same,
+    _says_the_same,
+    unsure,
+)
 from truing.diagnosis.competition import MARGIN, Competition
 from truing.diagnosis.exact import Fit
 from truing.diagnosis.noise import Setting
@@ -173,3 +184,80 @@ def test_the_weakest_name_of_a_curve_is_the_winner(tmp_path: Path) -> None:
     assert [cause.name for cause in chosen.best.causes] == ["sensor_offset"]
     assert set(chosen.same[chosen.best.causes[0].tag]) == {"clearance"}
     assert_allclose(chosen.best.values[0][0], error.mean() * UM, rtol=0, atol=0.01 * UM)  # 0.1 is its error
+
+
+# What may as well be zero
+
+
+@pytest.mark.parametrize(("offset", "stays"), [(0.1, False), (1.0, True)])
+def test_an_effect_whose_interval_holds_zero_is_left_out(tmp_path: Path, offset: float, stays: bool) -> None:
+    """An offset of 90 readings with noise of 1 um has a standard error of 0.1 um."""
+    bench = wide(ROWS, seed=21)
+    noise = np.random.default_rng(3).normal(0, 1, ROWS)
+    design = np.column_stack([bench.travel, np.ones(ROWS)])
+    by_hand = offset - np.linalg.lstsq(design, noise)[0][1]  # what least squares then say is ``offset``
+    made = competing(tmp_path, 0.05 * bench.travel + by_hand)
+    best = fit_of(made, "lead_error", "sensor_offset")
+    assert_allclose(best.values[1][0], offset * UM, rtol=1e-3)
+    kept = ["lead_error", "sensor_offset"] if stays else ["lead_error"]
+    assert [cause.name for cause in _certain(made, best).causes] == kept
+
+
+@pytest.mark.parametrize(("worth", "stays"), [(SURELY - 5, False), (SURELY + 5, True)])
+def test_an_effect_without_which_much_is_lost_stays_although_its_interval_holds_zero(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, worth: float, stays: bool
+) -> None:
+    made = competing(tmp_path, 0.05 * wide(ROWS, seed=21).travel + 1)
+    best = fit_of(made, "lead_error", "sensor_offset")
+    scores = {best.key: 0.0, best.key - {best.causes[1].tag}: worth, best.key - {best.causes[0].tag}: 1e3}
+    monkeypatch.setattr(made, "score", lambda found: scores.get(found.key, 2e3))
+    monkeypatch.setattr(choice, "may_be_zero", lambda found, certainty, cause: cause.name == "sensor_offset")
+    assert (len(_certain(made, best).causes) == 2) is stays
+
+
+# Vaguer words
+
+
+def shaped(made: Competition, tag: str) -> Fit:
+    """One shape that nobody registered, fitted."""
+    (cause,) = (each for each in made.causes if each.tag == f"unknown:{tag}:deflection")
+    found = made.joined(made.null, cause, made.look(made.null, [cause])[cause.tag].starts)
+    assert found is not None
+    return found
+
+
+def test_a_shape_is_vaguer_that_draws_98_percent_of_what_the_winner_has(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A parabola holds a line and no jump of the same covariate; how much of the jump it draws is a projection."""
+    bench = wide(ROWS, seed=21)
+    made = competing(tmp_path, 0.05 * bench.travel + 5 * np.sign(bench.load))
+    lead, jump = fit_of(made, "lead_error"), fit_of(made, "clearance")
+    travel, load = shaped(made, "trend.3:travel"), shaped(made, "trend.3:load")
+    assert _is_vaguer(made, lead, travel)
+    assert not _is_vaguer(made, lead, load)
+    assert not _is_vaguer(made, jump, load)
+    sign, powers = np.sign(bench.load), np.column_stack([bench.load**power for power in range(3)])
+    rest = sign - powers @ np.linalg.lstsq(powers, sign)[0]
+    share = 1 - float(rest @ rest / (sign @ sign))
+    assert share < TWIN
+    for wanted, is_vaguer in ((share - 1e-3, True), (share + 1e-3, False)):
+        monkeypatch.setattr(choice, "TWIN", wanted)
+        assert _is_vaguer(made, jump, load) is is_vaguer
+
+
+def test_shapes_over_the_same_covariates_say_the_same(tmp_path: Path) -> None:
+    bench = wide(ROWS, seed=21)
+    made = competing(tmp_path, 9 * ((bench.travel - 150) / 150) ** 4 + 5 * np.sign(bench.load))
+    low, high, other = (shaped(made, tag) for tag in ("trend.3:travel", "trend.5:travel", "trend.3:load"))
+    assert _says_the_same(low, high)
+    assert _is_vaguer(made, high, low)
+    assert not _says_the_same(low, other)
+    assert not _is_vaguer(made, low, other)
+    lead, jump = fit_of(made, "lead_error"), fit_of(made, "clearance")
+    assert not _says_the_same(lead, lead)  # nothing registered is vague
+    assert not _says_the_same(lead, jump)
+    assert not _says_the_same(low, lead)
+    beside = replace(low, causes=(*low.causes, *jump.causes), values=(*low.values, *jump.values))
+    assert not _says_the_same(low, beside)
+    assert _says_the_same(beside, replace(beside, causes=(*high.causes, *jump.causes)))

@@ -159,6 +159,15 @@ def test_the_step_of_a_gauge_is_what_all_readings_are_multiples_of(values: Array
     assert resolution_of(values) == step
 
 
+@pytest.mark.parametrize("step", [0.1, 0.25, 3.0])
+def test_the_step_of_a_gauge_is_found_in_what_it_shows(step: float) -> None:
+    """Noise of two steps, rounded; where one reading in three was rescaled all are multiples of nothing."""
+    shown = np.round(2 * np.random.default_rng(4).normal(size=400)) * step
+    assert_allclose(resolution_of(shown), step, rtol=1e-9)
+    assert_allclose(resolution_of(shown + 17.3), step, rtol=1e-9)
+    assert resolution_of(np.where(np.arange(400) % 3, shown, shown * 1.0371)) == 0
+
+
 def test_noise_is_no_smaller_than_the_rounding_of_the_gauge(tmp_path: Path) -> None:
     """Even rounding to a step s has the variance s^2 / 12."""
     total = gauge(BENCH.load, BENCH.travel)
