@@ -13,6 +13,7 @@ import pytest
 from measured import Document, calc_here, read_document
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
+from scipy.stats import f as f_distribution
 from shown_in_docs import EXAMPLES
 
 from truing.kernel.loading import load_file
@@ -164,7 +165,22 @@ def test_the_span_that_turns_is_found(
 @pytest.mark.parametrize("first", [0, 1])
 def test_half_of_the_comparisons_show_the_span_at_least(diagnosed: Callable[..., Document], first: int) -> None:
     document = diagnosed("ozone_monitor", lambda lines: lines[first::2])
-    assert any(names & {"wrong_span", "sensor_gain"} for names in explained(document))
+    span = {"wrong_span", "sensor_gain"}
+    if (
+        document["verdict"] == "undecided"
+    ):  # of 18 rows; that nothing is wrong is not said, and the best cause is a span
+        assert span & set(next(item["causes"] for item in document["ranking"] if item["causes"]))
+    else:
+        assert any(names & span for names in explained(document))
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_half_of_the_comparisons_show_the_span_once_in_a_hundred_by_hand(first: int) -> None:
+    """An F-test of a span alone, paid for ten curves: near the level at which a diagnosis calls something a cause."""
+    _, reading, ozone = (column[first::2] for column in columns("ozone_monitor"))
+    span = np.sum((ozone - reading * (reading @ ozone) / (reading @ reading)) ** 2)
+    ratio = (np.sum((ozone - reading) ** 2) - span) / (span / (len(reading) - 1))
+    assert 10 * f_distribution.sf(ratio, 1, len(reading) - 1) < 0.03
 
 
 # Insulation. NIST StRD, Nelson: log y = b1 - b2 x1 exp(-b3 x2)
@@ -200,11 +216,27 @@ def test_heat_ages_the_insulation_and_less_and_less_so(
     assert document["verdict"] in {"named", "one_of"}
     assert all(names & {"arrhenius", "rule_of_degrees"} for names in explained(document))
     assert {"arrhenius", "fading_rate"} in explained(document)
-    low, high = interval(document, "arrhenius", "energy")
-    assert low < 1.36 < high  # that of the certified law: 0.0577 1/K times k T^2 at 250 degC
+    low, high = interval(document, "rule_of_degrees", "per_kelvin")
+    assert low < per_kelvin_by_hand() < high
 
 
-@pytest.mark.xfail(strict=False, reason="an explanation that fits far better than the first is not put first")
+def per_kelvin_by_hand() -> float:
+    """How heat speeds the ageing up where the rate fades, of the rows that are fitted: a tenth below the certified law.
+
+    That law has no fade, so its heat has to do what the fade does.
+    """
+    age, temperature, log_strength, _ = columns("insulation_ageing")
+    lines = (EXAMPLES / "insulation_ageing" / "nelson.csv").read_text(encoding="utf-8").splitlines()[2:]
+    fit = np.array([not line.endswith("judge") for line in lines])
+    heat = temperature - 250
+    fitted = least_squares(
+        lambda b: (b[0] - b[1] * 32 * (age / 32) ** b[3] * np.exp(b[2] * heat) - log_strength)[fit],
+        [2.6, 0.01, 0.06, 0.9], x_scale=[2.6, 0.01, 0.06, 0.9],
+    )  # fmt: skip
+    assert fitted.x[2] == pytest.approx(0.0511, abs=5e-4)
+    return float(fitted.x[2])
+
+
 def test_the_explanation_that_fits_best_stands_first(diagnosed: Callable[..., Document]) -> None:
     age, temperature, log_strength, _ = columns("insulation_ageing")
     heat = temperature - 250
@@ -251,10 +283,21 @@ def test_places_run_out_and_how_is_left_open(
     assert document["verdict"] == "one_of"
     assert {"langmuir"} in explained(document)
     assert {"widely_unequal_places"} in explained(document)
-    assert not any("further_layers" in names for names in explained(document))
+    assert all(names & {"langmuir", "widely_unequal_places"} for names in explained(document))
 
 
-@pytest.mark.xfail(strict=False, reason="curves with one slope at zero are one curve, though they bend otherwise")
+@pytest.mark.parametrize("name", ["langmuir", "widely_unequal_places"])
+def test_another_layer_beside_places_that_run_out_is_not_excluded_by_hand(name: str) -> None:
+    """Three numbers leave a third of what two leave: 14 rows have a smooth remainder, and a layer draws it."""
+    law, size, rate, squares = MISRA[name]
+    pressure, volume = columns("adsorption")
+    left = sum_of_squares(
+        lambda b: law(b[1] * 1e-4 * pressure, b[0]) * (1 + b[2] * 1e-5 * pressure) - volume, [size, rate * 1e4, 1.0]
+    )
+    assert left == pytest.approx(0.0137, abs=2e-4)
+    assert 14 * np.log(squares / left) > 15
+
+
 def test_a_law_that_is_far_behind_is_excluded(diagnosed: Callable[..., Document]) -> None:
     """Of 14 rows and as many parameters: 14 ln(0.1246 / 0.0410) is 15.6, and 6 is the limit of an alternative."""
     worst, best = MISRA["equal_places"][3], MISRA["widely_unequal_places"][3]
