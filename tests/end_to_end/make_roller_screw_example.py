@@ -34,8 +34,8 @@ def settings(rng: np.random.Generator, *, both_ways: bool) -> dict[str, Array]:
     columns = {
         "time [h]": time,
         "axial_load [kN]": rng.uniform(2, 20, READINGS) if both_ways else np.full(READINGS, 10.0),
-        "screw_speed [r/min]": rng.uniform(60, 2000, READINGS) if both_ways else rng.uniform(550, 650, READINGS),
-        "temperature [degC]": rng.uniform(20, 60, READINGS) if both_ways else rng.uniform(28, 32, READINGS),
+        "screw_speed [r/min]": rng.uniform(60, 2000, READINGS) if both_ways else rng.uniform(590, 610, READINGS),
+        "temperature [degC]": rng.uniform(20, 60, READINGS) if both_ways else rng.uniform(29.5, 30.5, READINGS),
         "screw_angle [deg]": rng.uniform(0, 14400, READINGS),
     }
     if both_ways:
