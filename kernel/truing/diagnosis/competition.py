@@ -67,6 +67,7 @@ class Competition:
     fits: int = 0
     owned: dict[frozenset[str], tuple[Matrix, float]] = field(default_factory=dict)
     looked: dict[frozenset[str], tuple[Matrix, dict[str, Looked | None]]] = field(default_factory=dict)
+    exchanged: set[tuple[frozenset[str], str]] = field(default_factory=set)
     fresh: set[frozenset[str]] = field(default_factory=set)
     """What was fitted in the present noise."""
 
@@ -170,11 +171,11 @@ class Competition:
         return made
 
     def forward(self, at: Fit, count: int, accept: Callable[[Cause], bool] = lambda _: True) -> None:
-        """Fit the most promising causes beside an explanation."""
+        """Fit the most promising causes beside an explanation; half as many beside several."""
         if len(at.causes) >= MOST_CAUSES:
             return
         seen = self.look(at, [cause for cause in self.causes if accept(cause)])
-        for cause in islice(self.promising(seen), count):
+        for cause in islice(self.promising(seen), count if len(at.causes) < 2 else count // 2):
             if at.key | {cause.tag} not in self.fresh:
                 self.joined(at, cause, seen[cause.tag].starts)
 
@@ -213,6 +214,8 @@ class Competition:
             sample = sample_of(self.sample.machine, noise, self.sample.mask, directions)
             change = float(np.abs(np.log(sample.counts / self.sample.counts)).max())
             scale = max(abs(log(noise[name].scale / own.scale)) for name, own in self.sample.noise.items())
+            if change > SETTLED or scale > SETTLED:
+                self.exchanged = set()
             self.sample, self.fresh = sample, set()
             self.known = {key: found.in_sample(sample) for key, found in self.known.items()}
             self.again(self.ranked()[:3])
@@ -342,7 +345,10 @@ def _exchanged(made: Competition) -> None:
 
 
 def exchange(made: Competition, now: Fit, place: int) -> None:
-    """Fit an explanation with one of its causes exchanged for others, the rest refitted without it and held."""
+    """Fit an explanation with one of its causes exchanged for others, the rest refitted without it and held; once."""
+    if (now.key, now.causes[place].tag) in made.exchanged:
+        return
+    made.exchanged.add((now.key, now.causes[place].tag))
     rest = made.without(now, place)
     others = {cause.tag for cause in now.causes}
     if rest is not None:

@@ -161,7 +161,7 @@ class _Place:
 
     def bent(self, cause: Cause) -> Bundle:
         """Return the curves of a cause that bends, at amplitudes of many sizes and at shapes all over."""
-        points = spread(cause)
+        points = spread(cause, SPREAD if self.causes else 4 * SPREAD)
         made = self.changes(cause, points)
         works = np.isfinite(_known(made)).all(axis=1)
         return Bundle(cause, points[works], np.nan_to_num(made[works])[:, None, :], is_straight=False)

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 EXACTLY = 1e-5
 ROUGHLY = 1e-2
 """A fit ends where a step promises less than so much of the score."""
-MOST_STEPS = 40
+MOST_STEPS, MOST_ROUGH = 40, 12
+"""So many steps are taken to an exact end, and to a rough one."""
 STEP = 1e-4
 """Of a number, or of a hundredth of its range: by how much it is moved for a difference."""
 MOVED = 1.0
@@ -270,7 +271,7 @@ class _Fitting:
         if not self.free.any():
             return
         self.derivatives()
-        for _ in range(MOST_STEPS):
+        for _ in range(MOST_STEPS if until <= EXACTLY else MOST_ROUGH):
             moved, promised = self.step()
             if promised < until and (self.is_fresh or promised < 1e-3 * until):
                 if until <= EXACTLY and promised > 0:

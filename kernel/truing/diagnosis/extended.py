@@ -19,7 +19,10 @@ if TYPE_CHECKING:
     Matrix = NDArray[np.float64]
 
 REMEMBERED = 64
-"""So many setups with moved inputs are kept."""
+"""So many setups with moved inputs are kept, and what the model showed at so many points."""
+LARGEST = 1_000_000
+"""So many rows of what the model showed are kept."""
+Key = tuple[frozenset[str], bytes]
 Point = tuple[Sequence["Matrix"], "Matrix"]
 """The numbers of every cause, SI, and how far each tolerated input is moved, in standard deviations from its mean."""
 
@@ -31,22 +34,44 @@ class Extended:
         self.machine = machine
         self.calls = 0
         self._setups: dict[frozenset[str], Setup] = {}
+        self._shown: dict[Key, Mapping[str, Matrix]] = {}
         self._machines: dict[tuple[frozenset[str], bytes], Setup] = {}
 
     def at(self, causes: Sequence[Cause], points: Sequence[Point]) -> list[dict[str, Matrix]]:
-        """Return what the gauges show at several points, by result, SI on all rows; NaN where the model fails."""
+        """Return what the gauges show at several points, by result, SI on all rows; NaN where the model fails.
+
+        Shapes that nobody registered are added to what the model shows: points that differ in them alone are one call.
+        """
+        own = [place for place, cause in enumerate(causes) if cause.shape is None]
+        kept = [causes[place] for place in own]
+        bare = [([values[place] for place in own], moved) for values, moved in points]
+        tags = frozenset(cause.tag for cause in kept)
+        keys = [(tags, b"".join(np.asarray(each).tobytes() for each in (*values, moved))) for values, moved in bare]
+        new = {key: point for key, point in zip(keys, bare, strict=True) if key not in self._shown}
+        shown = {**self._shown, **dict(zip(new, self._called(kept, list(new.values())), strict=True))}
+        self._remember({key: shown[key] for key in keys})
+        return [
+            {name: base + _of_shapes(self.machine, causes, values, name) for name, base in shown[key].items()}
+            for key, (values, _) in zip(keys, points, strict=True)
+        ]
+
+    def _called(self, causes: Sequence[Cause], points: Sequence[Point]) -> list[Mapping[str, Matrix]]:
+        """Call the model at several points, as one batch where it can be."""
+        if not points:
+            return []
         setup, is_one = self._with(causes), self._share_inputs(causes, points)
-        if is_one and points:
+        if is_one:
             setup = self._moved(setup, frozenset(cause.tag for cause in causes), points[0][1])
         trials = [_unknowns(self.machine, causes, values) for values, _ in points]
         if not is_one:
             trials = [{**own, **self._inputs(causes, *point)} for own, point in zip(trials, points, strict=True)]
         self.calls += len(points)
-        made = predict_each(setup, self.machine.records, trials)
-        return [
-            {name: shown + _of_shapes(self.machine, causes, values, name) for name, shown in each.items()}
-            for each, (values, _) in zip(made, points, strict=True)
-        ]
+        return list(predict_each(setup, self.machine.records, trials))
+
+    def _remember(self, latest: Mapping[Key, Mapping[str, Matrix]]) -> None:
+        """Keep what the model showed last: a fit goes on from there."""
+        few = max(1, LARGEST // max(len(self.machine.records), 1))
+        self._shown = dict(list({**self._shown, **latest}.items())[-min(few, REMEMBERED) :])
 
     def _with(self, causes: Sequence[Cause]) -> Setup:
         """Return the setup with the effects of these causes on; parts of one effect are on together."""

@@ -84,8 +84,8 @@ def refined(
     return u, made
 
 
-def spread(cause: Cause) -> Matrix:
-    """Return points over amplitudes of many sizes, to both sides, and over all shapes."""
+def spread(cause: Cause, count: int) -> Matrix:
+    """Return points over amplitudes of many sizes, to both sides, and over all shapes; so many over several numbers."""
     shapes = [cause.numbers[place] for place in cause.shapes]
     ends = [
         (place, end)
@@ -103,7 +103,7 @@ def spread(cause: Cause) -> Matrix:
                     point[cause.shapes], point[place] = values, level * end
                     points.append(point)
         return np.array(points)
-    sampler = qmc.Sobol(cause.size + 1, seed=1).random(4 * SPREAD)
+    sampler = qmc.Sobol(cause.size + 1, seed=1).random(count)
     for u in sampler:
         point = np.zeros(cause.size)
         point[cause.shapes] = placed(shapes, u[None, : len(shapes)])[0] if shapes else []
