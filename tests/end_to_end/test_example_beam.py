@@ -158,8 +158,6 @@ def test_rows_held_out_are_predicted_where_outliers_are_resisted_by_hand() -> No
 
 # What the diagnosis says
 
-UNSEEN = "a grid over the period is too coarse for a wave of many turns: the wave is not found"
-
 
 def assert_names_the_wave(document: Document) -> None:
     assert document["verdict"] == "named"
@@ -170,7 +168,6 @@ def assert_names_the_wave(document: Document) -> None:
     assert np.hypot(*sizes) == pytest.approx(AMPLITUDE, rel=0.1)
 
 
-@pytest.mark.xfail(strict=False, reason=UNSEEN)
 def test_the_wave_is_named(whole: Document) -> None:
     assert_names_the_wave(whole)
 
@@ -218,7 +215,6 @@ def test_half_of_the_rows_name_the_wave(taken: Any, tmp_path: Path) -> None:
     assert_names_the_wave(half)
 
 
-@pytest.mark.xfail(strict=False, reason=UNSEEN)
 def test_half_of_the_rows_name_the_wave_or_its_alias(tmp_path: Path) -> None:
     document = LEW.diagnosed(tmp_path, every_other).document
     assert explanations(document) == {frozenset({"forced_vibration"})}

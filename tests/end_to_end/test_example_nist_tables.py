@@ -166,9 +166,7 @@ def test_the_span_that_turns_is_found(
 def test_half_of_the_comparisons_show_the_span_at_least(diagnosed: Callable[..., Document], first: int) -> None:
     document = diagnosed("ozone_monitor", lambda lines: lines[first::2])
     span = {"wrong_span", "sensor_gain"}
-    if (
-        document["verdict"] == "undecided"
-    ):  # of 18 rows; that nothing is wrong is not said, and the best cause is a span
+    if document["verdict"] == "undecided":  # of 18 rows; the best cause is a span
         assert span & set(next(item["causes"] for item in document["ranking"] if item["causes"]))
     else:
         assert any(names & span for names in explained(document))

@@ -131,7 +131,6 @@ def test_the_order_of_the_rows_does_not_matter(desk: Path, seed: int) -> None:
 
 
 @needs_the_record
-@pytest.mark.xfail(strict=False, reason="the order of rows without a time is taken for a cause, even in a sorted table")
 def test_a_table_sorted_by_life_has_no_other_cause(desk: Path) -> None:
     head, *rows = table_of(desk / "bounds.csv")
     write(desk / "sorted.csv", [head, *sorted(rows, key=lambda row: (-float(row[0]), float(row[1])))])
@@ -141,9 +140,6 @@ def test_a_table_sorted_by_life_has_no_other_cause(desk: Path) -> None:
 
 
 @needs_the_record
-@pytest.mark.xfail(
-    strict=False, reason="a name of the same curve is kept though the size it needs is out of its bounds"
-)
 def test_a_load_cell_is_not_hundreds_of_megapascals_off(desk: Path) -> None:
     """It is declared to be off by 10 MPa at the most, and would have to be by 300."""
     assert ["load_cell_zero"] not in diagnosed(desk, "bounds")["explanations"]

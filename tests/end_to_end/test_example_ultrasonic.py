@@ -204,7 +204,6 @@ def test_the_law_that_draws_the_same_curve_is_an_explanation_too(order: str, ord
     assert {frozenset({"beam_spreading"}), frozenset({"pulse_hardening"})} <= explanations(orders[order])
 
 
-@pytest.mark.xfail(strict=False, reason="the noise is taken as autocorrelated in the order of the file")
 def test_the_order_of_a_table_means_nothing(orders: dict[str, Document]) -> None:
     first, *others = (orders[order] for order in ORDERS)
     assert [other["verdict"] for other in others] == [first["verdict"]] * len(others)
@@ -231,7 +230,6 @@ def test_half_of_the_rows_are_not_surer_than_all(taken: Any, tmp_path: Path) -> 
     assert {frozenset({"beam_spreading"}), frozenset({"pulse_hardening"})} <= explanations(half)
 
 
-@pytest.mark.xfail(strict=False, reason="of an effect that is the same as a gain of the gauge nothing is said")
 def test_of_every_effect_something_is_said(ultrasonic: Any, orders: dict[str, Document]) -> None:
     sources = ultrasonic.ULTRASONIC_CALIBRATION.errors
     effects = {source.name for source in sources if source.name not in {"first_response", "attenuation"}}
