@@ -186,7 +186,8 @@ def test_the_coefficient_that_is_named_is_that_of_least_squares(said: Said) -> N
     drops = [drop_of(f"{said.ball}_{number}") for number in (1, 2)]
     value, _ = fit([(drop.time, drop.height, drop.lightness) for drop in drops])
     (named,) = re.findall(r"air drag, ([\d.]+) \(", said.found)
-    assert float(named) == pytest.approx(value, rel=0.08)
+    plain = said.found.endswith(")")  # beside a remainder, or where the halves differ, least squares share the drag
+    assert float(named) == pytest.approx(value, rel=0.08 if plain else 0.15)
 
 
 def test_intervals_are_narrower_than_the_drops_of_a_ball_differ() -> None:
@@ -257,7 +258,8 @@ def test_nothing_is_named_that_the_rows_of_a_dense_ball_do_not_hold(dense: str, 
     else:
         assert (found["explanations"], names(found), said.found) == ([], [], "nothing")
     assert found["smallest_visible"]["air_drag"]["value"] == pytest.approx(said.visible, abs=0.006)
-    assert found["wrong"]["height"]["noise_floor"]["value"] == pytest.approx(1e3 * said.noise, abs=6)
+    floor = found["wrong"]["height"]["noise_floor"]
+    assert floor["value"] / {"m": 1, "mm": 1e3}[floor["unit"]] == pytest.approx(said.noise, abs=6e-3)
 
 
 def test_a_basketball_is_not_explained_by_a_constant_coefficient(tmp_path: Path) -> None:
@@ -273,7 +275,7 @@ def test_one_drop_of_a_basketball_excludes_the_coefficient_of_textbooks_only(tmp
     first = {cause["effect"]: cause["unknowns"] for cause in found["causes"]}
     every = [first, *(each["unknowns"] for each in found["alternatives"])]
     low, high = next(each["air_drag"] for each in every if "air_drag" in each)["drag_coefficient"]["interval95"]
-    assert (low, high < 0.5) == (0.0, True)
+    assert low < 0.1 <= high < 0.5  # 0.1 is what Achenbach measured beyond the drag crisis
 
 
 def test_the_page_shows_drag_the_control_and_a_ball_never_fitted() -> None:
