@@ -87,14 +87,19 @@ class Competition:
     def price_of_size(self, found: Fit) -> float:
         """Return what shapes that nobody registered pay for how much they draw: a large remainder is less likely.
 
-        With a scale of its own every amplitude costs the logarithm of what it draws over the noise.
+        With a scale of its own every amplitude costs the logarithm of what it draws over the noise. A constant is free:
+        two shapes may each have one, and only their sum is drawn.
         """
-        total = 0.0
+        total, roots = 0.0, self.sample.roots(found.left)
         for cause, values in zip(found.causes, found.values, strict=True):
             if cause.shape is not None:
                 added = shape_added(self.sample.machine, cause, values)
-                curves = {name: added.get(name, np.zeros(len(shown))) for name, shown in found.predicted.items()}
-                drawn = self.sample.roots(found.left) * self.sample.curve(curves)
+                drawn = np.zeros(self.sample.rows)
+                for name, curve in added.items():
+                    one, other = (
+                        roots * self.sample.curve(_on(found, name, each)) for each in (curve, np.ones_like(curve))
+                    )
+                    drawn += one - other * float(other @ one) / max(float(other @ other), 1e-300)
                 total += len(cause.amplitudes) * log1p(float(np.mean(drawn**2)))
         return total
 
@@ -372,6 +377,11 @@ def _exactly(made: Competition) -> None:
     made.again(
         [made.null, *near, *(best for size in range(1, MOST_CAUSES) if (best := made.best(size)) is not None)], EXACTLY
     )
+
+
+def _on(found: Fit, result: str, curve: Matrix) -> dict[str, Matrix]:
+    """Return what is added to one result alone, by result."""
+    return {name: curve if name == result else np.zeros_like(curve) for name in found.predicted}
 
 
 def _are_exclusive(causes: Sequence[Cause]) -> bool:

@@ -55,10 +55,7 @@ def diagnosis_document(diagnosis: Diagnosis) -> dict[str, Any]:
         "inseparable": list(diagnosis.inseparable),
         "remainder": None if diagnosis.remainder is None else _remainder(diagnosis.remainder),
         **_sight(diagnosis),
-        "calibrated": {
-            item.name: {**_value(item.value, item.unit), "of_its_sd": clean(item.of_its_sd)}
-            for item in diagnosis.calibrated
-        },
+        "calibrated": _calibrated(diagnosis),
         "gain": {**{item.result: _gain(item) for item in diagnosis.gain}, "stability": clean(diagnosis.stability)},
         "next": [_next(point) for point in diagnosis.next],
         "ties": [_tie(tie) for tie in diagnosis.ties],
@@ -67,6 +64,13 @@ def diagnosis_document(diagnosis: Diagnosis) -> dict[str, Any]:
             {"column": slip.column, "factor": clean(slip.factor), "text": slip.text} for slip in diagnosis.records.slips
         ],
         "warnings": list(diagnosis.warnings),
+    }
+
+
+def _calibrated(diagnosis: Diagnosis) -> dict[str, Any]:
+    return {
+        item.name: {**_value(item.value, item.unit), "of_its_sd": clean(item.of_its_sd)}
+        for item in diagnosis.calibrated
     }
 
 
