@@ -21,7 +21,6 @@ from truing.diagnosis.exact import Fit
 from truing.diagnosis.folds import ends_of, folds_of
 from truing.diagnosis.steps import (
     FURTHER_LEVEL,
-    LEAST_GAIN,
     LEAST_IN_PLACE,
     MANY_CURVES,
     _beats,
@@ -156,9 +155,9 @@ def of_causes(made: Competition, *names: str) -> Fit:
 @pytest.mark.parametrize(
     ("before", "after", "least"),
     [
-        (["lead_error"], ["lead_error", "wear"], max(LEAST_GAIN, steps.WANDER)),
+        (["lead_error"], ["lead_error", "wear"], steps.WANDER),
         (["lead_error"], ["clearance", "wear"], LEAST_IN_PLACE),
-        ([], ["wear"], LEAST_GAIN),
+        ([], ["wear"], 0.0),
     ],
     ids=["one more", "in its place", "the first"],
 )
@@ -173,7 +172,7 @@ def test_what_takes_the_place_of_a_cause_must_be_better_by_twice_what_is_near(
     for gain, is_believed in ((least - 0.1, False), (least + 0.1, True)):
         stated: Any = Stated({at.key: gain, more.key: 0.0})
         assert _step(stated, at, more, folds, seed=1).is_believed is is_believed
-    assert LEAST_IN_PLACE > LEAST_GAIN  # or the case above says nothing
+    assert LEAST_IN_PLACE > steps.WANDER  # or the case above says nothing
 
 
 @pytest.mark.parametrize(

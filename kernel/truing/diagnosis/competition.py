@@ -140,9 +140,10 @@ class Competition:
         if found is None:
             return None
         before = self.known.get(found.key)
-        if before is None or found.key not in self.fresh or found.cost < before.cost:
+        allowed = 0.0 if found.key in self.fresh else MARGIN  # what was rough may have promised too much
+        if before is None or found.cost < before.cost + allowed:
             self.known[found.key] = found
-            self.fresh.add(found.key)
+        self.fresh.add(found.key)
         return self.known[found.key]
 
     def fitted(

@@ -36,6 +36,8 @@ STEP = 1e-4
 MOVED = 1.0
 """Sum of squares, in units of the noise, that slopes of the inputs may miss before their anchor is moved."""
 MOST_ANCHORS = 6
+SHARES = (1.0, 0.5, 0.25, 0.1)
+"""Of the way that the slopes promise, how far the anchor goes: where the model bends, the whole way may lead up."""
 SETTLED = 1e-6
 """Standard deviations: inputs that move less from round to round go with the noise that they leave."""
 NEARER = 30
@@ -312,18 +314,24 @@ class _Fitting:
         return gained
 
     def _anchored(self) -> bool:
-        """Move the anchor to the inputs as they are; whether the slopes had missed enough to go on with new ones."""
-        (shown,) = self.shown([self.u], self.b)
-        exact = self.sample.left(shown)
-        if not np.isfinite(exact).all():
+        """Move the anchor to the inputs, or as far as leads down; whether the slopes missed enough to go on."""
+        start, wanted = self.anchor, self.b
+        before = self.sample.cost(self.r0 - self.slopes @ start, start)
+        for share in SHARES:
+            tried = start + share * (wanted - start)
+            (shown,) = self.shown([self.u], tried)
+            exact = self.sample.left(shown)
+            cost = self.sample.cost(exact, tried) if np.isfinite(exact).all() else inf
+            if cost <= before:
+                break
+        if cost == inf:
             return False
         missed = self.sample.roots(self.left) * (exact - self.left)
-        is_off = float(missed @ missed) > MOVED
-        self.anchor, self.predicted = self.b, shown
+        is_off = bool(missed @ missed > MOVED)
+        self.anchor, self.b, self.predicted, self.left, self.cost = tried, tried, shown, exact, cost
         if is_off:
             self.slopes = self.slopes_of_inputs()
         self.r0 = exact + self.slopes @ self.anchor
-        self.left, self.cost = exact, self.sample.cost(exact, self.b)
         if is_off:
             self.b, self.left, self.cost = self.calibrated(self.r0)
         return is_off
@@ -387,6 +395,6 @@ def unit_of(found: Fit) -> Matrix:
 def nothing(sample: Sample, extended: Extended) -> Fit:
     """Return the model as it is, calibrated as far as tolerances and its own misfit make likely."""
     found = fit(sample, extended, (), ())
-    if found is None:  # a sample holds only rows in which the model has an answer
+    if found is None:
         raise ArithmeticError("the model fails with its inputs at their means")
     return found

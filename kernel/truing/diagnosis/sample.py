@@ -25,6 +25,7 @@ from truing.diagnosis.noise import (
     Spread,
     Tails,
     clipped,
+    likelihood_of,
     robust_sd,
     spread_of,
     standardised,
@@ -354,10 +355,19 @@ def memory_cost(left: Matrix, starts: NDArray[np.bool_], setting: Setting) -> fl
 
 
 def as_noise(sample: Sample, predicted: Predicted) -> float:
-    """Return -2 log likelihood of what is left where every result has the memory that suits it best."""
+    """Return -2 log likelihood of what is left where every result has the memory and the tails that suit it best.
+
+    The readings are taken as they are: those that were moved in were so for the sake of another explanation.
+    """
     settings = SETTINGS if has_order(sample.machine) else (Setting(),)
     total = 0.0
     for channel in sample.channels:
-        left = channel.left(predicted[channel.name])
-        total += min(memory_cost(left, channel.starts, setting) for setting in settings)
+        measured = sample.machine.records.measured[channel.name]
+        left = ((measured - predicted[channel.name])[channel.rows]) * (channel.weights / channel.scale)
+        if not np.ptp(left) > 0:
+            continue
+        costs = [memory_cost(left, channel.starts, each) for each in settings]
+        memory = settings[int(np.argmin(costs))]
+        paid = int(channel.starts.sum()) * log(memory.variance_ratio) + memory.size * log(max(len(left), 2))
+        total += paid - 2 * likelihood_of(whiten(left, channel.starts, memory))
     return total

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
 ANY_LEVEL = 0.015
 FURTHER_LEVEL = 0.01
-LEAST_GAIN = 3.0
-"""What a step must be better by in any case: below it, that there is nothing more is hardly less likely."""
 LEAST_IN_PLACE = 12.0
 """What a step must be better by that puts other causes in the place of some: twice what counts as near."""
 WANDER = 6.0
@@ -172,7 +170,7 @@ def _step(made: Competition, at: Fit, more: Fit, folds: Folds, *, seed: int) -> 
     level = FURTHER_LEVEL if at.causes else ANY_LEVEL
     is_believed = (
         law.p_value <= level
-        and gain >= (LEAST_GAIN if at.key < more.key else LEAST_IN_PLACE)
+        and gain >= (0.0 if at.key < more.key else LEAST_IN_PLACE)
         and made.own_score(at) - made.own_score(more) >= (WANDER if at.causes else 0.0)
         and not _mends(made, at, more, gain)
         and carries_over(at, more, made.extended, folds) >= CARRIED * (len(more.causes) - len(at.causes))
