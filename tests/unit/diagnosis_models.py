@@ -20,7 +20,8 @@ from truing.diagnosis.chosen import Chosen, Law, Rival
 from truing.diagnosis.competition import Competition, search
 from truing.diagnosis.curves import Curves
 from truing.diagnosis.engine import diagnose, laid_out
-from truing.diagnosis.exact import EXACTLY, Fit, nothing
+from truing.diagnosis.exact import EXACTLY, nothing
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import numbers_of, value_of
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.reading import read_records

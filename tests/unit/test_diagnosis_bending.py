@@ -13,8 +13,9 @@ from truing import Effect, Float, Model, Unknown, found, given, inputs, results
 from truing.diagnosis.causes import Cause, effects_of
 from truing.diagnosis.curves import Curves, look
 from truing.diagnosis.engine import diagnose
-from truing.diagnosis.exact import Fit, nothing
+from truing.diagnosis.exact import nothing
 from truing.diagnosis.extended import Extended
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.machine import machine_of
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import Diagnosis

@@ -34,7 +34,8 @@ from scipy.stats import binom, f, t
 from truing import Condition, Effect, Model, Tolerance, Unknown, normal
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.engine import diagnose
-from truing.diagnosis.exact import EXACTLY, Fit, fit
+from truing.diagnosis.exact import EXACTLY, fit
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import Certainty, certainty_of, interval, may_be_zero, numbers_of, shape_interval
 from truing.diagnosis.machine import predict
 from truing.diagnosis.naming import input_values

@@ -34,7 +34,7 @@ from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.design import MOST_POINTS, POINTS, Proposal, next_points
 from truing.diagnosis.engine import diagnose
-from truing.diagnosis.exact import Fit
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import FOLDS, SHORTEST_BLOCK, Folds, carries_over, errors_left_out, folds_of
 from truing.diagnosis.gain import _log_density, nested, sign_flip_p
 from truing.diagnosis.noise import Setting

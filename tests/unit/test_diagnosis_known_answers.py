@@ -38,7 +38,7 @@ from scipy.stats import multivariate_normal
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.curves import beside_of
 from truing.diagnosis.design import _Duel
-from truing.diagnosis.exact import Fit
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import Setting, colour, log_likelihood
 from truing.diagnosis.sample import sample_of
 from truing.diagnosis.visibility import inseparable, needed, separation

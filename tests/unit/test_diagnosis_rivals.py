@@ -25,7 +25,7 @@ from truing.diagnosis.choice import (
     unsure,
 )
 from truing.diagnosis.competition import MARGIN, Competition
-from truing.diagnosis.exact import Fit
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import Setting
 from truing.diagnosis.sample import sample_of
 

@@ -17,7 +17,7 @@ from truing.diagnosis import steps
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.chosen import Law
 from truing.diagnosis.competition import UNREGISTERED, Competition
-from truing.diagnosis.exact import Fit
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import ends_of, folds_of
 from truing.diagnosis.steps import (
     FURTHER_LEVEL,

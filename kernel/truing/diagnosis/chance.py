@@ -16,7 +16,7 @@ import numpy as np
 from truing.diagnosis.chosen import Law
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.curves import Looked, beside_of
-from truing.diagnosis.exact import Fit
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import Setting, colour, whiten
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ import numpy as np
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.chosen import Chosen, Law, Rival
 from truing.diagnosis.competition import Competition, differ, exchange
-from truing.diagnosis.exact import Fit
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import certainty_of, may_be_zero
 from truing.diagnosis.steps import Decision, is_sensible, shapes_in, shifts_inputs, steps_from
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.exact import Fit
+from truing.diagnosis.fitted import Fit
 
 if TYPE_CHECKING:
     import numpy as np

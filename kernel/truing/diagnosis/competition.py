@@ -18,8 +18,9 @@ import numpy as np
 
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.curves import Curves, Looked, look
-from truing.diagnosis.exact import EXACTLY, ROUGHLY, Fit, fit, is_too_large, nothing
+from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit, is_too_large, nothing
 from truing.diagnosis.extended import Extended, shape_added
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.sample import Sample, as_noise, learnt, sample_of
 from truing.diagnosis.signs import signs_of_wrong
 

@@ -17,8 +17,9 @@ import numpy as np
 from scipy.stats import qmc
 
 from truing.diagnosis.causes import Cause
-from truing.diagnosis.exact import Fit, slopes_at
+from truing.diagnosis.exact import slopes_at
 from truing.diagnosis.extended import Extended
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.points import LEVELS, SPREAD, first_places, middle, placed, refined, spread
 
 if TYPE_CHECKING:

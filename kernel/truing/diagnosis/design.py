@@ -18,9 +18,10 @@ from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.curves import look
-from truing.diagnosis.exact import Fit, fit, moved_by, slopes_at, unit_of
+from truing.diagnosis.exact import fit, slopes_at, unit_of
 from truing.diagnosis.extended import Extended, elsewhere, parts_of
 from truing.diagnosis.findings import in_unit
+from truing.diagnosis.fitted import Fit, moved_by
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import Records

@@ -10,15 +10,16 @@ of its mean square is what a fit makes small.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-from math import inf, log
+from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
+from scipy.optimize import least_squares
 
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.extended import Extended, parts_of
+from truing.diagnosis.fitted import Fit, inward, moved_by, size_of
 from truing.diagnosis.sample import Sample
 
 if TYPE_CHECKING:
@@ -35,7 +36,11 @@ STEP = 1e-4
 """Of a number, or of a hundredth of its range: by how much it is moved for a difference."""
 MOVED = 1.0
 """Sum of squares, in units of the noise, that slopes of the inputs may miss before their anchor is moved."""
-MOST_ANCHORS = 6
+MOST_ANCHORS = 3
+ASIDE = 0.05
+"""Standard deviations to each side by which an input is moved for its slope where a fit has put it."""
+ROUNDS, FAR = 5, 1e6
+"""So often the noise is taken anew where numbers and inputs are fitted at once; what is left where the model fails."""
 SHARES = (1.0, 0.5, 0.25, 0.1)
 """Of the way that the slopes promise, how far the anchor goes: where the model bends, the whole way may lead up."""
 SETTLED = 1e-6
@@ -48,65 +53,6 @@ GOOD = 0.25
 """Share of what a step promised from which on its corrected derivatives are good enough for the next one."""
 ROWS_PER_NUMBER = 4
 """Fewer rows for every number are followed by any curve, noise or not."""
-
-
-@dataclass(frozen=True, eq=False)
-class Fit:
-    """An explanation as fitted: numbers of every cause (SI), directions of the inputs, and what the model then says.
-
-    ``predicted`` holds results by name, SI on all rows of the records; ``left`` what is left of the sample's rows in
-    units of the noise. ``cost`` is -2 log likelihood plus the prior of the inputs, in the noise that it was fitted in.
-    """
-
-    causes: tuple[Cause, ...]
-    values: tuple[Matrix, ...]
-    inputs: Matrix
-    predicted: dict[str, Matrix]
-    left: Matrix
-    cost: float
-    sample: Sample = field(repr=False)
-
-    @property
-    def key(self) -> frozenset[str]:
-        """Which causes are on, whatever their order."""
-        return frozenset(cause.tag for cause in self.causes)
-
-    @property
-    def size(self) -> int:
-        """How many numbers its causes have."""
-        return sum(cause.size for cause in self.causes)
-
-    @property
-    def moved(self) -> Matrix:
-        """How far each tolerated input is moved, in standard deviations from its mean."""
-        return moved_by(self.sample, self.inputs)
-
-    def of(self, cause: Cause) -> Matrix:
-        """Return the numbers of one of its causes, SI."""
-        return self.values[[each.tag for each in self.causes].index(cause.tag)]
-
-    def in_sample(self, sample: Sample) -> Fit:
-        """Return the same numbers judged in other noise or on other rows."""
-        left = sample.left(self.predicted)
-        if sample.directions.shape != self.sample.directions.shape or sample.directions is not self.sample.directions:
-            is_seen = sample.directions.size > 0
-            solved = np.linalg.lstsq(sample.directions, self.moved, rcond=None)[0] if is_seen else np.zeros(0)
-            inputs = np.asarray(solved)[: sample.directions.shape[1]]
-        else:
-            inputs = self.inputs
-        return replace(self, left=left, inputs=inputs, cost=sample.cost(left, inputs), sample=sample)
-
-
-def moved_by(sample: Sample, inputs: Matrix) -> Matrix:
-    """Return by how many standard deviations directions move each tolerated input from its mean."""
-    return sample.directions @ inputs if len(inputs) else np.zeros(len(sample.machine.inputs))
-
-
-def inward(number: Number, size: float) -> tuple[float, float]:
-    """Return the bounds of a number as the fit sees it: a logarithm, or in units of ``size``."""
-    if number.is_log:
-        return log(number.low), log(number.high)
-    return number.low / size, number.high / size
 
 
 def is_too_large(sample: Sample, causes: Sequence[Cause]) -> bool:
@@ -143,7 +89,7 @@ class _Fitting:
         self.sample, self.extended, self.causes = sample, extended, causes
         self.numbers = [number for cause in causes for number in cause.numbers]
         sizes = {channel.name: channel.scale for channel in sample.channels}
-        self.sizes = np.array([_size(number, sizes) for number in self.numbers])
+        self.sizes = np.array([size_of(number, sizes) for number in self.numbers])
         ends = [inward(number, size) for number, size in zip(self.numbers, self.sizes, strict=True)]
         self.low, self.high = (np.array([end[side] for end in ends]) for side in (0, 1))
         self.free = np.array([n.is_free and not any(n is each for each in held) for n in self.numbers], dtype=bool)
@@ -262,16 +208,49 @@ class _Fitting:
             (shown,) = self.shown([self.u], self.anchor)
             self.r0 = self.bare(shown)
             self.b, self.left, self.cost = self.calibrated(self.r0)
+        bends = False
         for _ in range(MOST_ANCHORS):
             self._descend(until)
             if not len(self.b) or (until > EXACTLY and float(np.abs(self.b - self.anchor).max()) < 1.0):
-                return
+                break
             if not self._anchored():
+                break
+            bends = True
+        if bends and until <= EXACTLY:
+            self._together()
+
+    def _together(self) -> None:
+        """Fit numbers and inputs at once, all with the model itself: where slopes of the inputs mislead."""
+        places, size = np.flatnonzero(self.free), int(self.free.sum())
+        low = np.append(self.low[places], np.full(len(self.b), -np.inf))
+        high = np.append(self.high[places], np.full(len(self.b), np.inf))
+
+        def left_at(x: Matrix) -> tuple[Matrix, Matrix, dict[str, Matrix]]:
+            u = self.u.copy()
+            u[places] = x[:size]
+            (shown,) = self.shown([u], x[size:])
+            return u, self.sample.left(shown), shown
+
+        for _ in range(ROUNDS):
+            roots = self.sample.roots(self.left)
+
+            def weighted(x: Matrix, roots: Matrix = roots) -> Matrix:
+                left = np.append(roots * left_at(x)[1], x[size:])
+                return np.where(np.isfinite(left), left, FAR)
+
+            start = np.clip(np.append(self.u[places], self.b), low, high)
+            found = least_squares(weighted, start, bounds=(low, high), x_scale="jac", max_nfev=MOST_STEPS).x
+            u, left, shown = left_at(found)
+            cost = self.sample.cost(left, found[size:]) if np.isfinite(left).all() else inf
+            if cost > self.cost - EXACTLY:
                 return
+            self.u, self.b, self.anchor, self.predicted, self.left = u, found[size:], found[size:], shown, left
+            self.cost = cost
 
     def _descend(self, until: float) -> None:
         if not self.free.any():
             return
+        self.damping = FIRST_DAMPING
         self.derivatives()
         for _ in range(MOST_STEPS if until <= EXACTLY else MOST_ROUGH):
             moved, promised = self.step()
@@ -340,10 +319,11 @@ class _Fitting:
         """Return what the directions of the inputs draw about the anchor, (rows, K), in one call of the model."""
         k = len(self.anchor)
         own = parts_of(self.causes, self.outward(self.u))
-        ends = [self.anchor + sign * 0.5 * np.eye(k)[place] for place in range(k) for sign in (1, -1)]
+        ends = [self.anchor + sign * ASIDE * np.eye(k)[place] for place in range(k) for sign in (1, -1)]
         made = self.extended.at(self.causes, [(own, moved_by(self.sample, end)) for end in ends])
         columns = [
-            self.sample.left(down) - self.sample.left(up) for up, down in zip(made[::2], made[1::2], strict=True)
+            (self.sample.left(down) - self.sample.left(up)) / (2 * ASIDE)
+            for up, down in zip(made[::2], made[1::2], strict=True)
         ]
         slopes = np.column_stack(columns) if columns else self.slopes
         return np.where(np.isfinite(slopes), slopes, self.slopes)
@@ -357,12 +337,6 @@ class _Fitting:
             predicted = {name: shown + slopes[name] @ moved for name, shown in predicted.items()}
         values = tuple(parts_of(self.causes, self.outward(self.u)))
         return Fit(self.causes, values, self.b, predicted, self.left, self.cost, self.sample)
-
-
-def _size(number: Number, scales: dict[str, float]) -> float:
-    """Return the unit in which a fit counts a number: its largest bound, or the noise of the result that it adds to."""
-    largest = max(abs(number.low), abs(number.high))
-    return largest if largest < inf else scales.get(number.name.rpartition(":")[0], 1.0)
 
 
 def _solved(normal: Matrix, right: Matrix) -> Matrix:
@@ -388,7 +362,7 @@ def unit_of(found: Fit) -> Matrix:
     numbers = [number for cause in found.causes for number in cause.numbers]
     flat = np.concatenate(found.values) if found.causes else np.zeros(0)
     return np.array(
-        [value if number.is_log else _size(number, scales) for number, value in zip(numbers, flat, strict=True)]
+        [value if number.is_log else size_of(number, scales) for number, value in zip(numbers, flat, strict=True)]
     )
 
 

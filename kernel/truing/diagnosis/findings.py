@@ -9,8 +9,8 @@ import numpy as np
 
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.chosen import Chosen
-from truing.diagnosis.exact import Fit
 from truing.diagnosis.extended import Extended
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import robust_sd, whiten
 from truing.diagnosis.readings import followed_by, gauged
 from truing.diagnosis.result import Amount, Finding, Kind, Noise, Wrong

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from truing.diagnosis.exact import ROUGHLY, Fit, fit
+from truing.diagnosis.exact import ROUGHLY, fit
 from truing.diagnosis.extended import Extended
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import Setting
 from truing.diagnosis.sample import Sample, has_order
 

@@ -16,8 +16,8 @@ from scipy.special import gammaln
 
 from truing.diagnosis.choice import CLOSE
 from truing.diagnosis.chosen import Chosen
-from truing.diagnosis.exact import Fit
 from truing.diagnosis.extended import shape_added
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import Folds, folds_of, refitted
 from truing.diagnosis.result import Amount, Gain
 

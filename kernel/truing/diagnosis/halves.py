@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from truing.diagnosis.chosen import Chosen
-from truing.diagnosis.exact import Fit
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import refitted
 from truing.diagnosis.intervals import certainty_of, value_of
 from truing.diagnosis.result import Amount, Contradiction

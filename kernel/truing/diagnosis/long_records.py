@@ -13,8 +13,8 @@ import numpy as np
 
 from truing.diagnosis.chosen import Chosen, Rival
 from truing.diagnosis.competition import Competition, competition_of
-from truing.diagnosis.exact import Fit
 from truing.diagnosis.extended import Extended
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.records import Records
 from truing.diagnosis.sample import first_noise, sample_of

@@ -12,8 +12,8 @@ from truing.declare.sources import Unknown
 from truing.diagnosis.causes import INPUT, Number
 from truing.diagnosis.causes import Cause as Competitor
 from truing.diagnosis.chosen import Chosen, Rival
-from truing.diagnosis.exact import Fit
 from truing.diagnosis.extended import Extended, shape_added
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import (
     Certainty,
     certainty_of,

@@ -6,7 +6,7 @@ from math import inf
 
 from truing.diagnosis.alarms import AT_BOUND, OUTSIDE
 from truing.diagnosis.causes import Number
-from truing.diagnosis.exact import Fit
+from truing.diagnosis.fitted import Fit
 
 
 def signs_of_wrong(found: Fit) -> int:

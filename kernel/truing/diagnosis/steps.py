@@ -17,7 +17,7 @@ from truing.diagnosis.causes import Cause
 from truing.diagnosis.chance import law_of
 from truing.diagnosis.chosen import Law
 from truing.diagnosis.competition import MARGIN, MOST_CAUSES, Competition
-from truing.diagnosis.exact import Fit
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import Folds, carries_over, ends_of, folds_of
 from truing.diagnosis.records import FEWEST_READINGS
 

@@ -19,9 +19,9 @@ from truing.declare.goals import Maximise, Minimise, Require
 from truing.declare.specs import Axis
 from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.design import Proposal, is_physical, name_of, rival_fits
-from truing.diagnosis.exact import Fit
 from truing.diagnosis.extended import switched_on
 from truing.diagnosis.findings import in_unit
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.machine import Machine, machine_of, predict
 from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import Records

@@ -14,8 +14,9 @@ from scipy.special import ndtri
 
 from truing.diagnosis.causes import Cause, Number, failure_of, idle_of
 from truing.diagnosis.chosen import Chosen
-from truing.diagnosis.exact import Fit, slopes_at, unit_of
+from truing.diagnosis.exact import slopes_at, unit_of
 from truing.diagnosis.extended import Extended
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.points import LEVELS
 from truing.diagnosis.result import Amount, Seen, Sight

@@ -1,0 +1,82 @@
+"""An explanation as fitted: its numbers, the inputs, what the model then says, and what is left of the readings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from math import inf, log
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from truing.diagnosis.causes import Cause, Number
+from truing.diagnosis.sample import Sample
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """An explanation as fitted: numbers of every cause (SI), directions of the inputs, and what the model then says.
+
+    ``predicted`` holds results by name, SI on all rows of the records; ``left`` what is left of the sample's rows in
+    units of the noise. ``cost`` is -2 log likelihood plus the prior of the inputs, in the noise that it was fitted in.
+    """
+
+    causes: tuple[Cause, ...]
+    values: tuple[Matrix, ...]
+    inputs: Matrix
+    predicted: dict[str, Matrix]
+    left: Matrix
+    cost: float
+    sample: Sample = field(repr=False)
+
+    @property
+    def key(self) -> frozenset[str]:
+        """Which causes are on, whatever their order."""
+        return frozenset(cause.tag for cause in self.causes)
+
+    @property
+    def size(self) -> int:
+        """How many numbers its causes have."""
+        return sum(cause.size for cause in self.causes)
+
+    @property
+    def moved(self) -> Matrix:
+        """How far each tolerated input is moved, in standard deviations from its mean."""
+        return moved_by(self.sample, self.inputs)
+
+    def of(self, cause: Cause) -> Matrix:
+        """Return the numbers of one of its causes, SI."""
+        return self.values[[each.tag for each in self.causes].index(cause.tag)]
+
+    def in_sample(self, sample: Sample) -> Fit:
+        """Return the same numbers judged in other noise or on other rows."""
+        left = sample.left(self.predicted)
+        if sample.directions.shape != self.sample.directions.shape or sample.directions is not self.sample.directions:
+            is_seen = sample.directions.size > 0
+            solved = np.linalg.lstsq(sample.directions, self.moved, rcond=None)[0] if is_seen else np.zeros(0)
+            inputs = np.asarray(solved)[: sample.directions.shape[1]]
+        else:
+            inputs = self.inputs
+        return replace(self, left=left, inputs=inputs, cost=sample.cost(left, inputs), sample=sample)
+
+
+def moved_by(sample: Sample, inputs: Matrix) -> Matrix:
+    """Return by how many standard deviations directions move each tolerated input from its mean."""
+    return sample.directions @ inputs if len(inputs) else np.zeros(len(sample.machine.inputs))
+
+
+def inward(number: Number, size: float) -> tuple[float, float]:
+    """Return the bounds of a number as the fit sees it: a logarithm, or in units of ``size``."""
+    if number.is_log:
+        return log(number.low), log(number.high)
+    return number.low / size, number.high / size
+
+
+def size_of(number: Number, scales: dict[str, float]) -> float:
+    """Return the unit in which a fit counts a number: its largest bound, or the noise of the result that it adds to."""
+    largest = max(abs(number.low), abs(number.high))
+    return largest if largest < inf else scales.get(number.name.rpartition(":")[0], 1.0)
