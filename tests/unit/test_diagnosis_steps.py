@@ -248,7 +248,7 @@ def test_the_ends_are_the_first_and_the_last_quarter_of_every_run(tmp_path: Path
 
 @pytest.mark.parametrize("size", [0.5, 5.0, 500.0])
 def test_a_shape_pays_for_each_amplitude_the_logarithm_of_what_it_draws(tmp_path: Path, size: float) -> None:
-    """3 ln(1 + mean square drawn over that left) for a parabola, by least squares; nothing for what is registered."""
+    """3 ln(1 + variance drawn over mean square left) for a parabola; nothing for what is registered, or a constant."""
     values = size * LINE**2 + NOISE
     made = competing(tmp_path, size * LINE**2)
     found = shape(made, "trend.3:travel")
@@ -256,13 +256,22 @@ def test_a_shape_pays_for_each_amplitude_the_logarithm_of_what_it_draws(tmp_path
     found = made.known[found.key]
     design = np.column_stack([np.ones(ROWS), LINE, LINE**2])
     drawn = design @ np.linalg.lstsq(design, values)[0]
-    paid = len(found.causes[0].amplitudes) * np.log1p(np.mean(drawn**2) / np.mean((values - drawn) ** 2))
+    paid = len(found.causes[0].amplitudes) * np.log1p(np.var(drawn) / np.mean((values - drawn) ** 2))
     assert_allclose(made.price_of_size(found), paid, rtol=1e-3)
     own = made.price(found) - made.price_of(found.causes[0]) - 2 * np.log(len(made.causes))
     assert_allclose(own, paid, rtol=1e-3)
     assert made.price_of(found.causes[0]) >= UNREGISTERED
     assert made.price_of_size(fit_of(made, "lead_error")) == 0
     assert made.price_of_size(made.null) == 0
+
+
+def test_two_parabolas_pay_for_no_constant_that_only_their_sum_shows(tmp_path: Path) -> None:
+    warm = (BENCH.temperature - BENCH.temperature.mean()) / np.ptp(BENCH.temperature)
+    made = competing(tmp_path, 9 * LINE**2 + 36 * warm**2)
+    pair = [shape(made, f"trend.3:{name}") for name in ("travel", "temperature")]
+    both = made.fitted(pair[0].causes + pair[1].causes, pair[0].values + pair[1].values, None)
+    assert both is not None
+    assert made.score(both) < min(made.score(each) for each in pair) - 50
 
 
 def test_folds_and_ends_leave_rows_out_that_judge_only(tmp_path: Path) -> None:
