@@ -374,11 +374,11 @@ def _less(several: tuple[Any, ...], place: int) -> tuple[Any, ...]:
 
 
 def _exactly(made: Competition) -> None:
+    """Fit to the end what lies near, the best of every size, and single causes: a rough fit may stop far from it."""
     top = made.score(made.ranked()[0])
     near = [found for found in made.ranked()[:RENEWED] if made.score(found) < top + 4 * MARGIN]
-    made.again(
-        [made.null, *near, *(best for size in range(1, MOST_CAUSES) if (best := made.best(size)) is not None)], EXACTLY
-    )
+    sized = [best for size in range(1, MOST_CAUSES) if (best := made.best(size)) is not None]
+    made.again([made.null, *near, *sized, *_registered(made, BEAM)], EXACTLY)
 
 
 def _on(found: Fit, result: str, curve: Matrix) -> dict[str, Matrix]:
