@@ -30,7 +30,7 @@ from truing import Effect, Float, Unknown
 from truing.diagnosis.causes import Number
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.curves import KEPT, Bundle, beside_of, independent, looked
-from truing.diagnosis.points import ALIKE, FINEST, LEVELS, WAVES_PER_POINT, first_places, placed, spread
+from truing.diagnosis.points import ALIKE, FINEST, LEVELS, SPREAD, WAVES_PER_POINT, first_places, placed, spread
 from truing.diagnosis.sample import Sample
 
 
@@ -204,7 +204,7 @@ def test_points_over_several_numbers_lie_within_their_bounds_and_reach_all_sizes
     made = made_of(tmp_path, ["skewed", "fading"], bench=wide(40))
     for name in ("skewed", "fading"):
         cause = cause_of(made, name)
-        points = spread(cause)
+        points = spread(cause, 4 * SPREAD)
         for values, number in zip(points.T, cause.numbers, strict=True):
             assert number.low <= values.min() <= values.max() <= number.high
             if number.is_amplitude:

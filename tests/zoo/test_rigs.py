@@ -41,10 +41,6 @@ FAMILIES = families()
 HIDDEN = [(family, hidden) for family in FAMILIES for hidden in rig_of(family).HIDDEN]
 PROMISES = [check for check in CHECKS if check.name != "serial equals parallel"]
 """A worker reads these files as any other, which is tested elsewhere; here it would take as long as all the rest."""
-MISSED = {
-    ("bolted_joint", "yielding"): "an effect that has no slope at zero and a shape beside its amplitude is never tried",
-}
-"""Why the diagnosis misses a single effect that is hidden in an open family."""
 
 
 def record(family: str, hidden: str | None, seed: int) -> Measured:
@@ -155,14 +151,13 @@ def test_an_answer_is_judged_by_the_truth(truth: str, verdict: str, left: list[s
 
 
 def singles() -> list[object]:
-    """Every single effect that can be hidden in an open family; where the diagnosis misses it, with the reason."""
-    found: list[object] = []
-    for family in families("open"):
-        for hidden in (name for name, right in rig_of(family).HIDDEN.items() if len(right) == 1):
-            reason = MISSED.get((family, hidden))
-            marks = [pytest.mark.xfail(strict=True, reason=reason)] if reason else []
-            found.append(pytest.param(family, hidden, marks=marks, id=f"{family}-{hidden}"))
-    return found
+    """Every single effect that can be hidden in an open family."""
+    return [
+        pytest.param(family, hidden, id=f"{family}-{hidden}")
+        for family in families("open")
+        for hidden, right in rig_of(family).HIDDEN.items()
+        if len(right) == 1
+    ]
 
 
 @pytest.mark.parametrize(("family", "hidden"), singles())
