@@ -49,6 +49,8 @@ LEAST_PROMISE = 4.0
 WITHIN = 60.0
 """Explanations within so much of the best are fitted again when the noise was learnt anew, and so many at most."""
 RENEWED = 40
+FINER = 0.5
+"""Directions of the inputs are looked for anew when the noise turns out so much finer."""
 SETTLED = 0.02
 ROUNDS = 4
 
@@ -216,7 +218,7 @@ class Competition:
         for _ in range(ROUNDS):
             fair = self.fairest
             noise = learnt(self.sample, fair.predicted, fair.size + len(fair.inputs) ** 0.5)
-            finer = any(noise[name].scale < 0.5 * own.scale for name, own in self.sample.noise.items())
+            finer = any(noise[name].scale < FINER * own.scale for name, own in self.sample.noise.items())
             directions = None if finer else self.sample.directions
             sample = sample_of(self.sample.machine, noise, self.sample.mask, directions)
             change = float(np.abs(np.log(sample.counts / self.sample.counts)).max())

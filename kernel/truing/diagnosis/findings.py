@@ -11,7 +11,7 @@ from truing.diagnosis.causes import Cause
 from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.noise import robust_sd, whiten
+from truing.diagnosis.noise import robust_sd
 from truing.diagnosis.readings import followed_by, gauged
 from truing.diagnosis.result import Amount, Finding, Kind, Noise, Wrong
 from truing.diagnosis.sample import Channel, residuals_of
@@ -212,7 +212,7 @@ def _wave(best: Fit, channel: Channel) -> Iterator[Finding]:
     share of the largest is above g with a probability of at most
     ``m (1 - g)^(m - 1)`` (Fisher, Proc. R. Soc. A 125, 1929, the first term of his sum).
     """
-    left = whiten(channel.left(best.predicted[channel.name]), channel.starts, channel.memory)
+    left = channel.white(channel.left(best.predicted[channel.name]))
     covariates = best.sample.machine.records.covariates.values()
     moved = [item for item in covariates if len(np.unique(item.values[channel.rows])) >= FEWEST_OF_WAVE]
     periods = np.arange(FEWEST_PERIODS, (len(left) - 1) // 2 + 1)

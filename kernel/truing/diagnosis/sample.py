@@ -89,6 +89,10 @@ class Channel:
         """Return what a prediction (..., all rows, SI) leaves of the readings, in units of the noise, (..., n)."""
         return np.asarray((self.values - predicted[..., self.rows]) * (self.weights / self.scale))
 
+    def white(self, values: Matrix) -> Matrix:
+        """Return values in units of the noise, (n,) or (n, c), with the memory of the noise taken out."""
+        return whiten(values, self.starts, self.memory)
+
 
 @dataclass(frozen=True)
 class Sample:
@@ -111,12 +115,12 @@ class Sample:
 
     @cached_property
     def counts(self) -> Matrix:
-        """Independent rows by channel."""
+        """What the rows of every channel are worth."""
         return np.array([channel.count for channel in self.channels])
 
     @property
     def total(self) -> float:
-        """Independent rows of all channels."""
+        """What the rows of all channels are worth."""
         return float(self.counts.sum())
 
     @cached_property
@@ -127,19 +131,12 @@ class Sample:
 
     def left(self, predicted: Predicted) -> Matrix:
         """Return what is left of all readings in units of their noise, (rows,)."""
-        parts = [self._white(channel, channel.left(predicted[channel.name])) for channel in self.channels]
-        return np.concatenate(parts)
+        return np.concatenate([each.white(each.left(predicted[each.name])) for each in self.channels])
 
     def curve(self, added: Predicted) -> Matrix:
         """Return something that is added to predictions, in units of the noise, (rows,)."""
-        parts = [
-            self._white(channel, added[channel.name][channel.rows] * (channel.weights / channel.scale))
-            for channel in self.channels
-        ]
+        parts = [each.white(added[each.name][each.rows] * (each.weights / each.scale)) for each in self.channels]
         return np.concatenate(parts)
-
-    def _white(self, channel: Channel, values: Matrix) -> Matrix:
-        return whiten(values, channel.starts, channel.memory)
 
     @cached_property
     def drawn(self) -> Matrix:
@@ -148,7 +145,7 @@ class Sample:
         parts = []
         for channel in self.channels:
             slopes = np.asarray(machine.slopes[channel.name][channel.rows] @ self.directions)
-            parts.append(self._white(channel, slopes * (channel.weights / channel.scale)[:, None]))
+            parts.append(channel.white(slopes * (channel.weights / channel.scale)[:, None]))
         return np.concatenate(parts)
 
     def mean_squares(self, left: Matrix) -> Matrix:
