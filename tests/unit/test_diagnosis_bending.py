@@ -10,8 +10,9 @@ import pytest
 from numpy.typing import NDArray
 
 from truing import Effect, Float, Model, Unknown, found, given, inputs, results
+from truing.diagnosis.beside import look
 from truing.diagnosis.causes import Cause, effects_of
-from truing.diagnosis.curves import Curves, look
+from truing.diagnosis.curves import Curves
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.exact import nothing
 from truing.diagnosis.extended import Extended

@@ -27,9 +27,10 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Unknown
+from truing.diagnosis.beside import KEPT, Beside, Looked, beside_of, compared, independent
 from truing.diagnosis.causes import Number
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.curves import KEPT, Bundle, beside_of, independent, looked
+from truing.diagnosis.curves import Bundle
 from truing.diagnosis.points import ALIKE, FINEST, LEVELS, SPREAD, WAVES_PER_POINT, first_places, placed, spread
 from truing.diagnosis.sample import Sample
 
@@ -93,6 +94,10 @@ def made_of(
 
 def alone(made: Competition, name: str) -> Bundle:
     return made.curves.of(cause_of(made, name), made.null)
+
+
+def looked(bundle: Bundle, beside: Beside) -> Looked | None:
+    return dict(compared([bundle], beside)).get(bundle.cause.tag)
 
 
 # What a cause draws
@@ -238,9 +243,9 @@ def test_what_is_left_is_least_squares_with_rows_for_the_prior_of_the_inputs(tmp
         left = target - rows @ u
         weight = weight / np.sqrt(np.mean(left[:80] ** 2))
     assert_allclose(beside.left, left, atol=2e-3)
-    assert beside.total == 80
+    assert beside.sample.total == 80
     curve = np.random.default_rng(5).normal(size=(1, 1, 80)) * UM
-    weighed = beside.weighed(curve)[0, 0]
+    weighed = beside.beyond(beside.drawn(curve))[0, 0]
     padded = np.concatenate([weight * curve[0, 0] / UM, np.zeros(2)])
     assert_allclose(weighed, padded - rows @ np.linalg.lstsq(rows, padded)[0], atol=1e-3)
 

@@ -35,8 +35,8 @@ from scipy.linalg import subspace_angles
 from scipy.optimize import least_squares
 from scipy.stats import multivariate_normal
 
+from truing.diagnosis.beside import beside_of
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.curves import beside_of
 from truing.diagnosis.design import _Duel
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import Setting, colour, log_likelihood
@@ -57,7 +57,7 @@ def seen_angle(made: Competition, first: str, second: str) -> float:
     for name in (first, second):
         bundle = made.curves.of(cause_of(made, name), made.null)
         smallest = int(np.argmin(np.linalg.norm(bundle.curves, axis=-1)[:, 0]))
-        drawn.append(beside.weighed(bundle.curves[smallest, 0]))
+        drawn.append(beside.beyond(beside.drawn(bundle.curves[smallest : smallest + 1]))[0, 0])
     one, other = (each / np.linalg.norm(each) for each in drawn)
     return float(np.degrees(np.arccos(abs(one @ other))))
 

@@ -14,6 +14,7 @@ from numpy.testing import assert_allclose
 from scipy.linalg import block_diag, solve_triangular, toeplitz
 from scipy.stats import multivariate_normal, norm
 
+from truing.diagnosis.beside import Beside
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.curves import Curves
 from truing.diagnosis.exact import nothing
@@ -141,6 +142,8 @@ def test_with_the_memory_taken_out_rows_are_independent(tmp_path: Path) -> None:
     assert_allclose(made.drawn @ made.drawn.T, drawn @ drawn.T, rtol=1e-9, atol=1e-9)
     added = {"deflection": BENCH.travel * UM}
     assert_allclose(made.curve(added), root @ BENCH.travel, rtol=1e-9, atol=1e-9)
+    beside = Beside(made, np.ones(150), np.zeros(150), np.zeros((150, 0)))
+    assert_allclose(beside.drawn(np.array([[BENCH.travel], [BENCH.load]]) * UM)[1, 0], root @ BENCH.load, rtol=1e-9)
     assert made.total == 150
     assert max(setting.rho for setting in SETTINGS) < 0.95  # or differences alone would be left
 

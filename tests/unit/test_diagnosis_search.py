@@ -24,10 +24,10 @@ from diagnosis_models import (
 )
 from numpy.testing import assert_allclose
 
+from truing.diagnosis.beside import Looked, beside_of
 from truing.diagnosis.causes import Number
 from truing.diagnosis.chance import DRAWS, FIRST_DRAWS, HOPELESS, LARGEST_RHO, _drawn, _largest, carried, law_of
 from truing.diagnosis.competition import Competition, _are_exclusive, differ, search
-from truing.diagnosis.curves import Looked, beside_of
 from truing.diagnosis.noise import Setting
 from truing.diagnosis.sample import sample_of
 from truing.diagnosis.signs import far_inputs, is_at_bound
@@ -259,6 +259,7 @@ def test_curves_beside_an_explanation_leave_what_it_draws(tmp_path: Path) -> Non
     left = left - travel * (travel @ left) / (travel @ travel)
     weight = 1 / np.sqrt(np.mean(left**2))
     assert_allclose(beside.left, left * weight, atol=1e-4)
-    assert_allclose(beside.weighed(travel * UM), 0 * travel, atol=1e-4)
+    drawn = beside.beyond(beside.drawn(np.array([[travel], [gain]]) * UM))[:, 0]
+    assert_allclose(drawn[0], 0 * travel, atol=1e-4)
     expected = (gain - travel * (travel @ gain) / (travel @ travel)) * weight
-    assert_allclose(beside.weighed(gain * UM), expected, atol=1e-4)
+    assert_allclose(drawn[1], expected, atol=1e-4)

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.beside import Looked, beside_of
 from truing.diagnosis.chosen import Law
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.curves import Looked, beside_of
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import Setting, colour, whiten
 
@@ -51,7 +51,7 @@ def law_of(made: Competition, at: Fit, more: Fit, *, seed: int) -> Law:
         count = FIRST_DRAWS if done < FIRST_DRAWS else DRAWS - done
         drawn = _drawn(at, more, count, generator)
         drawn -= beside.taken @ (beside.taken.T @ drawn)
-        gains.append(_largest(made, seen, drawn, beside.total, steps) - choice)
+        gains.append(_largest(made, seen, drawn, made.sample.total, steps) - choice)
         if sum(int((each >= gain).sum()) for each in gains) >= HOPELESS:
             break
     together = np.concatenate(gains)

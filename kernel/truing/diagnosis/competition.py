@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from truing.diagnosis.beside import Looked, look
 from truing.diagnosis.causes import Cause
-from truing.diagnosis.curves import Curves, Looked, look
-from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit, is_too_large, nothing
+from truing.diagnosis.curves import Curves
+from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit, is_too_large, nothing, refit
 from truing.diagnosis.extended import Extended, shape_added
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.sample import Sample, as_noise, learnt, sample_of
@@ -68,7 +69,8 @@ class Competition:
     known: dict[frozenset[str], Fit] = field(default_factory=dict)
     tries: dict[str, float] = field(default_factory=dict)
     fits: int = 0
-    owned: dict[frozenset[str], tuple[Matrix, float]] = field(default_factory=dict)
+    owned: dict[Fit, float] = field(default_factory=dict)
+    paid: dict[Fit, float] = field(default_factory=dict)
     looked: dict[frozenset[str], tuple[Matrix, dict[str, Looked | None]]] = field(default_factory=dict)
     exchanged: set[tuple[frozenset[str], str]] = field(default_factory=set)
     fresh: set[frozenset[str]] = field(default_factory=set)
@@ -80,7 +82,9 @@ class Competition:
         """Return what an explanation pays for its numbers, for the choice of its causes and of their curves."""
         many, most = len(found.causes), max(len(self.causes), len(found.causes))
         choice = 2 * (lgamma(most + 1) - lgamma(many + 1) - lgamma(most - many + 1))
-        return choice + sum(self.price_of(cause) for cause in found.causes) + self.price_of_size(found)
+        if found not in self.paid:
+            self.paid[found] = self.price_of_size(found)
+        return choice + sum(self.price_of(cause) for cause in found.causes) + self.paid[found]
 
     def price_of(self, cause: Cause) -> float:
         """Return what a cause pays for its numbers and for the choice among its independent curves."""
@@ -112,11 +116,10 @@ class Competition:
 
     def own_score(self, found: Fit) -> float:
         """Return the same where what is left counts as noise with the memory that suits it best."""
-        known = self.owned.get(found.key)
-        if known is None or known[0] is not found.left:
-            known = self.owned[found.key] = found.left, as_noise(self.sample, found.predicted)
+        if found not in self.owned:
+            self.owned[found] = as_noise(self.sample, found.predicted)
         inputs = float(found.inputs @ found.inputs)
-        return known[1] + inputs + self.price(found) + MARGIN * signs_of_wrong(found)
+        return self.owned[found] + inputs + self.price(found) + MARGIN * signs_of_wrong(found)
 
     def ranked(self, accept: Callable[[Fit], bool] = lambda _: True) -> list[Fit]:
         """Return what was fitted and is accepted, the best first."""
@@ -223,13 +226,12 @@ class Competition:
             sample = sample_of(self.sample.machine, noise, self.sample.mask, directions)
             change = float(np.abs(np.log(sample.counts / self.sample.counts)).max())
             scale = max(abs(log(noise[name].scale / own.scale)) for name, own in self.sample.noise.items())
-            if change > SETTLED or scale > SETTLED:
-                self.exchanged = set()
-            self.sample, self.fresh = sample, set()
+            is_same = all(noise[name].memory == own.memory for name, own in self.sample.noise.items())
+            if is_same and change < SETTLED and scale < SETTLED:
+                break
+            self.sample, self.fresh, self.exchanged, self.owned, self.paid = sample, set(), set(), {}, {}
             self.known = {key: found.in_sample(sample) for key, found in self.known.items()}
             self.again(self.ranked()[:3])
-            if change < SETTLED and scale < SETTLED:
-                break
 
     def exact(self, found: Fit) -> Fit:
         """Return an explanation fitted to the end."""
@@ -241,7 +243,7 @@ class Competition:
         for found in several:
             if found.key not in self.fresh or until < ROUGHLY:
                 self.fits += 1
-                made = fit(self.sample, self.extended, found.causes, found.values, found.inputs, until=until)
+                made = refit(found, self.sample, self.extended, until=until)
                 self.fresh.discard(found.key)
                 self.keep(made)
 

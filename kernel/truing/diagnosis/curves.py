@@ -8,16 +8,14 @@ the inputs and its own numbers have taken their part, and the best points are wh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import log
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.stats import qmc
 
 from truing.diagnosis.causes import Cause
-from truing.diagnosis.exact import slopes_at
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.points import LEVELS, SPREAD, first_places, middle, placed, refined, spread
@@ -27,15 +25,8 @@ if TYPE_CHECKING:
 
     Matrix = NDArray[np.float64]
 
-KEPT = 3
-"""So many points of a cause begin exact fits."""
 STRAIGHT = 1e-4
 """Share of its size by which chords of a cause may differ while it counts as proportional."""
-NEAR_LEVEL = 2.0
-"""A curve that bends stands for amplitudes up to so many times its own, and down to one over it."""
-FAINT = 1e-9
-OWN = 0.03
-"""Share of a curve that must be left beside an explanation for it to count as one more that was tried."""
 
 
 @dataclass(frozen=True)
@@ -51,17 +42,10 @@ class Bundle:
     curves: Matrix
     is_straight: bool
 
-
-@dataclass(frozen=True)
-class Looked:
-    """What a cause could draw beside an explanation: gains in score with the numbers to begin with, the best first.
-
-    ``tries`` counts its independent curves; ``basis`` (M, q, rows + K) is orthonormal within a point.
-    """
-
-    starts: tuple[tuple[float, Matrix], ...]
-    tries: float
-    basis: Matrix
+    @property
+    def is_sweep(self) -> bool:
+        """Whether neighbouring points draw neighbouring curves."""
+        return self.is_straight and len(self.cause.shapes) <= 1
 
 
 class Curves:
@@ -211,141 +195,3 @@ def _swept(cause: Cause, make: Callable[[Matrix], Matrix], *, is_straight: bool)
     points = np.zeros((len(values), cause.size))
     points[:, cause.shapes] = values
     return Bundle(cause, points[works], np.nan_to_num(made[works]), is_straight)
-
-
-@dataclass(frozen=True)
-class Beside:
-    """What an explanation leaves, weighted (rows + K,), once its numbers and the inputs have taken their part.
-
-    ``taken`` (rows + K, t) is an orthonormal basis of what they can draw; ``index`` and ``factor`` turn readings of all
-    records into weighted rows of the sample.
-    """
-
-    left: Matrix
-    taken: Matrix
-    index: NDArray[np.intp]
-    factor: Matrix
-    total: float
-
-    def weighed(self, curves: Matrix) -> Matrix:
-        """Return curves (..., readings, SI) as what only they can draw, (..., rows + K)."""
-        rows = curves[..., self.index] * self.factor
-        k = len(self.left) - len(self.index)
-        made = np.concatenate([rows, np.zeros((*rows.shape[:-1], k))], axis=-1)
-        return np.asarray(made - (rows @ self.taken[: len(self.index)]) @ self.taken.T)
-
-
-def beside_of(found: Fit, extended: Extended) -> Beside:
-    """Return an explanation as other causes see it."""
-    sample, k = found.sample, len(found.inputs)
-    roots = sample.roots(found.left)
-    if found.causes:
-        own, inputs = slopes_at(found, extended)
-    else:
-        own, inputs = np.zeros((sample.rows, 0)), sample.drawn
-    columns = np.concatenate(
-        [np.column_stack([own, inputs]) * roots[:, None], np.column_stack([np.zeros((k, own.shape[1])), np.eye(k)])]
-    )
-    columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-    basis, size, _ = np.linalg.svd(columns, full_matrices=False)
-    taken = basis[:, size > 1e-9 * size.max()] if size.size else basis
-    left = np.concatenate([roots * found.left, -found.inputs])
-    left = left - taken @ (taken.T @ left)
-    names, rows = list(sample.machine.records.measured), len(sample.machine.records)
-    index = np.concatenate([names.index(channel.name) * rows + channel.rows for channel in sample.channels])
-    factor = np.concatenate([channel.weights / channel.scale for channel in sample.channels]) * roots
-    return Beside(left, np.asarray(taken), index, factor, sample.total)
-
-
-def looked(bundle: Bundle, beside: Beside) -> Looked | None:
-    """Compare the curves of a cause with what an explanation leaves; None where it draws nothing here."""
-    weighed = beside.weighed(bundle.curves)
-    raw = np.linalg.norm(bundle.curves[..., beside.index] * beside.factor, axis=-1)
-    size = np.linalg.norm(weighed, axis=-1)
-    kept = ((size > 1e-6 * raw) & (raw > FAINT)).any(axis=1)
-    if not kept.any():
-        return None
-    is_own = (size > OWN * raw).any(axis=1)[kept]
-    weighed, points = weighed[kept], bundle.points[kept]
-    basis = _orthonormal(weighed)
-    gains, values = _starts(bundle, points, weighed, beside)
-    order = np.argsort(-gains, kind="stable")
-    chosen: list[int] = []
-    for place in order[:200].tolist():
-        if gains[place] > 0 and not any(_is_same(basis[place], basis[other]) for other in chosen):
-            chosen.append(place)
-        if len(chosen) == KEPT:
-            break
-    starts = tuple((_score(float(gains[place]), beside.total), values[place]) for place in chosen)
-    return Looked(
-        starts, independent(basis[is_own], is_sweep=bundle.is_straight and len(bundle.cause.shapes) <= 1), basis
-    )
-
-
-def _score(gain: float, total: float) -> float:
-    """Return what a fall of the sum of squares is worth where the noise is the one that is left."""
-    return -total * log(max(1 - gain / max(total, 1e-300), 1e-9))
-
-
-def _is_same(one: Matrix, other: Matrix) -> bool:
-    """Whether two sets of columns draw nearly the same."""
-    return bool(np.linalg.norm(one @ other.T) ** 2 > 0.98 * min(len(one), len(other)))
-
-
-def _orthonormal(weighed: Matrix) -> Matrix:
-    """Return columns (M, q, rows) orthonormal within each point; 0 for those that depend on others."""
-    made = np.array(weighed)
-    size = np.linalg.norm(weighed, axis=-1)
-    for column in range(made.shape[1]):
-        for _ in range(2):
-            for before in range(column):
-                inner = np.einsum("mn,mn->m", made[:, before], made[:, column])
-                made[:, column] -= inner[:, None] * made[:, before]
-        left = np.linalg.norm(made[:, column], axis=-1)
-        is_own = left > 1e-6 * np.maximum(size[:, column], 1e-300)
-        made[:, column] *= np.where(is_own, 1 / np.maximum(left, 1e-300), 0.0)[:, None]
-    return made
-
-
-def _starts(bundle: Bundle, points: Matrix, weighed: Matrix, beside: Beside) -> tuple[Matrix, Matrix]:
-    """Return what each point lowers the sum of squares by within the bounds of the cause, and the numbers there."""
-    right = weighed @ beside.left
-    normal = np.einsum("mqn,mpn->mqp", weighed, weighed)
-    diagonal = np.einsum("mqq->mq", normal)
-    scale = np.sqrt(np.maximum(diagonal, 1e-300))
-    scaled = normal / (scale[:, :, None] * scale[:, None, :]) + 1e-9 * np.eye(normal.shape[1])
-    solved = np.linalg.solve(scaled, (right / scale)[..., None])[..., 0] / scale
-    values = np.array(points)
-    if bundle.is_straight:
-        numbers = [bundle.cause.numbers[place] for place in bundle.cause.amplitudes]
-        solved = np.clip(solved, [number.low for number in numbers], [number.high for number in numbers])
-        values[:, bundle.cause.amplitudes] = solved
-    else:
-        solved = np.clip(solved, 1 / NEAR_LEVEL, NEAR_LEVEL)
-        for place in bundle.cause.amplitudes:
-            number = bundle.cause.numbers[place]
-            values[:, place] = np.clip(points[:, place] * solved[:, 0], number.low, number.high)
-    gains = 2 * np.einsum("mq,mq->m", solved, right) - np.einsum("mq,mqp,mp->m", solved, normal, solved)
-    return gains, values
-
-
-def independent(basis: Matrix, *, is_sweep: bool) -> float:
-    """Return how many independent curves a set of points draws: the way along a sweep, else the rank that counts."""
-    if len(basis) < 2:
-        return 1.0
-    q = max(int((np.linalg.norm(basis, axis=-1) > 0.5).sum(axis=1).max()), 1)
-    if is_sweep:
-        inner = np.einsum("mqn,mpn->mqp", basis[1:], basis[:-1])
-        same = np.clip((inner**2).sum(axis=(1, 2)) / q, 0, 1)
-        return float(1 + np.sqrt(1 - same).sum() / 2)
-    flat = basis.reshape(-1, basis.shape[-1])
-    gram = flat @ flat.T
-    return float(np.trace(gram) ** 2 / max(float((gram**2).sum()), 1e-300) / q)
-
-
-def look(curves: Curves, at: Fit, causes: Sequence[Cause]) -> Mapping[str, Looked]:
-    """Compare all causes with what an explanation leaves, by their tag."""
-    beside = beside_of(at, curves.extended)
-    on = at.key
-    every = ((cause.tag, looked(curves.of(cause, at), beside)) for cause in causes if cause.tag not in on)
-    return {tag: each for tag, each in every if each is not None}

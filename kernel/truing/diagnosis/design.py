@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.beside import look
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.curves import look
 from truing.diagnosis.exact import fit, slopes_at, unit_of
 from truing.diagnosis.extended import Extended, elsewhere, parts_of
 from truing.diagnosis.findings import in_unit

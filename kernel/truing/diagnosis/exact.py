@@ -69,17 +69,26 @@ def fit(
     *,
     until: float = EXACTLY,
     held: Sequence[Number] = (),
+    slopes: dict[str, Matrix] | None = None,
 ) -> Fit | None:
     """Fit an explanation from a start: numbers of every cause, SI, and directions of the inputs (K,).
 
-    Numbers in ``held`` keep their start. None where the model fails however small the causes are.
+    Numbers in ``held`` keep their start. ``slopes`` are derivatives to begin with, as a fit has them. None where the
+    model fails however small the causes are.
     """
     start = inputs if inputs is not None and len(inputs) == sample.directions.shape[1] else None
     state = _Fitting(sample, extended, tuple(causes), held)
     if not state.begin(np.concatenate(values) if causes else np.zeros(0), start):
         return None
+    if slopes:
+        state.carry(slopes)
     state.settle(until)
     return state.answer()
+
+
+def refit(found: Fit, sample: Sample, extended: Extended, *, until: float = ROUGHLY) -> Fit | None:
+    """Fit an explanation again from where it is: in other noise, or to other rows."""
+    return fit(sample, extended, found.causes, found.values, found.inputs, until=until, slopes=found.slopes)
 
 
 class _Fitting:
@@ -97,6 +106,8 @@ class _Fitting:
         self.slopes = sample.drawn
         self.anchor = np.zeros(self.slopes.shape[1])
         self.damping = FIRST_DAMPING
+        self.drawn: dict[str, Matrix] = {}
+        self.is_fresh = False
 
     def outward(self, u: Matrix) -> Matrix:
         """Return numbers in SI."""
@@ -146,29 +157,38 @@ class _Fitting:
         return b, left, self.sample.cost(left, b)
 
     def derivatives(self) -> None:
-        """Take the derivatives of what is left by all free numbers, in one call of the model."""
+        """Take the derivatives of what the model shows by all free numbers, in one call of it."""
         places = np.flatnonzero(self.free)
         steps = STEP * np.maximum(np.abs(self.u), np.where(self.log, 1.0, 1e-2))
         steps = np.where(self.u + steps > self.high, -steps, steps)
-        points = []
-        for place in places:
-            point = self.u.copy()
-            point[place] += steps[place]
-            points.append(point)
-        self.slope = np.zeros((len(self.left), len(self.u)))
+        points = [self.u + step * unit for step, unit in zip(steps[places], np.eye(len(self.u))[places], strict=True)]
+        drawn = {name: np.zeros((len(base), len(self.u))) for name, base in self.predicted.items()}
         for place, shown in zip(places, self.shown(points, self.anchor) if points else [], strict=True):
-            column = (self.bare(shown) - self.r0) / steps[place]
-            self.slope[:, place] = (
-                column if np.isfinite(column).all() else self._other_side(int(place), float(steps[place]))
-            )
+            if not np.isfinite(self.sample.left(shown)).all():
+                shown = self._other_side(int(place), float(steps[place]))
+            for name, base in self.predicted.items():
+                drawn[name][:, place] = (shown[name] - base) / steps[place]
+        self._draw(drawn)
         self.is_fresh = True
 
-    def _other_side(self, place: int, step: float) -> Matrix:
-        """Return the derivative to the side on which the model does not fail, 0 where it fails on both."""
+    def _other_side(self, place: int, step: float) -> dict[str, Matrix]:
+        """Return what the model would show a step on, as the other side has it; what it shows where that fails too."""
         point = self.u.copy()
         point[place] -= step
-        column = (self.bare(self.shown([point], self.anchor)[0]) - self.r0) / -step
-        return np.where(np.isfinite(column).all(), column, 0.0)
+        (shown,) = self.shown([point], self.anchor)
+        if not np.isfinite(self.sample.left(shown)).all():
+            return self.predicted
+        return {name: 2 * base - shown[name] for name, base in self.predicted.items()}
+
+    def _draw(self, drawn: dict[str, Matrix]) -> None:
+        """Take derivatives, by result (n, numbers), SI per number as the fit sees it."""
+        self.drawn, self.slope = drawn, -self.sample.curve(drawn)
+
+    def carry(self, slopes: dict[str, Matrix]) -> None:
+        """Begin with the derivatives of another fit, where they are known on these rows."""
+        drawn = {name: each * np.where(self.log, 1.0, self.sizes) for name, each in slopes.items()}
+        if np.isfinite(self.sample.curve(drawn)).all():
+            self._draw(drawn)
 
     def step(self) -> tuple[Matrix, float]:
         """Return where a damped step leads within the bounds, and by how much the cost is to fall."""
@@ -251,10 +271,11 @@ class _Fitting:
         if not self.free.any():
             return
         self.damping = FIRST_DAMPING
-        self.derivatives()
+        if not self.drawn:
+            self.derivatives()
         for _ in range(MOST_STEPS if until <= EXACTLY else MOST_ROUGH):
             moved, promised = self.step()
-            if promised < until and (self.is_fresh or promised < 1e-3 * until):
+            if promised < until and (self.is_fresh or until > EXACTLY or promised < 1e-3 * until):
                 if until <= EXACTLY and promised > 0:
                     self._taken(moved)
                 return
@@ -287,7 +308,8 @@ class _Fitting:
         gained = self.cost - cost
         if gained > 0:
             way = tried - self.u
-            self.slope = self.slope + np.outer((bare - self.r0) - self.slope @ way, way) / max(float(way @ way), 1e-300)
+            before = self.predicted
+            self._draw({name: _corrected(own, shown[name] - before[name], way) for name, own in self.drawn.items()})
             self.u, self.predicted, self.r0, self.b, self.left, self.cost = tried, shown, bare, b, left, cost
             self.is_fresh = False
         return gained
@@ -336,7 +358,13 @@ class _Fitting:
             slopes = self.sample.machine.slopes
             predicted = {name: shown + slopes[name] @ moved for name, shown in predicted.items()}
         values = tuple(parts_of(self.causes, self.outward(self.u)))
-        return Fit(self.causes, values, self.b, predicted, self.left, self.cost, self.sample)
+        slopes = {name: each / np.where(self.log, 1.0, self.sizes) for name, each in self.drawn.items()}
+        return Fit(self.causes, values, self.b, predicted, self.left, self.cost, self.sample, slopes)
+
+
+def _corrected(slopes: Matrix, change: Matrix, way: Matrix) -> Matrix:
+    """Return derivatives (n, numbers) that agree with what a step along ``way`` changed."""
+    return slopes + np.outer(change - slopes @ way, way) / max(float(way @ way), 1e-300)
 
 
 def _solved(normal: Matrix, right: Matrix) -> Matrix:

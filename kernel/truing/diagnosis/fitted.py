@@ -23,6 +23,7 @@ class Fit:
 
     ``predicted`` holds results by name, SI on all rows of the records; ``left`` what is left of the sample's rows in
     units of the noise. ``cost`` is -2 log likelihood plus the prior of the inputs, in the noise that it was fitted in.
+    ``slopes`` holds by result what the numbers draw, (n, numbers), SI per SI or per logarithm, as the fit left it.
     """
 
     causes: tuple[Cause, ...]
@@ -32,6 +33,7 @@ class Fit:
     left: Matrix
     cost: float
     sample: Sample = field(repr=False)
+    slopes: dict[str, Matrix] = field(default_factory=dict, repr=False)
 
     @property
     def key(self) -> frozenset[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from truing.diagnosis.exact import ROUGHLY, fit
+from truing.diagnosis.exact import refit
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import Setting
@@ -86,7 +86,7 @@ def refitted(found: Fit, extended: Extended, test: NDArray[np.bool_]) -> Fit | N
     sample = found.sample.of_rows(~test)
     if not all(len(channel) for channel in sample.channels):
         return None
-    return fit(sample, extended, found.causes, found.values, found.inputs, until=ROUGHLY)
+    return refit(found, sample, extended)
 
 
 def errors_left_out(found: Fit, extended: Extended, folds: Folds) -> Matrix:

@@ -72,7 +72,7 @@ def carried_over(
         return np.array(driven)
     band = np.ones((2, len(starts)))
     band[1, :-1] = -share * ~starts[1:]
-    solved, _ = dtbtrs(band, driven, uplo="L", trans="T" if backwards else "N", diag="U")
+    solved, _ = dtbtrs(band, driven.reshape(len(starts), -1), uplo="L", trans="T" if backwards else "N", diag="U")
     found: NDArray[np.float64] = solved.reshape(driven.shape)
     return found
 

@@ -134,19 +134,17 @@ class Sample:
         return np.concatenate([each.white(each.left(predicted[each.name])) for each in self.channels])
 
     def curve(self, added: Predicted) -> Matrix:
-        """Return something that is added to predictions, in units of the noise, (rows,)."""
-        parts = [each.white(added[each.name][each.rows] * (each.weights / each.scale)) for each in self.channels]
+        """Return what is added to predictions, (n,) or (n, c), in units of the noise, (rows,) or (rows, c)."""
+        parts = []
+        for each in self.channels:
+            rows = added[each.name][each.rows]
+            parts.append(each.white((rows.T * (each.weights / each.scale)).T))
         return np.concatenate(parts)
 
     @cached_property
     def drawn(self) -> Matrix:
         """What the directions of the inputs add to the predictions, in units of the noise, (rows, K)."""
-        machine = self.machine
-        parts = []
-        for channel in self.channels:
-            slopes = np.asarray(machine.slopes[channel.name][channel.rows] @ self.directions)
-            parts.append(channel.white(slopes * (channel.weights / channel.scale)[:, None]))
-        return np.concatenate(parts)
+        return self.curve({name: slopes @ self.directions for name, slopes in self.machine.slopes.items()})
 
     def mean_squares(self, left: Matrix) -> Matrix:
         """Return the mean square of what is left by channel, no smaller than what is more than rounding."""

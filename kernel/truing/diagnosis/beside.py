@@ -1,0 +1,198 @@
+"""What causes could draw beside an explanation: their curves, once its numbers and the inputs have taken their part.
+
+Curves of many causes are compared at once with what the explanation leaves, without the memory of the noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import log
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from truing.diagnosis.causes import Cause
+from truing.diagnosis.curves import Bundle, Curves
+from truing.diagnosis.exact import slopes_at
+from truing.diagnosis.extended import Extended
+from truing.diagnosis.fitted import Fit
+from truing.diagnosis.sample import Sample
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+KEPT = 3
+"""So many points of a cause begin exact fits."""
+NEAR_LEVEL = 2.0
+"""A curve that bends stands for amplitudes up to so many times its own, and down to one over it."""
+FAINT = 1e-9
+OWN = 0.03
+"""Share of a curve that must be left beside an explanation for it to count as one more that was tried."""
+TOGETHER = 500_000
+"""Curves with so many values at most are compared at once."""
+
+
+@dataclass(frozen=True)
+class Looked:
+    """What a cause could draw beside an explanation: gains in score with the numbers to begin with, the best first.
+
+    ``tries`` counts its independent curves; ``basis`` (M, q, rows + K) is orthonormal within a point.
+    """
+
+    starts: tuple[tuple[float, Matrix], ...]
+    tries: float
+    basis: Matrix
+
+
+@dataclass(frozen=True)
+class Beside:
+    """What an explanation leaves, weighted (rows + K,), once its numbers and the inputs have taken their part.
+
+    ``taken`` (rows + K, t) is an orthonormal basis of what they can draw; ``roots`` weigh the rows of the sample.
+    """
+
+    sample: Sample
+    roots: Matrix
+    left: Matrix
+    taken: Matrix
+
+    def drawn(self, curves: Matrix) -> Matrix:
+        """Return curves (M, q, readings), SI, as weighted rows of the sample, (M, q, rows)."""
+        by_result = np.split(curves.T, len(self.sample.machine.records.measured))
+        return self.sample.curve(dict(zip(self.sample.machine.records.measured, by_result, strict=True))).T * self.roots
+
+    def beyond(self, rows: Matrix) -> Matrix:
+        """Return what only these curves (M, q, rows) can draw, (M, q, rows + K)."""
+        made = -(rows @ self.taken[: rows.shape[-1]]) @ self.taken.T
+        made[..., : rows.shape[-1]] += rows
+        return np.asarray(made)
+
+
+def beside_of(found: Fit, extended: Extended) -> Beside:
+    """Return an explanation as other causes see it."""
+    sample, k = found.sample, len(found.inputs)
+    roots = sample.roots(found.left)
+    if found.causes:
+        own, inputs = slopes_at(found, extended)
+    else:
+        own, inputs = np.zeros((sample.rows, 0)), sample.drawn
+    columns = np.concatenate(
+        [np.column_stack([own, inputs]) * roots[:, None], np.column_stack([np.zeros((k, own.shape[1])), np.eye(k)])]
+    )
+    columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    basis, size, _ = np.linalg.svd(columns, full_matrices=False)
+    taken = np.asarray(basis[:, size > 1e-9 * size.max()] if size.size else basis)
+    left = np.concatenate([roots * found.left, -found.inputs])
+    return Beside(sample, roots, left - taken @ (taken.T @ left), taken)
+
+
+def look(curves: Curves, at: Fit, causes: Sequence[Cause]) -> Mapping[str, Looked]:
+    """Compare all causes with what an explanation leaves, by their tag."""
+    beside = beside_of(at, curves.extended)
+    bundles = (curves.of(cause, at) for cause in causes if cause.tag not in at.key)
+    return {tag: each for group in _grouped(bundles) for tag, each in compared(group, beside)}
+
+
+def _grouped(bundles: Iterable[Bundle]) -> Iterator[list[Bundle]]:
+    """Give bundles of one number of columns together, so many at once as memory has room for."""
+    waiting: dict[int, list[Bundle]] = {}
+    for bundle in bundles:
+        several = waiting.setdefault(bundle.curves.shape[1], [])
+        if several and sum(each.curves.size for each in several) + bundle.curves.size > TOGETHER:
+            yield waiting.pop(bundle.curves.shape[1])
+            waiting[bundle.curves.shape[1]] = several = []
+        several.append(bundle)
+    yield from waiting.values()
+
+
+def compared(bundles: list[Bundle], beside: Beside) -> Iterator[tuple[str, Looked]]:
+    """Compare the curves of causes with what an explanation leaves; those that draw nothing here are left out."""
+    curves = np.concatenate([each.curves for each in bundles]) if len(bundles) > 1 else bundles[0].curves
+    rows = beside.drawn(curves)
+    weighed = beside.beyond(rows)
+    raw, size = np.linalg.norm(rows, axis=-1), np.linalg.norm(weighed, axis=-1)
+    kept = ((size > 1e-6 * raw) & (raw > FAINT)).any(axis=1)
+    is_own = (size > OWN * raw).any(axis=1)
+    basis = _orthonormal(weighed, size)
+    right, normal = weighed @ beside.left, np.einsum("mqn,mpn->mqp", weighed, weighed)
+    begin = 0
+    for bundle in bundles:
+        end = begin + len(bundle.points)
+        own = begin + np.flatnonzero(kept[begin:end])
+        if len(own):
+            gains, values = _starts(bundle, bundle.points[own - begin], right[own], normal[own])
+            tries = independent(basis[own[is_own[own]]], is_sweep=bundle.is_sweep)
+            yield bundle.cause.tag, Looked(_best(gains, values, basis[own], beside.sample.total), tries, basis[own])
+        begin = end
+
+
+def _best(gains: Matrix, values: Matrix, basis: Matrix, total: float) -> tuple[tuple[float, Matrix], ...]:
+    """Return the best points that do not draw the same, with what each is worth in score."""
+    chosen: list[int] = []
+    for place in np.argsort(-gains, kind="stable")[:200].tolist():
+        if gains[place] > 0 and not any(_is_same(basis[place], basis[other]) for other in chosen):
+            chosen.append(place)
+        if len(chosen) == KEPT:
+            break
+    return tuple((_score(float(gains[place]), total), values[place]) for place in chosen)
+
+
+def _score(gain: float, total: float) -> float:
+    """Return what a fall of the sum of squares is worth where the noise is the one that is left."""
+    return -total * log(max(1 - gain / max(total, 1e-300), 1e-9))
+
+
+def _is_same(one: Matrix, other: Matrix) -> bool:
+    """Whether two sets of columns draw nearly the same."""
+    return bool(np.linalg.norm(one @ other.T) ** 2 > 0.98 * min(len(one), len(other)))
+
+
+def _orthonormal(weighed: Matrix, size: Matrix) -> Matrix:
+    """Return columns (M, q, rows) orthonormal within each point; 0 for those that depend on others."""
+    made = np.array(weighed)
+    for column in range(made.shape[1]):
+        for _ in range(2):
+            for before in range(column):
+                inner = np.einsum("mn,mn->m", made[:, before], made[:, column])
+                made[:, column] -= inner[:, None] * made[:, before]
+        left = np.linalg.norm(made[:, column], axis=-1)
+        is_own = left > 1e-6 * np.maximum(size[:, column], 1e-300)
+        made[:, column] *= np.where(is_own, 1 / np.maximum(left, 1e-300), 0.0)[:, None]
+    return made
+
+
+def _starts(bundle: Bundle, points: Matrix, right: Matrix, normal: Matrix) -> tuple[Matrix, Matrix]:
+    """Return what each point lowers the sum of squares by within the bounds of the cause, and the numbers there."""
+    diagonal = np.einsum("mqq->mq", normal)
+    scale = np.sqrt(np.maximum(diagonal, 1e-300))
+    scaled = normal / (scale[:, :, None] * scale[:, None, :]) + 1e-9 * np.eye(normal.shape[1])
+    solved = np.linalg.solve(scaled, (right / scale)[..., None])[..., 0] / scale
+    values = np.array(points)
+    if bundle.is_straight:
+        numbers = [bundle.cause.numbers[place] for place in bundle.cause.amplitudes]
+        solved = np.clip(solved, [number.low for number in numbers], [number.high for number in numbers])
+        values[:, bundle.cause.amplitudes] = solved
+    else:
+        solved = np.clip(solved, 1 / NEAR_LEVEL, NEAR_LEVEL)
+        for place in bundle.cause.amplitudes:
+            number = bundle.cause.numbers[place]
+            values[:, place] = np.clip(points[:, place] * solved[:, 0], number.low, number.high)
+    gains = 2 * np.einsum("mq,mq->m", solved, right) - np.einsum("mq,mqp,mp->m", solved, normal, solved)
+    return gains, values
+
+
+def independent(basis: Matrix, *, is_sweep: bool) -> float:
+    """Return how many independent curves a set of points draws: the way along a sweep, else the rank that counts."""
+    if len(basis) < 2:
+        return 1.0
+    q = max(int((np.linalg.norm(basis, axis=-1) > 0.5).sum(axis=1).max()), 1)
+    if is_sweep:
+        inner = np.einsum("mqn,mpn->mqp", basis[1:], basis[:-1])
+        same = np.clip((inner**2).sum(axis=(1, 2)) / q, 0, 1)
+        return float(1 + np.sqrt(1 - same).sum() / 2)
+    flat = basis.reshape(-1, basis.shape[-1])
+    gram = flat @ flat.T
+    return float(np.trace(gram) ** 2 / max(float((gram**2).sum()), 1e-300) / q)
