@@ -128,10 +128,10 @@ def _named_weakest(made: Competition, best: Fit) -> Fit:
 
 
 def _like(made: Competition, best: Fit) -> Iterator[Fit]:
-    """Give explanations that exchange one cause for another one and draw the same on this record."""
+    """Give explanations that exchange one cause for another one and draw the same, the inputs no farther off."""
     for found in made.known.values():
         own = found.key - best.key
-        is_other = len(found.causes) == len(best.causes) and len(own) == 1
+        is_other = len(found.causes) == len(best.causes) and len(own) == 1 and found.cost < best.cost + CLOSE
         if is_other and all(cause.effect is not None for cause in found.causes) and differ(best, found) < ALIKE:
             yield found
 
