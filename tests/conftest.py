@@ -18,10 +18,6 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 SOFT = "what the diagnosis says here is known to be wrong; it is to be put right: "
 KNOWN_WRONG = {
-    "test_finding.py::test_what_is_hidden_is_found": "a cause that saturates draws an offset as it was fitted",
-    "test_finding.py::test_what_is_not_found_is_said_with_what_to_change[late]": "it is found under another name",
-    "test_what_is_not_found_is_said_with_what_to_change[in the tolerances]": "the curve has no other name",
-    "test_finding.py::test_an_effect_that_cannot_be_found_is_an_exception_with_a_reason": "it is found",
     "test_the_coefficient_that_is_named_is_that_of_least_squares[tennis_ball]": "spread over time",
     "test_example_beam.py::test_the_wave_is_named_where_its_period_is_known_nearly": "a shape beside the wave",
     "test_example_beam.py::test_outliers_are_the_rows_that_lie_farthest_off_by_hand": "a shape beside the wave",

@@ -72,6 +72,8 @@ def _input_box(field: InputField, low: float, high: float) -> tuple[float, float
     if is_angle and not lows and not highs:
         return min(low, -pi), max(high, pi)
     reach = (high - low) / 2
+    if low >= 0:  # a time, a load, a length: what was never below zero may not go there
+        lows.append(0.0)
     return max([low - reach, *lows]), min([high + reach, *highs])
 
 

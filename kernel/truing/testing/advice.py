@@ -2,23 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from truing.setup import SwitchedOn
-from truing.testing.hidden import MEASURED, Hidden, records_of
+from truing.testing.hidden import Hidden
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from truing.declare.sources import Effect
-    from truing.diagnosis.records import Records
     from truing.diagnosis.result import Diagnosis, Seen
-
-ALIKE = 1 - 1e-6
-"""Cosine of the angle between two curves that are one."""
 
 
 def advice_on(hidden: Hidden) -> str:
@@ -37,39 +27,7 @@ def advice_on(hidden: Hidden) -> str:
         return f"cannot be told apart from '{diagnosis.causes[0].effect}': {_next(diagnosis)}"
     if seen is not None:
         return _too_small(hidden, seen, _size(hidden) / (seen.smallest.value if seen.smallest else 1.0))
-    for twin, factor in _twins(hidden):
-        return f"it draws the curve of '{twin.name}' here, and that is {_too_small(hidden, twin, factor)}"
     return f"too small for this noise, or what was hidden is not its curve: hide more, or {_vary(hidden)}"
-
-
-def _twins(hidden: Hidden) -> Iterator[tuple[Seen, float]]:
-    """Give what is said of effects that draw the very curve that was hidden, and how often it is what can be seen."""
-    import numpy as np
-
-    records = records_of(hidden.setup, hidden.measured, MEASURED)
-    own = _curve(hidden, records, _effect(hidden), hidden.truth)
-    seen = {item.name: item for item in hidden.answered.diagnosis.seen if item.smallest is not None}
-    for effect in hidden.setup.model.known_effects.values():
-        for part in effect.groups():
-            item = seen.get(effect.name) or seen.get(f"{effect.name}.{part[0].name}")
-            if item is None or item.smallest is None or len(part) > 1:
-                continue
-            curve = _curve(hidden, records, effect, {part[0].name: item.smallest.value})
-            lengths = np.linalg.norm(own), np.linalg.norm(curve)
-            if min(lengths) > 0 and abs(own @ curve) > ALIKE * lengths[0] * lengths[1]:
-                yield item, float(lengths[0] / lengths[1])
-
-
-def _curve(hidden: Hidden, records: Records, effect: Effect[Any, Any], values: Any) -> NDArray[np.float64]:
-    """Return what an effect changes on the rows of the record, one measured result after another."""
-    import numpy as np
-
-    from truing.gauge import read_by_gauge
-
-    on = replace(hidden.setup, effects=(SwitchedOn(effect, values),))
-    changed, base = (read_by_gauge(setup, records.rows, records.measured).results for setup in (on, hidden.setup))
-    parts = [np.nan_to_num(changed[name] - base[name]) / (hidden.noise.get(name) or 1.0) for name in records.measured]
-    return np.concatenate(parts)
 
 
 def _seen(hidden: Hidden) -> Seen | None:
