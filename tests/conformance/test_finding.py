@@ -132,6 +132,10 @@ def test_what_is_not_found_is_said_with_what_to_change(name: str, sentences: lis
         assert sentence in text
 
 
+def test_no_time_before_the_start_is_proposed() -> None:
+    assert "time −" not in said(assert_finds, case("late"))
+
+
 def claimed(name: str, **changes: Any) -> Hidden:
     """A record of which something else is claimed than was hidden; what was diagnosed stands."""
     made = replace(case(name), **changes)
