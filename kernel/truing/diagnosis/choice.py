@@ -137,12 +137,15 @@ def _like(made: Competition, best: Fit) -> Iterator[Fit]:
 
 
 def _same(made: Competition, best: Fit) -> dict[str, tuple[str, ...]]:
-    """Return by cause of the winner the names of others that draw its curve as it was fitted."""
+    """Return by cause of the winner the names of others that draw its curve as it was fitted.
+
+    One with more amplitudes holds the winner as a special case: that is no other name.
+    """
     names: dict[str, list[str]] = {}
     for found in _like(made, best):
         (gone,) = (cause for cause in best.causes if cause.tag not in found.key)
         (other,) = (cause for cause in found.causes if cause.tag not in best.key)
-        if other.name != gone.name:
+        if other.name != gone.name and len(other.amplitudes) <= len(gone.amplitudes):
             names.setdefault(gone.tag, []).append(other.name)
     return {tag: tuple(dict.fromkeys(every)) for tag, every in names.items()}
 
