@@ -160,5 +160,5 @@ def test_a_fit_of_a_film_begins_with_a_size_at_which_it_is_felt(tmp_path: Path) 
     best = int(np.argmax(gain))
     (worth, (size,)) = starts[0]
     assert size == pytest.approx(min(bundle.points[best, 0] * stretched[best], 20.0), rel=1e-6)
-    rows = null.sample.total
+    rows = null.sample.rows
     assert worth == pytest.approx(-rows * np.log(1 - gain[best] / (left @ left)), rel=1e-6)

@@ -243,7 +243,7 @@ def test_what_is_left_is_least_squares_with_rows_for_the_prior_of_the_inputs(tmp
         left = target - rows @ u
         weight = weight / np.sqrt(np.mean(left[:80] ** 2))
     assert_allclose(beside.left, left, atol=2e-3)
-    assert beside.sample.total == 80
+    assert beside.sample.rows == 80
     curve = np.random.default_rng(5).normal(size=(1, 1, 80)) * UM
     weighed = beside.beyond(beside.drawn(curve))[0, 0]
     padded = np.concatenate([weight * curve[0, 0] / UM, np.zeros(2)])

@@ -33,13 +33,13 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 from scipy.linalg import subspace_angles
 from scipy.optimize import least_squares
-from scipy.stats import multivariate_normal
+from scipy.stats import multivariate_normal, norm
 
 from truing.diagnosis.beside import beside_of
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.design import _Duel
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.noise import Setting, colour, log_likelihood
+from truing.diagnosis.noise import Setting, colour, whiten
 from truing.diagnosis.sample import sample_of
 from truing.diagnosis.visibility import inseparable, needed, separation
 
@@ -72,7 +72,7 @@ def believed(made: Competition, name: str, *numbers: float) -> Fit:
 
 def test_the_exact_likelihood_of_six_values_of_an_autoregression() -> None:
     values = np.array([0.3, -0.1, 0.4, 1.2, 0.7, -0.5])
-    ours = log_likelihood(values, one_run(6), Setting(0.6), 0.8)
+    ours = norm.logpdf(whiten(values, one_run(6), Setting(0.6)), scale=0.8).sum() + np.log(1 - 0.6**2) / 2
     lag = np.abs(np.subtract.outer(np.arange(6), np.arange(6)))
     dense = multivariate_normal(cov=0.8**2 / (1 - 0.6**2) * 0.6**lag).logpdf(values)
     assert_allclose(ours, dense, rtol=0, atol=1e-9)
@@ -181,7 +181,7 @@ def test_three_hundred_rows_that_carry_over_say_of_an_offset_what_seventy_five_d
     sample = sample_of(plain.machine, noise, plain.mask)
     offset = sample.curve({"deflection": np.full(300, UM)})
     assert_allclose(offset @ offset * setting.variance_ratio, 1 + 299 / 4, rtol=1e-9)  # in noise of 1 um
-    assert sample.total == 300  # the memory is taken out: no row counts less than another
+    assert sample.rows == 300  # the memory is taken out: no row counts less than another
     assert_allclose(sample.cost(left, np.zeros(0)), 300 * np.log(np.mean(left**2)), rtol=1e-9)
     assert_allclose(np.sum((sample.roots(left) * left) ** 2), 300, rtol=1e-9)
 

@@ -125,11 +125,11 @@ def compared(bundles: list[Bundle], beside: Beside) -> Iterator[tuple[str, Looke
         if len(own):
             gains, values = _starts(bundle, bundle.points[own - begin], right[own], normal[own])
             tries = independent(basis[own[is_own[own]]], is_sweep=bundle.is_sweep)
-            yield bundle.cause.tag, Looked(_best(gains, values, basis[own], beside.sample.total), tries, basis[own])
+            yield bundle.cause.tag, Looked(_best(gains, values, basis[own], beside.sample.rows), tries, basis[own])
         begin = end
 
 
-def _best(gains: Matrix, values: Matrix, basis: Matrix, total: float) -> tuple[tuple[float, Matrix], ...]:
+def _best(gains: Matrix, values: Matrix, basis: Matrix, rows: int) -> tuple[tuple[float, Matrix], ...]:
     """Return the best points that do not draw the same, with what each is worth in score."""
     chosen: list[int] = []
     for place in np.argsort(-gains, kind="stable")[:200].tolist():
@@ -137,12 +137,12 @@ def _best(gains: Matrix, values: Matrix, basis: Matrix, total: float) -> tuple[t
             chosen.append(place)
         if len(chosen) == KEPT:
             break
-    return tuple((_score(float(gains[place]), total), values[place]) for place in chosen)
+    return tuple((_score(float(gains[place]), rows), values[place]) for place in chosen)
 
 
-def _score(gain: float, total: float) -> float:
+def _score(gain: float, rows: int) -> float:
     """Return what a fall of the sum of squares is worth where the noise is the one that is left."""
-    return -total * log(max(1 - gain / max(total, 1e-300), 1e-9))
+    return -rows * log(max(1 - gain / max(rows, 1), 1e-9))
 
 
 def _is_same(one: Matrix, other: Matrix) -> bool:

@@ -51,7 +51,7 @@ def law_of(made: Competition, at: Fit, more: Fit, *, seed: int) -> Law:
         count = FIRST_DRAWS if done < FIRST_DRAWS else DRAWS - done
         drawn = _drawn(at, more, count, generator)
         drawn -= beside.taken @ (beside.taken.T @ drawn)
-        gains.append(_largest(made, seen, drawn, made.sample.total, steps) - choice)
+        gains.append(_largest(made, seen, drawn, made.sample.rows, steps) - choice)
         if sum(int((each >= gain).sum()) for each in gains) >= HOPELESS:
             break
     together = np.concatenate(gains)
@@ -61,21 +61,20 @@ def law_of(made: Competition, at: Fit, more: Fit, *, seed: int) -> Law:
 def _drawn(at: Fit, more: Fit, count: int, generator: np.random.Generator) -> Matrix:
     """Draw noise as the better explanation leaves it, and inputs within their tolerances, (rows + K, draws)."""
     sample = at.sample
+    weighted = sample.roots(more.left) * more.left
     parts = []
     for part, channel in zip(sample.parts, sample.channels, strict=True):
         memory = channel.memory
-        pool = more.left[part] - more.left[part].mean()
+        pool = weighted[part] - weighted[part].mean()
         drawn = generator.choice(pool, size=(len(channel), count))
         if memory.rho:  # the memory is known but for its error
             filtered = Setting(carried(memory.rho, len(pool)), memory.theta)
             drawn = whiten(colour(drawn, channel.starts, filtered), channel.starts, memory)
-        noise = drawn
-        size = sqrt(channel.count / max(float(np.mean(pool**2)) * len(channel), 1e-300))
-        parts.append(noise * size)
+        parts.append(drawn / sqrt(max(float(np.mean(pool**2)), 1e-300)))
     return np.concatenate([*parts, generator.standard_normal((len(at.inputs), count))])
 
 
-def _largest(made: Competition, seen: Mapping[str, Looked], drawn: Matrix, total: float, steps: int) -> Matrix:
+def _largest(made: Competition, seen: Mapping[str, Looked], drawn: Matrix, rows: int, steps: int) -> Matrix:
     """Return by draw the largest gain of so many causes, one after another, each paid for, (draws,)."""
     summed = np.zeros(drawn.shape[1])
     prices = {cause.tag: made.price_of(cause) for cause in made.causes}
@@ -89,7 +88,7 @@ def _largest(made: Competition, seen: Mapping[str, Looked], drawn: Matrix, total
             squares = np.sum(inner**2, axis=1)
             place = squares.argmax(axis=0)
             lowered = np.take_along_axis(squares, place[None], 0)[0]
-            gain = -total * np.log(np.maximum(1 - lowered / np.maximum(whole, 1e-300), 1e-9)) - prices[tag]
+            gain = -rows * np.log(np.maximum(1 - lowered / np.maximum(whole, 1e-300), 1e-9)) - prices[tag]
             better = np.flatnonzero(gain > best)
             best[better] = gain[better]
             for draw in better if steps > 1 else ():

@@ -17,7 +17,7 @@ from truing.diagnosis.causes import Cause
 from truing.diagnosis.chosen import Chosen, Law, Rival
 from truing.diagnosis.competition import Competition, differ, exchange
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.intervals import certainty_of, may_be_zero
+from truing.diagnosis.intervals import certainty_of, may_be_zero, places_of
 from truing.diagnosis.steps import Decision, is_sensible, shapes_in, shifts_inputs, steps_from
 
 if TYPE_CHECKING:
@@ -145,16 +145,22 @@ def _same(made: Competition, best: Fit) -> dict[str, tuple[str, ...]]:
     for found in _like(made, best):
         (gone,) = (cause for cause in best.causes if cause.tag not in found.key)
         (other,) = (cause for cause in found.causes if cause.tag not in best.key)
-        if other.name != gone.name and len(other.amplitudes) <= len(gone.amplitudes):
+        if other.name != gone.name and _felt(found, other) <= _felt(best, gone):
             names.setdefault(gone.tag, []).append(other.name)
     return {tag: tuple(dict.fromkeys(every)) for tag, every in names.items()}
 
 
+def _felt(found: Fit, cause: Cause) -> int:
+    """Return how many amplitudes of one of its causes an explanation feels on this record."""
+    places = places_of(found, cause)
+    drawn = found.sample.curve(found.slopes)[:, [places[amplitude] for amplitude in cause.amplitudes]]
+    return int(np.any(drawn, axis=0).sum())
+
+
 def unsure(one: Fit, other: Fit) -> float:
     """Return the standard error of the difference of two scores, from how it differs from row to row."""
-    squares = [(each.sample.roots(each.left) * each.left) ** 2 for each in (one, other)]
-    share = one.sample.total / one.sample.rows
-    return sqrt(one.sample.rows) * float(np.std(squares[0] - squares[1])) / sqrt(max(share, 1e-300))
+    losses = [each.sample.losses(each.left, each.left) for each in (one, other)]
+    return sqrt(one.sample.rows) * float(np.std(losses[0] - losses[1]))
 
 
 def _rivals(made: Competition, best: Fit) -> list[Rival]:

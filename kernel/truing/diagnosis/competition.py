@@ -88,7 +88,7 @@ class Competition:
 
     def price_of(self, cause: Cause) -> float:
         """Return what a cause pays for its numbers and for the choice among its independent curves."""
-        own = cause.size * log(max(self.sample.total, 2.0)) + 2 * log(max(self.tries.get(cause.tag, 1.0), 1.0))
+        own = cause.size * log(max(self.sample.rows, 2)) + 2 * log(max(self.tries.get(cause.tag, 1.0), 1.0))
         return own + (UNREGISTERED if cause.shape is not None else MARGIN if cause.tolerated >= 0 else 0.0)
 
     def price_of_size(self, found: Fit) -> float:
@@ -97,15 +97,13 @@ class Competition:
         With a scale of its own every amplitude costs the logarithm of what it draws over the noise. A constant is free:
         two shapes may each have one, and only their sum is drawn.
         """
-        total, roots = 0.0, self.sample.roots(found.left)
+        sample, total, roots = found.sample, 0.0, found.sample.roots(found.left)
         for cause, values in zip(found.causes, found.values, strict=True):
             if cause.shape is not None:
-                added = shape_added(self.sample.machine, cause, values)
-                drawn = np.zeros(self.sample.rows)
+                added = shape_added(sample.machine, cause, values)
+                drawn = np.zeros(sample.rows)
                 for name, curve in added.items():
-                    one, other = (
-                        roots * self.sample.curve(_on(found, name, each)) for each in (curve, np.ones_like(curve))
-                    )
+                    one, other = (roots * sample.curve(_on(found, name, each)) for each in (curve, np.ones_like(curve)))
                     drawn += one - other * float(other @ one) / max(float(other @ other), 1e-300)
                 total += len(cause.amplitudes) * log1p(float(np.mean(drawn**2)))
         return total
@@ -224,10 +222,9 @@ class Competition:
             finer = any(noise[name].scale < FINER * own.scale for name, own in self.sample.noise.items())
             directions = None if finer else self.sample.directions
             sample = sample_of(self.sample.machine, noise, self.sample.mask, directions)
-            change = float(np.abs(np.log(sample.counts / self.sample.counts)).max())
             scale = max(abs(log(noise[name].scale / own.scale)) for name, own in self.sample.noise.items())
-            is_same = all(noise[name].memory == own.memory for name, own in self.sample.noise.items())
-            if is_same and change < SETTLED and scale < SETTLED:
+            laws = [[(own.memory, own.tails) for own in each.values()] for each in (noise, self.sample.noise)]
+            if laws[0] == laws[1] and scale < SETTLED:
                 break
             self.sample, self.fresh, self.exchanged, self.owned, self.paid = sample, set(), set(), {}, {}
             self.known = {key: found.in_sample(sample) for key, found in self.known.items()}

@@ -248,7 +248,7 @@ def _duels(chosen: Chosen, several: Sequence[Fit], settings: Mapping[str, Matrix
 
 def _spreads(sample: Sample, best: Fit) -> dict[str, float]:
     """Return the standard deviation of one new value of every result as the winner leaves it, SI."""
-    squares = sample.mean_squares(sample.left(best.predicted))
+    squares = sample.squares(sample.left(best.predicted))
     return {each.name: each.scale * float(square) ** 0.5 for each, square in zip(sample.channels, squares, strict=True)}
 
 

@@ -76,7 +76,7 @@ def _bias(chosen: Chosen, channel: Channel, residual: Matrix, unit: str) -> Iter
     mean = float(np.mean(residual))
     drawn = np.asarray(sample.machine.slopes[channel.name][channel.rows] @ sample.directions)
     spread = float(np.sqrt(np.mean(np.sum(drawn**2, axis=1))))
-    if abs(mean) <= BIASED * channel.scale / np.sqrt(channel.count):
+    if abs(mean) <= BIASED * channel.scale / np.sqrt(len(channel)):
         return
     is_allowed = abs(mean) <= BIASED * spread
     if is_allowed:
@@ -176,7 +176,7 @@ def _acting(chosen: Chosen) -> dict[str, tuple[Cause, ...]]:
 def _shows(channel: Channel, added: Matrix) -> bool:
     """Whether something that is added to a result is more than its noise would hide, all rows together."""
     size = added[channel.rows] * (channel.weights / channel.scale)
-    return float(np.mean(size**2)) * channel.count > SHOWS**2
+    return float(np.mean(size**2)) * len(channel) > SHOWS**2
 
 
 def _with_named(chosen: Chosen, acting: tuple[Cause, ...], found: list[Finding]) -> list[Finding]:

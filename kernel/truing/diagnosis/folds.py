@@ -111,11 +111,11 @@ def carries_over(at: Fit, more: Fit, extended: Extended, folds: Folds) -> float:
     as the true one, and is unlikely all the same.
     """
     before, after = (errors_left_out(each, extended, folds) for each in (at, more))
-    roots = more.sample.roots(more.left)  # every result in its own noise, every row as independent as it is
-    fallen = roots**2 * (before**2 - after**2)
+    before, after = (more.sample.losses(each, more.left) for each in (before, after))
+    fallen = before - after
     fallen = fallen[np.isfinite(fallen)]
     if len(fallen) < 2:
         return 0.0
     inputs = float(at.inputs @ at.inputs) - float(more.inputs @ more.inputs)
-    error = float(fallen.std()) * sqrt(len(fallen) * more.sample.rows / more.sample.total)
+    error = float(fallen.std()) * sqrt(len(fallen))
     return (float(fallen.sum()) + inputs) / max(error, 1e-300)

@@ -7,7 +7,7 @@ known of a time constant is seldom symmetric and often open on one side: the int
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import exp, log, log1p, sqrt
 from typing import TYPE_CHECKING
 
@@ -55,7 +55,6 @@ class Certainty:
     units: Matrix
     variance: float
     freedom: float
-    clipped: float
 
     def reach(self, weights: Matrix) -> float:
         """Return half of the 95 % interval of a weighted sum of numbers and directions, as the fit sees them."""
@@ -94,31 +93,27 @@ def certainty_of(found: Fit, extended: Extended) -> Certainty:
     """Return how certain the numbers of a fit are.
 
     The larger of the model-based covariance and the sandwich (HC3; J. G. MacKinnon, H. White, J. Econometrics 29, 1985,
-    305), number by number; widened by the share of clipped rows, as for any robust estimate.
+    305), number by number. Of noise that is Student's t with f degrees of freedom a row tells (f + 1) / (f + 3) of what
+    its weight says.
     """
-    noise = found.sample.noise
-    found = found.in_sample(_counted(found.sample))
     sample, units = found.sample, unit_of(found)
-    slopes, roots = np.column_stack(slopes_at(found, extended)), sample.roots(found.left)
-    slopes *= roots[:, None]
+    roots, told = sample.roots(found.left), np.sqrt(_told(sample))
+    slopes = np.column_stack(slopes_at(found, extended)) * (roots * told)[:, None]
     prior = np.diag(np.append(np.zeros(len(units)), np.ones(len(found.inputs))))
     normal = slopes.T @ slopes
     inverse = _inverse(normal + prior)
     used = float(np.trace(inverse @ normal))
-    variance = sample.total / max(sample.total - used, 1.0)
-    rows = np.concatenate([np.full(len(each), len(each) / each.count) for each in sample.channels])
-    scores = _scores(slopes, roots * found.left, inverse, rows)
+    variance = sample.rows / max(sample.rows - used, 1.0)
+    scores = _scores(slopes, roots * found.left / told, inverse)
     plain, sandwich = inverse * variance, inverse @ (scores + variance * prior) @ inverse
     ratio = np.sqrt(np.maximum(np.diag(sandwich) / np.maximum(np.diag(plain), 1e-300), 1.0))
-    clipped = max(noise[channel.name].tails.clipped for channel in sample.channels)
-    kept = sum(each.count * (1 - noise[each.name].tails.clipped) ** 2 for each in sample.channels)
-    covariance = plain * np.outer(ratio, ratio) / (1 - clipped) ** 2
-    return Certainty(covariance, units, variance, max(kept - used, FEWEST_FREE), clipped)
+    return Certainty(plain * np.outer(ratio, ratio), units, variance, max(sample.rows - used, FEWEST_FREE))
 
 
-def _counted(sample: Sample) -> Sample:
-    """Return the rows of a sample, each counted in full, whether it was moved in or not."""
-    return replace(sample, channels=tuple(replace(each, count=float(len(each))) for each in sample.channels))
+def _told(sample: Sample) -> Matrix:
+    """Return by row what it tells of what its weight says, (rows,)."""
+    shares = [1 - 2 / (channel.freedom + 3) for channel in sample.channels]
+    return np.repeat(shares, [len(channel) for channel in sample.channels])
 
 
 def _inverse(normal: Matrix) -> Matrix:
@@ -128,13 +123,13 @@ def _inverse(normal: Matrix) -> Matrix:
     return np.asarray(np.linalg.pinv(normal / scale, rcond=SINGULAR, hermitian=True) / scale)
 
 
-def _scores(slopes: Matrix, left: Matrix, inverse: Matrix, rows: Matrix) -> Matrix:
-    """Return the covariance of the gradient as the rows show it; ``rows`` of them say what an independent one does."""
+def _scores(slopes: Matrix, left: Matrix, inverse: Matrix) -> Matrix:
+    """Return the covariance of the gradient as the rows show it."""
     made = np.zeros_like(inverse)
     for block in in_blocks(len(slopes)):
         own = slopes[block]
-        leverage = rows[block] * np.einsum("ij,ij->i", own @ inverse, own)
-        scores = own * (left[block] * np.sqrt(rows[block]) / (1 - np.minimum(leverage, LARGEST_LEVERAGE)))[:, None]
+        leverage = np.einsum("ij,ij->i", own @ inverse, own)
+        scores = own * (left[block] / (1 - np.minimum(leverage, LARGEST_LEVERAGE)))[:, None]
         made += scores.T @ scores
     return made
 
@@ -175,12 +170,10 @@ class _Profile:
         self.bounds = inward(self.number, self.unit)
         value = value_of(found, place)
         self.start = log(value) if self.number.is_log else value / self.unit
-        found = found.in_sample(_counted(found.sample))
         self.known = {self.start: self._fitted(found, self.start) or found}
         student = float(stdtrit(certainty.freedom, LEVEL))
-        rows = found.sample.total
-        allowed = rows * log1p(student**2 * certainty.variance / rows)
-        self.allowed = allowed / (1 - certainty.clipped) ** 2
+        rows = found.sample.rows
+        self.allowed = rows * log1p(student**2 * certainty.variance / rows)
         self.reach = certainty.reach_of(place)
 
     def _fitted(self, near: Fit, u: float) -> Fit | None:

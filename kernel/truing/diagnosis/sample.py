@@ -2,8 +2,8 @@
 
 Each result in its own noise. Where rows have an order that means something (a time, a path), what an explanation leaves
 is alike in neighbours: this memory of the noise is taken out, so that a slow curve counts for the few independent rows
-that it has, and a jump for all of them. All explanations have the memory that the fairest of them leaves. Rows that lie
-too far out are moved to where the tails of the noise end.
+that it has, and a jump for all of them. All explanations have the memory that the fairest leaves, and its tails:
+where they are those of Student's t, a reading far out says little, but the farther out the less likely it is.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from math import log
+from math import inf, log
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,25 +39,25 @@ if TYPE_CHECKING:
 
     Matrix = NDArray[np.float64]
 
-WITHOUT_MEMORY, NORMAL, CONSTANT = Setting(), Tails(np.inf, 4.5, 0.0), Spread()
+WITHOUT_MEMORY, NORMAL, CONSTANT = Setting(), Tails(inf, 4.5), Spread()
 SMALLEST_SHARE = 1e-6
 """Of the readings: noise is no smaller, or it is rounding."""
+ROUNDS, SETTLED = 50, 1e-9
 FEWEST_OF_MEMORY = 20
 """Rows from which on their memory is learnt."""
 
 
 @dataclass(frozen=True)
 class Noise:
-    """What is known of the noise of one result: scale (SI), weights by row, readings moved in, memory, tails, spread.
+    """What is known of the noise of one result: scale (SI), weights by row, memory, tails, spread.
 
-    ``given`` are the weights that a stated standard deviation of the readings asks for, in any case; ``weights`` and
-    ``values`` have shape (n,) over all rows of the records, ``values`` is SI, NaN where nothing was measured.
+    ``given`` are the weights that a stated standard deviation of the readings asks for, in any case; they and
+    ``weights`` have shape (n,) over all rows of the records.
     """
 
     scale: float
     given: Matrix
     weights: Matrix
-    values: Matrix
     memory: Setting = WITHOUT_MEMORY
     tails: Tails = NORMAL
     spread: Spread = CONSTANT
@@ -68,8 +68,8 @@ class Channel:
     """One measured result on the rows of a fit: their places among the records (n,), and where runs begin (n,).
 
     ``values`` are SI, ``weights`` one over the relative standard deviation. ``least`` is the smallest mean square, in
-    units of the noise, that is more than rounding or the steps of the gauge. ``count`` is what the rows are worth:
-    those that were moved in say less.
+    units of the noise, that is more than rounding or the steps of the gauge. ``freedom`` is that of Student's t, which
+    the noise follows, infinite where it is normal.
     """
 
     name: str
@@ -78,9 +78,9 @@ class Channel:
     values: Matrix
     weights: Matrix
     scale: float
-    count: float
     least: float
     memory: Setting
+    freedom: float = inf
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -92,6 +92,28 @@ class Channel:
     def white(self, values: Matrix) -> Matrix:
         """Return values in units of the noise, (n,) or (n, c), with the memory of the noise taken out."""
         return whiten(values, self.starts, self.memory)
+
+    def square(self, left: Matrix) -> float:
+        """Return the square of the scale that suits what is left best, no smaller than what is more than rounding."""
+        square = max(float(np.mean(left**2)), self.least)
+        for _ in range(ROUNDS if self.freedom < inf else 0):
+            shares = 1 / (self.freedom + left**2 / square)
+            before, square = square, max(float(shares @ left**2) / float(shares.sum()), self.least)
+            if abs(square - before) <= SETTLED * square:
+                break
+        return square
+
+    def losses(self, left: Matrix, square: float) -> Matrix:
+        """Return by row -2 log likelihood but for constants, for a scale of this square, (n,)."""
+        if self.freedom == inf:
+            return np.asarray(left**2 / square)
+        return np.asarray((self.freedom + 1) * np.log1p(left**2 / (self.freedom * square)))
+
+    def shares(self, left: Matrix, square: float) -> Matrix:
+        """Return by row how much of a squared reading counts, (n,): what lies far out in heavy tails says little."""
+        if self.freedom == inf:
+            return np.ones(len(self))
+        return np.asarray((self.freedom + 1) / (self.freedom + left**2 / square))
 
 
 @dataclass(frozen=True)
@@ -112,16 +134,6 @@ class Sample:
     def rows(self) -> int:
         """Number of measured values."""
         return sum(len(channel) for channel in self.channels)
-
-    @cached_property
-    def counts(self) -> Matrix:
-        """What the rows of every channel are worth."""
-        return np.array([channel.count for channel in self.channels])
-
-    @property
-    def total(self) -> float:
-        """What the rows of all channels are worth."""
-        return float(self.counts.sum())
 
     @cached_property
     def parts(self) -> list[slice]:
@@ -146,27 +158,28 @@ class Sample:
         """What the directions of the inputs add to the predictions, in units of the noise, (rows, K)."""
         return self.curve({name: slopes @ self.directions for name, slopes in self.machine.slopes.items()})
 
-    def mean_squares(self, left: Matrix) -> Matrix:
-        """Return the mean square of what is left by channel, no smaller than what is more than rounding."""
-        return np.array(
-            [
-                max(float(np.mean(left[part] ** 2)), channel.least)
-                for part, channel in zip(self.parts, self.channels, strict=True)
-            ]
-        )
+    def squares(self, left: Matrix) -> list[float]:
+        """Return by channel the square of the scale of what is left, in units of the noise."""
+        return [channel.square(left[part]) for part, channel in zip(self.parts, self.channels, strict=True)]
 
     def cost(self, left: Matrix, inputs: Matrix) -> float:
         """Return -2 log likelihood of what is left, noise of every result free, plus the prior of the inputs."""
-        squares = self.mean_squares(left)
-        return float(self.counts @ np.log(squares)) + float(inputs @ inputs)
+        total = float(inputs @ inputs)
+        for part, channel, square in zip(self.parts, self.channels, self.squares(left), strict=True):
+            total += len(channel) * log(square)
+            if channel.freedom < inf:
+                total += float(channel.losses(left[part], square).sum())
+        return total
+
+    def losses(self, left: Matrix, judge: Matrix) -> Matrix:
+        """Return by row what is left as -2 log likelihood in noise of the scale that ``judge`` leaves, (rows,)."""
+        each = zip(self.parts, self.channels, self.squares(judge), strict=True)
+        return np.concatenate([channel.losses(left[part], square) for part, channel, square in each])
 
     def roots(self, left: Matrix) -> Matrix:
         """Return by row what makes squares of what is left count: its noise is the one that it shows, (rows,)."""
-        weights = np.sqrt(self.counts / np.array([len(channel) for channel in self.channels]))
-        weights = weights / np.sqrt(self.mean_squares(left))
-        return np.concatenate(
-            [np.full(len(channel), weight) for channel, weight in zip(self.channels, weights, strict=True)]
-        )
+        each = zip(self.parts, self.channels, self.squares(left), strict=True)
+        return np.concatenate([np.sqrt(channel.shares(left[part], square) / square) for part, channel, square in each])
 
     def of_rows(self, mask: NDArray[np.bool_]) -> Sample:
         """Return some of the rows, with the same noise."""
@@ -186,13 +199,13 @@ def sample_of(
     """Return the rows that are marked, where the model itself has an answer; directions are looked for if not given."""
     channels = []
     for name, own in noise.items():
-        rows = np.flatnonzero(mask & np.isfinite(own.values) & np.isfinite(machine.base[name]))
+        values = machine.records.measured[name]
+        rows = np.flatnonzero(mask & np.isfinite(values) & np.isfinite(machine.base[name]))
         starts = starts_of(_pieces(machine, mask), rows)
-        count = max(len(rows) * (1 - own.tails.clipped) ** 2, 1.0)
         channels.append(
             Channel(
-                name, rows, starts, own.values[rows], own.weights[rows], own.scale, count,
-                _least(machine, name, rows, own.scale), own.memory,
+                name, rows, starts, values[rows], own.weights[rows], own.scale,
+                _least(machine, name, rows, own.scale), own.memory, own.tails.freedom,
             )
         )  # fmt: skip
     if directions is None:
@@ -202,7 +215,8 @@ def sample_of(
 
 def directions_seen(machine: Machine, noise: Mapping[str, Noise], mask: NDArray[np.bool_]) -> Matrix:
     """Return the combinations of inputs that these rows can see in their noise."""
-    places = {name: np.flatnonzero(mask & np.isfinite(own.values)) for name, own in noise.items()}
+    measured = machine.records.measured
+    places = {name: np.flatnonzero(mask & np.isfinite(measured[name])) for name in noise}
     gram = sum(gram_of(machine.slopes[name], rows) / noise[name].scale ** 2 for name, rows in places.items())
     return machine.directions(np.asarray(gram), sum(len(rows) for rows in places.values()))
 
@@ -263,7 +277,7 @@ def first_noise(machine: Machine) -> dict[str, Noise]:
         floor = SMALLEST_SHARE * float(np.sqrt(np.mean(values[here] ** 2))) if len(here) else 0.0
         scale = max(_unexplained(triangle, len(here)), floor, 1e-300)
         given = _stated(machine, name)
-        made[name] = Noise(scale, given, given, machine.records.measured[name])
+        made[name] = Noise(scale, given, given)
     return made
 
 
@@ -290,7 +304,7 @@ def _stated(machine: Machine, name: str) -> Matrix:
 def learnt(sample: Sample, predicted: Predicted, used: float) -> dict[str, Noise]:
     """Learn scale, spread, tails and memory of the noise from what an explanation leaves, ``used`` its free numbers.
 
-    Readings that lie too far out are moved to where the tails end; they are looked at anew every time.
+    For the scale, readings that lie too far out count as where the tails end.
     """
     machine, drivers = sample.machine, _drivers(sample.machine)
     made = {}
@@ -308,11 +322,9 @@ def learnt(sample: Sample, predicted: Predicted, used: float) -> dict[str, Noise
         is_noise = robust_sd(innovations) > 2 * floor
         tails = tails_of(innovations) if is_noise else before.tails
         kept = _moved_in(weighted, innovations, tails) if is_noise else weighted
-        values = np.array(machine.records.measured[channel.name])
-        values[rows] = predicted[channel.name][rows] + kept / weights[rows]
         free = used / len(sample.channels)
         scale = float(np.sqrt(np.sum(kept**2) / max(len(rows) - free, 1.0)))
-        made[channel.name] = Noise(max(scale, floor, 1e-300), before.given, weights, values, memory, tails, spread)
+        made[channel.name] = Noise(max(scale, floor, 1e-300), before.given, weights, memory, tails, spread)
     return made
 
 
@@ -350,10 +362,7 @@ def memory_cost(left: Matrix, starts: NDArray[np.bool_], setting: Setting) -> fl
 
 
 def as_noise(sample: Sample, predicted: Predicted) -> float:
-    """Return -2 log likelihood of what is left where every result has the memory and the tails that suit it best.
-
-    The readings are taken as they are: those that were moved in were so for the sake of another explanation.
-    """
+    """Return -2 log likelihood of what is left where every result has the memory and the tails that suit it best."""
     settings = SETTINGS if has_order(sample.machine) else (Setting(),)
     total = 0.0
     for channel in sample.channels:

@@ -61,10 +61,10 @@ def _box(machine: Machine, name: str, item: Covariate) -> tuple[float, float] | 
         ]
         return low if limits[0] is None else limits[0], high if limits[1] is None else limits[1]
     field = start.model.input_fields.get(name)
-    return None if field is None or not field.varies else _input_box(field, low, high)
+    return None if field is None or not field.varies else _input_box(field, low, high, is_time=item.role == "time")
 
 
-def _input_box(field: InputField, low: float, high: float) -> tuple[float, float]:
+def _input_box(field: InputField, low: float, high: float, *, is_time: bool) -> tuple[float, float]:
     declared = [getattr(field.spec, key, None) for key in ("at_least", "above", "at_most", "below")]
     lows = [float(to_si(value, field.unit)) for value in declared[:2] if isinstance(value, (int, float))]
     highs = [float(to_si(value, field.unit)) for value in declared[2:] if isinstance(value, (int, float))]
@@ -72,8 +72,8 @@ def _input_box(field: InputField, low: float, high: float) -> tuple[float, float
     if is_angle and not lows and not highs:
         return min(low, -pi), max(high, pi)
     reach = (high - low) / 2
-    if low >= 0:  # a time, a load, a length: what was never below zero may not go there
-        lows.append(0.0)
+    if is_time:
+        lows.append(min(low, 0.0))
     return max([low - reach, *lows]), min([high + reach, *highs])
 
 
