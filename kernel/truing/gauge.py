@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from truing.measurements import RowsFile
+
+
+TOGETHER = 16
+"""So many calculations that each answer for many rows are one call of the model: more no longer fit the cache."""
 
 
 @dataclass(frozen=True)
@@ -65,26 +69,32 @@ def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None
 
     A result along an axis is read at the row's place on it (linear between points, NaN beyond its ends); without such a
     column it is left out. An axis that follows an input series is calculated just at the places of the rows. Where
-    inputs run along an axis, the rows of one run are one record and one evaluation; else all rows are. Only ``wanted``
-    results are returned (all by default), and a row that lacks one of them fails. Conditions that no effect needs are
-    not looked at. ``machine`` is taken as it is: see ``one_machine``. ``repeats``: see ``evaluate_rows``.
+    inputs run along an axis, the rows of one run are one record and one evaluation; where results do, so are rows that
+    are alike; else all rows are. Only ``wanted`` results are returned (all by default), and a row that lacks one of
+    them fails. Conditions that no effect needs are not looked at. ``machine`` is taken as it is: see ``one_machine``.
+    ``repeats``: see ``evaluate_rows``.
     """
-    columns = seen_columns(machine, rows)
-    names = [name for name in _readable(machine, rows) if wanted is None or name in wanted]
+    if answers_many(machine, rows, wanted):
+        (found,) = read_each(machine, rows, [{}], wanted)
+        return found
+    names, columns = set(_readable(machine, rows, wanted)), seen_columns(machine, rows.columns)
     machine = _at_places(machine, rows)
-    if rows.series:
-        found = _by_records(machine, rows, columns, names)
-    else:
-        found = _row_by_row(machine, rows, columns, names, repeats)
+    found = evaluate_rows(machine, columns, len(rows), reading=True, wanted=names, repeats=repeats)
     return found if wanted is None else found.complete()
 
 
-def seen_columns(machine: Setup, rows: RowsFile) -> dict[str, Any]:
+def answers_many(machine: Setup, rows: RowsFile, wanted: Collection[str] | None = None) -> bool:
+    """Whether one calculation answers for many rows: for a record, along an axis, or where no column is looked at."""
+    along = any(_axis_of(name, machine) for name in _readable(machine, rows, wanted))
+    return bool(rows.series) or along or not seen_columns(machine, rows.columns)
+
+
+def seen_columns(machine: Setup, columns: Mapping[str, Any]) -> dict[str, Any]:
     """Return the columns that the model or an effect that is on looks at."""
     seen = {need.name for item in machine.effects for need in item.effect.needs}
     seen |= {effect_column(item.effect.name, one.name) for item in machine.effects for one in item.effect.unknowns}
     fields = machine.model.input_fields
-    return {name: values for name, values in rows.columns.items() if name in fields or name in seen}
+    return {name: values for name, values in columns.items() if name in fields or name in seen}
 
 
 def _at_places(machine: Setup, rows: RowsFile) -> Setup:
@@ -114,106 +124,160 @@ def without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int, 
     return reasons
 
 
-def _row_by_row(machine: Setup, rows: RowsFile, columns: Mapping[str, Any], names: Sequence[str], repeats: int) -> Rows:
-    wanted = _asked(names, machine)
-    found = evaluate_rows(machine, columns, len(rows), reading=True, wanted=wanted, repeats=repeats)
-    places = range(len(rows))
-    values = {name: _placed(name, found, machine, rows, places) for name in names}
-    return Rows(values, found.failed, found.reasons, found.absent)
+@dataclass(frozen=True)
+class _Alike:
+    """Rows that one calculation answers for, the one value that each column has there, and the trial."""
+
+    places: NDArray[np.intp]
+    values: Mapping[str, Any]
+    trial: int
 
 
-def _by_records(machine: Setup, rows: RowsFile, columns: Mapping[str, Any], names: Sequence[str]) -> Rows:
-    """Evaluate each run once, with its columns as series; every row reads the record at its own place.
+@dataclass(frozen=True)
+class _Answer:
+    """What is known so far of the rows of one trial."""
 
-    Where a condition changes within a run, the record is evaluated under the condition of each of its rows.
+    values: dict[str, NDArray[np.float64]]
+    reasons: dict[int, str] = field(default_factory=dict)
+    absent: dict[str, dict[int, str]] = field(default_factory=dict)
+
+    def take(
+        self, found: Rows, number: int, places: NDArray[np.intp], along: Mapping[str, str], rows: RowsFile
+    ) -> None:
+        """Take one calculation of several for the rows that it answers for, read at their places on the axes."""
+        for name, values in self.values.items():
+            value, axis = found.results[name][number], along[name]
+            values[places] = _read_at(rows.axes[axis][places], found.results[axis][number], value) if axis else value
+        if found.failed[number]:
+            self.reasons.update(dict.fromkeys(places.tolist(), found.reasons[number]))
+        for name, lacking in found.absent.items():
+            if number in lacking:
+                self.absent.setdefault(name, {}).update(dict.fromkeys(places.tolist(), lacking[number]))
+
+    def rows(self, count: int) -> Rows:
+        """Return it as a batch answers."""
+        import numpy as np
+
+        failed = np.zeros(count, dtype=bool)
+        failed[list(self.reasons)] = True
+        return Rows(self.values, failed, dict(sorted(self.reasons.items())), self.absent)
+
+
+def read_each(
+    machine: Setup, rows: RowsFile, trials: Sequence[Mapping[str, Any]], wanted: Collection[str] | None = None
+) -> list[Rows]:
+    """Return what ``read_by_gauge`` does, in several trials of the same rows where one calculation answers for many.
+
+    A trial changes columns, to one value or to (n,). Calculations of several trials are one call of the model.
     """
     import numpy as np
 
-    values = {name: np.full(len(rows), np.nan) for name in names}
-    asked = _asked(names, machine)
-    reasons: dict[int, str] = {}
-    absent: dict[str, dict[int, str]] = {}
+    along = {name: _axis_of(name, machine) for name in _readable(machine, rows, wanted)}
+    asked, machine = {*along, *filter(None, along.values())}, _at_places(machine, rows)
+    made = [_Answer({name: np.full(len(rows), np.nan) for name in along}) for _ in trials]
     for record in _records(rows):
-        for places in _alike(record, machine, columns, rows):
-            one = {name: _one_value(name, column, places, rows) for name, column in columns.items()}
-            one |= {name: column[record] for name, column in rows.series.items()}
-            found = evaluate_rows(machine, one, 1, reading=True, wanted=asked)
-            for name in names:
-                values[name][places] = _placed(name, found, machine, rows, places)
-            if found.failed[0]:
-                reasons |= dict.fromkeys(places, found.reasons[0])
-            for name, lacking in found.absent.items():
-                absent.setdefault(name, {}).update(dict.fromkeys(places, lacking[0]))
-    failed = np.zeros(len(rows), dtype=bool)
-    failed[list(reasons)] = True
-    return Rows(values, failed, dict(sorted(reasons.items())), absent)
+        series = {name: column[record] for name, column in rows.series.items()}
+        for several, repeats in _calls(record, machine, rows, trials):
+            columns = {name: _one_or_each([each.values[name] for each in several]) for name in several[0].values}
+            changed, size = columns | series, len(several)
+            found = evaluate_rows(machine, changed, size, reading=True, wanted=asked, repeats=repeats)
+            for number, each in enumerate(several):
+                made[each.trial].take(found, number, each.places, along, rows)
+    done = [answer.rows(len(rows)) for answer in made]
+    return done if wanted is None else [answer.complete() for answer in done]
 
 
-def _records(rows: RowsFile) -> Iterator[list[int]]:
-    """Give the rows of each run; without a column "run" the file is one."""
-    yield from _places_by_run(rows.runs or ("",) * len(rows))
+def _calls(
+    record: NDArray[np.intp], machine: Setup, rows: RowsFile, trials: Sequence[Mapping[str, Any]]
+) -> Iterator[tuple[list[_Alike], int]]:
+    """Give the calculations of some trials of a record that are one call, and how many copies of one trial they are."""
+    waiting: list[_Alike] = []
+    count = 0
+    for number, trial in enumerate(trials):
+        own = [_Alike(*each, number) for each in _alike(record, machine, {**rows.columns, **trial}, rows)]
+        if waiting and (len(waiting) + len(own) > TOGETHER or own[0].values.keys() != waiting[0].values.keys()):
+            yield waiting, count
+            waiting, count = [], 0
+        waiting, count = waiting + own, count + 1 if len(waiting) == count * len(own) else 0
+    yield waiting, count
+
+
+def _one_or_each(values: list[Any]) -> Any:
+    """Return what is one value for all as that, floats that differ as an array, other things as a list."""
+    import numpy as np
+
+    if all(value == values[0] for value in values):
+        return values[0]
+    return np.array(values) if isinstance(values[0], float) else values
+
+
+def _records(rows: RowsFile) -> Sequence[NDArray[np.intp]]:
+    """Return the rows of each run; without input series, or a column "run", the file is one."""
+    import numpy as np
+
+    return _places_by_run(rows.runs) if rows.series and rows.runs else (np.arange(len(rows)),)
 
 
 @lru_cache(maxsize=8)
-def _places_by_run(runs: tuple[str, ...]) -> tuple[list[int], ...]:
+def _places_by_run(runs: tuple[str, ...]) -> tuple[NDArray[np.intp], ...]:
     """Return the places of the rows of each run; a fit asks for the same ones again and again."""
+    import numpy as np
+
     found: dict[str, list[int]] = {}
     for place, name in enumerate(runs):
         found.setdefault(name, []).append(place)
-    return tuple(found.values())
+    return tuple(np.array(places) for places in found.values())
 
 
-def _alike(record: list[int], machine: Setup, columns: Mapping[str, Any], rows: RowsFile) -> Iterator[list[int]]:
-    """Give the rows of a record that share their conditions."""
-    conditions = [columns[name] for name in columns if name not in machine.model.input_fields]
-    conditions = [column for column in conditions if _varies(column, record)]
-    if not conditions:
-        yield record
-        return
-    found: dict[tuple[float, ...], list[int]] = {}
-    for place in record:
-        found.setdefault(tuple(float(column[place]) for column in conditions), []).append(place)
-    yield from found.values()
-
-
-def _varies(column: Any, places: Sequence[int]) -> bool:
-    """Whether an array has more than one value at these places; NaN is a value of its own."""
-    import numpy as np
-
-    is_broadcast = isinstance(column, np.ndarray) and column.strides == (0,)
-    values = np.asarray(column)[[places[0]] if is_broadcast else list(places)]
-    return bool(np.any(values != values[0]))
-
-
-def _one_value(name: str, column: Any, places: Sequence[int], rows: RowsFile) -> Any:
-    """Return the one value that a column has within a record."""
-    import numpy as np
-
-    if isinstance(column, np.ndarray) and not _varies(column, places):
-        return float(column[places[0]])
-    for place in places:
-        if column[place] != column[places[0]]:
-            line = rows.lines[place]
+def _alike(
+    record: NDArray[np.intp], machine: Setup, given: Mapping[str, Any], rows: RowsFile
+) -> Iterator[tuple[NDArray[np.intp], dict[str, Any]]]:
+    """Give the rows of a record that share their values, and these. Raises UsageError for an input that changes."""
+    columns = seen_columns(machine, given)
+    varying = [name for name, column in columns.items() if _varies(column, record)]
+    for name in varying if rows.series else ():
+        if name in machine.model.input_fields:
+            column = columns[name]
+            line = next(rows.lines[place] for place in record if column[place] != column[record[0]])
             raise UsageError(f"{rows.file}:{line}: {name} changes within a run, but a record is one calculation")
-    return column[places[0]] if isinstance(column[places[0]], (str, bool, int)) else float(column[places[0]])
+    for places in _grouped(record, [columns[name] for name in varying]):
+        yield places, {name: _value_at(column, places[0]) for name, column in columns.items()}
 
 
-def _readable(machine: Setup, rows: RowsFile) -> Iterator[str]:
-    """Give the results that have one value per row, or are read at the row's place on their axis."""
+def _grouped(record: NDArray[np.intp], columns: Sequence[Any]) -> Iterator[NDArray[np.intp]]:
+    """Give the rows of a record in which no column differs."""
+    import numpy as np
+
+    found: dict[tuple[Any, ...], list[int]] = {}
+    for place in record.tolist() if columns else ():
+        found.setdefault(tuple(column[place] for column in columns), []).append(place)
+    yield from (np.array(places) for places in found.values()) if columns else (record,)
+
+
+def _is_column(column: Any) -> bool:
+    return isinstance(column, list) or getattr(column, "ndim", 0) > 0
+
+
+def _varies(column: Any, places: NDArray[np.intp]) -> bool:
+    """Whether a column has more than one value at these places; NaN is a value of its own."""
+    if isinstance(column, list):
+        return any(column[place] != column[places[0]] for place in places)
+    few = places[:1] if getattr(column, "strides", ()) == (0,) else places
+    return _is_column(column) and bool((column[few] != column[places[0]]).any())
+
+
+def _value_at(column: Any, place: int) -> Any:
+    """Return the one value of a row."""
+    value = column[place] if _is_column(column) else column
+    return value if isinstance(value, (str, bool, int)) else float(value)
+
+
+def _readable(machine: Setup, rows: RowsFile, wanted: Collection[str] | None) -> Iterator[str]:
+    """Give the wanted results that have one value per row, or are read at the row's place on their axis."""
     for name in machine.model.own_result_fields:
         axis = _axis_of(name, machine)
-        if not axis or (axis in rows.axes and axis != name):
+        if (wanted is None or name in wanted) and (not axis or (axis in rows.axes and axis != name)):
             yield name
-
-
-def runs_along_axis(machine: Setup, names: Collection[str]) -> bool:
-    """Whether one of these results runs along an axis, so that one calculation answers for many rows."""
-    return any(_axis_of(name, machine) for name in names)
-
-
-def _asked(names: Sequence[str], machine: Setup) -> set[str]:
-    """Return the results that must be calculated to read these: themselves and their axes."""
-    return {*names, *(axis for name in names if (axis := _axis_of(name, machine)))}
 
 
 def _axis_of(name: str, machine: Setup) -> str:
@@ -222,22 +286,6 @@ def _axis_of(name: str, machine: Setup) -> str:
     item = fields[name]
     own = f"{item.along}_{item.scope}"
     return own if own in fields else item.along
-
-
-def _placed(name: str, found: Rows, machine: Setup, rows: RowsFile, places: Sequence[int]) -> NDArray[np.float64]:
-    """Return one value per row, read along the axis where the result has one; NaN beyond the ends of the axis."""
-    import numpy as np
-
-    values = found.results[name]
-    along = _axis_of(name, machine)
-    if not along:
-        return values
-    wanted, axes = rows.axes[along][list(places)], found.results[along]
-    if len(values) == len(axes) == 1:
-        return _read_at(wanted, axes[0], values[0])
-    shape = (len(wanted), values.shape[1])
-    curves = zip(wanted, np.broadcast_to(axes, shape), np.broadcast_to(values, shape), strict=True)
-    return np.array([float(_read_at(place, axis, curve)) for place, axis, curve in curves])
 
 
 def _read_at(places: Any, axis: NDArray[np.float64], curve: NDArray[np.float64]) -> NDArray[np.float64]:

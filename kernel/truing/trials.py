@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from truing.gauge import read_by_gauge, runs_along_axis, seen_columns
+from truing.gauge import answers_many, read_by_gauge, read_each
 from truing.setup import Setup
 
 if TYPE_CHECKING:
@@ -33,12 +33,15 @@ def read_trials(
     (n,), in SI and in place of what machine and rows say.
     """
     count = min(len(trials), AT_ONCE // max(len(rows), 1))
-    answers_many = bool(rows.series) or runs_along_axis(machine, wanted) or not seen_columns(machine, rows)
-    if count < 2 or answers_many:  # with several rows to an answer a column for each would ask for more of them
+    if count < 2 or any(name in rows.series for trial in trials for name in trial):
         yield from (_read(*_changed(machine, rows, trial), wanted) for trial in trials)
         return
+    is_many = answers_many(machine, rows, wanted)
     for begin in range(0, len(trials), count):
         block = trials[begin : begin + count]
+        if is_many:
+            yield from (each.results for each in read_each(machine, rows, block, wanted))
+            continue
         values = _read(machine, _stacked(machine, rows, block), wanted, len(block))
         parts = {name: np.split(value, len(block)) for name, value in values.items()}
         yield from ({name: part[place] for name, part in parts.items()} for place in range(len(block)))

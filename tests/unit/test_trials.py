@@ -59,14 +59,14 @@ def test_trials_are_one_call_and_not_too_many_rows(tmp_path: Path, monkeypatch: 
 
 @pytest.mark.parametrize("text", ["depth [mm]\n0\n50\n100\n", "depth [mm],pressing [N]\n0,1\n50,2\n100,3\n"])
 def test_a_curve_is_calculated_once_for_all_rows_of_a_trial(tmp_path: Path, text: str) -> None:
-    """10 W/m^2 through 100 mm of 1 W/(m K) are one kelvin: half of it in the middle."""
+    """10 W/m^2 through 100 mm of 1 W/(m K) are one kelvin: half of it in the middle. The trials are one call."""
     counted, calls = counting()
     model = replace(WALL, function=counted)
     setup, rows = rows_for(model, tmp_path / "rows.csv", text)
     setup = setup.changed({"pressing": np.ones(3)})
     answers = list(read_trials(setup, rows, [{"flux": 10.0}, {"flux": 20.0}], ["temperature"]))
     np.testing.assert_allclose([each["temperature"] - 293.15 for each in answers], [[0, 0.5, 1], [0, 1, 2]], atol=1e-9)
-    assert calls == [1, 1]
+    assert calls == [2]
 
 
 def test_what_no_column_changes_is_calculated_once_a_trial(tmp_path: Path) -> None:
@@ -75,7 +75,31 @@ def test_what_no_column_changes_is_calculated_once_a_trial(tmp_path: Path) -> No
     rows = replace(rows, columns={"of_another_effect": np.arange(3.0)})
     answers = list(read_trials(setup, rows, [{"flux": 10.0}, {"flux": 20.0}], ["inside"]))
     np.testing.assert_allclose([each["inside"] - 293.15 for each in answers], [[1] * 3, [2] * 3])
-    assert calls == [1, 1]
+    assert calls == [2]
+
+
+def test_rows_that_are_alike_are_one_calculation_along_an_axis(tmp_path: Path) -> None:
+    """Of 10 and 20 W/m^2 two kelvins are one third: four rows are two calculations, each read at its own places."""
+    counted, calls = counting()
+    text = "depth [mm],flux [W/m^2]\n0,10\n50,20\n100,10\n100,20\n"
+    setup, rows = rows_for(replace(WALL, function=counted), tmp_path / "rows.csv", text)
+    setup = setup.changed({"pressing": np.ones(3)})
+    plain, warm = read_trials(setup, rows, [{"outside": 293.15}, {"outside": 303.15}], ["temperature"])
+    np.testing.assert_allclose(plain["temperature"] - 293.15, [0, 1, 1, 2], atol=1e-9)
+    np.testing.assert_allclose(warm["temperature"] - 293.15, [10, 11, 11, 12], atol=1e-9)
+    assert calls == [4]
+
+
+def test_an_effect_on_the_reading_asks_for_no_record_again(tmp_path: Path) -> None:
+    """What dirt adds at 40 sizes is added to one record."""
+    counted, calls = counting()
+    text = "run,depth [mm],pressing [N]\na,0,1\na,50,2\na,100,3\n"
+    setup, rows = rows_for(replace(WALL, function=counted), tmp_path / "rows.csv", text)
+    on = setup.with_effects([SwitchedOn(WALL.known_effects["dirt"], {"offset": 0.0})])
+    changes = [{effect_column("dirt", "offset"): np.full(3, float(size))} for size in range(40)]
+    found = [each["inside"] for each in read_trials(on, rows, changes, ["inside"])]
+    np.testing.assert_allclose([each - found[0] for each in found], np.repeat(np.arange(40.0)[:, None], 3, axis=1))
+    assert calls == [1]
 
 
 def test_unknowns_of_effects_are_set_row_by_row(tmp_path: Path) -> None:

@@ -129,7 +129,7 @@ def _unknowns(machine: Machine, causes: Sequence[Cause], values: Sequence[Matrix
 
 
 def _columns(made: dict[str, Any], size: int) -> dict[str, Any]:
-    return {name: np.full(size, value) if np.ndim(value) == 0 else value for name, value in made.items()}
+    return {name: np.broadcast_to(value, (size,)) for name, value in made.items()}
 
 
 def _in_file(held: Any, file: int, files: Any, value: float) -> Any:
