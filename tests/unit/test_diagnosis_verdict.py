@@ -29,7 +29,7 @@ from hypothesis import HealthCheck, given, settings
 from truing.cli.diagnosis_printed import report
 from truing.declare.blocks import Words
 from truing.diagnosis.noise import SETTINGS
-from truing.diagnosis.result import Alternative, Amount, Cause, Contradiction, Diagnosis, Finding
+from truing.diagnosis.result import Alternative, Amount, Cause, Contradiction, Diagnosis, Finding, Thinned, Trade
 from truing.diagnosis.verdict import shared_of
 from truing.report.chapters import Figures
 from truing.report.context import TableView
@@ -281,6 +281,15 @@ ALARMS = {
     },
     "expansion of rod_heating is 8 um/(m*K) in one half of the rows and 15 um/(m*K) in the other": {
         "contradictions": (APART,),
+    },
+    "on every second row, from the first, sensor_drift explains more, by 7.5 in score": {
+        "thinned": (Thinned("every second row, from the first", ("sensor_drift",), 7.5),),
+    },
+    "expansion of rod_heating and rod trade against one another (correlation 0.970)": {
+        "trades": (Trade("rod_heating", "expansion", "rod", 0.97, 14.5),),
+    },
+    "what is left of slide_position, 6 um, is far below the standard deviation stated for it, 15 um": {
+        "wrong": (replace(FIRST, stated=Amount(15e-6, "um")), OTHER),
     },
     "the same causes are named in 40 % of the folds only": {"stability": 0.4},
     "the noise of slide_position was taken as nearly a random walk (AR coefficient 0.92)": {

@@ -21,6 +21,8 @@ OUTSIDE = 3.0
 """An input is off its band beyond this many standard deviations of its tolerance."""
 RANDOM_WALK = 0.92
 """From this AR coefficient on noise is nearly a random walk, which draws any slow curve (the largest that is tried)."""
+OVERFITTED = 0.5
+"""Of the noise that is stated: what is left is below it by chance 1 in 100 with ten rows, 1 in 3000 with twenty."""
 STABLE = 0.5
 """Less than this share of the folds that name the same causes is another verdict on parts of the record."""
 
@@ -34,6 +36,9 @@ def alarms_of(diagnosis: Diagnosis) -> Iterator[str]:
             _growing(diagnosis),
             _unstable(diagnosis),
             _contradicting(diagnosis),
+            _thinned(diagnosis),
+            _trading(diagnosis),
+            _overfitted(diagnosis),
             wandering(diagnosis),
         )
 
@@ -107,6 +112,33 @@ def _contradicting(diagnosis: Diagnosis) -> Iterator[str]:
             f"{each.unknown} of {each.effect} is {_amount(each.first)} in one half of the rows and "
             f"{_amount(each.second)} in the other: the two contradict one another; look at what changed between them"
         )
+
+
+def _thinned(diagnosis: Diagnosis) -> Iterator[str]:
+    for each in diagnosis.thinned:
+        yield (
+            f"on {each.rows}, {' + '.join(each.causes)} explains more, by {each.ahead:.1f} in score: rows that should "
+            "say the same do not; look at what alternates between them, and measure more rows"
+        )
+
+
+def _trading(diagnosis: Diagnosis) -> Iterator[str]:
+    for each in diagnosis.trades:
+        yield (
+            f"{each.unknown} of {each.effect} and {each.input} trade against one another (correlation "
+            f"{each.correlation:.3f}): {each.input}, off by what its tolerance allows, draws nearly the same; measure "
+            f"{each.input}, or state its tolerance narrower if it is known better"
+        )
+
+
+def _overfitted(diagnosis: Diagnosis) -> Iterator[str]:
+    for wrong in diagnosis.wrong:
+        if wrong.stated is not None and wrong.noise_floor.value < OVERFITTED * wrong.stated.value:
+            yield (
+                f"what is left of {wrong.result}, {_amount(wrong.noise_floor)}, is far below the standard deviation "
+                f"stated for it, {_amount(wrong.stated)}: the causes follow the noise, or it is smaller than stated; "
+                "read some settings again to see how far readings scatter"
+            )
 
 
 def wandering(diagnosis: Diagnosis) -> Iterator[str]:

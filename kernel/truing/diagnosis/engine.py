@@ -16,7 +16,7 @@ from truing.diagnosis.design import next_points
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.findings import wrong_of
 from truing.diagnosis.gain import gains_of, nested
-from truing.diagnosis.halves import contradictions_of
+from truing.diagnosis.halves import contradictions_of, thinned_of
 from truing.diagnosis.long_records import machine_for_search, on_all_rows
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.naming import alternative_of, calibrated_of, causes_of, extended_setup, remainder_of
@@ -26,6 +26,7 @@ from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.result import Alternative, Curves, Diagnosis
 from truing.diagnosis.sample import first_noise, sample_of
 from truing.diagnosis.shares import by_share
+from truing.diagnosis.trades import trades_of
 from truing.diagnosis.unmeasured import with_results
 from truing.diagnosis.unregistered import shapes_of
 from truing.diagnosis.visibility import inseparable, smallest_visible
@@ -134,6 +135,8 @@ def _answer(chosen: Chosen, setup: Setup, step: _Steps) -> Diagnosis:
         next=tuple(points),
         ties=tuple(ties),
         contradictions=contradictions_of(chosen),
+        thinned=thinned_of(chosen),
+        trades=trades_of(chosen),
         curves=tuple(_curves(chosen)),
         p_any=chosen.p_any,
         p_second=chosen.p_second,

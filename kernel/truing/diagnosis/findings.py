@@ -13,6 +13,7 @@ from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import robust_sd
 from truing.diagnosis.readings import followed_by, gauged
+from truing.diagnosis.records import Records
 from truing.diagnosis.result import Amount, Finding, Kind, Noise, Wrong
 from truing.diagnosis.sample import Channel, residuals_of
 from truing.diagnosis.shape_words import in_unit as in_unit
@@ -67,7 +68,16 @@ def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, tuple[Cause, .
         found.append(
             Finding("outlier", "", None, text if len(noise.outliers) > 1 else text.replace("outliers", "outlier"))
         )
-    return Wrong(name, len(rows), Amount(rmse, unit), Amount(floor, unit), share, noise, tuple(found))
+    stated = _stated(machine.records, channel)
+    said = Amount(stated, unit) if stated > 0 else None
+    return Wrong(name, len(rows), Amount(rmse, unit), Amount(floor, unit), share, noise, tuple(found), said)
+
+
+def _stated(records: Records, channel: Channel) -> float:
+    """Return the root mean square of the standard deviations that the record states for a result; 0 for none."""
+    given = records.sigma.get(channel.name, np.zeros(len(records)))[channel.rows]
+    given = given[given > 0]
+    return float(np.sqrt(np.mean(given**2))) if len(given) else 0.0
 
 
 def _bias(chosen: Chosen, channel: Channel, residual: Matrix, unit: str) -> Iterator[Finding]:

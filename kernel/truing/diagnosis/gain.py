@@ -68,21 +68,21 @@ def nested(chosen: Chosen, done: Callable[[int, int], None] = lambda count, of: 
     folds = folds_of(made.sample)
     size = len(made.sample.machine.records)
     judged = {name: Judged(*(np.full(size, np.nan) for _ in range(4))) for name in made.sample.noise}
-    contenders, same = _contenders(chosen), 0
+    several, same = contenders(chosen), 0
     for fold in range(folds.count):
         done(fold, folds.count)
         test = folds.test(fold)
         base = refitted(chosen.null, made.extended, test)
         if base is None:
             continue
-        best = _chosen_again(chosen, base, contenders, test)
+        best = _chosen_again(chosen, base, several, test)
         same += best.key == chosen.best.key
         for channel in base.sample.channels:
             _judge(judged[channel.name], channel.name, (base, best), test)
     return Nested(judged, folds, same / max(folds.count, 1))
 
 
-def _contenders(chosen: Chosen) -> list[Fit]:
+def contenders(chosen: Chosen) -> list[Fit]:
     """Return what competes with the chosen explanation in a fold: named explanations where it is one itself."""
     made, best = chosen.competition, chosen.best
     if not best.causes:
@@ -99,10 +99,10 @@ def _contenders(chosen: Chosen) -> list[Fit]:
     return [made.known[best.key], *near[:CONTENDERS]]
 
 
-def _chosen_again(chosen: Chosen, base: Fit, contenders: list[Fit], test: NDArray[np.bool_]) -> Fit:
+def _chosen_again(chosen: Chosen, base: Fit, several: list[Fit], test: NDArray[np.bool_]) -> Fit:
     """Return what is chosen without the rows of a fold: the choice, unless another one is better by ``CLOSE``."""
     made = chosen.competition
-    again = [found for each in contenders if (found := refitted(each, made.extended, test)) is not None]
+    again = [found for each in several if (found := refitted(each, made.extended, test)) is not None]
     if not again:
         return base
     own = next((found for found in again if found.key == chosen.best.key), None)

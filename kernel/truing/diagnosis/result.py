@@ -62,7 +62,10 @@ class Noise:
 
 @dataclass(frozen=True)
 class Wrong:
-    """How far one result is off, and how: root mean squares of the model calibrated inside its tolerances."""
+    """How far one result is off, and how: root mean squares of the model calibrated inside its tolerances.
+
+    ``stated`` is the standard deviation that the record gives for its readings, None where it gives none.
+    """
 
     result: str
     rows: int
@@ -71,6 +74,7 @@ class Wrong:
     reducible_share: float
     noise: Noise
     findings: tuple[Finding, ...]
+    stated: Amount | None = None
 
 
 @dataclass(frozen=True)
@@ -229,6 +233,32 @@ class Contradiction:
 
 
 @dataclass(frozen=True)
+class Thinned:
+    """Another explanation that is better than the named one on a half of the rows: ``rows`` says on which, in words.
+
+    ``ahead`` is by how much, in score units; "unknown" among the ``causes`` is a shape that nobody registered.
+    """
+
+    rows: str
+    causes: tuple[str, ...]
+    ahead: float
+
+
+@dataclass(frozen=True)
+class Trade:
+    """A named effect that this record hardly tells from a tolerated input, by the amplitude that is most alike.
+
+    ``separation`` is lambda: how far the effect is from zero with all inputs free.
+    """
+
+    effect: str
+    unknown: str
+    input: str
+    correlation: float
+    separation: float
+
+
+@dataclass(frozen=True)
 class Curves:
     """What the figures show of one result, SI, shape (n,), NaN where missing: measured, and the model before and after.
 
@@ -271,6 +301,8 @@ class Diagnosis:
     inseparable: tuple[str, ...] = ()
     ties: tuple[Tie, ...] = ()
     contradictions: tuple[Contradiction, ...] = ()
+    thinned: tuple[Thinned, ...] = ()
+    trades: tuple[Trade, ...] = ()
     extended: Setup | None = None
     """The setup with the causes on, conditions as measured and inputs calibrated; None where nothing was named."""
 

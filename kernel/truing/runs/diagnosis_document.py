@@ -59,11 +59,35 @@ def diagnosis_document(diagnosis: Diagnosis) -> dict[str, Any]:
         "gain": {**{item.result: _gain(item) for item in diagnosis.gain}, "stability": clean(diagnosis.stability)},
         "next": [_next(point) for point in diagnosis.next],
         "ties": [_tie(tie) for tie in diagnosis.ties],
+        **_alarming(diagnosis),
         "notes": list(diagnosis.records.notes),
         "unit_slips": [
             {"column": slip.column, "factor": clean(slip.factor), "text": slip.text} for slip in diagnosis.records.slips
         ],
         "warnings": list(diagnosis.warnings),
+    }
+
+
+def _alarming(diagnosis: Diagnosis) -> dict[str, Any]:
+    """Say where parts of the record contradict one another, and which causes trade against inputs."""
+    return {
+        "contradictions": [
+            {"effect": one.effect, "unknown": one.unknown, "first": _amount(one.first), "second": _amount(one.second)}
+            for one in diagnosis.contradictions
+        ],
+        "thinned": [
+            {"rows": one.rows, "causes": list(one.causes), "ahead": clean(one.ahead)} for one in diagnosis.thinned
+        ],
+        "trades": [
+            {
+                "effect": one.effect,
+                "unknown": one.unknown,
+                "input": one.input,
+                "correlation": clean(one.correlation),
+                "separation": clean(one.separation),
+            }
+            for one in diagnosis.trades
+        ],
     }
 
 
@@ -127,6 +151,7 @@ def _wrong(item: Wrong, labels: Mapping[str, str]) -> dict[str, Any]:
         "rows": item.rows,
         "rmse": _amount(item.rmse),
         "noise_floor": _amount(item.noise_floor),
+        "stated_noise": None if item.stated is None else _amount(item.stated),
         "reducible_share": clean(item.reducible_share),
         "noise": {
             "sd": _amount(noise.sd),

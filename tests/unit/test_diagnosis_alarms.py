@@ -1,0 +1,315 @@
+"""Every alarm: a record at which it must sound, and one beside it at which it must not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from diagnosis_models import (
+    HEADER,
+    UM,
+    Array,
+    Asked,
+    Bench,
+    chosen_as,
+    drive_model,
+    fit_of,
+    gauge,
+    name_sets,
+    of_size_one,
+    plain_competition,
+    wander,
+    wide,
+)
+from diagnosis_samples import named
+from numpy.testing import assert_allclose
+
+from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.engine import _answer, _Steps
+from truing.diagnosis.halves import every_second, thinned_of
+from truing.diagnosis.noise import SETTINGS, Setting
+from truing.diagnosis.result import Amount, Contradiction, Diagnosis, Thinned, Trade
+from truing.diagnosis.trades import TRADED, trades_of
+from truing.runs.diagnosis_document import diagnosis_document
+from truing.setup import DiagnoseOptions
+
+ROWS = 160
+BENCH = wide(ROWS, seed=51)
+NOISE = of_size_one(np.random.default_rng(51), ROWS)
+"""um."""
+LEAD = 0.05
+"""um/mm: over the stroke of 300 mm, fifteen times the noise."""
+
+
+def asked(effects: Sequence[str] = ("lead_error",), tolerances: Mapping[str, str] | None = None) -> Asked:
+    """A drive with few errors, so that a search is short."""
+    return Asked(drive_model(effects, tolerances or {}))
+
+
+def shown(error: Array, bench: Bench = BENCH, **machine: float) -> Mapping[str, Array]:
+    """The columns of a record with an error in um."""
+    return bench.columns(gauge(bench.load, bench.travel, **machine) + error)
+
+
+def taken(folder: Path, one: Asked, columns: Mapping[str, Array], name: str, *others: str) -> Chosen:
+    """One cause as if it had been chosen, others fitted beside it, in white noise of 1 um."""
+    made = plain_competition(one, one.records(folder, columns), UM)
+    for other in others:
+        fit_of(made, other)
+    return chosen_as(made, fit_of(made, name))
+
+
+def answered(chosen: Chosen) -> Diagnosis:
+    """What a diagnosis answers with this choice."""
+    return _answer(chosen, chosen.competition.sample.machine.design, _Steps(None))
+
+
+def is_told(found: Diagnosis, words: str) -> bool:
+    """Whether an alarm with these words, and no other one, takes the name of a cause."""
+    assert len(found.causes) == 1
+    sounded = [each for each in found.warnings if words in each]
+    assert list(found.warnings) == sounded
+    assert replace(found, alternatives=()).verdict == ("undecided" if sounded else "named")
+    return bool(sounded)
+
+
+@pytest.mark.parametrize(("lead", "sounds"), [(10.0, True), (9.7, False)])
+def test_an_unknown_at_its_bound(tmp_path: Path, lead: float, sounds: bool) -> None:
+    """Declared from -10 to 10 um/mm: what is nearer to 10 than 0.5 % of 20 is at the bound."""
+    found = asked().diagnosed(tmp_path, shown(lead * BENCH.travel + NOISE))
+    assert is_told(found, "lead of lead_error was fitted at the bound") is sounds
+
+
+@pytest.mark.parametrize(("off", "sounds"), [(3.6, True), (2.4, False)])
+def test_an_input_far_off_its_tolerance(tmp_path: Path, off: float, sounds: bool) -> None:
+    """A contact that is so many times its 3 % off, and seen to a hundredth of that."""
+    one = asked(tolerances={"contact": "3 %"})
+    columns = shown(LEAD * BENCH.travel + 0.1 * NOISE, contact=3.0 * (1 + 0.03 * off))
+    found = one.diagnosed(tmp_path, columns)
+    assert is_told(found, "contact had to move by") is sounds
+
+
+@pytest.mark.parametrize(("there", "sounds"), [(-LEAD, True), (LEAD, False)])
+def test_an_error_that_grows_on_rows_held_out(tmp_path: Path, there: float, sounds: bool) -> None:
+    """Another machine, whose lead is off to the other side."""
+    one = replace(asked(), diagnose=DiagnoseOptions(hold_out="run = b"))
+    runs = ["a"] * 120 + ["b"] * 40
+    columns = shown(np.where(np.arange(ROWS) < 120, LEAD, there) * BENCH.travel + NOISE)
+    found = one.diagnosed(tmp_path, columns, runs)
+    assert is_told(found, "on the rows held out the error of deflection grows") is sounds
+
+
+@pytest.mark.parametrize(("first", "sounds"), [(0.0, True), (10.0, False)])
+def test_an_error_that_grows_in_the_folds(tmp_path: Path, first: float, sounds: bool) -> None:
+    """Two warm rows: what is learnt of the second, 12 um, says 12 um of the first, where there is nothing."""
+    temperature = 20 + np.sin(np.arange(ROWS))
+    error, warm = NOISE.copy(), [20, 65]
+    temperature[warm], error[warm] = 45.0, (first, 12.0)
+    columns = shown(error, replace(BENCH, temperature=temperature))
+    found = answered(taken(tmp_path, asked(["thermal_growth"]), columns, "thermal_growth"))
+    assert is_told(found, "on rows that were not fitted the error of deflection grows") is sounds
+
+
+@pytest.mark.parametrize(("name", "sounds"), [("thermal_growth", True), ("lead_error", False)])
+def test_folds_that_name_something_else(tmp_path: Path, name: str, sounds: bool) -> None:
+    """What is there is chosen in every fold, whatever was chosen of all rows."""
+    one = asked(["lead_error", "thermal_growth"])
+    columns = shown(LEAD * BENCH.travel + 0.2 * (BENCH.temperature - 20) + NOISE)
+    found = answered(taken(tmp_path, one, columns, name, "lead_error"))
+    assert found.stability == (0.0 if sounds else 1.0)
+    assert any("the same causes are named in 0 % of the folds only" in each for each in found.warnings) is sounds
+
+
+@pytest.mark.parametrize(("late", "sounds"), [(0.8 * LEAD, True), (LEAD, False)])
+def test_halves_that_contradict_one_another(tmp_path: Path, late: float, sounds: bool) -> None:
+    """``test_diagnosis_halves`` has the limit: four standard errors, here 0.0009 um/mm."""
+    error = np.where(np.arange(ROWS) < ROWS // 2, LEAD, late) * BENCH.travel + NOISE
+    chosen = taken(tmp_path, asked(), shown(error), "lead_error")
+    assert is_told(answered(chosen), "in one half of the rows") is sounds
+
+
+SWAP = np.where(np.arange(ROWS) % 2, 1.0, -1.0)
+WARM = BENCH.temperature - 20
+
+
+def left_by(curve: Array, error: Array) -> float:
+    """-2 log likelihood of what least squares leave of an error, but for a constant."""
+    left = error - curve * (curve @ error) / (curve @ curve)
+    return float(len(left) * np.log(left @ left))
+
+
+@pytest.mark.parametrize(
+    ("sign", "sounds"), [(SWAP, True), (-SWAP, True), (np.random.default_rng(52).permutation(SWAP), False)]
+)
+def test_every_second_row_says_something_else(tmp_path: Path, sign: Array, sounds: bool) -> None:
+    """A little of the travel, and 0.3 um/K of one sign and the other in turn, which cancels over all rows."""
+    one = asked(["lead_error", "thermal_growth"])
+    error = 0.01 * BENCH.travel + 0.3 * sign * WARM + NOISE
+    chosen = taken(tmp_path, one, shown(error), "lead_error", "thermal_growth")
+    told = thinned_of(chosen)
+    assert bool(told) is sounds
+    assert {each.rows for each in told} == (
+        {"every second row, from the first", "every second row, from the second"} if sounds else set()
+    )
+    for begin, each in enumerate(told):
+        rows = slice(begin, None, 2)
+        costs = [left_by(curve[rows], error[rows]) for curve in (BENCH.travel, WARM)]
+        assert each.causes == ("thermal_growth",)
+        assert each.ahead == pytest.approx(costs[0] - costs[1], abs=0.02)
+    assert any("explains more, by" in each for each in answered(chosen).warnings) is sounds
+
+
+@pytest.mark.parametrize(("rho", "sounds"), [(0.97, True), (0.5, False)])
+def test_noise_that_is_nearly_a_random_walk(tmp_path: Path, rho: float, sounds: bool) -> None:
+    error = LEAD * BENCH.travel + wander(np.random.default_rng(53), ROWS, rho)
+    found = asked().diagnosed(tmp_path, shown(error))
+    assert is_told(found, "the noise of deflection was taken as nearly a random walk") is sounds
+
+
+@pytest.mark.parametrize(("size", "sounds"), [(2.0, True), (0.0, False)])
+def test_a_wave_that_is_left(tmp_path: Path, size: float, sounds: bool) -> None:
+    """Twelve waves over the travel; they are no alarm, and take no name."""
+    wave = size * np.sin(2 * np.pi * 12 * np.argsort(np.argsort(BENCH.travel)) / ROWS)
+    found = answered(taken(tmp_path, asked(), shown(LEAD * BENCH.travel + wave + NOISE), "lead_error"))
+    assert any("there are 12 waves over the range of travel" in each for each in found.warnings) is sounds
+    assert found.verdict == "named"
+
+
+@pytest.mark.parametrize(("stated", "sounds"), [("2.4", True), ("1.8", False)])
+def test_noise_far_below_what_is_stated(tmp_path: Path, stated: str, sounds: bool) -> None:
+    """Noise of 1 um, where half of 2.4 um is stated to be the least."""
+    units = {**HEADER, "sigma_deflection": "um"}
+    one = replace(asked(), units=units)
+    columns = {**shown(LEAD * BENCH.travel + NOISE), "sigma_deflection": np.full(ROWS, float(stated))}
+    found = one.diagnosed(tmp_path, columns)
+    assert is_told(found, f"is far below the standard deviation stated for it, {stated} um") is sounds
+
+
+def test_half_of_the_rows_is_not_enough_for_all_causes_and_that_is_no_contradiction(tmp_path: Path) -> None:
+    """A cause in every second row only: without it the others say more, by nothing else."""
+    one = asked(["lead_error", "thermal_growth"])
+    made = plain_competition(
+        one, one.records(tmp_path, shown(LEAD * BENCH.travel + 0.3 * (SWAP > 0) * WARM + NOISE)), UM
+    )
+    fit_of(made, "lead_error")
+    assert thinned_of(chosen_as(made, fit_of(made, "lead_error", "thermal_growth"))) == ()
+    assert thinned_of(chosen_as(made, fit_of(made, "lead_error"))) == ()
+
+
+def test_few_rows_are_not_thinned(tmp_path: Path) -> None:
+    """Ten rows for the one number in either half."""
+    one = asked(["lead_error", "thermal_growth"])
+    for rows, is_told in ((18, False), (20, True)):
+        columns = {name: column[:rows] for name, column in shown(0.01 * BENCH.travel + 2 * SWAP * WARM).items()}
+        folder = tmp_path / str(rows)
+        folder.mkdir()
+        assert bool(thinned_of(taken(folder, one, columns, "lead_error", "thermal_growth"))) is is_told
+
+
+@pytest.mark.parametrize("memory", SETTINGS, ids=str)
+def test_every_second_value_of_noise_is_as_alike_as_before(memory: Setting) -> None:
+    """Autocorrelations from the response to an impulse: those of lag 2k are those of lag k."""
+
+    def lag(setting: Setting, k: int) -> float:
+        rho, theta = setting.rho, setting.theta
+        impulse = np.array([1.0, *((rho - theta) * rho**step for step in range(400))])
+        return float(impulse[k:] @ impulse[: len(impulse) - k] / (impulse @ impulse))
+
+    thinned = every_second(memory)
+    assert_allclose([lag(thinned, k) for k in (1, 2, 5)], [lag(memory, 2 * k) for k in (1, 2, 5)], atol=1e-12)
+
+
+def test_slow_noise_is_no_contradiction_of_thinned_rows(tmp_path: Path) -> None:
+    """Every second row of noise with a memory holds as little of a slow cause as all rows do."""
+    slow = LEAD * BENCH.travel + 3 * wander(np.random.default_rng(54), ROWS, 0.9)
+    found = asked(["lead_error", "warm_up"]).diagnosed(tmp_path, shown(slow))
+    assert found.wrong[0].noise.ar_coefficient > 0.7
+    assert found.thinned == ()
+
+
+# A cause that trades against an input: an error of the lead, and the zero of the gauge, far from the beginning
+
+TRAVEL = np.random.default_rng(55).uniform(200, 300, ROWS)
+FAR = replace(BENCH, travel=TRAVEL)
+BOTH = np.column_stack([TRAVEL, np.ones(ROWS)])
+ASIDE = NOISE - BOTH @ np.linalg.lstsq(BOTH, NOISE, rcond=None)[0]
+ASIDE /= np.sqrt(np.mean(ASIDE**2))
+"""Noise of 1 um in which there is nothing of the lead and of the zero."""
+SMALL, LARGE = 0.0125, 0.02
+"""um/mm: 4.5 and 7.2 standard errors, if nothing is known of the zero."""
+
+
+def by_hand(lead: float, sd: float) -> tuple[float, float]:
+    """Correlation of lead and zero, and the squares that are lost without the lead; a zero of this tolerance, um."""
+    covariance = np.linalg.inv(BOTH.T @ BOTH + np.diag([0, sd**-2]))
+    correlation = covariance[0, 1] / np.sqrt(covariance[0, 0] * covariance[1, 1])
+    return float(correlation), float(lead**2 / covariance[0, 0])
+
+
+@pytest.mark.parametrize(
+    ("lead", "sd", "sounds"),
+    [(SMALL, 1000.0, True), (LARGE, 1000.0, False), (SMALL, 0.05, False), (LARGE, 0.05, False)],
+)
+def test_a_cause_trades_against_an_input(tmp_path: Path, lead: float, sd: float, sounds: bool) -> None:
+    """A zero that is known to 0.05 um, or a lead that is seen with any zero, trades against nothing."""
+    correlation, separation = by_hand(lead, sd)
+    assert (abs(correlation) > TRADED, separation < 25) == (sd > 1, lead == SMALL and sd > 1)
+    one = asked(tolerances={"zero": f"{sd} um"})
+    told = trades_of(taken(tmp_path, one, shown(lead * TRAVEL + ASIDE, FAR), "lead_error"))
+    assert bool(told) is sounds
+    for each in told:
+        assert (each.effect, each.unknown, each.input) == ("lead_error", "lead", "zero")
+        assert each.correlation == pytest.approx(correlation, abs=2e-3)
+        assert each.separation == pytest.approx(separation, rel=0.15)
+
+
+@pytest.mark.parametrize(("sd", "sounds"), [("1000 um", True), ("0.05 um", False)])
+def test_a_cause_that_trades_is_in_doubt(tmp_path: Path, sd: str, sounds: bool) -> None:
+    one = asked(["lead_error", "clearance"], {"zero": sd})
+    found = one.diagnosed(tmp_path, shown(SMALL * TRAVEL + ASIDE, FAR))
+    assert name_sets(found) == [{"lead_error"}]
+    words = "lead of lead_error and zero trade against one another (correlation -0.99"
+    assert any(each.startswith(words) for each in found.warnings) is sounds
+    assert found.verdict == ("undecided" if sounds else "named")
+
+
+def test_an_input_that_is_a_cause_itself_trades_against_nothing(tmp_path: Path) -> None:
+    one = asked(tolerances={"zero": "1000 um"})
+    made = plain_competition(one, one.records(tmp_path, shown(SMALL * TRAVEL + ASIDE, FAR)), UM)
+    assert trades_of(chosen_as(made, fit_of(made, "lead_error")))
+    assert trades_of(chosen_as(made, fit_of(made, "input:zero"))) == ()
+    assert trades_of(chosen_as(made, made.null)) == ()
+
+
+def test_alarms_are_data() -> None:
+    """Numbers of the document in the units that stand beside them."""
+    assert all(diagnosis_document(named())[field] == [] for field in ("contradictions", "thinned", "trades"))
+    first, second = named().wrong
+    made = replace(
+        named(),
+        contradictions=(Contradiction("rod_heating", "expansion", Amount(8e-6, "um/(m*K)"), Amount(15e-6, "1/K")),),
+        thinned=(Thinned("every second row, from the first", ("sensor_drift", "unknown"), 7.5),),
+        trades=(Trade("rod_heating", "expansion", "rod", -0.97, 14.5),),
+        wrong=(replace(first, stated=Amount(15e-6, "um")), second),
+    )
+    document = diagnosis_document(made)
+    assert document["contradictions"] == [
+        {
+            "effect": "rod_heating",
+            "unknown": "expansion",
+            "first": {"value": pytest.approx(8.0), "unit": "um/(m*K)"},
+            "second": {"value": pytest.approx(15e-6), "unit": "1/K"},
+        }
+    ]
+    assert document["thinned"] == [
+        {"rows": "every second row, from the first", "causes": ["sensor_drift", "unknown"], "ahead": 7.5}
+    ]
+    assert document["trades"] == [
+        {"effect": "rod_heating", "unknown": "expansion", "input": "rod", "correlation": -0.97, "separation": 14.5}
+    ]
+    stated = [item["stated_noise"] for item in document["wrong"].values()]
+    assert stated == [{"value": pytest.approx(15.0), "unit": "um"}, None]
+    assert len(document["warnings"]) == len(document["undecided"]) == 4
