@@ -76,6 +76,11 @@ def results_of(model: Model[Any, Any], inputs: Any, repeats: int, failed: Failed
     return with_values(known.results, copies)
 
 
+def forget() -> None:
+    """Forget every answer: the next call is one of the model itself."""
+    _ANSWERS.clear()
+
+
 def _is_repeated(value: np.ndarray[Any, Any], count: int) -> bool:
     """Whether a column is one copy of its first rows behind another, values that are not given included."""
     if len(value) == count:

@@ -46,12 +46,14 @@ class DiagnoseOptions:
 
     ``per_file`` names effects, single unknowns ("effect.unknown") and inputs that every file has for itself.
     ``hold_out`` marks rows that only judge, "column = word". ``box`` holds the range (SI) in which an input or
-    condition can be set for the next measurement, where it is not the declared one.
+    condition can be set for the next measurement, where it is not the declared one. ``budget`` is how many calls of the
+    model the search may make; 0 leaves it to how long a call takes.
     """
 
     per_file: tuple[str, ...] = ()
     hold_out: str = ""
     box: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    budget: int = 0
 
     @property
     def held_out(self) -> tuple[str, str]:

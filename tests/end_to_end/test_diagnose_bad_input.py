@@ -273,6 +273,23 @@ def test_angles_at_a_turn_are_joined(desk: Path) -> None:
     assert other["interval95"][0] < 0.01 < other["interval95"][1]
 
 
+def test_what_a_budget_of_calls_leaves_out_is_said(desk: Path, press: Columns, plain: Diagnosed) -> None:
+    """A budget that does not last forbids a plain name; one that does changes nothing."""
+    few, many = (
+        diagnose_here(desk, f"of {calls} calls", text_of(press), "--set", f"studies.diagnose.budget={calls}")
+        for calls in (150, 100_000)
+    )
+    (said,) = [text for text in few.document["warnings"] if text.startswith("the search ended after 150 calls of the ")]
+    assert said.endswith("look further with [studies.diagnose] budget = 600")
+    assert few.document["verdict"] == "undecided"
+    assert not few.document["unique"]
+    assert said in few.document["undecided"]
+    assert "the search ended after 150 calls" in " ".join(few.answer.out.split())
+    assert "the search ended after 150 calls" in (few.folder / "sheet.html").read_text(encoding="utf-8")
+    assert many.document["warnings"] == plain.document["warnings"] == []
+    assert names(many.document) == names(plain.document)
+
+
 def test_hostile_words_are_shown_and_obeyed_nowhere(desk: Path, press: Columns) -> None:
     """A name that breaks out of a string of code carries the error, so it stands in every file that is written."""
     rng = np.random.default_rng(8)

@@ -20,6 +20,7 @@ TEXT = """[studies.diagnose]
 per_file = ["sensor_offset", "running_in.extra", "load"]
 hold_out = "record = validation"
 box = { probe_temperature = "15..40 degC", load = "0.05..0.2 kN", rate = "1e-8..5e-8", speed = "10 mm/s..2 m/s" }
+budget = 1500
 """
 
 
@@ -36,6 +37,7 @@ def test_the_options_in_si() -> None:
     assert options.box["load"] == pytest.approx((50, 200))
     assert options.box["rate"] == pytest.approx((1e-8, 5e-8))
     assert options.box["speed"] == pytest.approx((0.01, 2))
+    assert options.budget == 1500
 
 
 def test_nothing_is_asked_by_default() -> None:
@@ -75,6 +77,10 @@ def test_they_can_be_set_on_the_command_line() -> None:
         ('hold_out = "validation"', "hold_out = 'validation' names no rows; write a column and the word"),
         ('hold_out = "= validation"', "names no rows"),
         ("box = 3", "box = 3 is no table"),
+        ("budget = -1", "budget = -1 is no number of calls; write budget = 1000"),
+        ('budget = "10 min"', "budget = '10 min' is no number of calls"),
+        ("budget = 1e3", "budget = 1000.0 is no number of calls"),
+        ("budget = true", "is no number of calls"),
         ('box = { lod = "1..2 N" }', "box names 'lod', which is no condition and no number"),
         ('box = { depth = "1..2 um" }', "box names 'depth', which is no condition and no number"),
         ('box = { load = "1 N" }', "box: load = '1 N' is no range; write load = \"0..10 N\""),
@@ -112,6 +118,8 @@ def test_a_misspelt_section() -> None:
         ({}, True),
         ({"per_file": "load"}, False),
         ({"box": {"lod": "1..2 N"}}, False),
+        ({"budget": 1000}, True),
+        ({"budget": "10 min"}, False),
         ({"more": 1}, False),
     ],
 )

@@ -25,9 +25,9 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 
 from truing.diagnosis.beside import Looked, beside_of
-from truing.diagnosis.causes import Number
+from truing.diagnosis.causes import Number, are_exclusive
 from truing.diagnosis.chance import DRAWS, FIRST_DRAWS, HOPELESS, LARGEST_RHO, _drawn, _largest, carried, law_of
-from truing.diagnosis.competition import Competition, _are_exclusive, differ, search
+from truing.diagnosis.competition import Competition, differ, search
 from truing.diagnosis.noise import Setting
 from truing.diagnosis.sample import sample_of
 from truing.diagnosis.signs import far_inputs, is_at_bound
@@ -153,10 +153,10 @@ def test_two_shapes_of_one_kind_over_the_same_are_one_explanation_too_many(tmp_p
     by_tag = {cause.tag: cause for cause in made.causes}
     trend, higher = by_tag["unknown:trend.3:travel:deflection"], by_tag["unknown:trend.5:travel:deflection"]
     other, wave = by_tag["unknown:trend.3:time:deflection"], by_tag["unknown:wave:time:deflection"]
-    assert _are_exclusive([trend, higher])
-    assert not _are_exclusive([trend, other])
-    assert not _are_exclusive([wave, trend])
-    assert _are_exclusive([by_tag["lead_error"], by_tag["lead_error"]])
+    assert are_exclusive([trend, higher])
+    assert not are_exclusive([trend, other])
+    assert not are_exclusive([wave, trend])
+    assert are_exclusive([by_tag["lead_error"], by_tag["lead_error"]])
 
 
 # What chance gains

@@ -40,6 +40,7 @@ def alarms_of(diagnosis: Diagnosis) -> Iterator[str]:
             _trading(diagnosis),
             _overfitted(diagnosis),
             wandering(diagnosis),
+            diagnosis.hindrances,
         )
 
 
@@ -48,6 +49,8 @@ def warnings_of(diagnosis: Diagnosis) -> Iterator[str]:
     yield from alarms_of(diagnosis)
     if diagnosis.causes:
         yield from _waves_left(diagnosis)
+    else:
+        yield from diagnosis.hindrances
 
 
 def _at_bounds(diagnosis: Diagnosis) -> Iterator[str]:

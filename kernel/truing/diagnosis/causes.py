@@ -19,6 +19,7 @@ from truing.declare.sources import Effect, Unknown
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.readings import followed_by, gauged, reading_of
 from truing.diagnosis.tidying import is_angle
+from truing.errors import PluginError
 from truing.gauge import read_by_gauge
 from truing.setup import SwitchedOn
 from truing.units import to_si
@@ -227,12 +228,22 @@ def failure_of(machine: Machine, cause: Cause) -> str:
         for end in (number.low, number.high) if number.is_amplitude else ():
             on = SwitchedOn(cause.effect, {**rest, number.name: LITTLE * end})
             setup = machine.start.with_effects([on])
-            reasons: Mapping[int, str] = (
-                read_by_gauge(setup, machine.records.rows, tuple(machine.records.measured)).reasons if end else {}
-            )
+            try:
+                reasons: Mapping[int, str] = (
+                    read_by_gauge(setup, machine.records.rows, tuple(machine.records.measured)).reasons if end else {}
+                )
+            except PluginError as error:
+                return f"the model fails with it: {error}"
             row = next((row for row in sorted(reasons) if measured[row]), None)
             if row is not None:
                 records = machine.records
                 place = f"{PurePath(records.files[records.file_of[row]]).name}:{records.lines[row]}"
                 return f"the model fails with it, in {place} as the first row: {reasons[row]}"
     return ""
+
+
+def are_exclusive(causes: Sequence[Cause]) -> bool:
+    """Whether causes cannot stand beside one another: two shapes of one kind over the same, one effect's same part."""
+    shapes = [cause.shape for cause in causes if cause.shape is not None]
+    kinds = [(shape.kind, shape.depends_on) for shape in shapes if shape.kind != "wave"]
+    return len(kinds) != len(set(kinds)) or len({cause.tag for cause in causes}) != len(causes)

@@ -15,8 +15,8 @@ import numpy as np
 
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.chosen import Chosen, Law, Rival
-from truing.diagnosis.competition import Competition, differ, exchange
-from truing.diagnosis.fitted import Fit
+from truing.diagnosis.competition import Competition, exchange
+from truing.diagnosis.fitted import Fit, differ
 from truing.diagnosis.intervals import certainty_of, may_be_zero, places_of
 from truing.diagnosis.steps import Decision, is_sensible, shapes_in, shifts_inputs, steps_from
 

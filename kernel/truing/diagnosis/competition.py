@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from truing.diagnosis.beside import Looked, look
-from truing.diagnosis.causes import Cause
+from truing.diagnosis.causes import Cause, are_exclusive
 from truing.diagnosis.curves import Curves
 from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit, is_too_large, nothing, refit
 from truing.diagnosis.extended import Extended, shape_added
-from truing.diagnosis.fitted import Fit
+from truing.diagnosis.fitted import Fit, differ
 from truing.diagnosis.sample import Sample, as_noise, learnt, sample_of
 from truing.diagnosis.signs import signs_of_wrong
 
@@ -54,6 +54,7 @@ FINER = 0.5
 """Directions of the inputs are looked for anew when the noise turns out so much finer."""
 SETTLED = 0.02
 ROUNDS = 4
+AGAIN, TO_THE_END = "fits in the noise that was learnt", "fits to the end"
 
 Unheard = Callable[[int, int], None]
 
@@ -69,6 +70,7 @@ class Competition:
     known: dict[frozenset[str], Fit] = field(default_factory=dict)
     tries: dict[str, float] = field(default_factory=dict)
     fits: int = 0
+    stage: str = "causes alone"
     owned: dict[Fit, float] = field(default_factory=dict)
     paid: dict[Fit, float] = field(default_factory=dict)
     looked: dict[frozenset[str], tuple[Matrix, dict[str, Looked | None]]] = field(default_factory=dict)
@@ -154,8 +156,10 @@ class Competition:
         self, causes: Sequence[Cause], values: Sequence[Matrix], inputs: Matrix | None, until: float = ROUGHLY
     ) -> Fit | None:
         """Fit an explanation from a start and keep it."""
-        if is_too_large(self.sample, causes) or _are_exclusive(causes):
+        if is_too_large(self.sample, causes) or are_exclusive(causes):
             return None
+        if not self.extended.allows(self.stage):
+            return self.known.get(frozenset(cause.tag for cause in causes))
         self.fits += 1
         return self.keep(fit(self.sample, self.extended, causes, values, inputs, until=until))
 
@@ -182,7 +186,7 @@ class Competition:
 
     def forward(self, at: Fit, count: int, accept: Callable[[Cause], bool] = lambda _: True) -> None:
         """Fit the most promising causes beside an explanation; half as many beside several."""
-        if len(at.causes) >= MOST_CAUSES:
+        if len(at.causes) >= MOST_CAUSES or not self.extended.allows(self.stage):
             return
         seen = self.look(at, [cause for cause in self.causes if accept(cause)])
         for cause in islice(self.promising(seen), count if len(at.causes) < 2 else count // 2):
@@ -231,18 +235,23 @@ class Competition:
             self.again(self.ranked()[:3])
 
     def exact(self, found: Fit) -> Fit:
-        """Return an explanation fitted to the end."""
-        self.again([found], EXACTLY)
+        """Return an explanation fitted to the end; where the budget has ended, of several the best alone."""
+        if self.extended.lasts or self.known[found.key] is self.ranked()[0]:
+            self._again(found, EXACTLY)
         return self.known[found.key]
 
     def again(self, several: Iterable[Fit], until: float = ROUGHLY) -> None:
         """Fit explanations again from where they are, in the present noise."""
         for found in several:
-            if found.key not in self.fresh or until < ROUGHLY:
-                self.fits += 1
-                made = refit(found, self.sample, self.extended, until=until)
-                self.fresh.discard(found.key)
-                self.keep(made)
+            is_due = found.key not in self.fresh or until < ROUGHLY
+            if is_due and (not found.causes or self.extended.allows(AGAIN if until > EXACTLY else TO_THE_END)):
+                self._again(found, until)
+
+    def _again(self, found: Fit, until: float) -> None:
+        self.fits += 1
+        made = refit(found, self.sample, self.extended, until=until)
+        self.fresh.discard(found.key)
+        self.keep(made)
 
     def refresh(self) -> None:
         """Fit again what lies near the best, since the noise was learnt anew; and the model as it is."""
@@ -260,13 +269,22 @@ def competition_of(extended: Extended, causes: Sequence[Cause], sample: Sample) 
 
 def search(made: Competition, done: Unheard = lambda count, of: None) -> None:
     """Fit everything that may explain the record; ``done`` hears of the stages."""
-    stages = (_singles, _pairs, _beside_firsts, _more, _exchanged, _exactly)
-    for count, stage in enumerate(stages):
+    stages = (
+        (_singles, 0.6, "causes alone"),
+        (_pairs, 0.7, "pairs of the best causes"),
+        (_beside_firsts, 0.75, "looks beside one of the best causes"),
+        (_more, 0.8, "looks for one cause more"),
+        (_exchanged, 0.85, "exchanges"),
+        (_exactly, 0.95, TO_THE_END),
+    )  # of the budget of calls every stage may spend so much, all before it included
+    for count, (stage, share, made.stage) in enumerate(stages):
         done(count, len(stages))
+        made.extended.budget.share = share
         stage(made)
         if count < len(stages) - 1:
             made.renew()
             made.refresh()
+    made.stage, made.extended.budget.share = "trials of the decision", 1.0
 
 
 def _singles(made: Competition) -> None:
@@ -277,12 +295,7 @@ def _singles(made: Competition) -> None:
         made.joined(made.null, cause, seen[cause.tag].starts)
 
 
-def _distinct(
-    made: Competition,
-    size: int,
-    count: int,
-    accept: Callable[[Fit], bool] = lambda _: True,
-) -> list[Fit]:
+def _distinct(made: Competition, size: int, count: int, accept: Callable[[Fit], bool] = lambda _: True) -> list[Fit]:
     """Return the best accepted explanations of one size that do not draw the same."""
     kept: list[Fit] = []
     sized = [found for found in made.known.values() if len(found.causes) == size and accept(found)]
@@ -294,16 +307,9 @@ def _distinct(
     return kept
 
 
-def differ(one: Fit, other: Fit) -> float:
-    """Return how far two explanations draw apart: sum of squares in units of the noise that the first leaves."""
-    sample = one.sample
-    apart = sample.left(one.predicted) - sample.left(other.predicted)
-    return float(np.sum((sample.roots(one.left) * apart) ** 2))
-
-
 def _pairs(made: Competition) -> None:
     several = {found.key: found for found in (*_distinct(made, 1, BEAM), *_registered(made, BEAM))}
-    for one, other in combinations(several.values(), 2):
+    for one, other in sorted(combinations(several.values(), 2), key=lambda pair: sum(map(made.score, pair))):
         if _is_pair_of_note(one, other):
             made.fitted(one.causes + other.causes, one.values + other.values, one.inputs)
 
@@ -385,10 +391,3 @@ def _exactly(made: Competition) -> None:
 def _on(found: Fit, result: str, curve: Matrix) -> dict[str, Matrix]:
     """Return what is added to one result alone, by result."""
     return {name: curve if name == result else np.zeros_like(curve) for name in found.predicted}
-
-
-def _are_exclusive(causes: Sequence[Cause]) -> bool:
-    """Whether causes cannot stand beside one another: two shapes of one kind over the same, one effect's same part."""
-    shapes = [cause.shape for cause in causes if cause.shape is not None]
-    kinds = [(shape.kind, shape.depends_on) for shape in shapes if shape.kind != "wave"]
-    return len(kinds) != len(set(kinds)) or len({cause.tag for cause in causes}) != len(causes)

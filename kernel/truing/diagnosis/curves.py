@@ -18,7 +18,7 @@ from scipy.stats import qmc
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.points import LEVELS, SPREAD, first_places, middle, placed, refined, spread
+from truing.diagnosis.points import FINEST, LEVELS, SPREAD, first_places, middle, placed, refined, spread, thinned
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -34,13 +34,14 @@ class Bundle:
     """Curves of one cause: ``points`` (M, numbers) SI, and ``curves`` (M, q, readings) by columns, SI per coefficient.
 
     Of a bundle in proportion, column j is the change per unit of amplitude j and coefficients are amplitudes; else
-    there is one column, the change itself, and its coefficient is near 1.
+    there is one column, the change itself, and its coefficient is near 1. At ``lost`` points more the model fails.
     """
 
     cause: Cause
     points: Matrix
     curves: Matrix
     is_straight: bool
+    lost: int = 0
 
     @property
     def is_sweep(self) -> bool:
@@ -53,22 +54,38 @@ class Curves:
 
     def __init__(self, extended: Extended) -> None:
         self.extended = extended
+        self.lost: dict[str, tuple[int, int]] = {}
+        """By effect: at how many points the model fails with it, of how many that were tried where it fails at all."""
         self._alone: dict[str, Bundle] = {}
         self._straight: dict[str, bool] = {}
 
     def of(self, cause: Cause, beside: Fit) -> Bundle:
-        """Return the curves of a cause beside an explanation; those beside nothing where that makes no difference."""
+        """Return the curves of a cause beside an explanation; those beside nothing where that makes no difference.
+
+        So they are too where the budget of calls has ended.
+        """
         if cause.shape is not None or cause.tolerated >= 0 or not self._matters(cause, beside):
             if cause.tag not in self._alone:
-                self._alone[cause.tag] = self._made(cause, _Place(self.extended, beside, ()))
+                self._alone[cause.tag] = self._first(cause, _Place(self.extended, beside, ()))
             return self._alone[cause.tag]
         return self._made(cause, _Place(self.extended, beside, beside.causes))
 
-    @staticmethod
-    def _matters(cause: Cause, beside: Fit) -> bool:
+    def _matters(self, cause: Cause, beside: Fit) -> bool:
         """Whether a cause may draw something else beside an explanation than alone."""
         on = [each for each in beside.causes if each.effect is not None]
-        return bool(on) and (cause.acts_on_inputs or any(each.acts_on_inputs for each in on))
+        acts = bool(on) and (cause.acts_on_inputs or any(each.acts_on_inputs for each in on))
+        return acts and self.extended.lasts
+
+    def _first(self, cause: Cause, place: _Place) -> Bundle:
+        """Return the curves of a cause beside nothing; none where the budget of calls does not last for them."""
+        if self.extended.lasts or not self.extended.costs(cause):
+            made = self._made(cause, place)
+            if made.lost:
+                lost, tried = self.lost.get(cause.name, (0, 0))
+                self.lost[cause.name] = lost + made.lost, tried + made.lost + len(made.points)
+            return made
+        self.extended.budget.unseen.append(cause.name)
+        return Bundle(cause, np.zeros((0, cause.size)), np.zeros((0, 1, place.readings)), is_straight=False)
 
     def _made(self, cause: Cause, place: _Place) -> Bundle:
         if cause.shape is not None:
@@ -78,7 +95,8 @@ class Curves:
         if cause.tag not in self._straight:
             self._straight[cause.tag] = place.is_straight(cause)
         if self._straight[cause.tag]:
-            return _swept(cause, lambda values: place.slopes(cause, values), is_straight=True)
+            most = place.most(cause)
+            return _swept(cause, lambda values: place.slopes(cause, values), is_straight=True, most=most)
         return place.bent(cause)
 
 
@@ -106,6 +124,15 @@ class _Place:
             self.base = self._stacked([])[0]
         return np.asarray(self._stacked([(cause, point) for point in points]) - self.base)
 
+    @property
+    def readings(self) -> int:
+        """How many values a curve has."""
+        return len(self.machine.records.measured) * len(self.machine.records)
+
+    def most(self, cause: Cause) -> int | None:
+        """Return at how many points the budget of calls allows to look at a cause; None for all there are."""
+        return self.extended.most_points if self.extended.costs(cause) else None
+
     def is_straight(self, cause: Cause) -> bool:
         """Whether a cause is proportional to its amplitudes, and several of them do no more than their sum."""
         still = np.array([middle(number) for number in cause.numbers])
@@ -122,17 +149,26 @@ class _Place:
         made = self.changes(cause, np.array([*points, together]))
         if not np.isfinite(_known(made)).all():
             return False
-        made = np.nan_to_num(made)
+        made, grain = np.nan_to_num(made), self._grain()
         slopes = {place: np.zeros(made.shape[1]) for place in ends}
         for point, curve in zip(points, made, strict=False):
             (place,) = (each for each in ends if point[each])
             slope, largest = curve / point[place], np.abs(curve).max() / abs(point[place])
             if not slopes[place].any():
                 slopes[place] = slope
-            elif np.abs(slope - slopes[place]).max() > STRAIGHT * max(largest, np.abs(slopes[place]).max()):
+            elif np.any(
+                np.abs(slope - slopes[place])
+                > STRAIGHT * max(largest, np.abs(slopes[place]).max()) + grain / abs(point[place])
+            ):
                 return False
         summed = sum((slopes[place] * together[place] for place in ends), np.zeros(made.shape[1]))
-        return bool(np.abs(made[-1] - summed).max() <= STRAIGHT * max(float(np.abs(summed).max()), 1e-300) * len(ends))
+        few = STRAIGHT * max(float(np.abs(summed).max()), 1e-300) * len(ends)
+        return bool(np.all(np.abs(made[-1] - summed) <= few + 2 * len(ends) * grain))
+
+    def _grain(self) -> Matrix:
+        """Return by how much two readings of the model may differ by themselves, (readings,), SI."""
+        grain, rows = self.extended.grain, len(self.machine.records)
+        return np.repeat([4 * grain.get(name, 0.0) for name in self.machine.records.measured], rows)
 
     def slopes(self, cause: Cause, shapes: Matrix) -> Matrix:
         """Return the change per unit of every amplitude at some shapes (M, shape numbers), (M, q, readings)."""
@@ -146,10 +182,11 @@ class _Place:
 
     def bent(self, cause: Cause) -> Bundle:
         """Return the curves of a cause that bends, at amplitudes of many sizes and at shapes all over."""
-        points = spread(cause, SPREAD if self.causes else 4 * SPREAD)
+        points = thinned(spread(cause, SPREAD if self.causes else 4 * SPREAD), self.most(cause))
         made = self.changes(cause, points)
-        works = np.isfinite(_known(made)).all(axis=1)
-        return Bundle(cause, points[works], np.nan_to_num(made[works])[:, None, :], is_straight=False)
+        works = _works(made)
+        curves = np.nan_to_num(made[works])[:, None, :]
+        return Bundle(cause, points[works], curves, is_straight=False, lost=int((~works).sum()))
 
     def of_shape(self, cause: Cause, shapes: Matrix) -> Matrix:
         """Return the terms of a shape that nobody registered, result after result, (M, q, readings)."""
@@ -177,7 +214,12 @@ def _known(made: Matrix) -> Matrix:
     return np.where(np.isnan(made).all(axis=0), 0.0, made)
 
 
-def _swept(cause: Cause, make: Callable[[Matrix], Matrix], *, is_straight: bool) -> Bundle:
+def _works(made: Matrix) -> NDArray[np.bool_]:
+    """Mark the points at which the model shows every reading that it shows at any, (M,)."""
+    return np.asarray(np.isfinite(_known(made)).all(axis=1) & np.isfinite(made).any(axis=1))
+
+
+def _swept(cause: Cause, make: Callable[[Matrix], Matrix], *, is_straight: bool, most: int | None = None) -> Bundle:
     """Return curves over all shapes of a cause; along one number as finely as they change."""
     shapes = [cause.numbers[place] for place in cause.shapes]
     if not shapes:
@@ -186,12 +228,13 @@ def _swept(cause: Cause, make: Callable[[Matrix], Matrix], *, is_straight: bool)
         u = first_places(shapes[0])[:, None]
     else:
         u = qmc.Sobol(len(shapes), seed=1).random(SPREAD)
+    u = thinned(u, most)
     values = placed(shapes, u)
     made = make(values)
     if len(shapes) == 1 and not shapes[0].whole and not shapes[0].along:
-        u, made = refined(shapes, u, made, make)
+        u, made = refined(shapes, u, made, make, FINEST if most is None else most)
         values = placed(shapes, u)
-    works = np.isfinite(_known(made.reshape(len(made), -1))).all(axis=1)
+    works = _works(made.reshape(len(made), -1))
     points = np.zeros((len(values), cause.size))
     points[:, cause.shapes] = values
-    return Bundle(cause, points[works], np.nan_to_num(made[works]), is_straight)
+    return Bundle(cause, points[works], np.nan_to_num(made[works]), is_straight, int((~works).sum()))

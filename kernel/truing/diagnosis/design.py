@@ -21,13 +21,13 @@ from truing.diagnosis.competition import Competition
 from truing.diagnosis.exact import fit, slopes_at, unit_of
 from truing.diagnosis.extended import Extended, elsewhere, parts_of
 from truing.diagnosis.findings import in_unit
-from truing.diagnosis.fitted import Fit, moved_by
+from truing.diagnosis.fitted import STEP, WIDE, Fit, moved_by
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Amount, NextPoint
 from truing.diagnosis.sample import Sample
-from truing.diagnosis.settings import machine_there, settings_of
+from truing.diagnosis.settings import FEW, TRIED, machine_there, settings_of
 from truing.diagnosis.verdict import APART
 from truing.numbers import format_number
 from truing.units import from_si
@@ -41,8 +41,6 @@ POINTS = 4
 MOST_POINTS = 100
 """Nobody measures more: explanations that so many points do not tell apart are told apart by a fact, or not at all."""
 RIVALS = 4
-STEP = 1e-4
-"""Of a number, or of a hundredth of its range: by how much it is moved for its derivative at a setting."""
 UNSEEN = 1e-9
 """Share of its own precision, or of one over its range squared, that is added to that of every number."""
 
@@ -121,7 +119,7 @@ def next_points(chosen: Chosen) -> Proposal:
     machine = chosen.competition.sample.machine
     fields = machine.start.model.own_result_fields
     is_along = any(fields[name].along for name in machine.records.measured)
-    settings = {} if is_along else settings_of(machine)
+    settings = {} if is_along else settings_of(machine, FEW if chosen.competition.extended.budget.is_dear else TRIED)
     live: list[_Duel] = []
     if settings:
         live = _live(_live(_duels(chosen, several, settings)))  # what is the same chooses no setting for the others
@@ -295,7 +293,8 @@ def _there(found: Fit, numbers: Sequence[Number], tried: Extended) -> tuple[dict
     """Return what a fit says at the settings that are tried, and its derivatives by all numbers and directions."""
     sample, k, units = found.sample, len(found.inputs), unit_of(found)
     flat = np.concatenate(found.values)
-    steps = STEP * np.maximum(np.abs(flat), 1e-2 * np.abs(units))
+    wide = WIDE if tried.grain else STEP
+    steps = wide * np.maximum(np.abs(flat), 1e-2 * np.abs(units))
     steps = np.where(flat + steps > [number.high for number in numbers], -steps, steps)
     points = [(parts_of(found.causes, flat), found.moved)]
     for place, step in enumerate(steps):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,12 +15,13 @@ from truing.diagnosis.chosen import Chosen, Rival
 from truing.diagnosis.competition import Competition, competition_of, search
 from truing.diagnosis.design import next_points
 from truing.diagnosis.extended import Extended
-from truing.diagnosis.findings import wrong_of
+from truing.diagnosis.findings import in_unit, wrong_of
 from truing.diagnosis.gain import gains_of, nested
 from truing.diagnosis.halves import contradictions_of, thinned_of
 from truing.diagnosis.long_records import machine_for_search, on_all_rows
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.naming import alternative_of, calibrated_of, causes_of, extended_setup, remainder_of
+from truing.diagnosis.probing import probe
 from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.readings import followed_by
 from truing.diagnosis.records import FEWEST_READINGS, Records
@@ -38,6 +40,8 @@ from truing.studies.threads import one_thread
 if TYPE_CHECKING:
     from truing.studies.bench import Progress
 
+ROUGH = 6**0.5
+"""A step so many times what is left of the readings is half of it: its mean square is a twelfth of its own."""
 RANKED = 8
 SIZED = 4
 """Of so many alternatives it is told what their own fit says."""
@@ -57,11 +61,13 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
         machine = machine_of(setup, records)
         step.done("columns")
         competition = laid_out(machine_for_search(machine, seed=setup.seed))
+        probe(competition)
         search(competition, step.within())
         step.done("search")
         chosen = on_all_rows(choose(competition, seed=setup.seed), machine)
         step.done("significance")
-        return _answer(chosen, setup, step)
+        answer = _answer(chosen, setup, step)
+        return replace(answer, hindrances=(*competition.extended.budget.told(), *_too_rough(answer, chosen)))
 
 
 def laid_out(machine: Machine) -> Competition:
@@ -118,7 +124,7 @@ def _answer(chosen: Chosen, setup: Setup, step: _Steps) -> Diagnosis:
     step.done("gain")
     return Diagnosis(
         setup=setup,
-        records=machine.records,
+        records=replace(machine.records, notes=(*machine.records.notes, *_hard(chosen, units))),
         measured=tuple(machine.records.measured),
         units=units,
         wrong=wrong_of(chosen, units),
@@ -162,6 +168,33 @@ def units_of(chosen: Chosen) -> dict[str, str]:
         channel.name: readable_unit(setup.print_unit(channel.name), channel.scale)
         for channel in chosen.best.sample.channels
     }
+
+
+def _hard(chosen: Chosen, units: Mapping[str, str]) -> list[str]:
+    """Say where the model is rough, and at what share of the points that were tried it fails with an effect."""
+    made = chosen.competition
+    rough = [
+        f"the model's {name} jumps or scatters by itself by up to {in_unit(grain, units[name])}: derivatives are taken "
+        "over wide steps, and no effect much smaller is seen"
+        for name, grain in made.extended.grain.items()
+    ]
+    lost = [
+        f"the model fails with {name} at {100 * lost / tried:.0f} % of the points tried ({lost} of {tried}); sizes and "
+        "shapes there are left out"
+        for name, (lost, tried) in made.curves.lost.items()
+    ]
+    return rough + lost
+
+
+def _too_rough(answer: Diagnosis, chosen: Chosen) -> list[str]:
+    """Say where the model itself is rougher than what is left of the readings, so that its steps may be the error."""
+    grain = chosen.competition.extended.grain
+    return [
+        f"the model's {each.result} jumps or scatters by up to {in_unit(grain[each.result], each.noise_floor.unit)} by "
+        "itself, which is most of what is left of the readings: this may be what is wrong; make it finer"
+        for each in answer.wrong
+        if grain.get(each.result, 0.0) > ROUGH * each.noise_floor.value
+    ]
 
 
 def _not_measured(machine: Machine) -> Mapping[str, tuple[str, ...]]:

@@ -19,7 +19,7 @@ from scipy.optimize import least_squares
 
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.extended import Extended, parts_of
-from truing.diagnosis.fitted import Fit, inward, moved_by, size_of
+from truing.diagnosis.fitted import Fit, inward, moved_by, size_of, steps_of
 from truing.diagnosis.sample import Sample
 
 if TYPE_CHECKING:
@@ -32,8 +32,6 @@ ROUGHLY = 1e-2
 """A fit ends where a step promises less than so much of the score."""
 MOST_STEPS, MOST_ROUGH = 40, 12
 """So many steps are taken to an exact end, and to a rough one."""
-STEP = 1e-4
-"""Of a number, or of a hundredth of its range: by how much it is moved for a difference."""
 MOVED = 1.0
 """Sum of squares, in units of the noise, that slopes of the inputs may miss before their anchor is moved."""
 MOST_ANCHORS = 3
@@ -159,7 +157,7 @@ class _Fitting:
     def derivatives(self) -> None:
         """Take the derivatives of what the model shows by all free numbers, in one call of it."""
         places = np.flatnonzero(self.free)
-        steps = STEP * np.maximum(np.abs(self.u), np.where(self.log, 1.0, 1e-2))
+        steps = steps_of(self.u, self.log, is_rough=bool(self.extended.grain))
         steps = np.where(self.u + steps > self.high, -steps, steps)
         points = [self.u + step * unit for step, unit in zip(steps[places], np.eye(len(self.u))[places], strict=True)]
         drawn = {name: np.zeros((len(base), len(self.u))) for name, base in self.predicted.items()}
@@ -236,7 +234,7 @@ class _Fitting:
             if not self._anchored():
                 break
             bends = True
-        if bends and until <= EXACTLY:
+        if bends and until <= EXACTLY and not self.extended.grain:
             self._together()
 
     def _together(self) -> None:
@@ -341,13 +339,14 @@ class _Fitting:
         """Return what the directions of the inputs draw about the anchor, (rows, K), in one call of the model."""
         k = len(self.anchor)
         own = parts_of(self.causes, self.outward(self.u))
-        ends = [self.anchor + sign * ASIDE * np.eye(k)[place] for place in range(k) for sign in (1, -1)]
+        aside = 10 * ASIDE if self.extended.grain else ASIDE
+        ends = [self.anchor + sign * aside * np.eye(k)[place] for place in range(k) for sign in (1, -1)]
         made = self.extended.at(self.causes, [(own, moved_by(self.sample, end)) for end in ends])
         columns = [
-            (self.sample.left(down) - self.sample.left(up)) / (2 * ASIDE)
+            (self.sample.left(down) - self.sample.left(up)) / (2 * aside)
             for up, down in zip(made[::2], made[1::2], strict=True)
         ]
-        slopes = np.column_stack(columns) if columns else self.slopes
+        slopes = np.column_stack(columns or [self.slopes])
         return np.where(np.isfinite(slopes), slopes, self.slopes)
 
     def answer(self) -> Fit:

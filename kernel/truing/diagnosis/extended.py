@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from truing.diagnosis.budget import Budget
 from truing.diagnosis.causes import Cause, at_rest
 from truing.diagnosis.machine import Machine, Tolerated, predict_each
+from truing.errors import PluginError
 from truing.evaluate import effect_column
+from truing.repeated import REMEMBERED as REPEATED
 from truing.setup import Setup, SwitchedOn
 
 if TYPE_CHECKING:
@@ -28,11 +32,19 @@ Point = tuple[Sequence["Matrix"], "Matrix"]
 
 
 class Extended:
-    """A machine whose model can have causes on. ``calls`` counts how often all rows were asked for."""
+    """A machine whose model can have causes on.
+
+    ``calls`` counts calls of the model on all rows: points that differ in what acts after the model are one.
+    """
 
     def __init__(self, machine: Machine) -> None:
         self.machine = machine
-        self.calls = 0
+        self.calls, self.budget = 0, Budget()
+        self.grain: dict[str, float] = {}
+        """By result: by how much the answers of the model jump or scatter by themselves, SI."""
+        self.most_points: int | None = None
+        """At so many points each effect may be looked at; None for all there are."""
+        self._asked: deque[bytes] = deque(maxlen=REPEATED)
         self._setups: dict[frozenset[str], Setup] = {}
         self._shown: dict[Key, Mapping[str, Matrix]] = {}
         self._machines: dict[tuple[frozenset[str], bytes], Setup] = {}
@@ -65,8 +77,45 @@ class Extended:
         trials = [_unknowns(self.machine, causes, values) for values, _ in points]
         if not is_one:
             trials = [{**own, **self._inputs(causes, *point)} for own, point in zip(trials, points, strict=True)]
-        self.calls += len(points)
-        return list(predict_each(setup, self.machine.records, trials))
+        self._count(causes, points)
+        try:
+            return list(predict_each(setup, self.machine.records, trials))
+        except PluginError:  # the model's own code breaks at some of them
+            return [self._survived(setup, trial) for trial in trials]
+
+    def _survived(self, setup: Setup, trial: Mapping[str, Any]) -> Mapping[str, Matrix]:
+        """Return what the gauges show in one trial; NaN where the model's own code breaks."""
+        try:
+            (shown,) = predict_each(setup, self.machine.records, [trial])
+        except PluginError:
+            return {name: np.full(len(self.machine.records), np.nan) for name in self.machine.records.measured}
+        return shown
+
+    def _count(self, causes: Sequence[Cause], points: Sequence[Point]) -> None:
+        """Count the calls that some points cost; records along an axis are calculated anew for every one."""
+        if self.machine.records.rows.series:
+            self.calls += len(points)
+            return
+        for values, moved in points:
+            own = zip(causes, values, strict=True)
+            before = [f"{each.tag}={value.tolist()}" for each, value in own if each.acts_on_inputs]
+            key = repr((before, moved.tolist())).encode()
+            if key not in self._asked:
+                self.calls += 1
+                self._asked.append(key)
+
+    def costs(self, cause: Cause) -> bool:
+        """Whether every point of a cause is a call of the model: what acts after it needs it once."""
+        return cause.effect is not None and (cause.acts_on_inputs or bool(self.machine.records.rows.series))
+
+    @property
+    def lasts(self) -> bool:
+        """Whether the budget of calls lasts in this stage of the search."""
+        return self.budget.lasts(self.calls)
+
+    def allows(self, what: str) -> bool:
+        """Whether the budget lasts for one thing more; what it does not last for is counted."""
+        return self.budget.allows(self.calls, what)
 
     def _remember(self, latest: Mapping[Key, Mapping[str, Matrix]]) -> None:
         """Keep what the model showed last: a fit goes on from there."""
@@ -162,7 +211,7 @@ def shape_added(machine: Machine, cause: Cause, values: Matrix) -> dict[str, Mat
 def elsewhere(extended: Extended, machine: Machine) -> Extended:
     """Return the same extension on other rows."""
     other = Extended(machine)
-    other._setups = dict(extended._setups)
+    other._setups, other.grain = dict(extended._setups), extended.grain
     return other
 
 

@@ -16,6 +16,11 @@ if TYPE_CHECKING:
 
     Matrix = NDArray[np.float64]
 
+STEP = 1e-4
+"""Of a number, or of a hundredth of its range: by how much it is moved for a difference."""
+WIDE = 0.05
+"""The same where the model jumps or scatters by itself: of a number, or of a fifth of its range."""
+
 
 @dataclass(frozen=True, eq=False)
 class Fit:
@@ -82,3 +87,17 @@ def size_of(number: Number, scales: dict[str, float]) -> float:
     """Return the unit in which a fit counts a number: its largest bound, or the noise of the result that it adds to."""
     largest = max(abs(number.low), abs(number.high))
     return largest if largest < inf else scales.get(number.name.rpartition(":")[0], 1.0)
+
+
+def steps_of(u: Matrix, log: Matrix, *, is_rough: bool) -> Matrix:
+    """Return by how much numbers, as a fit sees them, are moved for their derivatives."""
+    if is_rough:
+        return WIDE * np.where(log, 1.0, np.maximum(np.abs(u), 0.2))
+    return np.asarray(STEP * np.maximum(np.abs(u), np.where(log, 1.0, 1e-2)))
+
+
+def differ(one: Fit, other: Fit) -> float:
+    """Return how far two explanations draw apart: sum of squares in units of the noise that the first leaves."""
+    sample = one.sample
+    apart = sample.left(one.predicted) - sample.left(other.predicted)
+    return float(np.sum((sample.roots(one.left) * apart) ** 2))

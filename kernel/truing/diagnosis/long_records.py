@@ -42,6 +42,8 @@ def on_all_rows(chosen: Chosen, machine: Machine) -> Chosen:
         return chosen
     sample = sample_of(machine, first_noise(machine), ~machine.records.held_out)
     made = competition_of(Extended(machine), few.causes, sample)
+    made.stage, made.extended.grain = "fits to all rows", few.extended.grain
+    made.extended.budget = few.extended.budget.of_rows(len(machine.records) / len(few.sample.machine.records))
     made.tries = dict(few.tries)
     wanted = {found.key: found for found in _wanted(chosen)}
     for found in wanted.values():

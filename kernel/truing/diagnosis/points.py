@@ -66,18 +66,25 @@ def first_places(number: Number) -> Matrix:
     return np.linspace(0, 1, FIRST)
 
 
+def thinned(points: Matrix, most: int | None) -> Matrix:
+    """Return some points, at most so many, evenly from all."""
+    if most is None or len(points) <= most:
+        return points
+    return np.asarray(points[np.linspace(0, len(points) - 1, most).round().astype(np.intp)])
+
+
 def refined(
-    shapes: Sequence[Number], u: Matrix, made: Matrix, make: Callable[[Matrix], Matrix]
+    shapes: Sequence[Number], u: Matrix, made: Matrix, make: Callable[[Matrix], Matrix], most: int = FINEST
 ) -> tuple[Matrix, Matrix]:
     """Put points between neighbours that are no longer alike, until all are or there are enough."""
-    while shapes[0].name != "frequency" and len(u) < FINEST:
+    while shapes[0].name != "frequency" and len(u) < most:
         flat = np.nan_to_num(made.reshape(len(made), -1))
         size = np.linalg.norm(flat, axis=1)
         cosine = np.abs(np.einsum("ij,ij->i", flat[1:], flat[:-1])) / np.maximum(size[1:] * size[:-1], 1e-300)
         gaps = np.flatnonzero((cosine < ALIKE) & (np.diff(u[:, 0]) > 1e-5) & (np.minimum(size[1:], size[:-1]) > 0))
         if not len(gaps):
             break
-        new = (u[gaps] + u[gaps + 1])[: FINEST - len(u)] / 2
+        new = (u[gaps] + u[gaps + 1])[: most - len(u)] / 2
         order = np.argsort(np.concatenate([u, new])[:, 0], kind="stable")
         made = np.concatenate([made, make(placed(shapes, new))])[order]
         u = np.concatenate([u, new])[order]

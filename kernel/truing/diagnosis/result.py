@@ -303,6 +303,8 @@ class Diagnosis:
     contradictions: tuple[Contradiction, ...] = ()
     thinned: tuple[Thinned, ...] = ()
     trades: tuple[Trade, ...] = ()
+    hindrances: tuple[str, ...] = ()
+    """What hindered the search, one sentence each: a budget that ended, a model rougher than the noise."""
     extended: Setup | None = None
     """The setup with the causes on, conditions as measured and inputs calibrated; None where nothing was named."""
 

@@ -21,12 +21,13 @@ if TYPE_CHECKING:
 
     Matrix = NDArray[np.float64]
 
-TRIED = 512
+TRIED, FEW = 512, 32
+"""So many points inside of the box are tried, and so many corners; few where calls of the model are dear."""
 FEW_VALUES = 3
 
 
-def settings_of(machine: Machine) -> dict[str, Matrix]:
-    """Return the settings that are tried, by input or condition, SI: the corners of the box and points inside it."""
+def settings_of(machine: Machine, tried: int = TRIED) -> dict[str, Matrix]:
+    """Return the settings that are tried, by input or condition, SI: so many corners of the box and points in it."""
     boxes = {}
     for name, item in machine.records.covariates.items():
         box = _box(machine, name, item)
@@ -35,8 +36,8 @@ def settings_of(machine: Machine) -> dict[str, Matrix]:
     if not boxes:
         return {}
     sampler = qmc.Sobol(len(boxes), scramble=False)
-    unit = sampler.random(TRIED)
-    edges = np.random.Generator(np.random.SFC64(0)).integers(0, 3, size=(TRIED, len(boxes))) / 2
+    unit = sampler.random(tried)
+    edges = np.random.Generator(np.random.SFC64(0)).integers(0, 3, size=(tried, len(boxes))) / 2
     every = np.concatenate([unit, edges])
     found = {}
     for column, (name, (low, high)) in enumerate(boxes.items()):

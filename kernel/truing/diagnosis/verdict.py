@@ -89,6 +89,7 @@ def _doubts_of_nothing(diagnosis: Diagnosis) -> Iterator[str]:
                 yield f"the residuals of {wrong.result} are no mere noise: {finding.text}"
     yield from wandering(diagnosis)
     yield from moved_inputs(diagnosis)
+    yield from diagnosis.hindrances
 
 
 def _nearly(diagnosis: Diagnosis) -> str:

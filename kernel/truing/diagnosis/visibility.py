@@ -101,13 +101,14 @@ def smallest_visible(chosen: Chosen) -> list[Seen]:
     machine, eye = chosen.competition.extended.machine, _eye(chosen)
     effects = [cause for cause in chosen.competition.causes if cause.effect is not None]
     failing = _failing(chosen, effects)
+    skipped = {*failing, *chosen.competition.extended.budget.unseen}
     limit = needed(len(effects) + comb(len(effects), 2))
     names = [cause.name for cause in effects]
     found: dict[str, Seen] = {}
     for cause in effects:
         amplitudes = {cause.numbers[place].name for place in cause.amplitudes}
         several = names.count(cause.name) > 1 or len(amplitudes) > 1
-        for place in cause.amplitudes if cause.name not in failing else ():
+        for place in cause.amplitudes if cause.name not in skipped else ():
             number = cause.numbers[place]
             seen = _seen(f"{cause.name}.{number.name}" if several else cause.name, cause, number, _look(
                 chosen, eye, cause, place, limit,

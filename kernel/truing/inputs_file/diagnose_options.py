@@ -18,7 +18,7 @@ Values = Mapping[tuple[str, ...], Any]
 
 def of_diagnose(model: Model[Any, Any]) -> Callable[[Any, Reading], Any]:
     """Make the check of the section; all that is wrong is said in one answer."""
-    readers = {"per_file": _per_file, "hold_out": _hold_out, "box": _box}
+    readers = {"per_file": _per_file, "hold_out": _hold_out, "box": _box, "budget": _budget}
 
     def check(raw: Any, reading: Reading) -> Any:
         if not isinstance(raw, dict):
@@ -50,6 +50,7 @@ def diagnose_schema(model: Model[Any, Any]) -> dict[str, Any]:
     effects = list(model.known_effects)
     per_file = "Effects, single unknowns (effect.unknown) and inputs that every file has for itself."
     box = "Where an input or condition can be set, for the next measurement."
+    budget = "How many calls of the model on all rows the search may make; 0 leaves it to how long one takes."
     words = "Rows that only judge, by a column of the data and the word it holds there."
     ranges = {
         name: {"type": "string", "examples": [f"0..10 {_unit(name, model)}".strip()]} for name in _settable(model)
@@ -61,6 +62,7 @@ def diagnose_schema(model: Model[Any, Any]) -> dict[str, Any]:
         "per_file": {**names, "description": per_file},
         "hold_out": hold_out,
         "box": {**spans, "description": box},
+        "budget": {"type": "integer", "minimum": 0, "default": 0, "examples": [1000], "description": budget},
     }
     about = "What is asked of a diagnosis."
     return {"type": "object", "properties": properties, "additionalProperties": False, "description": about}
@@ -106,6 +108,13 @@ def _hold_out(raw: Any, _: Model[Any, Any]) -> str:
             'such as "record = validation"'
         )
     return raw.strip()
+
+
+def _budget(raw: Any, _: Model[Any, Any]) -> int:
+    """Take a number of calls."""
+    if not isinstance(raw, int) or isinstance(raw, bool) or raw < 0:
+        raise SentenceError(f"study '{NAME}': budget = {written(raw)} is no number of calls; write budget = 1000")
+    return raw
 
 
 def _box(raw: Any, model: Model[Any, Any]) -> dict[str, tuple[float, float]]:

@@ -76,7 +76,7 @@ def _of_diagnosis(setup: Setup) -> dict[str, Any]:
     """Return what is asked of a diagnosis, without what is as by default."""
     options = setup.diagnose
     box = {name: "..".join(str(exact(end, setup.unit_of(name))) for end in ends) for name, ends in options.box.items()}
-    said = {"per_file": list(options.per_file), "hold_out": options.hold_out, "box": box}
+    said = {"per_file": list(options.per_file), "hold_out": options.hold_out, "box": box, "budget": options.budget}
     return {name: value for name, value in said.items() if value}
 
 

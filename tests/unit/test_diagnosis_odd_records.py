@@ -1,0 +1,177 @@
+"""Many effects, many inputs, and records of odd sizes: what is there is found, and no row is lost unsaid."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from diagnosis_models import Asked, names_in
+from hard_models import (
+    EFFECTS,
+    NOISE,
+    ROWS,
+    UNITS,
+    Beam,
+    Bend,
+    Shop,
+    asked,
+    leaning,
+    leaning_with_play,
+    of_causes,
+    record,
+)
+
+from truing import Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from truing.diagnosis import long_records
+
+# Many effects, many inputs
+
+
+def ripples(order: int) -> Effect[Any, Any]:
+    def rippling(it: Beam, *, size: Float) -> Beam:
+        return replace(it, ripple=it.ripple + size * np.cos(np.pi * order * it.place / 0.3))
+
+    return Effect(f"ripple_{order}", on_inputs=rippling, unknowns=[Unknown("size", -200, 200, "um")])
+
+
+def test_one_of_forty_effects_is_named(tmp_path: Path) -> None:
+    effects = [*EFFECTS, *(ripples(order) for order in range(1, 36))]
+    error = record(lambda at: 20 * np.cos(17 * np.pi * at["place"] / 300))
+    answer = asked(Shop(), effects).diagnosed(tmp_path, error)
+    assert (answer.verdict, [cause.effect for cause in answer.causes]) == ("named", ["ripple_17"])
+    assert of_causes(answer)["ripple_17.size"] == pytest.approx(20e-6, abs=5 * NOISE * 1e-6 * np.sqrt(2 / ROWS))
+    assert asked(Shop(), effects).diagnosed(tmp_path, record(lambda at: 0.0)).verdict == "none"
+
+
+SIXTY = tuple(f"part_{place}" for place in range(60))
+Stack = inputs(
+    type(
+        "Stack", (), {
+            "__annotations__": dict.fromkeys(("place", "slant", *SIXTY), Float), "__doc__": "Sixty parts in a row.",
+            "place": given(0.0, "mm"), "slant": given(0.0, "um"), **{name: given(0.0, "um") for name in SIXTY},
+        },
+    )
+)  # fmt: skip
+
+
+def stack_leans(it: Any, *, slant: Float) -> Any:
+    return replace(it, slant=it.slant + slant)
+
+
+stack_leans.__annotations__ |= {"it": Stack, "return": Stack}
+STACK_LEANS = Effect("leans", on_inputs=stack_leans, unknowns=[Unknown("slant", -200, 200, "um")])
+
+
+def stack(it: Any) -> Bend:
+    """Every part is felt where it lies, 5 mm from the next one."""
+    bend = it.slant * it.place / 0.3
+    for number, name in enumerate(SIXTY):
+        bend = bend + getattr(it, name) * np.exp(-(((it.place - 0.005 * number) / 0.004) ** 2))
+    return Bend(bend=bend)
+
+
+stack.__annotations__ = {"it": Stack, "return": Bend}
+
+
+@pytest.mark.parametrize("slant", [0.0, 40.0])
+def test_sixty_tolerated_inputs_are_calibrated_and_no_cause(tmp_path: Path, slant: float) -> None:
+    rng = np.random.default_rng(2)
+    place, off = np.linspace(0, 300, 240), rng.normal(0, 2, 60)
+    parts = [each * np.exp(-(((place - 5 * number) / 4) ** 2)) for number, each in enumerate(off)]
+    bend = slant * place / 300 + np.sum(parts, axis=0) + rng.normal(0, 1, 240)
+    spreads = [Tolerance(name, normal(sd="2 um")) for name in SIXTY]
+    model = Model(name="stack", title="Stack", function=stack, errors=[*spreads, STACK_LEANS])
+    answer = Asked(model, units=UNITS).diagnosed(tmp_path, {"place": place, "bend": bend})
+    assert len(answer.calibrated) == 60
+    known = of_causes(answer)
+    assert names_in(answer) >= ({"leans"} if slant else set())
+    assert bool(known) == bool(slant)
+
+
+# Records of odd sizes
+
+
+def test_six_rows_name_nothing_and_are_all_there(tmp_path: Path) -> None:
+    answer = asked(Shop()).diagnosed(tmp_path, record(leaning_with_play, rows=6))
+    assert (answer.verdict, answer.causes) == ("undecided", ())
+    assert len(answer.records) == 6
+
+
+def test_a_constant_column_is_said_and_harms_nothing(tmp_path: Path) -> None:
+    columns = {**record(leaning), "warmth": np.full(ROWS, 20.0)}
+    answer = asked(Shop()).diagnosed(tmp_path, {**columns, "bend": columns["bend"]})
+    assert [cause.effect for cause in answer.causes] == ["leans"]
+    assert any("'warmth'" in note and "never change" in note for note in answer.records.notes)
+
+
+def test_two_equal_columns_are_told_as_one(tmp_path: Path) -> None:
+    """A shape over either is the same: neither of the two is called the one."""
+    columns = record(lambda at: 30 * np.sin(2 * np.pi * at["warmth"] / 12))
+    twin = replace(asked(Shop()), units={**UNITS, "air": "K"})
+    answer = twin.diagnosed(tmp_path, {**columns, "air": columns["warmth"] + 273.15})
+    assert any({"warmth", "air"} <= set(said.replace(" and ", " ").split()) for said in answer.inseparable)
+    assert answer.verdict in {"unknown", "one_of"}
+
+
+@inputs
+class Two:
+    """A beam of which the tilt is read as well."""
+
+    load: Float = given(0.0, "kN")
+    place: Float = given(0.0, "mm")
+    slant: Float = given(0.0, "um")
+
+
+def two_lean(it: Two, *, slant: Float) -> Two:
+    return replace(it, slant=it.slant + slant)
+
+
+TWO_LEAN = Effect("leans", on_inputs=two_lean, unknowns=[Unknown("slant", -200, 200, "um")])
+
+
+@results
+class Both:
+    """What is read."""
+
+    bend: Float = found("um")
+    tilt: Float = found("um")
+
+
+def both(it: Two) -> Both:
+    """The same twice."""
+    bend = it.load * 1e-7 + it.slant * it.place / 0.3
+    return Both(bend=bend, tilt=2 * bend)
+
+
+def test_a_result_that_is_read_three_times_only_is_not_used_and_no_row_is_lost(tmp_path: Path) -> None:
+    columns = record(leaning)
+    tilt = np.full(ROWS, np.nan)
+    tilt[[3, 50, 90]] = 2 * columns["bend"][[3, 50, 90]]
+    model = Model(
+        name="both",
+        title="Both",
+        function=both,
+        errors=[TWO_LEAN],
+    )
+    answer = Asked(model, units={**UNITS, "tilt": "um"}).diagnosed(tmp_path, {**columns, "tilt": tilt})
+    assert answer.measured == ("bend",)
+    assert len(answer.records) == ROWS
+    assert any(note.startswith("'tilt' is not used: 3 values are too few") for note in answer.records.notes)
+    assert [cause.effect for cause in answer.causes] == ["leans"]
+
+
+def test_a_long_record_runs_to_the_end_and_counts_every_row(
+    tmp_path: Path, full_torture: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A million rows at full size; a modest record is long where 400 rows are searched."""
+    rows = 1_000_000 if full_torture else 3_000
+    if not full_torture:
+        monkeypatch.setattr(long_records, "LONG", 400)
+    answer = asked(Shop(), EFFECTS[:3], rows).diagnosed(tmp_path, record(leaning, rows))
+    assert [cause.effect for cause in answer.causes] == ["leans"]
+    assert sum(count.in_file for count in answer.records.counts) == rows == len(answer.records)
+    error = NOISE * 1e-6 * np.sqrt(12 / rows)
+    assert of_causes(answer)["leans.slant"] == pytest.approx(40e-6, abs=5 * error)
