@@ -48,18 +48,35 @@ class DiagnoseOptions:
     ``hold_out`` marks rows that only judge, "column = word". ``box`` holds the range (SI) in which an input or
     condition can be set for the next measurement, where it is not the declared one. ``budget`` is how many calls of the
     model the search may make; 0 leaves it to how long a call takes.
+    By result, ``at_least`` and
+    ``at_most`` mark rows ("column = word") whose true value lies above or below what was read, and ``clipped`` holds
+    the ends of the gauge (SI, infinite where there is none). Results in ``lognormal`` are compared as logarithms.
     """
 
     per_file: tuple[str, ...] = ()
     hold_out: str = ""
     box: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     budget: int = 0
+    at_least: Mapping[str, str] = field(default_factory=dict)
+    at_most: Mapping[str, str] = field(default_factory=dict)
+    clipped: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    lognormal: tuple[str, ...] = ()
 
     @property
     def held_out(self) -> tuple[str, str]:
         """The column and the word in it that hold a row out."""
-        column, _, word = self.hold_out.partition("=")
-        return column.strip(), word.strip()
+        return column_and_word(self.hold_out)
+
+    @property
+    def flags(self) -> set[str]:
+        """The columns that mark censored readings."""
+        return {column_and_word(text)[0] for text in (*self.at_least.values(), *self.at_most.values())}
+
+
+def column_and_word(text: str) -> tuple[str, str]:
+    """Return the two of "column = word"."""
+    column, _, word = text.partition("=")
+    return column.strip(), word.strip()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 from measured import Document, calc_here, read_document
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
+from scipy.optimize import minimize
+from scipy.stats import norm
 from shown_in_docs import EXAMPLES
 
 from truing.kernel.loading import load_file
@@ -37,9 +38,7 @@ def desk(tmp_path: Path) -> Path:
     folder = tmp_path / "desk"
     shutil.copytree(EXAMPLE, folder, ignore=shutil.ignore_patterns("__pycache__", "runs", "*.csv"))
     shutil.copyfile(RECORD, folder / "data.csv")
-    written = load_file(EXAMPLE / "prepare.py").prepared(folder / "data.csv")
-    for name, table in written.items():
-        write(folder / name, table)
+    write(folder / "lives.csv", load_file(EXAMPLE / "prepare.py").prepared(folder / "data.csv"))
     return folder
 
 
@@ -67,14 +66,19 @@ def stated(document: Document) -> dict[str, float]:
     return {"value": unknown["value"], "low": unknown["interval95"][0], "high": unknown["interval95"][1]}
 
 
-def limit_by_least_squares(table: list[list[str]]) -> float:
+def likeliest_limit(table: list[list[str]]) -> float:
+    """The limit of Basquin's line over S - S_L in normal scatter, run-outs as what they are; in MPa."""
     stress, life = np.array([[float(cell) for cell in row[:2]] for row in table[1:]]).T
+    is_cut = np.array([row[2] == "runout" for row in table[1:]])
 
-    def left(unknowns: NDArray[np.float64]) -> NDArray[np.float64]:
-        level, exponent, limit = unknowns
-        return np.asarray(level - exponent * np.log10((stress - limit) / (300 - limit)) - life)
+    def cost(unknowns: NDArray[np.float64]) -> float:
+        level, exponent, limit, log_sd = unknowns
+        if limit >= stress.min():
+            return np.inf
+        left = (life - level + exponent * np.log10((stress - limit) / (300 - limit))) / np.exp(log_sd)
+        return -float(norm.logpdf(left[~is_cut]).sum() - (~is_cut).sum() * log_sd + norm.logsf(left[is_cut]).sum())
 
-    return float(least_squares(left, [6.0, 6.0, 150.0]).x[2])
+    return float(minimize(cost, [6.3, 6.0, 150.0, -1.6], method="Nelder-Mead", options={"maxiter": 9999}).x[2])
 
 
 def test_the_plugin_passes_the_kit(panel: Any) -> None:
@@ -100,31 +104,36 @@ def test_the_record_is_the_published_one() -> None:
 
 
 @needs_the_record
-@pytest.mark.parametrize("name", ["failures", "bounds"])
-def test_a_fatigue_limit_is_among_the_explanations_and_its_size_that_of_least_squares(desk: Path, name: str) -> None:
-    document = diagnosed(desk, name)
+def test_a_fatigue_limit_is_among_the_explanations_and_its_size_the_likeliest(desk: Path) -> None:
+    document = diagnosed(desk, "lives")
     assert document["verdict"] in {"one_of", "named"}
     assert ["fatigue_limit"] in document["explanations"]
     size = stated(document)
-    by_hand = limit_by_least_squares(table_of(desk / f"{name}.csv"))
+    by_hand = likeliest_limit(table_of(desk / "lives.csv"))
+    assert by_hand == pytest.approx(210, abs=1)
     assert size["low"] < by_hand < size["high"]
-    assert size["value"] == pytest.approx(by_hand, abs=15)
+    assert size["value"] == pytest.approx(by_hand, abs=5)
     assert ["static_strength"] not in document["explanations"]  # it bends the line the other way
     assert ["grip_bending"] not in document["explanations"]
+    assert any(note.startswith("10 of 125 readings of 'log_life' are censored") for note in document["notes"])
 
 
 @needs_the_record
-def test_the_last_cycles_of_the_run_outs_raise_the_limit(desk: Path) -> None:
-    assert stated(diagnosed(desk, "bounds"))["value"] > stated(diagnosed(desk, "failures"))["value"]
+def test_a_run_out_is_no_failure_at_its_last_cycle(desk: Path) -> None:
+    """Taken for failures the ten put the limit lower: 201 MPa by least squares."""
+    broken = (desk / "inputs.toml").read_text(encoding="utf-8").replace("at_least", "# at_least")
+    honest = stated(diagnosed(desk, "lives"))["value"]
+    (desk / "inputs.toml").write_text(broken, encoding="utf-8")
+    assert stated(diagnosed(desk, "lives"))["value"] < honest - 5
 
 
 @needs_the_record
 @pytest.mark.parametrize("seed", [2, 3])
 def test_the_order_of_the_rows_does_not_matter(desk: Path, seed: int) -> None:
-    head, *rows = table_of(desk / "bounds.csv")
+    head, *rows = table_of(desk / "lives.csv")
     random.Random(seed).shuffle(rows)
     write(desk / "again.csv", [head, *rows])
-    first, again = diagnosed(desk, "bounds"), diagnosed(desk, "again")
+    first, again = diagnosed(desk, "lives"), diagnosed(desk, "again")
     assert again["verdict"] == first["verdict"]
     assert again["explanations"] == first["explanations"]
     assert stated(again)["value"] == pytest.approx(stated(first)["value"], rel=0.05)
@@ -132,7 +141,7 @@ def test_the_order_of_the_rows_does_not_matter(desk: Path, seed: int) -> None:
 
 @needs_the_record
 def test_a_table_sorted_by_life_has_no_other_cause(desk: Path) -> None:
-    head, *rows = table_of(desk / "bounds.csv")
+    head, *rows = table_of(desk / "lives.csv")
     write(desk / "sorted.csv", [head, *sorted(rows, key=lambda row: (-float(row[0]), float(row[1])))])
     document = diagnosed(desk, "sorted")
     assert document["remainder"] is None or "order" not in document["remainder"]["depends_on"]
@@ -142,12 +151,12 @@ def test_a_table_sorted_by_life_has_no_other_cause(desk: Path) -> None:
 @needs_the_record
 def test_a_load_cell_is_not_hundreds_of_megapascals_off(desk: Path) -> None:
     """It is declared to be off by 10 MPa at the most, and would have to be by 300."""
-    assert ["load_cell_zero"] not in diagnosed(desk, "bounds")["explanations"]
+    assert ["load_cell_zero"] not in diagnosed(desk, "lives")["explanations"]
 
 
 @needs_the_record
 def test_every_second_row_says_nothing_against_the_limit(desk: Path) -> None:
-    head, *rows = table_of(desk / "bounds.csv")
+    head, *rows = table_of(desk / "lives.csv")
     write(desk / "half.csv", [head, *rows[::2]])
     document = diagnosed(desk, "half")
     assert ["fatigue_limit"] in document["explanations"] or document["verdict"] in {"none", "undecided"}
@@ -156,19 +165,18 @@ def test_every_second_row_says_nothing_against_the_limit(desk: Path) -> None:
 # Preparation
 
 
-def prepared(folder: Path, text: str) -> dict[str, list[list[str]]]:
+def prepared(folder: Path, text: str) -> list[list[str]]:
     (folder / "data.csv").write_text(text, encoding="utf-8")
-    made: dict[str, list[list[str]]] = load_file(EXAMPLE / "prepare.py").prepared(folder / "data.csv")
+    made: list[list[str]] = load_file(EXAMPLE / "prepare.py").prepared(folder / "data.csv")
     return made
 
 
 HEAD = "stress [MPa],life [kcycles],outcome [-]\n"
 
 
-def test_run_outs_are_left_out_or_taken_at_their_last_cycle(tmp_path: Path) -> None:
+def test_run_outs_are_marked_at_their_last_cycle(tmp_path: Path) -> None:
     made = prepared(tmp_path, HEAD + "380,100,failed\n270,10000,runout\n300,1000,failed\n")
-    assert sorted(made["failures.csv"][1:]) == [["300", "6", "failed"], ["380", "5", "failed"]]
-    assert sorted(made["bounds.csv"][1:]) == [["270", "7", "runout"], ["300", "6", "failed"], ["380", "5", "failed"]]
+    assert made[1:] == [["380", "5", "failed"], ["270", "7", "runout"], ["300", "6", "failed"]]
 
 
 @pytest.mark.parametrize(

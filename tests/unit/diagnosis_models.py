@@ -23,11 +23,12 @@ from truing.diagnosis.engine import diagnose, laid_out
 from truing.diagnosis.exact import EXACTLY, nothing
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import numbers_of, value_of
+from truing.diagnosis.learning import first_noise
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Diagnosis
-from truing.diagnosis.sample import Noise, first_noise, sample_of
+from truing.diagnosis.sample import Noise, sample_of
 from truing.kernel import Offer, Origin
 from truing.setup import DiagnoseOptions, Setup, default_setup
 

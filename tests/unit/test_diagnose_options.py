@@ -21,6 +21,10 @@ per_file = ["sensor_offset", "running_in.extra", "load"]
 hold_out = "record = validation"
 box = { probe_temperature = "15..40 degC", load = "0.05..0.2 kN", rate = "1e-8..5e-8", speed = "10 mm/s..2 m/s" }
 budget = 1500
+at_least = { depth = "outcome = runout" }
+at_most = { distance = "flag = 0" }
+clipped = { depth = "..1 mm", pressure = "0..80 MPa", distance = "1 km.." }
+lognormal = ["depth"]
 """
 
 
@@ -38,6 +42,10 @@ def test_the_options_in_si() -> None:
     assert options.box["rate"] == pytest.approx((1e-8, 5e-8))
     assert options.box["speed"] == pytest.approx((0.01, 2))
     assert options.budget == 1500
+    assert (options.at_least, options.at_most) == ({"depth": "outcome = runout"}, {"distance": "flag = 0"})
+    assert options.flags == {"outcome", "flag"}
+    assert options.clipped == {"depth": (-math.inf, 1e-3), "pressure": (0, 80e6), "distance": (1e3, math.inf)}
+    assert options.lognormal == ("depth",)
 
 
 def test_nothing_is_asked_by_default() -> None:
@@ -90,6 +98,22 @@ def test_they_can_be_set_on_the_command_line() -> None:
         ('box = { load = "a..2 N" }', "box: "),
         ('box = { load = "2..1 N" }', "goes from its higher end; lower first"),
         ('box = { load = "-5..1 N" }', "load is -5 N; it must be above 0 N"),
+        ("clipped = 3", 'clipped = 3 is no table; write clipped = { RESULT = "0..10 kN" }'),
+        ('clipped = { dept = "0..5 um" }', "clipped names 'dept', which is no result of pin_wear"),
+        ('clipped = { dept = "0..5 um" }', "Did you mean 'depth'?"),
+        ('clipped = { load = "0..5 N" }', "clipped names 'load', which is no result"),
+        ('clipped = { depth = "0..5" }', "depth: '0' has no unit"),
+        ('clipped = { depth = "..5" }', "depth: '5' has no unit"),
+        ('clipped = { depth = ".." }', "clipped: depth = '..' is no range; write depth = \"0..10 um\""),
+        ('clipped = { depth = "5 um" }', "is no range"),
+        ('clipped = { depth = "5..1 um" }', "goes from its higher end; lower first"),
+        ('clipped = { depth = "..5 N" }', "expected a length"),
+        ('at_least = "outcome = runout"', "at_least = 'outcome = runout' is no table; write at_least = { RESULT ="),
+        ('at_least = { depth = "runout" }', "at_least: depth = 'runout' marks no rows; write a column and the word"),
+        ("at_most = { depth = true }", "at_most: depth = true marks no rows"),
+        ('at_most = { life = "outcome = runout" }', "at_most names 'life', which is no result of pin_wear"),
+        ('lognormal = "depth"', "lognormal = 'depth' is no list of results"),
+        ('lognormal = ["load"]', "lognormal names 'load', which is no result"),
     ],
 )
 def test_what_cannot_be_asked(line: str, expected: str) -> None:
@@ -120,6 +144,9 @@ def test_a_misspelt_section() -> None:
         ({"box": {"lod": "1..2 N"}}, False),
         ({"budget": 1000}, True),
         ({"budget": "10 min"}, False),
+        ({"at_least": {"depth": "a = b"}, "clipped": {"depth": "..1 um"}, "lognormal": ["depth"]}, True),
+        ({"at_most": {"load": "a = b"}}, False),
+        ({"lognormal": ["load"]}, False),
         ({"more": 1}, False),
     ],
 )

@@ -17,10 +17,11 @@ from truing.diagnosis.engine import diagnose
 from truing.diagnosis.exact import nothing
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
+from truing.diagnosis.learning import first_noise
 from truing.diagnosis.machine import machine_of
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import Diagnosis
-from truing.diagnosis.sample import first_noise, sample_of
+from truing.diagnosis.sample import sample_of
 from truing.kernel import Offer, Origin
 from truing.setup import Setup, default_setup
 

@@ -13,10 +13,11 @@ from truing.diagnosis.causes import effects_of
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.exact import EXACTLY, fit
 from truing.diagnosis.extended import Extended
+from truing.diagnosis.learning import first_noise
 from truing.diagnosis.machine import machine_of
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import Diagnosis
-from truing.diagnosis.sample import first_noise, sample_of
+from truing.diagnosis.sample import sample_of
 from truing.inputs_file import read_setup
 from truing.kernel import Kernel
 

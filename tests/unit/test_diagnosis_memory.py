@@ -32,8 +32,8 @@ from truing.diagnosis import competition, long_records, machine
 from truing.diagnosis.choice import choose
 from truing.diagnosis.columns import times
 from truing.diagnosis.engine import diagnose, laid_out
+from truing.diagnosis.learning import first_noise
 from truing.diagnosis.machine import predict
-from truing.diagnosis.sample import first_noise
 
 
 def test_many_rows_times_a_vector_are_summed_in_double_precision() -> None:

@@ -11,13 +11,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import block_diag, solve_triangular, toeplitz
 from scipy.optimize import brentq
 from scipy.signal import lfilter
-from scipy.stats import linregress, multivariate_normal, norm
+from scipy.stats import halfnorm, linregress, multivariate_normal, norm, rankdata
 
 from shared import ROUNDING
 from truing.diagnosis.noise import (
     LARGEST_EXPONENT,
     SETTINGS,
-    SMALL,
     TAILS,
     Setting,
     Spread,
@@ -179,7 +178,7 @@ def test_a_spread_that_follows_a_driver_is_found_with_its_slope(slope: float) ->
     noise = rng.normal(size=400) * np.exp(slope * z)
     found = spread_of(noise, {"speed": speed, "load": load})
     assert found.driver == "load"
-    line = linregress(load, np.log((noise / robust_sd(noise)) ** 2 + SMALL))
+    line = linregress(load, halfnorm.ppf(rankdata(np.abs(noise)) / 401))
     assert_allclose(found.p_value, 2 * line.pvalue, rtol=1e-9)  # two drivers
     assert found.p_value < 0.002
     assert_allclose(found.slope, slope, rtol=0, atol=4 / np.sqrt(2 * 400))
@@ -192,8 +191,22 @@ def test_a_constant_spread_stays_silent() -> None:
         rng = np.random.default_rng([12, seed])
         drivers = {name: rng.uniform(-1, 1, 120) for name in ("load", "speed", "time")}
         alarms += bool(spread_of(rng.normal(size=120), drivers).driver)
-    assert alarms <= 3  # 0.2 % each: four or more of 200 come in one of 1200 such samples
+    assert alarms <= 7  # 1 % each: eight or more of 200 come in one of 1000 such samples
     assert Spread().words == "constant"
+
+
+def test_a_tenfold_spread_is_seen_in_fifty_rows() -> None:
+    """Beside three drivers that do nothing: the best test finds 99 % of them, one of log squares at 0.2 % 79 %."""
+    seen = 0
+    for seed in range(200):
+        rng = np.random.default_rng([14, seed])
+        drivers = {name: rng.uniform(0, 1, 50) for name in ("load", "speed", "time", "travel")}
+        seen += spread_of(rng.normal(size=50) * 10 ** drivers["load"], drivers).driver == "load"
+    assert seen >= 176
+
+
+def test_sizes_that_are_equal_show_no_spread_whatever_their_order() -> None:
+    assert spread_of(np.tile([1.0, -1.0], 30), {"load": np.arange(60.0)}) == Spread()
 
 
 def test_a_spread_is_not_looked_for_where_nothing_drives_it_or_rows_are_few() -> None:

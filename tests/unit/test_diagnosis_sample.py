@@ -20,20 +20,10 @@ from truing.diagnosis.competition import Competition
 from truing.diagnosis.curves import Curves
 from truing.diagnosis.exact import nothing
 from truing.diagnosis.extended import Extended
+from truing.diagnosis.learning import FEWEST_OF_MEMORY, learnt, memory_cost, memory_of
 from truing.diagnosis.machine import Machine, directions_of, machine_of
 from truing.diagnosis.noise import SETTINGS, Setting, Tails, robust_sd
-from truing.diagnosis.sample import (
-    FEWEST_OF_MEMORY,
-    Noise,
-    Sample,
-    has_order,
-    learnt,
-    memory_cost,
-    memory_of,
-    resolution_of,
-    sample_of,
-    starts_of,
-)
+from truing.diagnosis.sample import Noise, Sample, has_order, resolution_of, sample_of, starts_of
 
 TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
 BENCH = wide(150, seed=31)
@@ -149,7 +139,7 @@ def test_with_the_memory_taken_out_rows_are_independent(tmp_path: Path) -> None:
     assert_allclose(made.drawn @ made.drawn.T, drawn @ drawn.T, rtol=1e-9, atol=1e-9)
     added = {"deflection": BENCH.travel * UM}
     assert_allclose(made.curve(added), root @ BENCH.travel, rtol=1e-9, atol=1e-9)
-    beside = Beside(made, np.ones(150), np.zeros(150), np.zeros((150, 0)))
+    beside = Beside(made, np.ones(150), np.zeros(150), np.zeros((150, 0)), there.base)
     assert_allclose(beside.drawn(np.array([[BENCH.travel], [BENCH.load]]) * UM)[1, 0], root @ BENCH.load, rtol=1e-9)
     assert made.rows == 150
     assert max(setting.rho for setting in SETTINGS) < 0.95  # or differences alone would be left

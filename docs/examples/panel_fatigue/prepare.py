@@ -1,14 +1,10 @@
-"""Make failures.csv and bounds.csv of the published record: without the run-outs, and with their last cycle as a life.
-
-The record is sorted by stress and life. Nobody wrote down in which order the panels were tested, and a diagnosis takes
-the order of rows for that of time, so they are shuffled.
+"""Make lives.csv of the published record: the logarithm of every life, of a run-out that of its last cycle.
 
 python prepare.py data.csv
 """
 
 import csv
 import math
-import random
 import sys
 from pathlib import Path
 
@@ -17,22 +13,17 @@ STRESS, LIFE, OUTCOME = "stress [MPa]", "life [kcycles]", "outcome [-]"
 Table = list[list[str]]
 
 
-def prepared(path: Path) -> dict[str, Table]:
-    """Return header and rows of both files. Raises ValueError with one sentence where the file is another one."""
+def prepared(path: Path) -> Table:
+    """Return header and rows. Raises ValueError with one sentence where the file is another one."""
     with path.open(encoding="utf-8-sig", newline="") as lines:
         table = csv.DictReader(lines)
         missing = [name for name in (STRESS, LIFE, OUTCOME) if name not in (table.fieldnames or [])]
         if missing:
             raise ValueError(f"{path}:1: no column '{missing[0]}'; README.md says which file is meant")
         rows = [[row[STRESS], log_life(path, table.line_num, row), row[OUTCOME]] for row in table]
-    random.Random(1).shuffle(rows)
     if {row[-1] for row in rows} != {"failed", "runout"}:
         raise ValueError(f"{path}: the column 'outcome [-]' holds other words than 'failed' and 'runout', or one alone")
-    head = [STRESS, "log_life [-]", "outcome"]
-    return {
-        "failures.csv": [head, *(row for row in rows if row[-1] == "failed")],
-        "bounds.csv": [head, *rows],
-    }
+    return [[STRESS, "log_life [-]", "outcome"], *rows]
 
 
 def log_life(path: Path, line: int, row: dict[str, str]) -> str:
@@ -44,7 +35,7 @@ def log_life(path: Path, line: int, row: dict[str, str]) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Write both files into this folder; 2 and one sentence where that cannot be done."""
+    """Write the file into this folder; 2 and one sentence where that cannot be done."""
     if len(arguments) != 1:
         sys.stderr.write("name the published record: python prepare.py data.csv\n")
         return 2
@@ -52,14 +43,13 @@ def main(arguments: list[str]) -> int:
         sys.stderr.write(f"{arguments[0]}: no such file; README.md says where the record comes from\n")
         return 2
     try:
-        tables = prepared(Path(arguments[0]))
+        table = prepared(Path(arguments[0]))
     except ValueError as error:
         sys.stderr.write(f"{error}\n")
         return 2
-    for name, table in tables.items():
-        with Path(name).open("w", encoding="utf-8", newline="") as lines:
-            csv.writer(lines, lineterminator="\n").writerows(table)
-        sys.stdout.write(f"wrote {name}: {len(table) - 1} rows\n")
+    with Path("lives.csv").open("w", encoding="utf-8", newline="") as lines:
+        csv.writer(lines, lineterminator="\n").writerows(table)
+    sys.stdout.write(f"wrote lives.csv: {len(table) - 1} rows\n")
     return 0
 
 

@@ -17,6 +17,7 @@ from truing.diagnosis.curves import Bundle, Curves
 from truing.diagnosis.exact import slopes_at
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
+from truing.diagnosis.machine import Predicted
 from truing.diagnosis.sample import Sample
 
 if TYPE_CHECKING:
@@ -51,18 +52,21 @@ class Looked:
 class Beside:
     """What an explanation leaves, weighted (rows + K,), once its numbers and the inputs have taken their part.
 
-    ``taken`` (rows + K, t) is an orthonormal basis of what they can draw; ``roots`` weigh the rows of the sample.
+    ``taken`` (rows + K, t) is an orthonormal basis of what they can draw; ``roots`` weigh the rows of the sample, and
+    ``at`` is what the explanation predicts.
     """
 
     sample: Sample
     roots: Matrix
     left: Matrix
     taken: Matrix
+    at: Predicted
 
     def drawn(self, curves: Matrix) -> Matrix:
         """Return curves (M, q, readings), SI, as weighted rows of the sample, (M, q, rows)."""
         by_result = np.split(curves.T, len(self.sample.machine.records.measured))
-        return self.sample.curve(dict(zip(self.sample.machine.records.measured, by_result, strict=True))).T * self.roots
+        added = dict(zip(self.sample.machine.records.measured, by_result, strict=True))
+        return self.sample.curve(added, self.at).T * self.roots
 
     def beyond(self, rows: Matrix) -> Matrix:
         """Return what only these curves (M, q, rows) can draw, (M, q, rows + K)."""
@@ -86,7 +90,7 @@ def beside_of(found: Fit, extended: Extended) -> Beside:
     basis, size, _ = np.linalg.svd(columns, full_matrices=False)
     taken = np.asarray(basis[:, size > 1e-9 * size.max()] if size.size else basis)
     left = np.concatenate([roots * found.left, -found.inputs])
-    return Beside(sample, roots, left - taken @ (taken.T @ left), taken)
+    return Beside(sample, roots, left - taken @ (taken.T @ left), taken, found.predicted)
 
 
 def look(curves: Curves, at: Fit, causes: Sequence[Cause]) -> Mapping[str, Looked]:
@@ -125,11 +129,11 @@ def compared(bundles: list[Bundle], beside: Beside) -> Iterator[tuple[str, Looke
         if len(own):
             gains, values = _starts(bundle, bundle.points[own - begin], right[own], normal[own])
             tries = independent(basis[own[is_own[own]]], is_sweep=bundle.is_sweep)
-            yield bundle.cause.tag, Looked(_best(gains, values, basis[own], beside.sample.rows), tries, basis[own])
+            yield bundle.cause.tag, Looked(_best(gains, values, basis[own], beside.sample.known), tries, basis[own])
         begin = end
 
 
-def _best(gains: Matrix, values: Matrix, basis: Matrix, rows: int) -> tuple[tuple[float, Matrix], ...]:
+def _best(gains: Matrix, values: Matrix, basis: Matrix, known: float) -> tuple[tuple[float, Matrix], ...]:
     """Return the best points that do not draw the same, with what each is worth in score."""
     chosen: list[int] = []
     for place in np.argsort(-gains, kind="stable")[:200].tolist():
@@ -137,12 +141,12 @@ def _best(gains: Matrix, values: Matrix, basis: Matrix, rows: int) -> tuple[tupl
             chosen.append(place)
         if len(chosen) == KEPT:
             break
-    return tuple((_score(float(gains[place]), rows), values[place]) for place in chosen)
+    return tuple((_score(float(gains[place]), known), values[place]) for place in chosen)
 
 
-def _score(gain: float, rows: int) -> float:
+def _score(gain: float, known: float) -> float:
     """Return what a fall of the sum of squares is worth where the noise is the one that is left."""
-    return -rows * log(max(1 - gain / max(rows, 1), 1e-9))
+    return -known * log(max(1 - gain / max(known, 1.0), 1e-9))
 
 
 def _is_same(one: Matrix, other: Matrix) -> bool:

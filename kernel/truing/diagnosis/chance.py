@@ -15,6 +15,7 @@ import numpy as np
 
 from truing.diagnosis.beside import Looked, beside_of
 from truing.diagnosis.chosen import Law
+from truing.diagnosis.compared import shares
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import Setting, colour, whiten
@@ -51,7 +52,7 @@ def law_of(made: Competition, at: Fit, more: Fit, *, seed: int) -> Law:
         count = FIRST_DRAWS if done < FIRST_DRAWS else DRAWS - done
         drawn = _drawn(at, more, count, generator)
         drawn -= beside.taken @ (beside.taken.T @ drawn)
-        gains.append(_largest(made, seen, drawn, made.sample.rows, steps) - choice)
+        gains.append(_largest(made, seen, drawn, made.sample.known, steps) - choice)
         if sum(int((each >= gain).sum()) for each in gains) >= HOPELESS:
             break
     together = np.concatenate(gains)
@@ -65,16 +66,19 @@ def _drawn(at: Fit, more: Fit, count: int, generator: np.random.Generator) -> Ma
     parts = []
     for part, channel in zip(sample.parts, sample.channels, strict=True):
         memory = channel.memory
-        pool = weighted[part] - weighted[part].mean()
+        pool = weighted[part][channel.read]
+        pool = pool - pool.mean()
         drawn = generator.choice(pool, size=(len(channel), count))
         if memory.rho:  # the memory is known but for its error
             filtered = Setting(carried(memory.rho, len(pool)), memory.theta)
             drawn = whiten(colour(drawn, channel.starts, filtered), channel.starts, memory)
+        if channel.sides is not None:  # a censored row says as much as it follows the prediction
+            drawn = drawn * shares(channel.off(at.predicted[channel.name]), channel.sides)[:, None]
         parts.append(drawn / sqrt(max(float(np.mean(pool**2)), 1e-300)))
     return np.concatenate([*parts, generator.standard_normal((len(at.inputs), count))])
 
 
-def _largest(made: Competition, seen: Mapping[str, Looked], drawn: Matrix, rows: int, steps: int) -> Matrix:
+def _largest(made: Competition, seen: Mapping[str, Looked], drawn: Matrix, known: float, steps: int) -> Matrix:
     """Return by draw the largest gain of so many causes, one after another, each paid for, (draws,)."""
     summed = np.zeros(drawn.shape[1])
     prices = {cause.tag: made.price_of(cause) for cause in made.causes}
@@ -88,7 +92,7 @@ def _largest(made: Competition, seen: Mapping[str, Looked], drawn: Matrix, rows:
             squares = np.sum(inner**2, axis=1)
             place = squares.argmax(axis=0)
             lowered = np.take_along_axis(squares, place[None], 0)[0]
-            gain = -rows * np.log(np.maximum(1 - lowered / np.maximum(whole, 1e-300), 1e-9)) - prices[tag]
+            gain = -known * np.log(np.maximum(1 - lowered / np.maximum(whole, 1e-300), 1e-9)) - prices[tag]
             better = np.flatnonzero(gain > best)
             best[better] = gain[better]
             for draw in better if steps > 1 else ():

@@ -14,13 +14,15 @@ from truing.diagnosis.records import Covariate, Role
 from truing.diagnosis.tidying import TIME, counted, is_angle
 from truing.errors import Fault, InputError
 from truing.measurements.table import SIGMA
-from truing.setup import Setup
+from truing.setup import Setup, column_and_word
 from truing.units.grammar import shown
 from truing.units.names import PURE
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from truing.diagnosis.compared import Sides
 
 ORDER = "order"
 _ROLES: dict[Part, Role] = {
@@ -41,6 +43,8 @@ def covariates_of(joined: Joined, setup: Setup) -> tuple[dict[str, Covariate], l
     for part, usual in _ROLES.items():
         for name in data.named(part):
             if part == "word" and setup.model.input_fields[name].kind != "integer":
+                continue
+            if part == "other" and name in setup.diagnose.flags:  # it says what came out, and is no reason for it
                 continue
             values, unit = data.columns[name].astype(float), _unit(name, joined, setup)
             if np.isfinite(values).any():
@@ -83,10 +87,10 @@ def _of_others(joined: Joined, setup: Setup, found: dict[str, Covariate]) -> lis
     model = setup.model
     known = [*measurable(model), *model.known_conditions, *model.input_fields]
     notes = []
-    asked_for = setup.diagnose.held_out[0]
+    asked_for = {setup.diagnose.held_out[0], *setup.diagnose.flags}
     for name in joined.data.named("other", "label"):
         is_label = joined.data.parts[name] == "label" and any(joined.data.columns[name].tolist())
-        if is_label and name == asked_for:
+        if name in asked_for and (is_label or name not in found):
             continue
         words = "it is kept as words, on which nothing can depend" if is_label else "it holds no value and is not used"
         use = "it is kept as something an error may depend on" if name in found else words
@@ -113,15 +117,46 @@ def held_out_rows(joined: Joined, setup: Setup) -> tuple[NDArray[np.bool_], list
     column, word = setup.diagnose.held_out
     if not column:
         return np.zeros(len(joined), dtype=bool), []
-    data, place = joined.data, setup.places.get("studies.diagnose.hold_out", (setup.file, None))
+    found = _marked("hold_out", column, word, joined, setup)
+    return found, [f"{counted(int(found.sum()), 'row only judges', 'rows only judge')}: {column} = {word}"]
+
+
+def _marked(option: str, column: str, word: str, joined: Joined, setup: Setup) -> NDArray[np.bool_]:
+    """Mark the rows that hold a word in a column. Raises InputError where there is no such column, or no such row."""
+    data, place = joined.data, setup.places.get(f"studies.diagnose.{option}", (setup.file, None))
     cells = data.runs if column == "run" else data.columns.get(column)
     if cells is None:
         near = near_miss(column[:80], list(data.columns))
-        raise InputError([Fault(f"hold_out: no file has a column {shown(column)}.{near}", *place)])
+        raise InputError([Fault(f"{option}: no file has a column {shown(column)}.{near}", *place)])
     found = _equal(cells, word, data.units.get(column, ""))
     if not found.any():
-        raise InputError([Fault(f"hold_out: no row has {shown(word)} in the column {shown(column)}", *place)])
-    return found, [f"{counted(int(found.sum()), 'row only judges', 'rows only judge')}: {column} = {word}"]
+        raise InputError([Fault(f"{option}: no row has {shown(word)} in the column {shown(column)}", *place)])
+    return found
+
+
+def censored_rows(joined: Joined, setup: Setup) -> tuple[Joined, dict[str, Sides], list[str]]:
+    """Find the readings that say only beyond which end the true value lies: marked ones, and a gauge at its end.
+
+    A reading beyond the end of its gauge is one at the end. Raises InputError where a mark marks nothing.
+    """
+    import numpy as np
+
+    columns, asked = dict(joined.data.columns), setup.diagnose
+    sides: dict[str, Sides] = {}
+    notes = []
+    for name in joined.data.named("measured"):
+        low, high = asked.clipped.get(name, (-np.inf, np.inf))
+        side = np.where(columns[name] >= high, 1, np.where(columns[name] <= low, -1, 0)).astype(np.int8)
+        columns[name] = np.clip(columns[name], low, high)
+        for option, sign in (("at_least", 1), ("at_most", -1)):
+            column, word = column_and_word(getattr(asked, option).get(name, ""))
+            if column:
+                side[_marked(option, column, word, joined, setup)] = sign
+        if side.any():
+            sides[name] = side
+            of = f"{int((side != 0).sum())} of {int(np.isfinite(columns[name]).sum())} readings"
+            notes.append(f"{of} of '{name}' are censored: the true value lies beyond what was read")
+    return replace(joined, data=replace(joined.data, columns=columns)), sides, notes
 
 
 def _equal(cells: NDArray[np.object_], word: str, unit: str) -> NDArray[np.bool_]:

@@ -18,6 +18,7 @@ from truing.diagnosis.extended import Extended
 from truing.diagnosis.findings import in_unit, wrong_of
 from truing.diagnosis.gain import gains_of, nested
 from truing.diagnosis.halves import contradictions_of, thinned_of
+from truing.diagnosis.learning import first_noise
 from truing.diagnosis.long_records import machine_for_search, on_all_rows
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.naming import alternative_of, calibrated_of, causes_of, extended_setup, remainder_of
@@ -26,7 +27,7 @@ from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.readings import followed_by
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.result import Alternative, Curves, Diagnosis
-from truing.diagnosis.sample import first_noise, sample_of
+from truing.diagnosis.sample import sample_of
 from truing.diagnosis.shares import by_share
 from truing.diagnosis.trades import trades_of
 from truing.diagnosis.unmeasured import with_results

@@ -55,7 +55,7 @@ ROWS_PER_NUMBER = 4
 
 def is_too_large(sample: Sample, causes: Sequence[Cause]) -> bool:
     """Whether an explanation has too many numbers for so few rows."""
-    return sum(cause.size for cause in causes) * ROWS_PER_NUMBER > sample.rows
+    return sum(cause.size for cause in causes) * ROWS_PER_NUMBER > sample.known
 
 
 def fit(
@@ -180,7 +180,7 @@ class _Fitting:
 
     def _draw(self, drawn: dict[str, Matrix]) -> None:
         """Take derivatives, by result (n, numbers), SI per number as the fit sees it."""
-        self.drawn, self.slope = drawn, -self.sample.curve(drawn)
+        self.drawn, self.slope = drawn, -self.sample.curve(drawn, self.predicted)
 
     def carry(self, slopes: dict[str, Matrix]) -> None:
         """Begin with the derivatives of another fit, where they are known on these rows."""
@@ -307,8 +307,8 @@ class _Fitting:
         if gained > 0:
             way = tried - self.u
             before = self.predicted
-            self._draw({name: _corrected(own, shown[name] - before[name], way) for name, own in self.drawn.items()})
             self.u, self.predicted, self.r0, self.b, self.left, self.cost = tried, shown, bare, b, left, cost
+            self._draw({name: _corrected(own, shown[name] - before[name], way) for name, own in self.drawn.items()})
             self.is_fresh = False
         return gained
 

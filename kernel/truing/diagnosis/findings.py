@@ -15,7 +15,7 @@ from truing.diagnosis.noise import robust_sd
 from truing.diagnosis.readings import followed_by, gauged
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Amount, Finding, Kind, Noise, Wrong
-from truing.diagnosis.sample import Channel, residuals_of
+from truing.diagnosis.sample import Channel, errors_of, residuals_of
 from truing.diagnosis.shape_words import in_unit as in_unit
 from truing.diagnosis.shape_words import order_in_words, shape_in_words, step_in_words
 
@@ -50,19 +50,19 @@ def wrong_of(chosen: Chosen, units: Mapping[str, str]) -> tuple[Wrong, ...]:
 def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, tuple[Cause, ...]], unit: str) -> Wrong:
     best, name, rows = chosen.best, channel.name, channel.rows
     machine = best.sample.machine
-    measured = machine.records.measured[name]
-    before, after = ((measured - found.predicted[name])[rows] for found in (chosen.null, best))
+    own = best.sample.noise[name]
+    before, after = (errors_of(machine, name, own, found.predicted[name])[rows] for found in (chosen.null, best))
     used = (best.size + len(best.inputs)) / len(best.sample.channels)
     floor = float(np.sqrt(np.sum(after**2) / max(len(rows) - used, 1.0)))
     rmse = float(np.sqrt(np.mean(before**2)))
     share = max(0.0, 1 - floor**2 / rmse**2) if rmse > 0 and best.causes else 0.0
     found = [
-        *_bias(chosen, channel, residuals_of(machine)[name][rows], unit),
+        *_bias(chosen, channel, residuals_of(machine)[name][rows[channel.read]], unit),
         *_with_named(chosen, acting[name], list(_structure(chosen, name, unit))),
         *_of_noise(best, channel),
         *_wave(best, channel),
     ]
-    noise = _noise(best, channel, after, Amount(floor, unit))
+    noise = _noise(best, channel, after[channel.read], Amount(floor, unit))
     if noise.outliers:
         text = f"{len(noise.outliers)} suspected outliers, beyond four standard deviations of the noise"
         found.append(
@@ -185,7 +185,7 @@ def _acting(chosen: Chosen) -> dict[str, tuple[Cause, ...]]:
 
 def _shows(channel: Channel, added: Matrix) -> bool:
     """Whether something that is added to a result is more than its noise would hide, all rows together."""
-    size = added[channel.rows] * (channel.weights / channel.scale)
+    size = added[channel.rows] * channel.factors
     return float(np.mean(size**2)) * len(channel) > SHOWS**2
 
 
@@ -244,8 +244,8 @@ def _wave(best: Fit, channel: Channel) -> Iterator[Finding]:
 def _noise(best: Fit, channel: Channel, after: Matrix, floor: Amount) -> Noise:
     """Describe the noise of one result, with the rows that lie beyond four standard deviations of it."""
     noise, memory, records = best.sample.noise[channel.name], channel.memory, best.sample.machine.records
-    size = after * channel.weights
+    size = after * channel.weights[channel.read]
     sd = max(robust_sd(size), channel.scale * channel.least**0.5)
-    far = channel.rows[np.abs(size) > FAR * sd]
+    far = channel.rows[channel.read][np.abs(size) > FAR * sd]
     outliers = tuple((records.files[int(records.file_of[row])], int(records.lines[row])) for row in far)
     return Noise(floor, memory.neighbours, noise.tails.words, noise.spread.words, outliers, memory.rho)

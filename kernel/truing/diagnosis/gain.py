@@ -16,10 +16,13 @@ from scipy.special import gammaln
 
 from truing.diagnosis.choice import CLOSE
 from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.compared import beyond, difference
 from truing.diagnosis.extended import shape_added
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import Folds, folds_of, refitted
+from truing.diagnosis.machine import Machine
 from truing.diagnosis.result import Amount, Gain
+from truing.diagnosis.sample import Noise, errors_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -115,20 +118,30 @@ def _judge(judged: Judged, name: str, fits: tuple[Fit, Fit], test: NDArray[np.bo
     """Fill in the rows of one fold for one result, from the fits of base and extension without them."""
     sample = fits[0].sample
     place = [channel.name for channel in sample.channels].index(name)
-    channel, noise = sample.channels[place], sample.noise[name]
-    measured, weights = sample.machine.records.measured[name], noise.weights[test] / channel.scale
+    channel, noise, machine = sample.channels[place], sample.noise[name], sample.machine
+    known, weights = machine.records.known(name), noise.weights[test] / channel.scale
     logs = []
     for found, errors in zip(fits, (judged.before, judged.after), strict=True):
-        errors[test] = measured[test] - found.predicted[name][test]
+        off = errors_of(machine, name, noise, found.predicted[name])
+        errors[test] = off[test]
         left = found.left[sample.parts[place]]
-        sd = sqrt(max(float(np.mean(left**2)), channel.least))
-        logs.append(_log_density(errors[test] * weights / sd, noise.tails.freedom) + np.log(weights / sd))
+        sd = sqrt(max(float(np.sum(left**2)) / channel.known, channel.least))
+        density = _log_density(errors[test] * weights / sd, noise.tails.freedom) + np.log(weights / sd)
+        logs.append(np.where(known[test], density, _log_chance(machine, name, noise, found)[test]))
     judged.gain[test] = logs[1] - logs[0]
-    left = (measured[channel.rows] - fits[1].predicted[name][channel.rows]) * (channel.weights / channel.scale)
+    rows = channel.rows[channel.read]
+    left = off[rows] * (channel.weights[channel.read] / channel.scale)
     limit = float(np.quantile(np.abs(left), COVERED))
     limit *= sqrt(len(left) / max(len(left) - fits[1].size - len(fits[1].inputs), 1))
     outside = np.abs(judged.after[test] * weights) > limit
-    judged.inside[test] = np.where(np.isfinite(judged.after[test]), ~outside, np.nan)
+    judged.inside[test] = np.where(np.isfinite(judged.after[test]) & known[test], ~outside, np.nan)
+
+
+def _log_chance(machine: Machine, name: str, noise: Noise, found: Fit) -> Matrix:
+    """Return the log probability that the true value lies beyond what was read, (n,); 0 where it was read."""
+    sides = machine.records.sides.get(name, np.zeros(len(machine.records), dtype=np.int8))
+    off = difference(machine.records.measured[name], found.predicted[name], noise.typical) * noise.weights / noise.scale
+    return np.where(sides == 0, 0.0, -0.5 * beyond(off, sides) ** 2)
 
 
 def _log_density(z: Matrix, freedom: float) -> Matrix:
@@ -168,10 +181,10 @@ def gains_of(chosen: Chosen, judged: Nested, units: Mapping[str, str]) -> tuple[
 
 def floor_of(found: Fit, place: int) -> float:
     """Return the root mean square that an explanation leaves of one result, SI, its numbers paid for."""
-    channel = found.sample.channels[place]
-    measured = found.sample.machine.records.measured[channel.name]
-    left = (measured - found.predicted[channel.name])[channel.rows]
-    used = (found.size + len(found.inputs)) / len(found.sample.channels)
+    channel, sample = found.sample.channels[place], found.sample
+    errors = errors_of(sample.machine, channel.name, sample.noise[channel.name], found.predicted[channel.name])
+    left = errors[channel.rows]
+    used = (found.size + len(found.inputs)) / len(sample.channels)
     return sqrt(float(left @ left) / max(len(left) - used, 1.0))
 
 
@@ -181,8 +194,7 @@ def _held_out(chosen: Chosen, name: str) -> tuple[float, float] | None:
     An unregistered shape was fitted to its own record and says nothing of another one.
     """
     best, records = chosen.best, chosen.competition.sample.machine.records
-    measured = records.measured[name]
-    rows = records.held_out & np.isfinite(measured)
+    rows = records.held_out & np.isfinite(records.measured[name])
     if not rows.any():
         return None
     is_other = ~np.isin(records.run_of, np.unique(records.run_of[~records.held_out]))
@@ -190,7 +202,10 @@ def _held_out(chosen: Chosen, name: str) -> tuple[float, float] | None:
     for cause, values in zip(best.causes, best.values, strict=True):
         shaped = shaped + shape_added(best.sample.machine, cause, values).get(name, 0.0)
     extended = best.predicted[name] - np.where(is_other, shaped, 0.0)
-    errors = [(measured - values)[rows] for values in (chosen.null.predicted[name], extended)]
+    errors = [
+        errors_of(best.sample.machine, name, best.sample.noise[name], values)[rows]
+        for values in (chosen.null.predicted[name], extended)
+    ]
     before, after = (float(np.sqrt(np.mean(error**2))) for error in errors)
     return before, after
 

@@ -65,7 +65,7 @@ def contradictions_of(chosen: Chosen) -> tuple[Contradiction, ...]:
 
 def _are_few(best: Fit) -> bool:
     """Whether half of the rows is too little for an explanation, or there is none."""
-    return not best.causes or best.sample.rows < 2 * FEWEST * (best.size + len(best.inputs) ** 0.5)
+    return not best.causes or best.sample.known < 2 * FEWEST * (best.size + len(best.inputs) ** 0.5)
 
 
 def _amplitudes(best: Fit) -> Iterator[tuple[str, str]]:

@@ -103,11 +103,11 @@ def certainty_of(found: Fit, extended: Extended) -> Certainty:
     normal = slopes.T @ slopes
     inverse = _inverse(normal + prior)
     used = float(np.trace(inverse @ normal))
-    variance = sample.rows / max(sample.rows - used, 1.0)
+    variance = sample.known / max(sample.known - used, 1.0)
     scores = _scores(slopes, roots * found.left / told, inverse)
     plain, sandwich = inverse * variance, inverse @ (scores + variance * prior) @ inverse
     ratio = np.sqrt(np.maximum(np.diag(sandwich) / np.maximum(np.diag(plain), 1e-300), 1.0))
-    return Certainty(plain * np.outer(ratio, ratio), units, variance, max(sample.rows - used, FEWEST_FREE))
+    return Certainty(plain * np.outer(ratio, ratio), units, variance, max(sample.known - used, FEWEST_FREE))
 
 
 def _told(sample: Sample) -> Matrix:
@@ -172,8 +172,8 @@ class _Profile:
         self.start = log(value) if self.number.is_log else value / self.unit
         self.known = {self.start: self._fitted(found, self.start) or found}
         student = float(stdtrit(certainty.freedom, LEVEL))
-        rows = found.sample.rows
-        self.allowed = rows * log1p(student**2 * certainty.variance / rows)
+        known = found.sample.known
+        self.allowed = known * log1p(student**2 * certainty.variance / known)
         self.reach = certainty.reach_of(place)
 
     def _fitted(self, near: Fit, u: float) -> Fit | None:

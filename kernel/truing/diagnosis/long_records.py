@@ -15,9 +15,10 @@ from truing.diagnosis.chosen import Chosen, Rival
 from truing.diagnosis.competition import Competition, competition_of
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
+from truing.diagnosis.learning import first_noise
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.records import Records
-from truing.diagnosis.sample import first_noise, sample_of
+from truing.diagnosis.sample import sample_of
 
 LONG = 4000
 """A record of more rows is searched on about so many of them."""

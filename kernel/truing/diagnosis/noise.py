@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.linalg.lapack import dtbtrs
 from scipy.optimize import minimize_scalar
-from scipy.special import gammaln, stdtr
+from scipy.special import gammaln, ndtri, stdtr
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,10 +22,11 @@ TAILS = {3.0: 1.9, 4.0: 2.1, 6.0: 2.5, 10.0: 3.0, inf: 4.5}
 """Degrees of freedom of Student's t, and where innovations are clipped, in standard deviations."""
 HEAVIER = 1.92
 """In log-likelihood: tails that are no heavier than normal seem so by chance in one record of twenty."""
-SMALL = 0.05
 AT_ONCE = 16_384
 LARGEST_EXPONENT = 2.5
-SPREAD_LEVEL = 0.002
+SPREAD_LEVEL = 0.01
+"""Significance of a spread. At 0.002 one that grows threefold was found in 12 % of records of 50 rows and four drivers,
+at this one in 28 %; of the best test there can be 56 % are expected, rows without end."""
 
 
 @dataclass(frozen=True)
@@ -190,14 +191,20 @@ def standardised(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def spread_of(innovations: NDArray[np.float64], drivers: dict[str, NDArray[np.float64]]) -> Spread:
-    """Find what the spread of the innovations depends on, if on anything (Bonferroni over the drivers)."""
+    """Find what the spread of the innovations depends on, if on anything (Bonferroni over the drivers).
+
+    Tested is the correlation of a driver with normal scores of the ranks of their sizes, which heavy tails do not reach
+    (J. Capon, Ann. Math. Statist. 32, 1961, 88).
+    """
     u = innovations / (robust_sd(innovations) or 1.0)
     tried = {name: standardised(values) for name, values in drivers.items()}
     tried = {name: z for name, z in tried.items() if np.ptp(z) > 0}
     if not tried or len(u) < 20:
         return Spread()
-    logs = np.log(u**2 + SMALL)
-    p_values = {name: _p_of_line(z, logs) for name, z in tried.items()}
+    sizes = _scores(np.abs(u))
+    if not np.ptp(sizes) > 0:
+        return Spread()
+    p_values = {name: _p_of_line(z, sizes) for name, z in tried.items()}
     name = min(p_values, key=lambda key: p_values[key])
     p_value = min(1.0, p_values[name] * len(tried))
     if p_value >= SPREAD_LEVEL:
@@ -210,6 +217,13 @@ def spread_of(innovations: NDArray[np.float64], drivers: dict[str, NDArray[np.fl
 
     slope = float(minimize_scalar(cost, bounds=(-2.0, 2.0), method="bounded").x)
     return Spread(name, slope, p_value)
+
+
+def _scores(sizes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return for each size that which a normal number of its rank has; equal ones share their ranks."""
+    _, place, counts = np.unique(sizes, return_inverse=True, return_counts=True)
+    ranks = (np.cumsum(counts) - (counts - 1) / 2)[place]
+    return np.asarray(ndtri(0.5 + 0.5 * ranks / (len(sizes) + 1)))
 
 
 def _p_of_line(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:

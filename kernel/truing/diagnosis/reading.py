@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from truing.diagnosis.covariates import covariates_of, held_out_rows
+from truing.diagnosis.covariates import censored_rows, covariates_of, held_out_rows
 from truing.diagnosis.data_file import DataFile, read_data_file
 from truing.diagnosis.joining import Joined, complete_rows, join, measured_rows, rows_of, settle_conditions
 from truing.diagnosis.records import FEWEST_READINGS, Records, Slip
@@ -46,12 +46,13 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_slip
     joined, said = complete_rows(joined, setup)
     notes += said
     _demand_rows(len(joined), joined, notes)
+    _demand_logarithms(joined, setup)
     joined, answers, said = _answered(joined, setup)
     notes += said
     held_out, said = held_out_rows(joined, setup)
     notes += said
     _demand_rows(int((~held_out).sum()), joined, notes)
-    joined, said = _enough_values(joined, ~held_out, notes)
+    joined, said = _enough_values(joined, ~held_out, notes, setup)
     notes += said
     joined, held_out, answers = _without_idle(joined, held_out, answers)
     slips = suspected_slips(joined, answers, setup) if with_slips else ()
@@ -62,6 +63,7 @@ def _records(
     joined: Joined, setup: Setup, held_out: NDArray[np.bool_], notes: Sequence[str], slips: tuple[Slip, ...]
 ) -> Records:
     """Put together what was read."""
+    joined, sides, censored = censored_rows(joined, setup)
     covariates, said = covariates_of(joined, setup)
     sigma, unused = _sigma(joined)
     return Records(
@@ -74,9 +76,10 @@ def _records(
         sigma=sigma,
         covariates=covariates,
         held_out=held_out,
-        notes=(*notes, *said, *unused),
+        notes=(*notes, *said, *unused, *censored),
         slips=slips,
         absent=joined.absent,
+        sides=sides,
         counts=joined.counts,
     )
 
@@ -131,16 +134,32 @@ def _sigma(joined: Joined) -> tuple[dict[str, NDArray[np.float64]], list[str]]:
     return {name.removeprefix(SIGMA): values for name, values in found.items()}, notes
 
 
-def _enough_values(joined: Joined, fitted: NDArray[np.bool_], notes: Sequence[str]) -> tuple[Joined, list[str]]:
+def _demand_logarithms(joined: Joined, setup: Setup) -> None:
+    """Raise InputError where a reading that is to be compared as a logarithm has none."""
+    faults = []
+    for name in joined.data.named("measured"):
+        if name in setup.diagnose.lognormal:
+            for row in (joined.data.columns[name] <= 0).nonzero()[0].tolist():
+                sentence = f"{name} is not above 0, so it has no logarithm; its noise cannot be lognormal"
+                faults.append(Fault(sentence, joined.files[int(joined.file_of[row])], int(joined.data.lines[row])))
+    if faults:
+        raise InputError(faults)
+
+
+def _enough_values(
+    joined: Joined, fitted: NDArray[np.bool_], notes: Sequence[str], setup: Setup
+) -> tuple[Joined, list[str]]:
     """Leave out measured results with too few values to explain; raises InputError where none is left."""
     import numpy as np
 
     measured = joined.data.named("measured")
-    values = {name: int(np.isfinite(joined.data.columns[name][fitted]).sum()) for name in measured}
+    _, sides, censored = censored_rows(joined, setup)
+    known = {name: np.isfinite(joined.data.columns[name]) & (sides.get(name, 0) == np.int8(0)) for name in measured}
+    values = {name: int(known[name][fitted].sum()) for name in measured}
     fewest = FEWEST_BESIDE if max(values.values()) >= FEWEST_BESIDE else FEWEST
     few = {name: count for name, count in values.items() if count < fewest}
     if len(few) == len(measured):
-        _demand_rows(max(few.values()), joined, notes)
+        _demand_rows(max(few.values()), joined, [*notes, *censored])
     columns = {name: column for name, column in joined.data.columns.items() if name not in few}
     more = f" to tell its noise; measure it {fewest} times or more" if fewest > FEWEST else ""
     said = [
@@ -174,6 +193,10 @@ def _answered(joined: Joined, setup: Setup) -> tuple[Joined, Answers, list[str]]
         if lost.any():
             columns[name] = np.where(lost, np.nan, columns[name])
             notes.append(f"'{name}' is not used in {counted(int(lost.sum()))} that its axis does not reach")
+        if name in setup.diagnose.lognormal and (below := (answers[name] <= 0) & np.isfinite(columns[name])).any():
+            columns[name] = np.where(below, np.nan, columns[name])
+            words = "in which the model says 0 or less, which has no logarithm"
+            notes.append(f"'{name}' is not used in {counted(int(below.sum()))} {words}")
     joined = replace(joined, data=replace(joined.data, columns=columns))
     return joined, answers, notes
 

@@ -15,6 +15,7 @@ from truing.measurements.row_count import RowCount
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from truing.diagnosis.compared import Sides
     from truing.measurements import RowsFile
 
 Role = Literal["input", "condition", "time", "other", "order"]
@@ -86,17 +87,25 @@ class Records:
     slips: tuple[Slip, ...] = ()
     absent: frozenset[str] = field(default_factory=frozenset)
     """Conditions of effects that no column gives: not measured."""
+    sides: Mapping[str, Sides] = field(default_factory=dict)
+    """Of results with censored rows: 1 where the true value lies above what was read, -1 where it lies below."""
     counts: tuple[RowCount, ...] = ()
     """What became of every row of each file, in the order of ``files``."""
 
     @cached_property
     def readings(self) -> int:
         """Number of measured values that may be fitted; those of rows that differ in their order alone count once."""
-        measured = np.column_stack([*self.measured.values()])[~self.held_out]
+        known = [np.where(self.known(name), values, np.nan) for name, values in self.measured.items()]
+        measured = np.column_stack(known)[~self.held_out]
         settings = [item.values[~self.held_out] for item in self.covariates.values() if item.role != "order"]
         rows = np.ascontiguousarray(np.column_stack([measured, *settings]), dtype=float)
         _, first = np.unique(rows.view(np.dtype((np.void, rows.itemsize * rows.shape[1]))), return_index=True)
         return int(np.isfinite(measured[first]).sum())
+
+    def known(self, name: str) -> NDArray[np.bool_]:
+        """Mark the rows in which the value of a result was read: neither missing nor censored."""
+        there = np.isfinite(self.measured[name])
+        return np.asarray(there & (self.sides[name] == 0)) if name in self.sides else np.asarray(there)
 
     def __len__(self) -> int:
         return len(self.run_of)
@@ -125,4 +134,5 @@ class Records:
             sigma={name: values[places] for name, values in self.sigma.items()},
             covariates={name: replace(item, values=item.values[places]) for name, item in self.covariates.items()},
             held_out=self.held_out[places],
+            sides={name: values[places] for name, values in self.sides.items()},
         )

@@ -17,25 +17,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from truing.diagnosis.columns import in_blocks
+from truing.diagnosis.compared import beyond, difference, expected, shares, worth
 from truing.diagnosis.machine import Machine, Predicted, gram_of
 from truing.diagnosis.noise import (
-    SETTINGS,
     Setting,
     Spread,
     Tails,
-    clipped,
-    likelihood_of,
-    robust_sd,
-    spread_of,
-    standardised,
-    tails_of,
-    weights_of,
     whiten,
 )
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from truing.diagnosis.compared import Sides
 
     Matrix = NDArray[np.float64]
 
@@ -43,8 +37,6 @@ WITHOUT_MEMORY, NORMAL, CONSTANT = Setting(), Tails(inf, 4.5), Spread()
 SMALLEST_SHARE = 1e-6
 """Of the readings: noise is no smaller, or it is rounding."""
 ROUNDS, SETTLED = 50, 1e-9
-FEWEST_OF_MEMORY = 20
-"""Rows from which on their memory is learnt."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +44,9 @@ class Noise:
     """What is known of the noise of one result: scale (SI), weights by row, memory, tails, spread.
 
     ``given`` are the weights that a stated standard deviation of the readings asks for, in any case; they and
-    ``weights`` have shape (n,) over all rows of the records.
+    ``weights`` have shape (n,) over all rows of the records. ``typical`` is the geometric mean of the readings (SI)
+    where they are compared as logarithms, else 0. ``at`` is the prediction about which logarithms and censored rows are
+    taken as straight, (n,) SI; None where all rows are.
     """
 
     scale: float
@@ -61,6 +55,8 @@ class Noise:
     memory: Setting = WITHOUT_MEMORY
     tails: Tails = NORMAL
     spread: Spread = CONSTANT
+    typical: float = 0.0
+    at: Matrix | None = None
 
 
 @dataclass(frozen=True)
@@ -69,7 +65,8 @@ class Channel:
 
     ``values`` are SI, ``weights`` one over the relative standard deviation. ``least`` is the smallest mean square, in
     units of the noise, that is more than rounding or the steps of the gauge. ``freedom`` is that of Student's t, which
-    the noise follows, infinite where it is normal.
+    the noise follows, infinite where it is normal. ``sides`` are None where no row is censored; ``typical`` and ``at``,
+    on all rows, are those of the noise.
     """
 
     name: str
@@ -81,13 +78,47 @@ class Channel:
     least: float
     memory: Setting
     freedom: float = inf
+    sides: Sides | None = None
+    typical: float = 0.0
+    at: Matrix | None = None
 
     def __len__(self) -> int:
         return len(self.rows)
 
+    @cached_property
+    def read(self) -> NDArray[np.intp] | slice:
+        """Where the rows stand whose value was read: all that are not censored."""
+        return slice(None) if self.sides is None else np.flatnonzero(self.sides == 0)
+
+    @cached_property
+    def known(self) -> float:
+        """Number of rows whose value was read, and what censored ones are worth beside them."""
+        if self.sides is None or self.at is None:
+            return float(len(self))
+        return max(worth(self.off(self.at), self.sides), 1.0)
+
     def left(self, predicted: Matrix) -> Matrix:
         """Return what a prediction (..., all rows, SI) leaves of the readings, in units of the noise, (..., n)."""
-        return np.asarray((self.values - predicted[..., self.rows]) * (self.weights / self.scale))
+        off = self.off(predicted)
+        return off if self.sides is None else beyond(off, self.sides)
+
+    def off(self, predicted: Matrix) -> Matrix:
+        """Return what a prediction would leave were every reading the value itself, in units of the noise, (..., n)."""
+        return difference(self.values, predicted[..., self.rows], self.typical) * (self.weights / self.scale)
+
+    @cached_property
+    def factors(self) -> Matrix:
+        """By how much each row leaves less for what is added to its prediction, per SI, (n,)."""
+        return self.factors_at(self.at)
+
+    def factors_at(self, predicted: Matrix | None) -> Matrix:
+        """Return the factors about a prediction, SI on all rows."""
+        made = self.weights / self.scale
+        if predicted is not None and self.typical:
+            made = made * (self.typical / predicted[self.rows])
+        if predicted is not None and self.sides is not None:
+            made = made * shares(self.off(predicted), self.sides)
+        return np.asarray(made)
 
     def white(self, values: Matrix) -> Matrix:
         """Return values in units of the noise, (n,) or (n, c), with the memory of the noise taken out."""
@@ -95,10 +126,11 @@ class Channel:
 
     def square(self, left: Matrix) -> float:
         """Return the square of the scale that suits what is left best, no smaller than what is more than rounding."""
-        square = max(float(np.mean(left**2)), self.least)
+        square = max(float(np.sum(left**2)) / self.known, self.least)
         for _ in range(ROUNDS if self.freedom < inf else 0):
             shares = 1 / (self.freedom + left**2 / square)
-            before, square = square, max(float(shares @ left**2) / float(shares.sum()), self.least)
+            whole = float(shares.sum()) if self.sides is None else self.known / (self.freedom + 1)
+            before, square = square, max(float(shares @ left**2) / whole, self.least)
             if abs(square - before) <= SETTLED * square:
                 break
         return square
@@ -135,6 +167,11 @@ class Sample:
         """Number of measured values."""
         return sum(len(channel) for channel in self.channels)
 
+    @property
+    def known(self) -> float:
+        """Number of measured values; of censored ones what they are worth beside the others."""
+        return sum(channel.known for channel in self.channels)
+
     @cached_property
     def parts(self) -> list[slice]:
         """Where the values of each channel stand among all."""
@@ -145,12 +182,15 @@ class Sample:
         """Return what is left of all readings in units of their noise, (rows,)."""
         return np.concatenate([each.white(each.left(predicted[each.name])) for each in self.channels])
 
-    def curve(self, added: Predicted) -> Matrix:
-        """Return what is added to predictions, (n,) or (n, c), in units of the noise, (rows,) or (rows, c)."""
+    def curve(self, added: Predicted, at: Predicted | None = None) -> Matrix:
+        """Return what is added to predictions, (n,) or (n, c), in units of the noise, (rows,) or (rows, c).
+
+        Rows that are censored or compared as logarithms follow it as they do about a prediction, ``at``.
+        """
         parts = []
         for each in self.channels:
-            rows = added[each.name][each.rows]
-            parts.append(each.white((rows.T * (each.weights / each.scale)).T))
+            factors = each.factors if at is None or each.at is None else each.factors_at(at[each.name])
+            parts.append(each.white((added[each.name][each.rows].T * factors).T))
         return np.concatenate(parts)
 
     @cached_property
@@ -166,7 +206,7 @@ class Sample:
         """Return -2 log likelihood of what is left, noise of every result free, plus the prior of the inputs."""
         total = float(inputs @ inputs)
         for part, channel, square in zip(self.parts, self.channels, self.squares(left), strict=True):
-            total += len(channel) * log(square)
+            total += channel.known * log(square)
             if channel.freedom < inf:
                 total += float(channel.losses(left[part], square).sum())
         return total
@@ -202,10 +242,15 @@ def sample_of(
         values = machine.records.measured[name]
         rows = np.flatnonzero(mask & np.isfinite(values) & np.isfinite(machine.base[name]))
         starts = starts_of(_pieces(machine, mask), rows)
+        sides = machine.records.sides[name][rows] if name in machine.records.sides else None
+        if sides is not None:  # what a censored row leaves says nothing of its neighbours
+            starts |= sides != 0
+            starts[1:] |= sides[:-1] != 0
+        known = rows if sides is None else rows[sides == 0]
         channels.append(
             Channel(
                 name, rows, starts, values[rows], own.weights[rows], own.scale,
-                _least(machine, name, rows, own.scale), own.memory, own.tails.freedom,
+                _least(machine, own, name, known), own.memory, own.tails.freedom, sides, own.typical, own.at,
             )
         )  # fmt: skip
     if directions is None:
@@ -217,15 +262,25 @@ def directions_seen(machine: Machine, noise: Mapping[str, Noise], mask: NDArray[
     """Return the combinations of inputs that these rows can see in their noise."""
     measured = machine.records.measured
     places = {name: np.flatnonzero(mask & np.isfinite(measured[name])) for name in noise}
-    gram = sum(gram_of(machine.slopes[name], rows) / noise[name].scale ** 2 for name, rows in places.items())
+    gram = sum(
+        gram_of(compared_slopes(machine, name, noise[name].typical), rows) / noise[name].scale ** 2
+        for name, rows in places.items()
+    )
     return machine.directions(np.asarray(gram), sum(len(rows) for rows in places.values()))
 
 
-def _least(machine: Machine, name: str, rows: NDArray[np.intp], scale: float) -> float:
+def compared_slopes(machine: Machine, name: str, typical: float) -> Matrix:
+    """Return what tolerated inputs add to a result as it is compared, (n, inputs), SI."""
+    slopes = machine.slopes[name]
+    return slopes * (typical / machine.base[name])[:, None] if typical else slopes
+
+
+def _least(machine: Machine, noise: Noise, name: str, rows: NDArray[np.intp]) -> float:
     """Return the smallest mean square, in units of the noise, that is more than rounding or the steps of the gauge."""
     values = machine.records.measured[name][rows]
-    rounding = SMALLEST_SHARE * float(np.sqrt(np.mean((values - machine.base[name][rows]) ** 2))) if len(rows) else 0.0
-    return max(rounding**2, resolution_of(values) ** 2 / 12, 1e-300) / scale**2
+    off = difference(values, machine.base[name][rows], noise.typical)
+    rounding = SMALLEST_SHARE * float(np.sqrt(np.mean(off**2))) if len(rows) else 0.0
+    return max(rounding**2, resolution_of(values) ** 2 / 12, 1e-300) / noise.scale**2
 
 
 def resolution_of(values: Matrix) -> float:
@@ -256,122 +311,28 @@ def _pieces(machine: Machine, mask: NDArray[np.bool_]) -> NDArray[np.intp]:
 
 
 def residuals_of(machine: Machine) -> dict[str, Matrix]:
-    """Return measured minus predicted at the mean of the tolerances, SI, NaN where missing."""
-    measured = machine.records.measured
-    return {name: values - machine.base[name] - machine.shifts[name] for name, values in measured.items()}
-
-
-def first_noise(machine: Machine) -> dict[str, Noise]:
-    """Return a first idea of the noise: what the tolerated inputs and powers of all covariates cannot explain."""
+    """Return measured minus predicted at the mean of the tolerances, SI, NaN where missing or censored."""
     made = {}
-    moved = [item for item in machine.records.covariates.values() if not item.is_constant and item.role != "order"]
-    drivers = [standardised(item.values) for item in moved]
-    for name, values in residuals_of(machine).items():
-        here = np.flatnonzero(np.isfinite(values) & ~machine.records.held_out)
-        triangle = np.zeros((0, machine.slopes[name].shape[1] + 2 * len(drivers) + 2))
-        for block in in_blocks(len(here)):
-            rows = here[block]
-            powers = [driver[rows] ** power for driver in drivers for power in (1, 2)]
-            columns = np.column_stack([machine.slopes[name][rows], np.ones(len(rows)), *powers, values[rows]])
-            triangle = np.asarray(np.linalg.qr(np.concatenate([triangle, columns]), mode="r"))
-        floor = SMALLEST_SHARE * float(np.sqrt(np.mean(values[here] ** 2))) if len(here) else 0.0
-        scale = max(_unexplained(triangle, len(here)), floor, 1e-300)
-        given = _stated(machine, name)
-        made[name] = Noise(scale, given, given)
+    for name, values in machine.records.measured.items():
+        off = difference(values, machine.base[name] + machine.shifts[name], typical_of(machine, name))
+        made[name] = np.where(machine.records.known(name), off, np.nan) if name in machine.records.sides else off
     return made
 
 
-def _unexplained(triangle: Matrix, rows: int) -> float:
-    """Return the standard deviation that columns leave of the last one, of the triangle of their QR decomposition."""
-    size = np.sqrt(np.sum(triangle[:, :-1] ** 2, axis=0))
-    design = triangle[:, :-1][:, size > 0] / size[size > 0]
-    left, singular, _ = np.linalg.svd(design, full_matrices=False)
-    left = left[:, singular > 1e-6 * singular[0]] if len(singular) else left
-    left = left[:, : max(1, rows // 3)]
-    rest = triangle[:, -1] - left @ (left.T @ triangle[:, -1])
-    return float(np.sqrt(rest @ rest / max(rows - left.shape[1], 1)))
+def typical_of(machine: Machine, name: str) -> float:
+    """Return the geometric mean of the readings of a result that is compared as logarithms; 0 of any other."""
+    if name not in machine.start.diagnose.lognormal:
+        return 0.0
+    return float(np.exp(np.nanmean(np.log(machine.records.measured[name][~machine.records.held_out]))))
 
 
-def _stated(machine: Machine, name: str) -> Matrix:
-    """Return the weights that stated standard deviations ask for: 1 where none is stated, less where it is larger."""
-    stated = machine.records.sigma.get(name)
-    if stated is None or not (stated > 0).any():
-        return np.ones(len(machine.records))
-    middle = float(np.median(stated[stated > 0]))
-    return np.where(stated > 0, middle / np.where(stated > 0, stated, middle), 1.0)
+def errors_of(machine: Machine, name: str, noise: Noise, predicted: Matrix) -> Matrix:
+    """Return what a prediction leaves of the readings of a result as they were read, SI on all rows, NaN where missing.
 
-
-def learnt(sample: Sample, predicted: Predicted, used: float) -> dict[str, Noise]:
-    """Learn scale, spread, tails and memory of the noise from what an explanation leaves, ``used`` its free numbers.
-
-    For the scale, readings that lie too far out count as where the tails end.
+    A censored row leaves what is to be expected beyond its end, in this noise.
     """
-    machine, drivers = sample.machine, _drivers(sample.machine)
-    made = {}
-    for channel in sample.channels:
-        before, rows = sample.noise[channel.name], channel.rows
-        left = machine.records.measured[channel.name][rows] - predicted[channel.name][rows]
-        own = {**drivers, f"size of {channel.name}": np.abs(machine.base[channel.name])}
-        spread = spread_of(left * before.given[rows], {name: values[rows] for name, values in own.items()})
-        weights = before.given * weights_of(spread, own.get(spread.driver), rows, len(machine.records))
-        weighted = left * weights[rows]
-        floor = channel.scale * channel.least**0.5
-        is_known = has_order(machine) and robust_sd(weighted) > 2 * floor
-        memory = memory_of(weighted, channel.starts) if is_known else Setting()
-        innovations = whiten(weighted, channel.starts, memory)
-        is_noise = robust_sd(innovations) > 2 * floor
-        tails = tails_of(innovations) if is_noise else before.tails
-        kept = _moved_in(weighted, innovations, tails) if is_noise else weighted
-        free = used / len(sample.channels)
-        scale = float(np.sqrt(np.sum(kept**2) / max(len(rows) - free, 1.0)))
-        made[channel.name] = Noise(max(scale, floor, 1e-300), before.given, weights, memory, tails, spread)
-    return made
-
-
-def _moved_in(weighted: Matrix, innovations: Matrix, tails: Tails) -> Matrix:
-    """Return what is left with the rows that are too far from what their neighbours say moved to where tails end."""
-    return weighted + clipped(innovations, tails) - innovations
-
-
-def _drivers(machine: Machine) -> dict[str, Matrix]:
-    """Return what the spread of noise may depend on: every covariate, and its size where it changes sign."""
-    made: dict[str, Matrix] = {}
-    for name, item in machine.records.covariates.items():
-        if item.is_constant or item.role == "order":
-            continue
-        made[name] = item.values
-        if np.nanmin(item.values) < 0 < np.nanmax(item.values):
-            made[f"size of {name}"] = np.abs(item.values)
-    return made
-
-
-def memory_of(left: Matrix, starts: NDArray[np.bool_]) -> Setting:
-    """Return the filter that makes what is left likeliest, its parameters paid for."""
-    if len(left) < FEWEST_OF_MEMORY:
-        return Setting()
-    costs = [memory_cost(left, starts, setting) for setting in SETTINGS]
-    return SETTINGS[int(np.argmin(costs))]
-
-
-def memory_cost(left: Matrix, starts: NDArray[np.bool_], setting: Setting) -> float:
-    """Return -2 log likelihood of what is left as noise of this filter, its size free, its parameters paid for."""
-    white = whiten(left, starts, setting)
-    square = max(float(np.mean(white**2)), 1e-300)
-    ratio = int(starts.sum()) * log(setting.variance_ratio)
-    return len(left) * log(square) + ratio + setting.size * log(max(len(left), 2))
-
-
-def as_noise(sample: Sample, predicted: Predicted) -> float:
-    """Return -2 log likelihood of what is left where every result has the memory and the tails that suit it best."""
-    settings = SETTINGS if has_order(sample.machine) else (Setting(),)
-    total = 0.0
-    for channel in sample.channels:
-        measured = sample.machine.records.measured[channel.name]
-        left = ((measured - predicted[channel.name])[channel.rows]) * (channel.weights / channel.scale)
-        if not np.ptp(left) > 0:
-            continue
-        costs = [memory_cost(left, channel.starts, each) for each in settings]
-        memory = settings[int(np.argmin(costs))]
-        paid = int(channel.starts.sum()) * log(memory.variance_ratio) + memory.size * log(max(len(left), 2))
-        total += paid - 2 * likelihood_of(whiten(left, channel.starts, memory))
-    return total
+    off, sides = difference(machine.records.measured[name], predicted, noise.typical), machine.records.sides.get(name)
+    if sides is None:
+        return off
+    unit = noise.scale / noise.weights
+    return np.asarray(expected(off / unit, sides) * unit)

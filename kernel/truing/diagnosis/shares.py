@@ -28,7 +28,7 @@ def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
     squares = np.array(
         [
             sum(
-                np.nansum(((whole[each.name] - less[each.name])[each.rows] / each.scale) ** 2)
+                np.nansum(((whole[each.name] - less[each.name])[each.rows] * each.factors / each.weights) ** 2)
                 for each in best.sample.channels
             )
             for less in rest

@@ -68,7 +68,7 @@ class _Step:
 def steps_from(made: Competition, start: Decision, *, seed: int) -> Decision:
     """Go from an explanation to more and more causes, as long as a step is believed; a step may be of two at once."""
     now = start
-    is_short = min(made.sample.rows, made.sample.machine.records.readings) < FEWEST_READINGS
+    is_short = min(made.sample.known, made.sample.machine.records.readings) < FEWEST_READINGS
     folds = folds_of(made.sample)
     while len(now.at.causes) < MOST_CAUSES:
         tried = list(_tried(made, now.at, folds, seed))

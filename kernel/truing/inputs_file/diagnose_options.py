@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from math import inf
 from typing import Any
 
 from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
+from truing.diagnosis.data_file import measurable
 from truing.errors import UnitError
 from truing.inputs_file.values import Reading, SentenceError, broken_bound, read_number, written
-from truing.setup import DiagnoseOptions
+from truing.setup import DiagnoseOptions, column_and_word
 from truing.units.grammar import shown
 
 NAME = "diagnose"
@@ -18,7 +20,10 @@ Values = Mapping[tuple[str, ...], Any]
 
 def of_diagnose(model: Model[Any, Any]) -> Callable[[Any, Reading], Any]:
     """Make the check of the section; all that is wrong is said in one answer."""
-    readers = {"per_file": _per_file, "hold_out": _hold_out, "box": _box, "budget": _budget}
+    readers = {
+        "per_file": _per_file, "hold_out": _hold_out, "box": _box, "clipped": _clipped, "lognormal": _lognormal,
+        "at_least": _marks("at_least"), "at_most": _marks("at_most"), "budget": _budget,
+    }  # fmt: skip
 
     def check(raw: Any, reading: Reading) -> Any:
         if not isinstance(raw, dict):
@@ -63,9 +68,30 @@ def diagnose_schema(model: Model[Any, Any]) -> dict[str, Any]:
         "hold_out": hold_out,
         "box": {**spans, "description": box},
         "budget": {"type": "integer", "minimum": 0, "default": 0, "examples": [1000], "description": budget},
+        **_of_readings(model),
     }
     about = "What is asked of a diagnosis."
     return {"type": "object", "properties": properties, "additionalProperties": False, "description": about}
+
+
+def _of_readings(model: Model[Any, Any]) -> dict[str, Any]:
+    """Return the schema of what is said of readings and their noise."""
+    names = measurable(model)
+    beyond = "Rows whose true value lies {} what was read, by result: a column of the data and the word it holds there."
+
+    def by_result(example: str, description: str) -> dict[str, Any]:
+        texts = {name: {"type": "string", "examples": [example]} for name in names}
+        return {"type": "object", "properties": texts, "additionalProperties": False, "description": description}
+
+    return {
+        "at_least": by_result("outcome = runout", beyond.format("above")),
+        "at_most": by_result("outcome = below detection", beyond.format("below")),
+        "clipped": by_result("0..10", "The ends of a gauge, by result, with a unit; one of them may be left out."),
+        "lognormal": {
+            "type": "array", "items": {"enum": names}, "default": [],
+            "description": "Results whose errors are in proportion: they are compared as logarithms.",
+        },
+    }  # fmt: skip
 
 
 def _settable(model: Model[Any, Any]) -> Iterator[str]:
@@ -133,23 +159,79 @@ def _box(raw: Any, model: Model[Any, Any]) -> dict[str, tuple[float, float]]:
 
 def _range(name: str, raw: Any, model: Model[Any, Any]) -> tuple[float, float]:
     """Return "low..high unit" in SI; the unit of the upper end holds for a lower one without."""
-    from truing.units import split_quantity
-
     item = model.input_fields.get(name)
-    unit = _unit(name, model)
-    like = f'"0..10 {unit}"'.replace(' "', '"')
-    ends = [end.strip() for end in raw.split("..")] if isinstance(raw, str) else []
-    if len(ends) != 2 or not all(ends):
-        raise SentenceError(f"study '{NAME}': box: {name} = {written(raw)} is no range; write {name} = {like}")
-    try:
-        common = split_quantity(ends[1]).unit
-        ends = [end if split_quantity(end).unit else f"{end} {common}".strip() for end in ends]
-        low, high = (read_number(name, end, unit) for end in ends)
-    except (UnitError, SentenceError) as error:
-        raise SentenceError(f"study '{NAME}': box: {error}") from None
+    low, high = _ends("box", name, raw, _unit(name, model))
     sentence = "" if item is None else broken_bound(item, low) or broken_bound(item, high)
     if sentence:
         raise SentenceError(f"study '{NAME}': box: {sentence}")
-    if low >= high:
-        raise SentenceError(f"study '{NAME}': box: {name} = {written(raw)} goes from its higher end; lower first")
     return low, high
+
+
+def _ends(option: str, name: str, raw: Any, unit: str, *, may_be_open: bool = False) -> tuple[float, float]:
+    """Return "low..high unit" in SI, infinite where an end may be, and is, left out."""
+    from truing.units import split_quantity
+
+    like = f'"0..10 {unit}"'.replace(' "', '"')
+    ends = [end.strip() for end in raw.split("..")] if isinstance(raw, str) else []
+    if len(ends) != 2 or not (any(ends) if may_be_open else all(ends)):
+        raise SentenceError(f"study '{NAME}': {option}: {name} = {written(raw)} is no range; write {name} = {like}")
+    try:
+        common = split_quantity(ends[1]).unit if ends[1] else ""
+        ends = [end if not end or split_quantity(end).unit else f"{end} {common}".strip() for end in ends]
+        low, high = (
+            read_number(name, end, unit) if end else sign * inf for end, sign in zip(ends, (-1, 1), strict=True)
+        )
+    except (UnitError, SentenceError) as error:
+        raise SentenceError(f"study '{NAME}': {option}: {error}") from None
+    if low >= high:
+        raise SentenceError(f"study '{NAME}': {option}: {name} = {written(raw)} goes from its higher end; lower first")
+    return low, high
+
+
+def _by_result(option: str, raw: Any, model: Model[Any, Any], like: str) -> dict[str, Any]:
+    """Demand a table by results that rows can hold."""
+    if not isinstance(raw, dict):
+        said = f"{option} = {written(raw)} is no table"
+        raise SentenceError(f"study '{NAME}': {said}; write {option} = {{ RESULT = \"{like}\" }}")
+    for name in raw:
+        _demand_measurable(option, name, model)
+    return raw
+
+
+def _demand_measurable(option: str, name: str, model: Model[Any, Any]) -> None:
+    known = measurable(model)
+    if name not in known:
+        hint = near_miss(name[:80], known) or f" (results: {', '.join(known)})"
+        said = f"{option} names {shown(name)}, which is no result of {model.name} that can be measured in rows"
+        raise SentenceError(f"study '{NAME}': {said}.{hint}")
+
+
+def _marks(option: str) -> Callable[[Any, Model[Any, Any]], dict[str, str]]:
+    """Make the reader of the columns that mark censored readings, "column = word" by result."""
+
+    def read(raw: Any, model: Model[Any, Any]) -> dict[str, str]:
+        for name, text in _by_result(option, raw, model, "outcome = runout").items():
+            if not isinstance(text, str) or not all(column_and_word(text)):
+                raise SentenceError(
+                    f"study '{NAME}': {option}: {name} = {written(text)} marks no rows; write a column and the word it "
+                    f'holds, such as {name} = "outcome = runout"'
+                )
+        return {name: text.strip() for name, text in raw.items()}
+
+    return read
+
+
+def _clipped(raw: Any, model: Model[Any, Any]) -> dict[str, tuple[float, float]]:
+    """Take the ends of gauges, in SI."""
+    fields = model.own_result_fields
+    ends = _by_result("clipped", raw, model, "0..10 kN")
+    return {name: _ends("clipped", name, text, fields[name].unit, may_be_open=True) for name, text in ends.items()}
+
+
+def _lognormal(raw: Any, model: Model[Any, Any]) -> tuple[str, ...]:
+    """Take names of results whose errors are in proportion."""
+    if not isinstance(raw, list) or not all(isinstance(name, str) for name in raw):
+        raise SentenceError(f"study '{NAME}': lognormal = {written(raw)} is no list of results; write [\"life\"]")
+    for name in raw:
+        _demand_measurable("lognormal", name, model)
+    return tuple(dict.fromkeys(raw))

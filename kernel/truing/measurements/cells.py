@@ -39,6 +39,9 @@ def read_cell(text: str, *, decimal_comma: bool, may_be_missing_word: bool = Fal
 
 
 def _wrong(cell: str) -> str:
+    if cell[0] in "<>≤≥":
+        words = "write the number, and mark the row in a column of its own (at_least or at_most in [studies.diagnose])"
+        return f"{shown(cell)} is no number; {words}"
     if _INFINITE.fullmatch(cell):
         return f"{shown(cell)} is not a finite number"
     if not cell.isascii() and any(character.isdigit() and not character.isascii() for character in cell):

@@ -87,7 +87,7 @@ def _wrong(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
         title = f"Measured {spoken(curves.result)} against simulated"
         colours = " Red circles before, blue points after." if figures.has_changed(curves) else ""
         caption = f"{title}: as it is on the left, the difference on the right.{colours}"
-        caption += figures.thinning_words(diagnosis)
+        caption += figures.thinning_words(diagnosis, curves)
         yield drawn.view(title, partial(figures.against_simulated, diagnosis, curves), caption)
 
 
@@ -199,7 +199,7 @@ def _residuals(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
         for curves in figures.shown_curves(diagnosis):
             when = ", before and after" if figures.has_changed(curves) else ""
             title = f"Residuals of {spoken(curves.result)} over {spoken(covariate.name)}{when}"
-            caption = f"{title}. The grey band is the noise floor.{figures.thinning_words(diagnosis)}"
+            caption = f"{title}. The grey band is the noise floor.{figures.thinning_words(diagnosis, curves)}"
             yield drawn.view(title, partial(figures.over_covariate, diagnosis, curves, covariate), caption)
 
 

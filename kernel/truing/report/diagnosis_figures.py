@@ -106,10 +106,22 @@ def thinned(rows: int) -> slice:
     return slice(None, None, -(-rows // MOST_POINTS) if rows > MOST_POINTS else 1)
 
 
-def thinning_words(diagnosis: Diagnosis) -> str:
-    """Say what is left out of a figure with very many rows."""
+def thinning_words(diagnosis: Diagnosis, curves: Curves) -> str:
+    """Say what is left out of a figure with very many rows, and what its triangles are."""
     step = thinned(len(diagnosis.records)).step
-    return f" Every {step}th row is drawn." if step > 1 else ""
+    thinning = f" Every {step}th row is drawn." if step > 1 else ""
+    is_cut = curves.result in diagnosis.records.sides
+    return thinning + (" A triangle is a censored reading: the true value lies where it points." if is_cut else "")
+
+
+def _mark_censored(diagnosis: Diagnosis, result: str, axes: Axes, *, places: Any, values: Any, colour: str) -> None:
+    """Draw a triangle around each censored reading that points to where the true value lies; (n,) as drawn."""
+    if result not in diagnosis.records.sides:
+        return
+    sides = diagnosis.records.sides[result][thinned(len(diagnosis.records))]
+    for side, marker in ((1, "^"), (-1, "v")):
+        rows = sides == side
+        axes.plot(places[rows], values[rows], marker, color=colour, markersize=7, fillstyle="none", markeredgewidth=0.7)
 
 
 def _label(name: str, unit: str) -> str:
@@ -140,6 +152,7 @@ def over_covariate(diagnosis: Diagnosis, curves: Curves, covariate: Covariate) -
         axes.axhspan(-shown.floor, shown.floor, color="#e4e7ea", linewidth=0)
         axes.axhline(0.0, color=NEUTRAL, linewidth=0.7)
         axes.plot(place, values[kept], ".", color=colour, markersize=3.5)
+        _mark_censored(diagnosis, shown.result, axes, places=place, values=values[kept], colour=colour)
         axes.set_title(when, loc="left")
         axes.set_xlabel(_label(covariate.name, covariate.unit))
     places[0].set_ylabel(_label(shown.result, shown.unit) + "\nmeasured − simulated")
@@ -170,6 +183,7 @@ def against_simulated(diagnosis: Diagnosis, curves: Curves) -> Figure:
         if has_changed(curves):
             axes.plot(before, one, color=BEFORE, label="before", **circle)
         axes.plot(after, other, color=AFTER if has_changed(curves) else NEUTRAL, label="after", **point)
+        _mark_censored(diagnosis, shown.result, axes, places=after, values=other, colour=AFTER)
     low, high = _extent([measured, before, after])
     left.plot([low, high], [low, high], color=NEUTRAL, linewidth=0.7)
     left.set_ylabel(f"measured {_label(curves.result, unit)}")

@@ -76,7 +76,17 @@ def _of_diagnosis(setup: Setup) -> dict[str, Any]:
     """Return what is asked of a diagnosis, without what is as by default."""
     options = setup.diagnose
     box = {name: "..".join(str(exact(end, setup.unit_of(name))) for end in ends) for name, ends in options.box.items()}
-    said = {"per_file": list(options.per_file), "hold_out": options.hold_out, "box": box, "budget": options.budget}
+    clipped = {
+        name: "..".join(
+            "" if math.isinf(end) else str(exact(end, setup.model.own_result_fields[name].unit)) for end in ends
+        )
+        for name, ends in options.clipped.items()
+    }
+    said = {
+        "per_file": list(options.per_file), "hold_out": options.hold_out, "box": box,
+        "at_least": dict(options.at_least), "at_most": dict(options.at_most), "clipped": clipped,
+        "lognormal": list(options.lognormal), "budget": options.budget,
+    }  # fmt: skip
     return {name: value for name, value in said.items() if value}
 
 

@@ -1,0 +1,191 @@
+"""What is learnt of the noise from what an explanation leaves: its size, spread, tails and memory, result by result.
+
+Rows whose value was read say all of it; censored ones have their say in the size alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import log
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from truing.diagnosis.columns import in_blocks
+from truing.diagnosis.compared import beyond, difference, scale_of
+from truing.diagnosis.machine import Machine, Predicted
+from truing.diagnosis.noise import (
+    SETTINGS,
+    Setting,
+    Tails,
+    clipped,
+    likelihood_of,
+    robust_sd,
+    spread_of,
+    standardised,
+    tails_of,
+    weights_of,
+    whiten,
+)
+from truing.diagnosis.sample import (
+    SMALLEST_SHARE,
+    Channel,
+    Noise,
+    Sample,
+    compared_slopes,
+    has_order,
+    residuals_of,
+    typical_of,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+FEWEST_OF_MEMORY = 20
+"""Rows from which on their memory is learnt."""
+
+
+def first_noise(machine: Machine) -> dict[str, Noise]:
+    """Return a first idea of the noise: what the tolerated inputs and powers of all covariates cannot explain."""
+    made = {}
+    moved = [item for item in machine.records.covariates.values() if not item.is_constant and item.role != "order"]
+    drivers = [standardised(item.values) for item in moved]
+    for name, values in residuals_of(machine).items():
+        here = np.flatnonzero(np.isfinite(values) & ~machine.records.held_out)
+        typical = typical_of(machine, name)
+        slopes = compared_slopes(machine, name, typical)
+        triangle = np.zeros((0, slopes.shape[1] + 2 * len(drivers) + 2))
+        for block in in_blocks(len(here)):
+            rows = here[block]
+            powers = [driver[rows] ** power for driver in drivers for power in (1, 2)]
+            columns = np.column_stack([slopes[rows], np.ones(len(rows)), *powers, values[rows]])
+            triangle = np.asarray(np.linalg.qr(np.concatenate([triangle, columns]), mode="r"))
+        floor = SMALLEST_SHARE * float(np.sqrt(np.mean(values[here] ** 2))) if len(here) else 0.0
+        scale = max(_unexplained(triangle, len(here)), floor, 1e-300)
+        given = _stated(machine, name, typical)
+        at = machine.base[name] if typical or name in machine.records.sides else None
+        made[name] = Noise(scale, given, given, typical=typical, at=at)
+    return made
+
+
+def _unexplained(triangle: Matrix, rows: int) -> float:
+    """Return the standard deviation that columns leave of the last one, of the triangle of their QR decomposition."""
+    size = np.sqrt(np.sum(triangle[:, :-1] ** 2, axis=0))
+    design = triangle[:, :-1][:, size > 0] / size[size > 0]
+    left, singular, _ = np.linalg.svd(design, full_matrices=False)
+    left = left[:, singular > 1e-6 * singular[0]] if len(singular) else left
+    left = left[:, : max(1, rows // 3)]
+    rest = triangle[:, -1] - left @ (left.T @ triangle[:, -1])
+    return float(np.sqrt(rest @ rest / max(rows - left.shape[1], 1)))
+
+
+def _stated(machine: Machine, name: str, typical: float) -> Matrix:
+    """Return the weights that stated standard deviations ask for: 1 where none is stated, less where it is larger."""
+    stated = machine.records.sigma.get(name)
+    if stated is None or not (stated > 0).any():
+        return np.ones(len(machine.records))
+    if typical:
+        stated = stated / machine.records.measured[name]
+    middle = float(np.median(stated[stated > 0]))
+    return np.where(stated > 0, middle / np.where(stated > 0, stated, middle), 1.0)
+
+
+def learnt(sample: Sample, predicted: Predicted, used: float) -> dict[str, Noise]:
+    """Learn scale, spread, tails and memory of the noise from what an explanation leaves, ``used`` its free numbers."""
+    drivers, free = _drivers(sample.machine), used / len(sample.channels)
+    return {
+        channel.name: _learnt(sample, channel, predicted[channel.name], drivers, free) for channel in sample.channels
+    }
+
+
+def _learnt(sample: Sample, channel: Channel, predicted: Matrix, drivers: Mapping[str, Matrix], free: float) -> Noise:
+    """Learn the noise of one result from the rows whose value was read; censored ones have their say in its scale.
+
+    For the scale, readings that lie too far out count as where the tails end.
+    """
+    machine, before, typical = sample.machine, sample.noise[channel.name], channel.typical
+    rows, measured = channel.rows[channel.read], machine.records.measured[channel.name]
+    left = difference(measured[rows], predicted[rows], typical)
+    own = {**drivers, f"size of {channel.name}": np.abs(machine.base[channel.name])}
+    spread = spread_of(left * before.given[rows], {name: values[rows] for name, values in own.items()})
+    weights = before.given * weights_of(spread, own.get(spread.driver), rows, len(machine.records))
+    weighted, starts = left * weights[rows], channel.starts[channel.read]
+    floor = channel.scale * channel.least**0.5
+    is_known = has_order(machine) and robust_sd(weighted) > 2 * floor
+    memory = memory_of(weighted, starts) if is_known else Setting()
+    innovations = whiten(weighted, starts, memory)
+    is_noise = robust_sd(innovations) > 2 * floor
+    tails = tails_of(innovations) if is_noise else before.tails
+    kept = _moved_in(weighted, innovations, tails) if is_noise else weighted
+    scale = scale_of(kept, _short(channel, predicted, weights[channel.rows]), free)
+    return Noise(
+        max(scale, floor, 1e-300), before.given, weights, memory, tails, spread, typical,
+        None if before.at is None else predicted,
+    )  # fmt: skip
+
+
+def _short(channel: Channel, predicted: Matrix, weights: Matrix) -> Matrix:
+    """Return by how much a prediction falls short of the ends of censored rows, weighted (n,), SI."""
+    if channel.sides is None:
+        return np.zeros(0)
+    short = channel.sides * channel.off(predicted) * (channel.scale / channel.weights) * weights
+    return np.asarray(short[channel.sides != 0])
+
+
+def _moved_in(weighted: Matrix, innovations: Matrix, tails: Tails) -> Matrix:
+    """Return what is left with the rows that are too far from what their neighbours say moved to where tails end."""
+    return weighted + clipped(innovations, tails) - innovations
+
+
+def _drivers(machine: Machine) -> dict[str, Matrix]:
+    """Return what the spread of noise may depend on: every covariate, and its size where it changes sign."""
+    made: dict[str, Matrix] = {}
+    for name, item in machine.records.covariates.items():
+        if item.is_constant or item.role == "order":
+            continue
+        made[name] = item.values
+        if np.nanmin(item.values) < 0 < np.nanmax(item.values):
+            made[f"size of {name}"] = np.abs(item.values)
+    return made
+
+
+def memory_of(left: Matrix, starts: NDArray[np.bool_]) -> Setting:
+    """Return the filter that makes what is left likeliest, its parameters paid for."""
+    if len(left) < FEWEST_OF_MEMORY:
+        return Setting()
+    costs = [memory_cost(left, starts, setting) for setting in SETTINGS]
+    return SETTINGS[int(np.argmin(costs))]
+
+
+def memory_cost(left: Matrix, starts: NDArray[np.bool_], setting: Setting) -> float:
+    """Return -2 log likelihood of what is left as noise of this filter, its size free, its parameters paid for."""
+    white = whiten(left, starts, setting)
+    square = max(float(np.mean(white**2)), 1e-300)
+    ratio = int(starts.sum()) * log(setting.variance_ratio)
+    return len(left) * log(square) + ratio + setting.size * log(max(len(left), 2))
+
+
+def as_noise(sample: Sample, predicted: Predicted) -> float:
+    """Return -2 log likelihood of what is left where every result has the memory and the tails that suit it best.
+
+    The readings are taken as they are: those that were moved in were so for the sake of another explanation.
+    """
+    settings = SETTINGS if has_order(sample.machine) else (Setting(),)
+    total = 0.0
+    for channel in sample.channels:
+        rows, starts = channel.rows[channel.read], channel.starts[channel.read]
+        measured = sample.machine.records.measured[channel.name][rows]
+        left = difference(measured, predicted[channel.name][rows], channel.typical)
+        left = left * (channel.weights[channel.read] / channel.scale)
+        if not np.ptp(left) > 0:
+            continue
+        costs = [memory_cost(left, starts, each) for each in settings]
+        memory = settings[int(np.argmin(costs))]
+        paid = int(starts.sum()) * log(memory.variance_ratio) + memory.size * log(max(len(left), 2))
+        total += paid - 2 * likelihood_of(whiten(left, starts, memory))
+        short = _short(channel, predicted[channel.name], channel.weights / channel.scale)
+        size = max(scale_of(left, short, 0.0), 1e-300)
+        total += float(np.sum(beyond(short / size, np.ones(len(short), dtype=np.int8)) ** 2))
+    return total
