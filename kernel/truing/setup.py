@@ -48,9 +48,9 @@ class DiagnoseOptions:
     ``hold_out`` marks rows that only judge, "column = word". ``box`` holds the range (SI) in which an input or
     condition can be set for the next measurement, where it is not the declared one. ``budget`` is how many calls of the
     model the search may make; 0 leaves it to how long a call takes.
-    By result, ``at_least`` and
-    ``at_most`` mark rows ("column = word") whose true value lies above or below what was read, and ``clipped`` holds
-    the ends of the gauge (SI, infinite where there is none). Results in ``lognormal`` are compared as logarithms.
+    By result, ``at_least`` and ``at_most`` mark rows ("column = word") whose true value lies above or below what was
+    read, and ``clipped`` holds the ends of the gauge (SI, infinite where there is none). Results in ``lognormal`` are
+    compared as logarithms.
     """
 
     per_file: tuple[str, ...] = ()

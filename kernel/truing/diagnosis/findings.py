@@ -218,12 +218,12 @@ def _wave(best: Fit, channel: Channel) -> Iterator[Finding]:
     """Say which wave is left over that no explanation drew, by Fisher's test of the largest ordinate of a periodogram.
 
     The innovations of the best explanation are put in the order of each covariate, so that a wave over it is one over
-    the row; a covariate of fewer values than ``FEWEST_OF_WAVE`` orders nothing. Of m ordinates that are chance, the
-    share of the largest is above g with a probability of at most
+    the row; the place in a file orders nothing, nor does a covariate of fewer values than ``FEWEST_OF_WAVE``. Of m
+    ordinates that are chance, the share of the largest is above g with a probability of at most
     ``m (1 - g)^(m - 1)`` (Fisher, Proc. R. Soc. A 125, 1929, the first term of his sum).
     """
     left = channel.white(channel.left(best.predicted[channel.name]))
-    covariates = best.sample.machine.records.covariates.values()
+    covariates = [item for item in best.sample.machine.records.covariates.values() if item.role != "order"]
     moved = [item for item in covariates if len(np.unique(item.values[channel.rows])) >= FEWEST_OF_WAVE]
     periods = np.arange(FEWEST_PERIODS, (len(left) - 1) // 2 + 1)
     if len(left) < FEWEST_OF_WAVE or not moved or not np.ptp(left):
