@@ -337,8 +337,7 @@ class _Fitting:
 
     def slopes_of_inputs(self) -> Matrix:
         """Return what the directions of the inputs draw about the anchor, (rows, K), in one call of the model."""
-        k = len(self.anchor)
-        own = parts_of(self.causes, self.outward(self.u))
+        k, own = len(self.anchor), parts_of(self.causes, self.outward(self.u))
         aside = 10 * ASIDE if self.extended.grain else ASIDE
         ends = [self.anchor + sign * aside * np.eye(k)[place] for place in range(k) for sign in (1, -1)]
         made = self.extended.at(self.causes, [(own, moved_by(self.sample, end)) for end in ends])

@@ -110,6 +110,8 @@ def thinned_of(chosen: Chosen) -> tuple[Thinned, ...]:
     words, made = ORDERED if has_order(best.sample.machine) else UNORDERED, []
     for begin, said in enumerate(words):
         sample = _thinned(best.sample, turn[begin::2])
+        if not all(len(channel) for channel in sample.channels):  # a result was read in the other rows alone
+            continue
         ahead = {found: _score(chosen, found, sample) for found in (best, *others)}
         top = min(ahead, key=ahead.__getitem__)
         if ahead[top] < ahead[best] - CLOSE:
