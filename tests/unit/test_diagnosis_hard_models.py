@@ -31,6 +31,8 @@ from truing.diagnosis.engine import diagnose
 from truing.diagnosis.probing import step_of
 from truing.runs.diagnosis_document import diagnosis_document
 
+pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
+
 # A model that takes long
 
 

@@ -27,6 +27,8 @@ from hard_models import (
 from truing import Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
 from truing.diagnosis import long_records
 
+pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
+
 # Many effects, many inputs
 
 

@@ -275,7 +275,7 @@ def separation(true: Fit, rival: Fit, extended: Extended) -> float:
     target = np.concatenate([apart, np.zeros(k)])
     if not used.any():
         return float(target @ target)
-    low, high = (np.where(np.isfinite(end), end * size, end)[used] for end in ends)
+    low, high = (end[used] * size[used] for end in ends)
     return float(2 * lsq_linear(columns[:, used] / size[used], target, (low, high), method="bvls").cost)
 
 
