@@ -209,6 +209,22 @@ def test_few_rows_are_not_thinned(tmp_path: Path) -> None:
         assert bool(thinned_of(taken(folder, one, columns, "lead_error", "thermal_growth"))) is is_told
 
 
+@pytest.mark.parametrize(("sign", "sounds"), [(SWAP, True), (np.abs(SWAP), False)])
+def test_rows_that_are_thinned_may_be_censored(tmp_path: Path, sign: Array, sounds: bool) -> None:
+    """A gauge that ends at the top tenth of the readings."""
+    one = asked(["lead_error", "thermal_growth"])
+    error = 0.01 * BENCH.travel + 0.3 * sign * WARM + NOISE
+    columns = dict(shown(error))
+    end = float(np.quantile(columns["deflection"], 0.9))
+    sides = (columns["deflection"] > end).astype(np.int8)
+    columns["deflection"] = np.minimum(columns["deflection"], end)
+    records = replace(one.records(tmp_path, columns), sides={"deflection": sides})
+    made = plain_competition(one, records, UM)
+    fits = {name: fit_of(made, name) for name in ("lead_error", "thermal_growth")}
+    told = thinned_of(chosen_as(made, fits["lead_error" if sounds else "thermal_growth"]))
+    assert bool(told) is sounds
+
+
 @pytest.mark.parametrize("memory", SETTINGS, ids=str)
 def test_every_second_value_of_noise_is_as_alike_as_before(memory: Setting) -> None:
     """Autocorrelations from the response to an impulse: those of lag 2k are those of lag k."""

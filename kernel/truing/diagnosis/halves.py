@@ -114,7 +114,7 @@ def thinned_of(chosen: Chosen) -> tuple[Thinned, ...]:
             continue
         ahead = {found: _score(chosen, found, sample) for found in (best, *others)}
         top = min(ahead, key=ahead.__getitem__)
-        if ahead[top] < ahead[best] - CLOSE:
+        if ahead[top] < ahead[best] - CLOSE < np.inf:
             made.append(Thinned(said, _names(top), ahead[best] - ahead[top]))
     return tuple(made)
 
@@ -135,19 +135,17 @@ def _thinned(sample: Sample, rows: NDArray[np.intp]) -> Sample:
     """Return every second row, with the memory that the noise still has from one of them to the next."""
     mask = np.zeros(len(sample.mask), dtype=bool)
     mask[rows] = True
-    return replace(sample, channels=tuple(_of_rows(each, mask[each.rows]) for each in sample.channels), mask=mask)
+    few = sample.of_rows(mask)
+    channels = [
+        replace(own, starts=_starts(whole, mask[whole.rows]), memory=every_second(own.memory))
+        for whole, own in zip(sample.channels, few.channels, strict=True)
+    ]
+    return replace(few, channels=tuple(channels))
 
 
-def _of_rows(channel: Channel, kept: Rows) -> Channel:
-    runs = np.cumsum(channel.starts)[kept]
-    return replace(
-        channel,
-        rows=channel.rows[kept],
-        starts=np.diff(runs, prepend=0) > 0,
-        values=channel.values[kept],
-        weights=channel.weights[kept],
-        memory=every_second(channel.memory),
-    )
+def _starts(channel: Channel, kept: Rows) -> Rows:
+    """Mark the rows that are kept before which, since the last one, the noise began anew."""
+    return np.asarray(np.diff(np.cumsum(channel.starts)[kept], prepend=0) > 0)
 
 
 def every_second(memory: Setting) -> Setting:
