@@ -14,6 +14,7 @@ from diagnosis_models import (
     Array,
     Asked,
     cause_of,
+    chosen_as,
     drive_model,
     fit_of,
     gauge,
@@ -31,6 +32,7 @@ from scipy.stats import norm
 from truing.diagnosis.compared import beyond, difference, expected, scale_of, shares, worth
 from truing.diagnosis.engine import laid_out
 from truing.diagnosis.exact import EXACTLY
+from truing.diagnosis.halves import _thinned, thinned_of
 from truing.diagnosis.learning import learnt
 from truing.diagnosis.machine import machine_of
 from truing.diagnosis.reading import read_records
@@ -314,3 +316,14 @@ def test_rows_that_the_model_puts_below_zero_are_not_used(tmp_path: Path) -> Non
     below = gauge(BENCH.load, BENCH.travel) <= 0
     words = f"'deflection' is not used in {below.sum()} rows in which the model says 0 or less"
     assert words in " ".join(records.notes)
+
+
+def test_every_second_row_is_censored_where_it_was(tmp_path: Path) -> None:
+    one, records = clipped_record(tmp_path, clipped={"deflection": (-np.inf, END * UM)})
+    made = laid_out(machine_of(one.setup, records))
+    best = fit_of(made, "thermal_growth")
+    assert thinned_of(chosen_as(made, best)) == ()  # neither half is told by anything else
+    (whole,) = made.sample.channels
+    (half,) = _thinned(made.sample, np.arange(0, 60, 2)).channels
+    assert_array_equal(half.sides, (TRUE >= END)[half.rows])
+    assert_allclose(half.left(best.predicted["deflection"]), whole.left(best.predicted["deflection"])[half.rows])
