@@ -79,10 +79,7 @@ def beside_of(found: Fit, extended: Extended) -> Beside:
     """Return an explanation as other causes see it."""
     sample, k = found.sample, len(found.inputs)
     roots = sample.roots(found.left)
-    if found.causes:
-        own, inputs = slopes_at(found, extended)
-    else:
-        own, inputs = np.zeros((sample.rows, 0)), sample.drawn
+    own, inputs = slopes_at(found, extended)
     columns = np.concatenate(
         [np.column_stack([own, inputs]) * roots[:, None], np.column_stack([np.zeros((k, own.shape[1])), np.eye(k)])]
     )

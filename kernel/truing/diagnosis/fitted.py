@@ -28,7 +28,8 @@ class Fit:
 
     ``predicted`` holds results by name, SI on all rows of the records; ``left`` what is left of the sample's rows in
     units of the noise. ``cost`` is -2 log likelihood plus the prior of the inputs, in the noise that it was fitted in.
-    ``slopes`` holds by result what the numbers draw, (n, numbers), SI per SI or per logarithm, as the fit left it.
+    ``slopes`` holds by result what the numbers draw, (n, numbers), SI per SI or per logarithm, and ``moves`` what the
+    directions of the inputs draw, (n, K), SI, both as the fit left them; nothing where they were not taken.
     """
 
     causes: tuple[Cause, ...]
@@ -39,6 +40,7 @@ class Fit:
     cost: float
     sample: Sample = field(repr=False)
     slopes: dict[str, Matrix] = field(default_factory=dict, repr=False)
+    moves: dict[str, Matrix] = field(default_factory=dict, repr=False)
 
     @property
     def key(self) -> frozenset[str]:
@@ -62,13 +64,13 @@ class Fit:
     def in_sample(self, sample: Sample) -> Fit:
         """Return the same numbers judged in other noise or on other rows."""
         left = sample.left(self.predicted)
-        if sample.directions.shape != self.sample.directions.shape or sample.directions is not self.sample.directions:
+        inputs, moves = self.inputs, self.moves
+        if sample.directions is not self.sample.directions:
             is_seen = sample.directions.size > 0
             solved = np.linalg.lstsq(sample.directions, self.moved, rcond=None)[0] if is_seen else np.zeros(0)
-            inputs = np.asarray(solved)[: sample.directions.shape[1]]
-        else:
-            inputs = self.inputs
-        return replace(self, left=left, inputs=inputs, cost=sample.cost(left, inputs), sample=sample)
+            inputs, moves = np.asarray(solved)[: sample.directions.shape[1]], {}
+        cost = sample.cost(left, inputs)
+        return replace(self, left=left, inputs=inputs, cost=cost, sample=sample, moves=moves)
 
 
 def moved_by(sample: Sample, inputs: Matrix) -> Matrix:

@@ -196,7 +196,12 @@ class Sample:
     @cached_property
     def drawn(self) -> Matrix:
         """What the directions of the inputs add to the predictions, in units of the noise, (rows, K)."""
-        return self.curve({name: slopes @ self.directions for name, slopes in self.machine.slopes.items()})
+        return self.curve(self.moves)
+
+    @cached_property
+    def moves(self) -> dict[str, Matrix]:
+        """What the directions of the inputs add to the predictions about their means, by result (n, K), SI."""
+        return {name: slopes @ self.directions for name, slopes in self.machine.slopes.items()}
 
     def squares(self, left: Matrix) -> list[float]:
         """Return by channel the square of the scale of what is left, in units of the noise."""
