@@ -19,8 +19,6 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 SOFT = "what the diagnosis says here is known to be wrong; it is to be put right: "
 KNOWN_WRONG = {
     "test_the_coefficient_that_is_named_is_that_of_least_squares[tennis_ball]": "spread over time",
-    "test_example_beam.py::test_the_wave_is_named_where_its_period_is_known_nearly": "a shape beside the wave",
-    "test_example_beam.py::test_outliers_are_the_rows_that_lie_farthest_off_by_hand": "a shape beside the wave",
     "test_rows_held_out_are_predicted_as_well_as_can_be[interrupted_tooth-bench-autocorrelated-root_stress_ring]": (
         "1.075 of the noise, where 1.07 is asked for"
     ),

@@ -14,7 +14,7 @@ import numpy as np
 
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.curves import Bundle, Curves
-from truing.diagnosis.exact import slopes_at
+from truing.diagnosis.exact import slopes_left
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.machine import Predicted
@@ -79,7 +79,7 @@ def beside_of(found: Fit, extended: Extended) -> Beside:
     """Return an explanation as other causes see it."""
     sample, k = found.sample, len(found.inputs)
     roots = sample.roots(found.left)
-    own, inputs = slopes_at(found, extended)
+    own, inputs = slopes_left(found, extended)
     columns = np.concatenate(
         [np.column_stack([own, inputs]) * roots[:, None], np.column_stack([np.zeros((k, own.shape[1])), np.eye(k)])]
     )

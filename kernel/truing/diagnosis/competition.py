@@ -154,7 +154,7 @@ class Competition:
         return self.known[found.key]
 
     def fitted(
-        self, causes: Sequence[Cause], values: Sequence[Matrix], inputs: Matrix | None, until: float = ROUGHLY
+        self, causes: Sequence[Cause], values: Sequence[Matrix], near: Fit | None, until: float = ROUGHLY
     ) -> Fit | None:
         """Fit an explanation from a start and keep it."""
         if is_too_large(self.sample, causes) or are_exclusive(causes):
@@ -162,13 +162,14 @@ class Competition:
         if not self.extended.allows(self.stage):
             return self.known.get(frozenset(cause.tag for cause in causes))
         self.fits += 1
-        return self.keep(fit(self.sample, self.extended, causes, values, inputs, until=until))
+        inputs = None if near is None else near.inputs
+        return self.keep(fit(self.sample, self.extended, causes, values, inputs, until=until, near=near))
 
     def joined(self, at: Fit, cause: Cause, starts: Iterable[tuple[float, Matrix]]) -> Fit | None:
         """Fit an explanation with one more cause, from each of its starts."""
         made = None
         for _, values in starts:
-            made = self.fitted((*at.causes, cause), (*at.values, values), at.inputs) or made
+            made = self.fitted((*at.causes, cause), (*at.values, values), at) or made
         return made
 
     def look(self, at: Fit, causes: Sequence[Cause] | None = None) -> Mapping[str, Looked]:
@@ -209,7 +210,7 @@ class Competition:
         key = frozenset(found.causes[number].tag for number in rest)
         if key in self.fresh:
             return self.known[key]
-        return self.fitted([found.causes[n] for n in rest], [found.values[n] for n in rest], found.inputs)
+        return self.fitted([found.causes[n] for n in rest], [found.values[n] for n in rest], found)
 
     def backward(self, found: Fit) -> Fit:
         """Leave out what is no longer needed."""
@@ -312,7 +313,7 @@ def _pairs(made: Competition) -> None:
     several = {found.key: found for found in (*_distinct(made, 1, BEAM), *_registered(made, BEAM))}
     for one, other in sorted(combinations(several.values(), 2), key=lambda pair: sum(map(made.score, pair))):
         if _is_pair_of_note(one, other):
-            made.fitted(one.causes + other.causes, one.values + other.values, one.inputs)
+            made.fitted(one.causes + other.causes, one.values + other.values, one)
 
 
 def _is_pair_of_note(one: Fit, other: Fit) -> bool:

@@ -67,32 +67,40 @@ def fit(
     *,
     until: float = EXACTLY,
     held: Sequence[Number] = (),
-    slopes: dict[str, Matrix] | None = None,
+    near: Fit | None = None,
 ) -> Fit | None:
     """Fit an explanation from a start: numbers of every cause, SI, and directions of the inputs (K,).
 
-    Numbers in ``held`` keep their start. ``slopes`` are derivatives to begin with, as a fit has them. None where the
-    model fails however small the causes are.
+    Numbers in ``held`` keep their start. ``near`` is a fit to begin with: what its inputs draw, and its numbers where
+    it is of the same causes. None where the model fails however small the causes are.
     """
     start = inputs if inputs is not None and len(inputs) == sample.directions.shape[1] else None
-    state = _Fitting(sample, extended, tuple(causes), held)
+    moves = near.moves if near is not None and near.sample.directions is sample.directions else {}
+    state = _Fitting(sample, extended, tuple(causes), held, moves or sample.moves)
     if not state.begin(np.concatenate(values) if causes else np.zeros(0), start):
         return None
-    if slopes:
-        state.carry(slopes)
+    if near is not None and near.slopes and near.causes == state.causes:
+        state.carry(near.slopes)
     state.settle(until)
     return state.answer()
 
 
 def refit(found: Fit, sample: Sample, extended: Extended, *, until: float = ROUGHLY) -> Fit | None:
     """Fit an explanation again from where it is: in other noise, or to other rows."""
-    return fit(sample, extended, found.causes, found.values, found.inputs, until=until, slopes=found.slopes)
+    return fit(sample, extended, found.causes, found.values, found.inputs, until=until, near=found)
 
 
 class _Fitting:
     """One fit on its way: the numbers as the fit sees them, what is left, and its derivatives."""
 
-    def __init__(self, sample: Sample, extended: Extended, causes: tuple[Cause, ...], held: Sequence[Number]) -> None:
+    def __init__(
+        self,
+        sample: Sample,
+        extended: Extended,
+        causes: tuple[Cause, ...],
+        held: Sequence[Number],
+        moves: dict[str, Matrix],
+    ) -> None:
         self.sample, self.extended, self.causes = sample, extended, causes
         self.numbers = [number for cause in causes for number in cause.numbers]
         sizes = {channel.name: channel.scale for channel in sample.channels}
@@ -101,7 +109,8 @@ class _Fitting:
         self.low, self.high = (np.array([end[side] for end in ends]) for side in (0, 1))
         self.free = np.array([n.is_free and not any(n is each for each in held) for n in self.numbers], dtype=bool)
         self.log = np.array([number.is_log for number in self.numbers], dtype=bool)
-        self.slopes = sample.drawn
+        self.moves = moves
+        self.slopes = sample.drawn if moves is sample.moves else sample.curve(moves)
         self.anchor = np.zeros(self.slopes.shape[1])
         self.damping = FIRST_DAMPING
         self.drawn: dict[str, Matrix] = {}
@@ -221,7 +230,7 @@ class _Fitting:
 
     def settle(self, until: float) -> None:
         """Step down until little is promised; then move the anchor of the inputs, where slopes miss what they do."""
-        if until <= EXACTLY and len(self.b) and self.causes:  # with the causes on, and where the inputs begin
+        if until <= EXACTLY and len(self.b):  # with the causes on, and where the inputs begin
             self.slopes = self.slopes_of_inputs()
             (shown,) = self.shown([self.u], self.anchor)
             self.r0 = self.bare(shown)
@@ -341,23 +350,21 @@ class _Fitting:
         aside = 10 * ASIDE if self.extended.grain else ASIDE
         ends = [self.anchor + sign * aside * np.eye(k)[place] for place in range(k) for sign in (1, -1)]
         made = self.extended.at(self.causes, [(own, moved_by(self.sample, end)) for end in ends])
-        columns = [
-            (self.sample.left(down) - self.sample.left(up)) / (2 * aside)
-            for up, down in zip(made[::2], made[1::2], strict=True)
-        ]
-        slopes = np.column_stack(columns or [self.slopes])
-        return np.where(np.isfinite(slopes), slopes, self.slopes)
+        for name, before in self.moves.items() if made else ():
+            rises = zip(made[::2], made[1::2], strict=True)
+            taken = np.column_stack([(up[name] - down[name]) / (2 * aside) for up, down in rises])
+            self.moves = {**self.moves, name: np.where(np.isfinite(taken), taken, before)}
+        return self.sample.curve(self.moves, self.predicted)
 
     def answer(self) -> Fit:
         """Return the fit, its predictions with the inputs where they are."""
         predicted = self.predicted
         if len(self.b) and np.any(self.b != self.anchor):
-            moved = moved_by(self.sample, self.b - self.anchor)
-            slopes = self.sample.machine.slopes
-            predicted = {name: shown + slopes[name] @ moved for name, shown in predicted.items()}
+            moved = self.b - self.anchor
+            predicted = {name: shown + self.moves[name] @ moved for name, shown in predicted.items()}
         values = tuple(parts_of(self.causes, self.outward(self.u)))
         slopes = {name: each / np.where(self.log, 1.0, self.sizes) for name, each in self.drawn.items()}
-        return Fit(self.causes, values, self.b, predicted, self.left, self.cost, self.sample, slopes)
+        return Fit(self.causes, values, self.b, predicted, self.left, self.cost, self.sample, slopes, self.moves)
 
 
 def _corrected(slopes: Matrix, change: Matrix, way: Matrix) -> Matrix:
@@ -376,10 +383,19 @@ def slopes_at(found: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
     Shapes (rows, numbers) per unit of the number as the fit sees it, 0 for what keeps its start, and (rows, K); those
     of the inputs are taken where the fit has put them.
     """
-    state = _Fitting(found.sample, extended, found.causes, ())
+    state = _Fitting(found.sample, extended, found.causes, (), found.moves or found.sample.moves)
     state.begin(np.concatenate(found.values) if found.causes else np.zeros(0), found.inputs)
     state.derivatives()
     return -state.slope, state.slopes_of_inputs()
+
+
+def slopes_left(found: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
+    """Return the derivatives as the fit left them, without a call of the model; else as ``slopes_at`` does."""
+    sample = found.sample
+    if not found.moves or (found.causes and not found.slopes):
+        return slopes_at(found, extended)
+    own = sample.curve(found.slopes, found.predicted) if found.slopes else np.zeros((sample.rows, 0))
+    return own, sample.curve(found.moves, found.predicted)
 
 
 def unit_of(found: Fit) -> Matrix:

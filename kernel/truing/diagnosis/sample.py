@@ -126,7 +126,8 @@ class Channel:
 
     def square(self, left: Matrix) -> float:
         """Return the square of the scale that suits what is left best, no smaller than what is more than rounding."""
-        square = max(float(np.sum(left**2)) / self.known, self.least)
+        with np.errstate(over="ignore"):  # what a wild step leaves may be beyond any number
+            square = max(float(np.sum(left**2)) / self.known, self.least)
         for _ in range(ROUNDS if self.freedom < inf else 0):
             shares = 1 / (self.freedom + left**2 / square)
             whole = float(shares.sum()) if self.sides is None else self.known / (self.freedom + 1)
