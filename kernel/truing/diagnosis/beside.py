@@ -14,7 +14,7 @@ import numpy as np
 
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.curves import Bundle, Curves
-from truing.diagnosis.exact import slopes_left
+from truing.diagnosis.derivatives import slopes_left
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.machine import Predicted

@@ -18,7 +18,8 @@ from truing.diagnosis.beside import look
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.exact import fit, slopes_at, unit_of
+from truing.diagnosis.derivatives import slopes_at, unit_of
+from truing.diagnosis.exact import fit
 from truing.diagnosis.extended import Extended, elsewhere, parts_of
 from truing.diagnosis.findings import in_unit
 from truing.diagnosis.fitted import STEP, WIDE, Fit, moved_by

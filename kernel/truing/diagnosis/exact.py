@@ -76,7 +76,7 @@ def fit(
     """
     start = inputs if inputs is not None and len(inputs) == sample.directions.shape[1] else None
     moves = near.moves if near is not None and near.sample.directions is sample.directions else {}
-    state = _Fitting(sample, extended, tuple(causes), held, moves or sample.moves)
+    state = Fitting(sample, extended, tuple(causes), held, moves or sample.moves)
     if not state.begin(np.concatenate(values) if causes else np.zeros(0), start):
         return None
     if near is not None and near.slopes and near.causes == state.causes:
@@ -90,7 +90,7 @@ def refit(found: Fit, sample: Sample, extended: Extended, *, until: float = ROUG
     return fit(sample, extended, found.causes, found.values, found.inputs, until=until, near=found)
 
 
-class _Fitting:
+class Fitting:
     """One fit on its way: the numbers as the fit sees them, what is left, and its derivatives."""
 
     def __init__(
@@ -375,37 +375,6 @@ def _corrected(slopes: Matrix, change: Matrix, way: Matrix) -> Matrix:
 def _solved(normal: Matrix, right: Matrix) -> Matrix:
     scale = np.sqrt(np.maximum(np.diag(normal), 1e-300))
     return np.asarray(np.linalg.lstsq(normal / np.outer(scale, scale), right / scale, rcond=1e-14)[0] / scale)
-
-
-def slopes_at(found: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
-    """Return the derivatives of what a fit predicts, by its numbers and by the directions, in units of the noise.
-
-    Shapes (rows, numbers) per unit of the number as the fit sees it, 0 for what keeps its start, and (rows, K); those
-    of the inputs are taken where the fit has put them.
-    """
-    state = _Fitting(found.sample, extended, found.causes, (), found.moves or found.sample.moves)
-    state.begin(np.concatenate(found.values) if found.causes else np.zeros(0), found.inputs)
-    state.derivatives()
-    return -state.slope, state.slopes_of_inputs()
-
-
-def slopes_left(found: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
-    """Return the derivatives as the fit left them, without a call of the model; else as ``slopes_at`` does."""
-    sample = found.sample
-    if not found.moves or (found.causes and not found.slopes):
-        return slopes_at(found, extended)
-    own = sample.curve(found.slopes, found.predicted) if found.slopes else np.zeros((sample.rows, 0))
-    return own, sample.curve(found.moves, found.predicted)
-
-
-def unit_of(found: Fit) -> Matrix:
-    """Return what one unit of every number, as the fit sees it, is in SI at the fitted value."""
-    scales = {channel.name: channel.scale for channel in found.sample.channels}
-    numbers = [number for cause in found.causes for number in cause.numbers]
-    flat = np.concatenate(found.values) if found.causes else np.zeros(0)
-    return np.array(
-        [value if number.is_log else size_of(number, scales) for number, value in zip(numbers, flat, strict=True)]
-    )
 
 
 def nothing(sample: Sample, extended: Extended) -> Fit:

@@ -17,7 +17,8 @@ from scipy.special import stdtrit
 
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.columns import in_blocks
-from truing.diagnosis.exact import fit, slopes_at, unit_of
+from truing.diagnosis.derivatives import slopes_at, unit_of
+from truing.diagnosis.exact import fit
 from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import Fit, inward
 from truing.diagnosis.sample import Sample

@@ -14,7 +14,7 @@ from scipy.special import ndtri
 
 from truing.diagnosis.causes import Cause, Number, failure_of, idle_of
 from truing.diagnosis.chosen import Chosen
-from truing.diagnosis.exact import slopes_at, unit_of
+from truing.diagnosis.derivatives import slopes_at, unit_of
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.machine import Machine
