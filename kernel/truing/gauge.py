@@ -142,7 +142,7 @@ class _Answer:
     absent: dict[str, dict[int, str]] = field(default_factory=dict)
 
     def take(
-        self, found: Rows, number: int, places: NDArray[np.intp], along: Mapping[str, str], rows: RowsFile
+        self, found: Rows, number: int, places: NDArray[np.intp], *, along: Mapping[str, str], rows: RowsFile
     ) -> None:
         """Take one calculation of several for the rows that it answers for, read at their places on the axes."""
         for name, values in self.values.items():
@@ -182,7 +182,7 @@ def read_each(
             changed, size = columns | series, len(several)
             found = evaluate_rows(machine, changed, size, reading=True, wanted=asked, repeats=repeats)
             for number, each in enumerate(several):
-                made[each.trial].take(found, number, each.places, along, rows)
+                made[each.trial].take(found, number, each.places, along=along, rows=rows)
     done = [answer.rows(len(rows)) for answer in made]
     return done if wanted is None else [answer.complete() for answer in done]
 

@@ -110,7 +110,7 @@ def test_a_stated_budget_gives_one_answer_however_slow_the_machine_is(
 
 
 def test_what_is_not_looked_at_is_named_and_not_called_idle(tmp_path: Path) -> None:
-    answer = asked(Shop(), calls=20).diagnosed(tmp_path, record(leaning))
+    answer = asked(Shop(), calls=24).diagnosed(tmp_path, record(leaning))
     (said,) = answer.hindrances
     assert "left out: any look at plays, softens, hardens, " in said
     assert answer.verdict == "undecided"

@@ -9,7 +9,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Literal, Protocol, TypeVar
 
 from truing.declare.checks import TOTAL_PRICE, check_model
-from truing.declare.fields import InputField, ResultField, hints_of, in_si, input_fields, make, read, result_fields
+from truing.declare.fields import (
+    Axis,
+    InputField,
+    ResultField,
+    hints_of,
+    in_si,
+    input_fields,
+    make,
+    read,
+    result_fields,
+)
 from truing.declare.goals import Objective, prices_in
 from truing.declare.near_miss import near_miss
 from truing.declare.promises import Promise
@@ -151,6 +161,17 @@ class Model(Generic[I, R]):
     def own_result_fields(self) -> dict[str, ResultField]:
         """Every result of the function by flat name."""
         return result_fields(self.result_type)
+
+    @cached_property
+    def measurable(self) -> list[str]:
+        """The results that rows of a record can hold: numbers and curves, no axes and nothing of a table."""
+        fields = self.own_result_fields
+        tables = {name for name, item in fields.items() if isinstance(item.spec, Axis) and item.spec.is_table}
+        return [
+            name
+            for name, item in fields.items()
+            if not isinstance(item.spec, Axis) and not {item.along, f"{item.along}_{item.scope}"} & tables
+        ]
 
     @cached_property
     def study_result_fields(self) -> dict[str, dict[str, ResultField]]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from truing.declare.builtin import may_stand
 from truing.declare.near_miss import near_miss
-from truing.diagnosis.data_file import Part, measurable
+from truing.diagnosis.data_file import Part
 from truing.diagnosis.joining import Joined
 from truing.diagnosis.readings import reading_of
 from truing.diagnosis.records import Covariate, Role
@@ -85,7 +85,7 @@ def _is_time(unit: str) -> bool:
 def _of_others(joined: Joined, setup: Setup, found: dict[str, Covariate]) -> list[str]:
     """Say which columns nobody declared, and what they are taken for."""
     model = setup.model
-    known = [*measurable(model), *model.known_conditions, *model.input_fields]
+    known = [*model.measurable, *model.known_conditions, *model.input_fields]
     notes = []
     asked_for = {setup.diagnose.held_out[0], *setup.diagnose.flags}
     for name in joined.data.named("other", "label"):

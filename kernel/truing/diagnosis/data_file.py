@@ -80,7 +80,7 @@ def read_data_file(path: Path, offer: Offer) -> tuple[DataFile, Faults]:
     parts = {name: part_of(name, model, is_number=values.dtype != object) for name, values in columns.items()}
     for sentence in (*_unfit(table, model), *_empty(columns, parts, faults)):
         faults.add(sentence, table.header_line)
-    if not set(table.units) & set(measurable(model)):
+    if not set(table.units) & set(model.measurable):
         faults.add(_nothing_measured(table, model), table.header_line)
     runs = table.columns.get(RUN, ()) if RUN not in model.input_fields else ()
     units = {name: table.units[name] for name in columns}
@@ -107,20 +107,9 @@ def part_of(name: str, model: Model[Any, Any], *, is_number: bool = True) -> Par
         return "condition"
     if name in model.own_result_fields:
         return "axis" if isinstance(model.own_result_fields[name].spec, Axis) else "measured"
-    if name.startswith(SIGMA) and name.removeprefix(SIGMA) in measurable(model):
+    if name.startswith(SIGMA) and name.removeprefix(SIGMA) in model.measurable:
         return "sigma"
     return "other" if is_number else "label"
-
-
-def measurable(model: Model[Any, Any]) -> list[str]:
-    """Return the results that rows can hold: numbers and curves, no axes and nothing of a table."""
-    fields = model.own_result_fields
-    tables = {name for name, item in fields.items() if isinstance(item.spec, Axis) and item.spec.is_table}
-    return [
-        name
-        for name, item in fields.items()
-        if not isinstance(item.spec, Axis) and not {item.along, f"{item.along}_{item.scope}"} & tables
-    ]
 
 
 def _units(model: Model[Any, Any]) -> dict[str, str]:
@@ -212,9 +201,9 @@ def _unfit(table: DataTable, model: Model[Any, Any]) -> Iterator[str]:
         result = model.own_result_fields.get(name)
         if item is not None and (item.kind == "file" or (item.kind == "series" and not item.spec.along)):
             yield f"{name} cannot change from row to row; state it in the inputs file"
-        elif result is not None and not isinstance(result.spec, Axis) and name not in measurable(model):
+        elif result is not None and not isinstance(result.spec, Axis) and name not in model.measurable:
             yield f"{name} is a column of a table that the calculation makes; it cannot be compared row by row"
-        elif name in measurable(model):
+        elif name in model.measurable:
             yield from _without_axis(name, table, model)
 
 
@@ -244,7 +233,7 @@ def _empty(columns: Mapping[str, NDArray[Any]], parts: Mapping[str, Part], fault
 
 
 def _nothing_measured(table: DataTable, model: Model[Any, Any]) -> str:
-    results = measurable(model)
+    results = model.measurable
     units = {name: model.own_result_fields[name].unit or "1" for name in results}
     listed = ", ".join(f"{name} [{units[name]}]" for name in results[:12])
     more = f" and {len(results) - 12} more" if len(results) > 12 else ""

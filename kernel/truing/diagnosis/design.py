@@ -172,7 +172,8 @@ def _exchanged(made: Competition, best: Fit, place: int, other: Cause) -> Iterat
     causes, values = list(best.causes), list(best.values)
     del causes[place], values[place]
     (predicted,) = made.extended.at(causes, [(values, best.moved)])
-    held = replace(best, causes=tuple(causes), values=tuple(values), predicted=predicted).in_sample(made.sample)
+    held = replace(best, causes=tuple(causes), values=tuple(values), predicted=predicted, slopes={})
+    held = held.in_sample(made.sample)
     seen = look(made.curves, held, [other]).get(other.tag) if np.isfinite(held.left).all() else None
     for _, start in seen.starts if seen is not None else ():
         several = (*causes[:place], other, *causes[place:])

@@ -76,10 +76,10 @@ def fit(
     """
     start = inputs if inputs is not None and len(inputs) == sample.directions.shape[1] else None
     moves = near.moves if near is not None and near.sample.directions is sample.directions else {}
-    state = Fitting(sample, extended, tuple(causes), held, moves or sample.moves)
+    state = Fitting(sample, extended, tuple(causes), held=held, moves=moves or sample.moves)
     if not state.begin(np.concatenate(values) if causes else np.zeros(0), start):
         return None
-    if near is not None and near.slopes and near.causes == state.causes:
+    if near is not None and near.slopes and near.causes == state.causes and not extended.grain:
         state.carry(near.slopes)
     state.settle(until)
     return state.answer()
@@ -98,6 +98,7 @@ class Fitting:
         sample: Sample,
         extended: Extended,
         causes: tuple[Cause, ...],
+        *,
         held: Sequence[Number],
         moves: dict[str, Matrix],
     ) -> None:
@@ -280,9 +281,10 @@ class Fitting:
         self.damping = FIRST_DAMPING
         if not self.drawn:
             self.derivatives()
+        is_enough = until > EXACTLY and not self.extended.grain  # derivatives that were corrected, of a smooth model
         for _ in range(MOST_STEPS if until <= EXACTLY else MOST_ROUGH):
             moved, promised = self.step()
-            if promised < until and (self.is_fresh or until > EXACTLY or promised < 1e-3 * until):
+            if promised < until and (self.is_fresh or is_enough or promised < 1e-3 * until):
                 if until <= EXACTLY and promised > 0:
                     self._taken(moved)
                 return

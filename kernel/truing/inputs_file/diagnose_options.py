@@ -8,7 +8,6 @@ from typing import Any
 
 from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
-from truing.diagnosis.data_file import measurable
 from truing.errors import UnitError
 from truing.inputs_file.values import Reading, SentenceError, broken_bound, read_number, written
 from truing.setup import DiagnoseOptions, column_and_word
@@ -76,7 +75,7 @@ def diagnose_schema(model: Model[Any, Any]) -> dict[str, Any]:
 
 def _of_readings(model: Model[Any, Any]) -> dict[str, Any]:
     """Return the schema of what is said of readings and their noise."""
-    names = measurable(model)
+    names = model.measurable
     beyond = "Rows whose true value lies {} what was read, by result: a column of the data and the word it holds there."
 
     def by_result(example: str, description: str) -> dict[str, Any]:
@@ -199,7 +198,7 @@ def _by_result(option: str, raw: Any, model: Model[Any, Any], like: str) -> dict
 
 
 def _demand_measurable(option: str, name: str, model: Model[Any, Any]) -> None:
-    known = measurable(model)
+    known = model.measurable
     if name not in known:
         hint = near_miss(name[:80], known) or f" (results: {', '.join(known)})"
         said = f"{option} names {shown(name)}, which is no result of {model.name} that can be measured in rows"
