@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import log
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from truing.diagnosis.causes import Cause
-from truing.diagnosis.curves import Bundle, Curves
+from truing.diagnosis.curves import LARGEST, Bundle, Curves
 from truing.diagnosis.derivatives import slopes_left
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
@@ -112,22 +112,37 @@ def _grouped(bundles: Iterable[Bundle]) -> Iterator[list[Bundle]]:
 def compared(bundles: list[Bundle], beside: Beside) -> Iterator[tuple[str, Looked]]:
     """Compare the curves of causes with what an explanation leaves; those that draw nothing here are left out."""
     curves = np.concatenate([each.curves for each in bundles]) if len(bundles) > 1 else bundles[0].curves
-    rows = beside.drawn(curves)
-    weighed = beside.beyond(rows)
-    raw, size = np.linalg.norm(rows, axis=-1), np.linalg.norm(weighed, axis=-1)
-    kept = ((size > 1e-6 * raw) & (raw > FAINT)).any(axis=1)
-    is_own = (size > OWN * raw).any(axis=1)
-    basis = _orthonormal(weighed, size)
-    right, normal = weighed @ beside.left, np.einsum("mqn,mpn->mqp", weighed, weighed)
+    kept, is_own, basis, right, normal = _weighed(curves, beside)
     begin = 0
     for bundle in bundles:
         end = begin + len(bundle.points)
         own = begin + np.flatnonzero(kept[begin:end])
         if len(own):
             gains, values = _starts(bundle, bundle.points[own - begin], right[own], normal[own])
+            drawn = basis[own] if len(own) < len(basis) else basis
             tries = independent(basis[own[is_own[own]]], is_sweep=bundle.is_sweep)
-            yield bundle.cause.tag, Looked(_best(gains, values, basis[own], beside.sample.known), tries, basis[own])
+            yield bundle.cause.tag, Looked(_best(gains, values, drawn, beside.sample.known), tries, drawn)
         begin = end
+
+
+def _weighed(curves: Matrix, beside: Beside) -> tuple[Any, Any, Matrix, Matrix, Matrix]:
+    """Return which points draw anything, which something of their own, and their bases, right and normal sides.
+
+    Bases of many curves are kept in single precision.
+    """
+    kind = np.float32 if curves.size > LARGEST else np.float64
+    basis = np.empty((*curves.shape[:2], len(beside.left)), dtype=kind)
+    parts = []
+    step = max(1, TOGETHER // max(curves[0].size, 1)) if len(curves) else 1
+    for begin in range(0, max(len(curves), 1), step):
+        rows = beside.drawn(curves[begin : begin + step])
+        weighed = beside.beyond(rows)
+        raw, size = np.linalg.norm(rows, axis=-1), np.linalg.norm(weighed, axis=-1)
+        basis[begin : begin + step] = _orthonormal(weighed, size)
+        kept, is_own = ((size > 1e-6 * raw) & (raw > FAINT)).any(axis=1), (size > OWN * raw).any(axis=1)
+        parts.append((kept, is_own, weighed @ beside.left, np.einsum("mqn,mpn->mqp", weighed, weighed)))
+    kept, is_own, right, normal = (np.concatenate(each) for each in zip(*parts, strict=True))
+    return kept, is_own, basis, right, normal
 
 
 def _best(gains: Matrix, values: Matrix, basis: Matrix, known: float) -> tuple[tuple[float, Matrix], ...]:

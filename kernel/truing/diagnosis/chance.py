@@ -88,7 +88,7 @@ def _largest(made: Competition, seen: Mapping[str, Looked], drawn: Matrix, known
         taken = np.zeros_like(drawn)
         for tag, each in seen.items():
             flat = each.basis.reshape(-1, each.basis.shape[-1])
-            inner = (flat @ drawn).reshape(*each.basis.shape[:2], -1)
+            inner = (flat @ drawn.astype(flat.dtype)).reshape(*each.basis.shape[:2], -1)
             squares = np.sum(inner**2, axis=1)
             place = squares.argmax(axis=0)
             lowered = np.take_along_axis(squares, place[None], 0)[0]

@@ -28,6 +28,11 @@ if TYPE_CHECKING:
 STRAIGHT = 1e-4
 """Share of its size by which chords of a cause may differ while it counts as proportional."""
 
+LARGEST = 8_000_000
+"""Bundles of more values are made anew each time, and compared in single precision."""
+ROOM = 24_000_000
+"""A bundle has no more values: a cause is looked at in fewer points on a long record, two per level at least."""
+
 
 @dataclass(frozen=True)
 class Bundle:
@@ -65,9 +70,12 @@ class Curves:
         So they are too where the budget of calls has ended.
         """
         if cause.shape is not None or cause.tolerated >= 0 or not self._matters(cause, beside):
-            if cause.tag not in self._alone:
-                self._alone[cause.tag] = self._first(cause, _Place(self.extended, beside, ()))
-            return self._alone[cause.tag]
+            if cause.tag in self._alone:
+                return self._alone[cause.tag]
+            made = self._first(cause, _Place(self.extended, beside, ()))
+            if made.curves.size <= LARGEST:
+                self._alone[cause.tag] = made
+            return made
         return self._made(cause, _Place(self.extended, beside, beside.causes))
 
     def _matters(self, cause: Cause, beside: Fit) -> bool:
@@ -129,9 +137,11 @@ class _Place:
         """How many values a curve has."""
         return len(self.machine.records.measured) * len(self.machine.records)
 
-    def most(self, cause: Cause) -> int | None:
-        """Return at how many points the budget of calls allows to look at a cause; None for all there are."""
-        return self.extended.most_points if self.extended.costs(cause) else None
+    def most(self, cause: Cause) -> int:
+        """Return at how many points memory and the budget of calls allow to look at a cause."""
+        room = max(2 * len(LEVELS), min(FINEST, ROOM // max(self.readings, 1)))
+        points = self.extended.most_points if self.extended.costs(cause) else None
+        return room if points is None else min(points, room)
 
     def is_straight(self, cause: Cause) -> bool:
         """Whether a cause is proportional to its amplitudes, and several of them do no more than their sum."""
@@ -185,7 +195,7 @@ class _Place:
         points = thinned(spread(cause, SPREAD if self.causes else 4 * SPREAD), self.most(cause))
         made = self.changes(cause, points)
         works = _works(made)
-        curves = np.nan_to_num(made[works])[:, None, :]
+        curves = _kept(made, works)[:, None, :]
         return Bundle(cause, points[works], curves, is_straight=False, lost=int((~works).sum()))
 
     def of_shape(self, cause: Cause, shapes: Matrix) -> Matrix:
@@ -216,10 +226,17 @@ def _known(made: Matrix) -> Matrix:
 
 def _works(made: Matrix) -> NDArray[np.bool_]:
     """Mark the points at which the model shows every reading that it shows at any, (M,)."""
+    if np.isfinite(made).all():
+        return np.ones(len(made), dtype=bool)
     return np.asarray(np.isfinite(_known(made)).all(axis=1) & np.isfinite(made).any(axis=1))
 
 
-def _swept(cause: Cause, make: Callable[[Matrix], Matrix], *, is_straight: bool, most: int | None = None) -> Bundle:
+def _kept(made: Matrix, works: NDArray[np.bool_]) -> Matrix:
+    """Return the changes at points that work, 0 where the model fails whatever the point; no copy without need."""
+    return np.nan_to_num(made if works.all() else made[works], copy=False)
+
+
+def _swept(cause: Cause, make: Callable[[Matrix], Matrix], *, is_straight: bool, most: int = FINEST) -> Bundle:
     """Return curves over all shapes of a cause; along one number as finely as they change."""
     shapes = [cause.numbers[place] for place in cause.shapes]
     if not shapes:
@@ -232,9 +249,9 @@ def _swept(cause: Cause, make: Callable[[Matrix], Matrix], *, is_straight: bool,
     values = placed(shapes, u)
     made = make(values)
     if len(shapes) == 1 and not shapes[0].whole and not shapes[0].along:
-        u, made = refined(shapes, u, made, make, FINEST if most is None else most)
+        u, made = refined(shapes, u, made, make, most)
         values = placed(shapes, u)
     works = _works(made.reshape(len(made), -1))
     points = np.zeros((len(values), cause.size))
     points[:, cause.shapes] = values
-    return Bundle(cause, points[works], np.nan_to_num(made[works]), is_straight, int((~works).sum()))
+    return Bundle(cause, points[works], _kept(made, works), is_straight, int((~works).sum()))

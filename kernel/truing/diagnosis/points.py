@@ -66,9 +66,9 @@ def first_places(number: Number) -> Matrix:
     return np.linspace(0, 1, FIRST)
 
 
-def thinned(points: Matrix, most: int | None) -> Matrix:
+def thinned(points: Matrix, most: int) -> Matrix:
     """Return some points, at most so many, evenly from all."""
-    if most is None or len(points) <= most:
+    if len(points) <= most:
         return points
     return np.asarray(points[np.linspace(0, len(points) - 1, most).round().astype(np.intp)])
 

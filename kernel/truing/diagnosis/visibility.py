@@ -188,17 +188,13 @@ def _one_by_one(chosen: Chosen, cause: Cause, place: int, shapes: Matrix) -> Ite
     sizes = [level * end for end in (number.low, number.high) if end for level in LEVELS]
     distinct = shapes if cause.shapes else shapes[:1]
     still = np.zeros(len(extended.machine.inputs))
-    points = []
-    for values in distinct:
-        for size in sizes:
-            point = np.array(values)
-            point[cause.amplitudes] = 0.0
-            point[place] = size
-            points.append(point)
     (base,) = extended.at((), [((), still)])
-    made = extended.at((cause,), [([point], still) for point in points])
-    for point, shown in zip(points, made, strict=True):
-        yield float(point[place]), np.nan_to_num(np.concatenate([shown[name] - base[name] for name in base]))
+    for values in distinct:
+        points = np.tile(values, (len(sizes), 1))
+        points[:, cause.amplitudes] = 0.0
+        points[:, place] = sizes
+        for size, shown in zip(sizes, extended.at((cause,), [([point], still) for point in points]), strict=True):
+            yield size, np.nan_to_num(np.concatenate([shown[name] - base[name] for name in base]))
 
 
 def inseparable(chosen: Chosen) -> list[str]:
