@@ -45,6 +45,11 @@ from truing.setup import Setup  # noqa: E402
 ALONE, BOTH = (POSITION,), (POSITION, TILT)
 ROUNDS = 3
 ALLOWED = 8.0
+MOST_CALLS = 1000
+COMMANDS = {
+    "press": ("press_linkage", "press_off_by_40_um/inputs.toml", "press_off_by_40_um/measured.csv"),
+    "reducer": ("rv_wear", "reducer_wears_slowly/inputs.toml", "reducer_wears_slowly/backlash.csv"),
+}
 MANY = (300, 3_000, 30_000, 100_000)
 ROLES: Mapping[str, tuple[str, Role]] = {
     "crank_angle": ("deg", "input"),
@@ -200,10 +205,38 @@ def counted(results: tuple[str, ...]) -> str:
 
 
 @pytest.mark.parametrize("results", [ALONE, BOTH], ids=["position", "position and tilt"])
-def test_pairs_of_causes_cost_no_call_of_the_model(results: tuple[str, ...]) -> None:
+def test_pairs_of_causes_cost_few_calls_of_the_model(results: tuple[str, ...]) -> None:
+    """Pairs are fitted with the model: of the eight best causes only, each from where the causes are alone."""
     all_pairs, no_pairs = (model_calls(results, with_pairs=with_pairs) for with_pairs in (True, False))
     print(f"\n{counted(results)}: {all_pairs} calls of the model, {no_pairs} without pairs")
-    assert all_pairs == no_pairs
+    assert all_pairs <= 1.5 * no_pairs
+    assert all_pairs <= MOST_CALLS
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "press",
+        pytest.param("reducer", marks=pytest.mark.xfail(reason="7 s, half of them in the wear model", strict=False)),
+    ],
+)
+def test_a_command_takes_five_seconds_and_300_megabytes(name: str, tmp_path: Path) -> None:
+    """Interpreter, imports and sheet included; the Gaussian process of 300 rows tells how fast the machine is."""
+    model, inputs, data = COMMANDS[name]
+    page = Path(__file__).parents[2] / "docs/examples"
+    given = ["--inputs", str(page / inputs), "--data", str(page / data), "-q", "-o", str(tmp_path / "run")]
+    command = ["diagnose", model, *given]
+    code = "import resource, subprocess, sys; subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL); "
+    code += "used = resource.getrusage(resource.RUSAGE_CHILDREN); "
+    code += "print(used.ru_utime + used.ru_stime, used.ru_maxrss / 1024)"
+    whole = [sys.executable, "-c", code, sys.executable, "-m", "truing", *command]
+    said = subprocess.run(whole, check=True, capture_output=True, text=True).stdout.split()
+    reference = min(seconds(gaussian_process, in_memory(300, ALONE)) for _ in range(ROUNDS))
+    taken, peak = float(said[0]), float(said[1])
+    assert (tmp_path / "run/diagnosis.json").exists()
+    print(f"\n{name}: {taken:.1f} s, {taken / reference:.1f} Gaussian processes of 300 rows, {peak:.0f} MiB")
+    assert taken <= 5
+    assert peak <= 300
 
 
 def test_cost_is_linear_in_rows() -> None:
@@ -216,10 +249,12 @@ def test_cost_is_linear_in_rows() -> None:
     assert times[MANY[-1]] <= 100 * times[MANY[0]]
 
 
-def test_a_million_rows_fit_in_two_gigabytes() -> None:
-    peak, taken, said = peak_mebibytes(1_000_000, ALONE, "in_memory")
-    print(f"\na million rows: {peak:.0f} MiB, {taken:.0f} s, {said}")
-    assert peak < 2000
+@pytest.mark.parametrize(("rows", "most"), [(100_000, 2000), (1_000_000, 6000)])
+def test_long_records_run_to_the_end(rows: int, most: float) -> None:
+    peak, taken, said = peak_mebibytes(rows, ALONE, "in_memory")
+    print(f"\n{rows} rows: {peak:.0f} MiB (at most {most:g}), {taken:.0f} s, {said}")
+    assert said == "named link_heating"
+    assert peak < most
 
 
 if __name__ == "__main__":

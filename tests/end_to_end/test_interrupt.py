@@ -168,3 +168,43 @@ def test_an_interrupt_during_a_finalizer_is_not_lost(tmp_path: Path, name: str, 
     command = hearing_interrupts([sys.executable, "-m", "truing", "run", "slow_wait.py", "-q"])
     ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=50, check=False)
     assert (ended.returncode, ended.stderr) == (code, "calc: interrupted; nothing was written\n")
+
+
+IN_A_FIT = """
+import atexit, os, pathlib, signal, sys, time
+from truing.cli import main
+from truing.diagnosis import exact
+
+settle, taken = exact.Fitting.settle, exact.Fitting._taken
+stamps = []
+
+def settled(state, until):
+    state.is_exact = until <= exact.EXACTLY
+    return settle(state, until)
+
+def stepped(state, moved):
+    if state.is_exact and state.causes and not stamps:
+        stamps.append(time.process_time())
+        os.kill(os.getpid(), signal.SIGINT)
+    return taken(state, moved)
+
+exact.Fitting.settle, exact.Fitting._taken = settled, stepped
+told = pathlib.Path(sys.argv.pop())
+atexit.register(lambda: told.write_text(str(time.process_time() - stamps[0])))
+sys.exit(main())
+"""
+
+
+def test_a_diagnosis_ends_at_once_in_the_middle_of_an_exact_fit(tmp_path: Path) -> None:
+    """Within a second of the processor's time, and nothing is written."""
+    page = Path(__file__).parents[2] / "docs/examples/press_off_by_40_um"
+    command = ["diagnose", "press_linkage", "--inputs", str(page / "inputs.toml"), "--data", str(page / "measured.csv")]
+    work = tmp_path / "work"
+    work.mkdir()
+    end = subprocess.run(
+        hearing_interrupts([sys.executable, "-c", IN_A_FIT, *command, "-q", str(tmp_path / "taken")]),
+        cwd=work, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert (end.returncode, end.stdout, end.stderr) == (130, "", "calc: interrupted; nothing was written\n")
+    assert list(work.iterdir()) == []
+    assert float((tmp_path / "taken").read_text()) < 1.0
