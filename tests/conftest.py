@@ -18,7 +18,6 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 SOFT = "what the diagnosis says here is known to be wrong; it is to be put right: "
 KNOWN_WRONG = {
-    "test_the_coefficient_that_is_named_is_that_of_least_squares[tennis_ball]": "spread over time",
     "test_rows_held_out_are_predicted_as_well_as_can_be[interrupted_tooth-bench-autocorrelated-root_stress_ring]": (
         "1.075 of the noise, where 1.07 is asked for"
     ),

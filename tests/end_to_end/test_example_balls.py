@@ -183,21 +183,21 @@ def test_what_drag_would_do_to_each_ball(said: Said) -> None:
 
 @pytest.mark.parametrize("said", [said for said in table() if "air drag" in said.found], ids=lambda said: said.ball)
 def test_the_coefficient_that_is_named_is_that_of_least_squares(said: Said) -> None:
+    """Within its interval, and 8 %: by least squares all rows count, here those that err with their neighbours less."""
     drops = [drop_of(f"{said.ball}_{number}") for number in (1, 2)]
     value, _ = fit([(drop.time, drop.height, drop.lightness) for drop in drops])
-    (named,) = re.findall(r"air drag, ([\d.]+) \(", said.found)
-    plain = said.found.endswith(")")  # beside a remainder, or where the halves differ, least squares share the drag
-    assert float(named) == pytest.approx(value, rel=0.08 if plain else 0.15)
+    ((low, high),) = re.findall(r"air drag, [\d.]+ \(([\d.]+) … ([\d.]+)\)", said.found)
+    assert 0.92 * float(low) < value < 1.08 * float(high)
 
 
-def test_intervals_are_narrower_than_the_drops_of_a_ball_differ() -> None:
-    (said,) = [said for said in table() if said.ball == "yellow_whiffle_ball"]
+def test_the_drops_of_a_ball_differ_by_more_than_its_interval() -> None:
+    (said,) = [said for said in table() if said.ball == "whiffle_ball_2"]
     low, high = map(float, re.findall(r"\(([\d.]+) … ([\d.]+)\)", said.found)[0])
     first, second = (
         fit([(each.time, each.height, each.lightness)])[0]
         for each in map(drop_of, (f"{said.ball}_1", f"{said.ball}_2"))
     )
-    assert low < second < high < first
+    assert second < low < first < high
 
 
 def test_two_drops_of_the_golf_ball_contradict_each_other() -> None:
