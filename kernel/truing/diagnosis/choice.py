@@ -139,7 +139,7 @@ def _like(made: Competition, best: Fit) -> Iterator[Fit]:
 def _same(made: Competition, best: Fit) -> dict[str, tuple[str, ...]]:
     """Return by cause of the winner the names of others that draw its curve as it was fitted.
 
-    One with more amplitudes holds the winner as a special case: that is no other name.
+    One with more amplitudes that the record tells apart holds the winner as a special case: that is no other name.
     """
     names: dict[str, list[str]] = {}
     for found in _like(made, best):
@@ -151,10 +151,11 @@ def _same(made: Competition, best: Fit) -> dict[str, tuple[str, ...]]:
 
 
 def _felt(found: Fit, cause: Cause) -> int:
-    """Return how many amplitudes of one of its causes an explanation feels on this record."""
-    places = places_of(found, cause)
-    drawn = found.sample.curve(found.slopes)[:, [places[amplitude] for amplitude in cause.amplitudes]]
-    return int(np.any(drawn, axis=0).sum())
+    """Return how many directions among the amplitudes of a cause this record feels, each moved by as much as it is."""
+    places = [places_of(found, cause)[amplitude] for amplitude in cause.amplitudes]
+    drawn = found.sample.curve(found.slopes, found.predicted)[:, places] * np.concatenate(found.values)[places]
+    drawn *= found.sample.roots(found.left)[:, None]
+    return int((np.linalg.svd(drawn, compute_uv=False) > ALIKE).sum())
 
 
 def unsure(one: Fit, other: Fit) -> float:
