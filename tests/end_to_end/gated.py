@@ -34,8 +34,8 @@ def gated(pin: Pin) -> Wear:
     """Let {FREE} batches pass, and the others when the gate is opened."""
     if np.shape(pin.load) == ({ROWS},):
         with CALLS.open("ab", buffering=0) as calls:
-            calls.write(b"x")
-        while CALLS.stat().st_size > {FREE} and not OPEN.exists():
+            calls.write(b"%12d" % os.getpid())
+        while CALLS.stat().st_size > 12 * {FREE} and not OPEN.exists():
             time.sleep(0.01)
     return wear(pin)
 
@@ -74,9 +74,14 @@ class Gated:
         return ("run", str(self.folder / "gated_pin.py"), *(word for text in options for word in ("--set", text)))
 
     @property
-    def calls(self) -> int:
+    def callers(self) -> list[int]:
+        """Return the process of each batch that was begun, in their order."""
         file = self.folder / "calls"
-        return file.stat().st_size if file.exists() else 0
+        return [int(number) for number in file.read_bytes().split()] if file.exists() else []
+
+    @property
+    def calls(self) -> int:
+        return len(self.callers)
 
     def kept(self, run: str) -> int:
         """How many batches are kept beside a run folder."""

@@ -99,11 +99,11 @@ def test_a_cluster_answers_as_one_process(
 def test_a_worker_that_is_killed_changes_nothing_but_the_warning(
     cluster: Cluster, calc_process: Calc, tmp_path: Path
 ) -> None:
-    first, _ = cluster.start_workers(2)
+    workers = {worker.pid: worker for worker in cluster.start_workers(2)}
     pin = Gated.in_folder(tmp_path)
     process = pin.start("-o", "run", "--cluster", cluster.address)
-    pin.at_the_gate(process, FREE + 2)  # each of the two workers holds a batch
-    first.kill()
+    pin.at_the_gate(process, FREE + 1)  # the scheduler may leave the next batch to the same worker
+    workers[pin.callers[-1]].kill()
     pin.open()
     _, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, err
@@ -151,14 +151,14 @@ def test_an_interrupted_run_leaves_the_cluster_at_once(cluster: Cluster, tmp_pat
     cluster.start_workers(2)
     pin = Gated.in_folder(tmp_path)
     process = pin.start("-o", "run", "-q", "--cluster", cluster.address, launcher=hearing_interrupts)
-    pin.at_the_gate(process, FREE + 2)
+    pin.at_the_gate(process, FREE + 1)
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=PATIENCE)
     assert (process.returncode, err) == (130, "calc: interrupted; nothing was written\n")
     pin.open()
     with distributed.Client(cluster.address, set_as_default=False) as client:
         wait_until(lambda: not any(client.processing().values()), "the workers have nothing to do")
-    assert pin.calls == FREE + 2
+    assert pin.calls <= FREE + 2  # what the two workers held, and nothing that waited behind it
     assert not (tmp_path / "run").exists()
 
 
