@@ -41,8 +41,8 @@ ROUNDS, FAR = 5, 1e6
 """So often the noise is taken anew where numbers and inputs are fitted at once; what is left where the model fails."""
 SHARES = (1.0, 0.5, 0.25, 0.1)
 """Of the way that the slopes promise, how far the anchor goes: where the model bends, the whole way may lead up."""
-SETTLED = 1e-6
-"""Standard deviations: inputs that move less from round to round go with the noise that they leave."""
+MOST_ROUNDS, SETTLED = 20, 1e-7
+"""Inputs go with the noise that they leave when a round gains less than so much of the score."""
 NEARER = 30
 """So often a start at which the model fails is halved: what is left of it is rounding."""
 FIRST_DAMPING = 1e-3
@@ -148,19 +148,18 @@ class Fitting:
                 return True
         return False
 
-    def calibrated(self, bare: Matrix, rounds: int = 20) -> tuple[Matrix, Matrix, float]:
+    def calibrated(self, bare: Matrix) -> tuple[Matrix, Matrix, float]:
         """Return the inputs that go best with what is left without them, what is then left, and its cost."""
         b = self.b
         left = bare - self.slopes @ b
-        if not len(b):
-            return b, left, self.sample.cost(left, b)
-        for _ in range(rounds):
+        for _ in range(MOST_ROUNDS if len(b) else 0):
             roots = self.sample.roots(left)
             weighted = self.slopes * roots[:, None]
-            normal = weighted.T @ weighted + np.eye(len(b))
-            before, b = b, cho_solve(cho_factor(normal), weighted.T @ (roots * bare))
+            downward = weighted.T @ (roots * left) - b
+            moved = cho_solve(cho_factor(weighted.T @ weighted + np.eye(len(b))), downward)
+            b = b + self.sample.stride * moved
             left = bare - self.slopes @ b
-            if np.abs(b - before).max() < SETTLED:
+            if moved @ downward < SETTLED:
                 break
         return b, left, self.sample.cost(left, b)
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from math import inf, log
+from math import exp, inf, log
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 WITHOUT_MEMORY, NORMAL, CONSTANT = Setting(), Tails(inf, 4.5), Spread()
 SMALLEST_SHARE = 1e-6
 """Of the readings: noise is no smaller, or it is rounding."""
-ROUNDS, SETTLED = 50, 1e-9
+ROUNDS, SETTLED = 50, 1e-6
 
 
 @dataclass(frozen=True)
@@ -127,11 +127,14 @@ class Channel:
     def square(self, left: Matrix) -> float:
         """Return the square of the scale that suits what is left best, no smaller than what is more than rounding."""
         with np.errstate(over="ignore"):  # what a wild step leaves may be beyond any number
-            square = max(float(np.sum(left**2)) / self.known, self.least)
-        for _ in range(ROUNDS if self.freedom < inf else 0):
-            shares = 1 / (self.freedom + left**2 / square)
-            whole = float(shares.sum()) if self.sides is None else self.known / (self.freedom + 1)
-            before, square = square, max(float(shares @ left**2) / whole, self.least)
+            squares = left**2
+            square = max(float(squares.sum()) / self.known, self.least)
+        for _ in range(ROUNDS if self.freedom < inf and square < inf else 0):  # Newton on its logarithm: it has one top
+            outward = squares / (self.freedom * square + squares)
+            total = float(outward.sum())
+            steep = max(total - float(outward @ outward), 1e-300)
+            rise = (total - self.known / (self.freedom + 1)) / steep
+            before, square = square, max(square * exp(min(max(rise, -2.0), 2.0)), self.least)
             if abs(square - before) <= SETTLED * square:
                 break
         return square
@@ -226,6 +229,14 @@ class Sample:
         """Return by row what makes squares of what is left count: its noise is the one that it shows, (rows,)."""
         each = zip(self.parts, self.channels, self.squares(left), strict=True)
         return np.concatenate([np.sqrt(channel.shares(left[part], square) / square) for part, channel, square in each])
+
+    @cached_property
+    def stride(self) -> float:
+        """How many times a step that counts far readings by their shares may be taken: in heavy tails it is short.
+
+        Of every result it is the full information over the expected one, below 2, so that every step leads down.
+        """
+        return min(((each.freedom + 3) / (each.freedom + 1) if each.freedom < inf else 1.0) for each in self.channels)
 
     def of_rows(self, mask: NDArray[np.bool_]) -> Sample:
         """Return some of the rows, with the same noise."""
