@@ -216,7 +216,7 @@ def in_noise(made: Competition, found: Fit, **more: object) -> tuple[Fit, Certai
     """A fit and its certainty as if the noise had been another one."""
     noise = {name: replace(own, **more) for name, own in made.sample.noise.items()}  # type: ignore[arg-type]
     sample = sample_of(made.sample.machine, noise, made.sample.mask, made.sample.directions)
-    again = fit(sample, made.extended, found.causes, found.values, found.inputs)
+    again = fit(sample, made.extended, found.causes, found.values, found)
     assert again is not None
     return again, certainty_of(again, made.extended)
 

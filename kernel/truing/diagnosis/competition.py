@@ -162,8 +162,7 @@ class Competition:
         if not self.extended.allows(self.stage):
             return self.known.get(frozenset(cause.tag for cause in causes))
         self.fits += 1
-        inputs = None if near is None else near.inputs
-        return self.keep(fit(self.sample, self.extended, causes, values, inputs, until=until, near=near))
+        return self.keep(fit(self.sample, self.extended, causes, values, near, until=until))
 
     def joined(self, at: Fit, cause: Cause, starts: Iterable[tuple[float, Matrix]]) -> Fit | None:
         """Fit an explanation with one more cause, from each of its starts."""

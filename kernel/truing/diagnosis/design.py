@@ -177,7 +177,7 @@ def _exchanged(made: Competition, best: Fit, place: int, other: Cause) -> Iterat
     seen = look(made.curves, held, [other]).get(other.tag) if np.isfinite(held.left).all() else None
     for _, start in seen.starts if seen is not None else ():
         several = (*causes[:place], other, *causes[place:])
-        found = fit(made.sample, made.extended, several, (*values[:place], start, *values[place:]), held.inputs)
+        found = fit(made.sample, made.extended, several, (*values[:place], start, *values[place:]), held)
         if found is not None:
             yield found
 

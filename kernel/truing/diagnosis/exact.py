@@ -63,21 +63,20 @@ def fit(
     extended: Extended,
     causes: Sequence[Cause],
     values: Sequence[Matrix],
-    inputs: Matrix | None = None,
+    near: Fit | None = None,
     *,
     until: float = EXACTLY,
     held: Sequence[Number] = (),
-    near: Fit | None = None,
 ) -> Fit | None:
-    """Fit an explanation from a start: numbers of every cause, SI, and directions of the inputs (K,).
+    """Fit an explanation from a start: numbers of every cause, SI.
 
-    Numbers in ``held`` keep their start. ``near`` is a fit to begin with: what its inputs draw, and its numbers where
-    it is of the same causes. None where the model fails however small the causes are.
+    Numbers in ``held`` keep their start. ``near`` is a fit to begin with: its inputs, what they draw, and what its
+    numbers draw where it is of the same causes. None where the model fails however small the causes are.
     """
-    start = inputs if inputs is not None and len(inputs) == sample.directions.shape[1] else None
+    is_alike = near is not None and len(near.inputs) == sample.directions.shape[1]
     moves = near.moves if near is not None and near.sample.directions is sample.directions else {}
     state = Fitting(sample, extended, tuple(causes), held=held, moves=moves or sample.moves)
-    if not state.begin(np.concatenate(values) if causes else np.zeros(0), start):
+    if not state.begin(np.concatenate(values) if causes else np.zeros(0), near.inputs if is_alike and near else None):
         return None
     if near is not None and near.slopes and near.causes == state.causes and not extended.grain:
         state.carry(near.slopes)
@@ -87,7 +86,7 @@ def fit(
 
 def refit(found: Fit, sample: Sample, extended: Extended, *, until: float = ROUGHLY) -> Fit | None:
     """Fit an explanation again from where it is: in other noise, or to other rows."""
-    return fit(sample, extended, found.causes, found.values, found.inputs, until=until, near=found)
+    return fit(sample, extended, found.causes, found.values, found, until=until)
 
 
 class Fitting:

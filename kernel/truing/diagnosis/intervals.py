@@ -182,7 +182,7 @@ class _Profile:
         flat = np.concatenate(near.values)
         flat[self.place] = self.outward(u)
         values = parts_of(near.causes, flat)
-        return fit(near.sample, self.extended, near.causes, values, near.inputs, held=[self.number])
+        return fit(near.sample, self.extended, near.causes, values, near, held=[self.number])
 
     def outward(self, u: float) -> float:
         """Return the shape in SI."""
