@@ -13,7 +13,7 @@ from harmonic_fractal.interface import Rough, flanks_of
 from harmonic_fractal.quantities import Drive
 from truing import Float, either
 
-NODES = 12  # of Gauss and Legendre on each of the panels
+RULE = np.polynomial.legendre.leggauss(12)  # of Gauss and Legendre on each of the panels
 PANELS = 4
 
 
@@ -74,7 +74,7 @@ def approach(load: Float, reference: Float, contact: Contact) -> Float:
     begins, ends = (np.log(np.expm1(law.decay * micro.size_of(np.maximum(item, 1e-12), law))) for item in (low, high))
     whole = np.zeros(np.broadcast(begins, ends).shape)
     width = (ends - begins) / PANELS
-    for node, weight in zip(*np.polynomial.legendre.leggauss(NODES), strict=True):
+    for node, weight in zip(*RULE, strict=True):
         for panel in range(PANELS):
             grown = np.exp(begins + width * (panel + 0.5 * (node + 1.0)))
             size = np.log1p(grown) / law.decay

@@ -14,7 +14,7 @@ from harmonic_fractal import micro
 from harmonic_fractal.mesh import CHUNK, Mesh, Pair
 from truing import Float
 
-NODES = 8  # of Gauss and Legendre on each panel
+RULE = np.polynomial.legendre.leggauss(8)  # of Gauss and Legendre on each panel
 WIDEST = 1.0  # panel, in the variable of integration
 TURN = 0.3  # 1/u where that variable turns from ln u to u
 KINKS = 128  # places at which a panel ends because there a pair turns elastic; of more pairs each matters less
@@ -51,7 +51,7 @@ def mesh_torsion(torque: Float, reference: Float, mesh: Mesh) -> tuple[Float, Fl
     active = np.flatnonzero((last > first) & (first > 0.0))  # NaN is not
     for start in range(0, len(active), ROWS):
         index = active[start : start + ROWS]
-        for piece in _panels(index, first, last, mesh).in_pieces(CHUNK // (NODES * len(mesh.arcs.shares)) + 1):
+        for piece in _panels(index, first, last, mesh).in_pieces(CHUNK // (len(RULE[0]) * len(mesh.arcs.shares)) + 1):
             for total, part in zip((whole, rough), _integrals(piece, mesh, rows), strict=True):
                 np.add.at(total, piece.row, part)
     endless = (first <= 0.0) & (last > first)
@@ -92,7 +92,7 @@ def _onsets(index: NDArray[np.intp], offsets: NDArray[np.float64], mesh: Mesh, r
 
 def _integrals(panels: Panels, mesh: Mesh, rows: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Integrate torque over stiffness on every panel: of the whole mesh, and of its roughness alone."""
-    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    nodes, weights = RULE
     pair = mesh.pair.of_rows(panels.row, rows, 2)
     grown = np.exp(panels.start[:, np.newaxis] + panels.width[:, np.newaxis] * 0.5 * (nodes + 1.0))[..., np.newaxis]
     size = np.log1p(grown) / TURN

@@ -77,7 +77,7 @@ def test_finer_panels_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
 
     made = [(drive_of(**changed), torque) for changed, torque in CASES]
     once = all_cases()
-    monkeypatch.setattr(torsion_module, "NODES", 20)
+    monkeypatch.setattr(torsion_module, "RULE", np.polynomial.legendre.leggauss(20))
     monkeypatch.setattr(torsion_module, "WIDEST", 0.3)
     monkeypatch.setattr(torsion_module, "KINKS", 1000)
     np.testing.assert_allclose(once, all_cases(), rtol=1e-9)
