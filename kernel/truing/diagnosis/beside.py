@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 KEPT = 3
 """So many points of a cause begin exact fits."""
 NEAR_LEVEL = 2.0
-"""A curve that bends stands for amplitudes up to so many times its own, and down to one over it."""
+"""A curve that bends stands for amplitudes up to so many times its own, and down to one over it; the smallest ones for
+all that are smaller."""
 FAINT = 1e-9
 OWN = 0.03
 """Share of a curve that must be left beside an explanation for it to count as one more that was tried."""
@@ -192,12 +193,21 @@ def _starts(bundle: Bundle, points: Matrix, right: Matrix, normal: Matrix) -> tu
         solved = np.clip(solved, [number.low for number in numbers], [number.high for number in numbers])
         values[:, bundle.cause.amplitudes] = solved
     else:
-        solved = np.clip(solved, 1 / NEAR_LEVEL, NEAR_LEVEL)
+        solved = np.clip(
+            solved, np.where(_are_smallest(bundle.cause, points), 0.0, 1 / NEAR_LEVEL)[:, None], NEAR_LEVEL
+        )
         for place in bundle.cause.amplitudes:
             number = bundle.cause.numbers[place]
             values[:, place] = np.clip(points[:, place] * solved[:, 0], number.low, number.high)
     gains = 2 * np.einsum("mq,mq->m", solved, right) - np.einsum("mq,mqp,mp->m", solved, normal, solved)
     return gains, values
+
+
+def _are_smallest(cause: Cause, points: Matrix) -> NDArray[np.bool_]:
+    """Mark the points with the smallest amplitudes: below them a curve is in proportion, if anywhere."""
+    bounds = [max(abs(cause.numbers[place].low), abs(cause.numbers[place].high)) for place in cause.amplitudes]
+    shares = np.max(np.abs(points[:, cause.amplitudes]) / bounds, axis=1)
+    return np.asarray(shares <= NEAR_LEVEL * shares.min())
 
 
 def independent(basis: Matrix, *, is_sweep: bool) -> float:
