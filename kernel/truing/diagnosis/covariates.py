@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from truing.declare.builtin import may_stand
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.data_file import Part
@@ -15,11 +17,11 @@ from truing.diagnosis.tidying import TIME, counted, is_angle
 from truing.errors import Fault, InputError
 from truing.measurements.table import SIGMA
 from truing.setup import Setup, column_and_word
+from truing.units import same_dimension, to_si
 from truing.units.grammar import shown
 from truing.units.names import PURE
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from truing.diagnosis.compared import Sides
@@ -35,8 +37,6 @@ def covariates_of(joined: Joined, setup: Setup) -> tuple[dict[str, Covariate], l
 
     Where no time was measured, the place in the record stands for it.
     """
-    import numpy as np
-
     data = joined.data
     found: dict[str, Covariate] = {}
     turning = _turning(setup)
@@ -77,8 +77,6 @@ def _unit(name: str, joined: Joined, setup: Setup) -> str:
 
 
 def _is_time(unit: str) -> bool:
-    from truing.units import same_dimension
-
     return unit not in PURE and same_dimension(unit, "s")
 
 
@@ -112,8 +110,6 @@ def _of_constants(found: dict[str, Covariate]) -> list[str]:
 
 def held_out_rows(joined: Joined, setup: Setup) -> tuple[NDArray[np.bool_], list[str]]:
     """Mark the rows that only judge, as ``[studies.diagnose] hold_out`` says. Raises InputError where it finds none."""
-    import numpy as np
-
     column, word = setup.diagnose.held_out
     if not column:
         return np.zeros(len(joined), dtype=bool), []
@@ -139,8 +135,6 @@ def censored_rows(joined: Joined, setup: Setup) -> tuple[Joined, dict[str, Sides
 
     A reading beyond the end of its gauge is one at the end. Raises InputError where a mark marks nothing.
     """
-    import numpy as np
-
     columns, asked = dict(joined.data.columns), setup.diagnose
     sides: dict[str, Sides] = {}
     notes = []
@@ -161,10 +155,6 @@ def censored_rows(joined: Joined, setup: Setup) -> tuple[Joined, dict[str, Sides
 
 def _equal(cells: NDArray[np.object_], word: str, unit: str) -> NDArray[np.bool_]:
     """Whether cells hold a word, or the number it is."""
-    import numpy as np
-
-    from truing.units import to_si
-
     if cells.dtype == object:
         return np.array([str(cell).strip() == word for cell in cells.tolist()], dtype=bool)
     try:

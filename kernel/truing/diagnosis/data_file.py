@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+
 from truing.declare.fields import Axis, InputField
 from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
@@ -18,10 +20,10 @@ from truing.measurements.csv_text import Faults
 from truing.measurements.overriding import WORDS, read_word, word_header_fault
 from truing.measurements.row_count import UNCOUNTED, RowCount
 from truing.measurements.table import RUN, SIGMA, DataTable, gather_table
+from truing.units import check_unit, from_si
 from truing.units.grammar import shown
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 Part = Literal["input", "word", "series", "condition", "axis", "measured", "sigma", "other", "label"]
@@ -65,8 +67,6 @@ def read_data_file(path: Path, offer: Offer) -> tuple[DataFile, Faults]:
 
     Raises InputError where the file cannot be read at all.
     """
-    import numpy as np
-
     model = offer.model
     words = [name for name, item in model.input_fields.items() if item.kind in WORDS]
     table, faults = gather_table(path, _units(model), words=words)
@@ -90,8 +90,6 @@ def read_data_file(path: Path, offer: Offer) -> tuple[DataFile, Faults]:
 
 def objects(values: Iterable[Any]) -> NDArray[Any]:
     """Return words, or whatever else, as an array (n,)."""
-    import numpy as np
-
     items = list(values)
     found = np.empty(len(items), dtype=object)
     found[:] = items
@@ -140,8 +138,6 @@ def _column(name: str, values: Any, table: DataTable, model: Model[Any, Any], fa
 
 def _has_known_unit(name: str, table: DataTable, faults: Faults) -> bool:
     """Whether the unit of a column that nobody declared is one; if not, say so."""
-    from truing.units import check_unit
-
     try:
         check_unit(table.units[name])
     except UnitError as error:
@@ -153,8 +149,6 @@ def _has_known_unit(name: str, table: DataTable, faults: Faults) -> bool:
 
 def _words(item: InputField, cells: tuple[str, ...], table: DataTable, faults: Faults) -> NDArray[Any] | None:
     """Return the values of a choice, text, switch or whole number, None where a cell is empty."""
-    import numpy as np
-
     fault = word_header_fault(item.name, table.units[item.name])
     if fault:
         faults.add(fault, table.header_line)
@@ -176,10 +170,6 @@ def _words(item: InputField, cells: tuple[str, ...], table: DataTable, faults: F
 
 def _keep_bounds(item: InputField, values: NDArray[np.float64], table: DataTable, faults: Faults) -> None:
     """Say which rows break a declared bound."""
-    import numpy as np
-
-    from truing.units import from_si
-
     finite = values[np.isfinite(values)]
     if not len(finite):
         return
@@ -220,8 +210,6 @@ def _without_axis(name: str, table: DataTable, model: Model[Any, Any]) -> Iterat
 
 def _empty(columns: Mapping[str, NDArray[Any]], parts: Mapping[str, Part], faults: Faults) -> Iterator[str]:
     """Say which columns that must hold something hold nothing, not even what cannot be read."""
-    import numpy as np
-
     for name, values in columns.items():
         if parts[name] not in {"measured", "input", "series", "word", "axis"} or not len(values):
             continue

@@ -6,16 +6,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from truing.diagnosis.data_file import DataFile, Part, objects
 from truing.diagnosis.tidying import counted
 from truing.errors import Fault, InputError
 from truing.measurements import RowCount, RowsFile
 from truing.setup import Setup
+from truing.units import same_dimension
 from truing.units.grammar import shown
 from truing.units.names import PURE
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 MOST_MISSING = 0.5
@@ -59,8 +61,6 @@ def join(files: Sequence[DataFile], setup: Setup) -> Joined:
 
     An input that a file does not give is as the inputs file says; anything else is missing in its rows.
     """
-    import numpy as np
-
     faults = [*_contradictions(files)]
     if faults:
         raise InputError(faults)
@@ -83,8 +83,6 @@ def join(files: Sequence[DataFile], setup: Setup) -> Joined:
 
 def _contradictions(files: Sequence[DataFile]) -> Iterator[Fault]:
     """Say which columns differ so much between files that they cannot be one."""
-    from truing.units import same_dimension
-
     first: dict[str, DataFile] = {}
     for file in files:
         for name, part in file.parts.items():
@@ -111,8 +109,6 @@ def _parts(files: Sequence[DataFile]) -> dict[str, Part]:
 
 def _cells(file: DataFile, name: str, part: Part, setup: Setup) -> NDArray[Any]:
     """Return a column of a file, as it is filled up where the file has none."""
-    import numpy as np
-
     values = file.columns.get(name)
     if values is not None and (part != "label" or values.dtype == object):
         return values
@@ -135,8 +131,6 @@ def settle_conditions(joined: Joined, files: Sequence[DataFile], setup: Setup) -
 
     A condition that a file does not give, or that is empty in most rows, counts as not measured.
     """
-    import numpy as np
-
     columns, parts = dict(joined.data.columns), dict(joined.data.parts)
     absent: set[str] = set()
     notes: list[str] = []
@@ -167,8 +161,6 @@ def absent_in_order(absent: set[str], setup: Setup) -> list[str]:
 
 def _unmeasured(name: str, joined: Joined, files: Sequence[DataFile]) -> str:
     """Say why the column of a condition does not measure it, or nothing."""
-    import numpy as np
-
     lacking = [file.file for file in files if name not in file.columns]
     if lacking:
         return f"'{name}' is not in {', '.join(lacking)}, so it counts as not measured"
@@ -183,8 +175,6 @@ def complete_rows(joined: Joined, setup: Setup) -> tuple[Joined, list[str]]:
 
     Rows of a record (a series along an axis) stay, whatever was measured in them: they are its history.
     """
-    import numpy as np
-
     notes: list[str] = []
     for name in joined.data.named("input", "word", "series", "condition"):
         item = setup.model.input_fields.get(name)
@@ -204,8 +194,6 @@ def complete_rows(joined: Joined, setup: Setup) -> tuple[Joined, list[str]]:
 
 def measured_rows(joined: Joined) -> tuple[Joined, NDArray[np.bool_]]:
     """Leave out rows in which nothing that is used was measured, and say which; the rows of a record stay."""
-    import numpy as np
-
     data = joined.data
     nothing = np.full(len(joined), not data.named("series"))
     for name in data.named("measured"):
@@ -214,8 +202,6 @@ def measured_rows(joined: Joined) -> tuple[Joined, NDArray[np.bool_]]:
 
 
 def _is_missing(values: NDArray[Any]) -> NDArray[np.bool_]:
-    import numpy as np
-
     if values.dtype == object:
         return np.array([value is None for value in values.tolist()], dtype=bool)
     missing: NDArray[np.bool_] = np.isnan(values)

@@ -7,6 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from truing.diagnosis.covariates import censored_rows, covariates_of, held_out_rows
 from truing.diagnosis.data_file import DataFile, read_data_file
 from truing.diagnosis.joining import Joined, complete_rows, join, measured_rows, rows_of, settle_conditions
@@ -20,7 +22,6 @@ from truing.measurements.table import SIGMA
 from truing.setup import Setup
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 FEWEST = 3
@@ -122,8 +123,6 @@ def _demand_rows(rows: int, joined: Joined, notes: Sequence[str]) -> None:
 
 def _sigma(joined: Joined) -> tuple[dict[str, NDArray[np.float64]], list[str]]:
     """Return the standard deviations that are given, by result; one of 0 is none."""
-    import numpy as np
-
     data, notes = joined.data, []
     used = [name for name in data.named("sigma") if name.removeprefix(SIGMA) in data.columns]
     for name in used:
@@ -150,8 +149,6 @@ def _enough_values(
     joined: Joined, fitted: NDArray[np.bool_], notes: Sequence[str], setup: Setup
 ) -> tuple[Joined, list[str]]:
     """Leave out measured results with too few values to explain; raises InputError where none is left."""
-    import numpy as np
-
     measured = joined.data.named("measured")
     _, sides, censored = censored_rows(joined, setup)
     known = {name: np.isfinite(joined.data.columns[name]) & (sides.get(name, 0) == np.int8(0)) for name in measured}
@@ -173,8 +170,6 @@ def _enough_values(
 
 def _answered(joined: Joined, setup: Setup) -> tuple[Joined, Answers, list[str]]:
     """Hold the rows against the model as it stands; leave out those in which it fails."""
-    import numpy as np
-
     measured = joined.data.named("measured")
     found = read_by_gauge(one_machine(setup), rows_of(joined), measured)
     notes: list[str] = []

@@ -13,6 +13,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from truing.diagnosis.joining import Joined, rows_of
 from truing.diagnosis.records import Slip
 from truing.diagnosis.tidying import is_angle
@@ -20,11 +22,11 @@ from truing.gauge import one_machine, read_by_gauge
 from truing.inputs_file.values import broken_bound
 from truing.setup import Setup
 from truing.trials import Trial, read_trials
+from truing.units import difference_unit, from_si, same_dimension, to_si
 from truing.units.grammar import shown
 from truing.units.names import LEVELS, PURE
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 Answers = Mapping[str, "NDArray[np.float64]"]
@@ -80,8 +82,6 @@ def suspected_slips(joined: Joined, answers: Answers, setup: Setup) -> tuple[Sli
 
 def _size(errors: NDArray[np.float64], mode: int) -> float:
     """Return the root mean square without the largest tenth; of mode 1 about the middle; infinite where most fail."""
-    import numpy as np
-
     known = errors[np.isfinite(errors)]
     if len(known) < INLIERS * len(errors) or not len(known):
         return math.inf
@@ -92,8 +92,6 @@ def _size(errors: NDArray[np.float64], mode: int) -> float:
 
 def _is_far(measured: NDArray[np.float64], answer: NDArray[np.float64]) -> bool:
     """Whether the error is a tenth of what is measured at least, as it is or about its middle."""
-    import numpy as np
-
     here = np.isfinite(measured) & np.isfinite(answer)
     values, errors = measured[here], (measured - answer)[here]
     return len(values) > 0 and any(_size(errors, mode) > FAR * _size(values, mode) for mode in (0, 1))
@@ -105,8 +103,6 @@ def _is_beyond(one: _Gauge) -> bool:
 
 def _some_rows(joined: Joined) -> NDArray[np.intp]:
     """Return rows spread over the whole record; where series make records, the first whole ones."""
-    import numpy as np
-
     if not joined.data.named("series"):
         return np.unique(np.linspace(0, len(joined) - 1, MOST_ROWS).astype(np.intp))
     first = joined.data.runs == joined.data.runs[0]
@@ -119,8 +115,6 @@ def _answers(few: Joined, machine: Setup, trials: Sequence[Trial]) -> list[Answe
 
 def _gauges(few: Joined, setup: Setup) -> list[_Gauge]:
     """Return every measured result on these rows, with how far one standard deviation of each tolerance reaches."""
-    import numpy as np
-
     machine = one_machine(setup)
     scatter = [(name, each.sd) for by_input in setup.distributions().values() for name, each in by_input.items()]
     moved = [{name: few.data.columns.get(name, machine.nominal(name)) + sd} for name, sd in scatter]
@@ -140,8 +134,6 @@ def _gauges(few: Joined, setup: Setup) -> list[_Gauge]:
 
 def _factors(unit: str) -> Mapping[float, str]:
     """Return the factors by which a unit may have slipped, with their words; none for a temperature level."""
-    from truing.units import same_dimension
-
     if unit in LEVELS:
         return {}
     is_length = unit not in PURE and same_dimension(unit, "m")
@@ -182,8 +174,6 @@ def _is_worse(one: _Gauge, answer: NDArray[np.float64]) -> bool:
 
 def _trials(few: Joined, setup: Setup) -> Iterator[tuple[str, float, str]]:
     """Give every column that the model sees with every factor that its bounds allow."""
-    import numpy as np
-
     seen = {need.name for item in setup.effects for need in item.effect.needs}
     for name in few.data.named("input", "series", "condition"):
         item = setup.model.input_fields.get(name)
@@ -199,8 +189,6 @@ def _trials(few: Joined, setup: Setup) -> Iterator[tuple[str, float, str]]:
 
 def _off(one: _Gauge, after: NDArray[np.float64], setup: Setup) -> str:
     """Say how far the model is off a result before and after, in the unit the result is printed in."""
-    from truing.units import difference_unit, from_si
-
     unit = difference_unit(setup.print_unit(one.name))
     mode = 1 if _size(one.measured - one.answer, 0) < BETTER * _size(after, 0) else 0
     sizes = [from_si(_size(errors, mode), unit) for errors in (one.measured - one.answer, after)]
@@ -221,10 +209,6 @@ def _header(name: str, joined: Joined) -> str:
 
 def _out_of_range(joined: Joined, setup: Setup) -> Iterator[Slip]:
     """Give conditions that lie far beyond the range in which they can be set, where one factor brings them into it."""
-    import numpy as np
-
-    from truing.units import to_si
-
     for name in joined.data.named("condition"):
         condition = setup.model.known_conditions[name]
         if condition.low is None or condition.high is None or condition.derived:

@@ -10,14 +10,16 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from truing.declare.model import Model
 from truing.diagnosis.data_file import DataFile, Part
 from truing.inputs_file.values import broken_bound
 from truing.measurements.derived import derive
+from truing.units import same_dimension
 from truing.units.names import PURE
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 TIME = "time"
@@ -48,8 +50,6 @@ def counted(number: int, one: str = "row", many: str = "") -> str:
 
 def numbered(labels: Iterable[Any]) -> tuple[NDArray[np.intp], list[Any]]:
     """Number labels from 0 in the order they first appear; return the number of each row and the labels."""
-    import numpy as np
-
     known: dict[Any, int] = {}
     numbers = [known.setdefault(label, len(known)) for label in labels]
     return np.array(numbers, dtype=np.intp), list(known)
@@ -61,8 +61,6 @@ def each_block_once(data: DataFile) -> Tidied:
     A block has three rows or more over two times at the least, each equal in every cell, its time included, to the row
     that follows in the earlier block. Single rows that are alike are real repeats of a coarse gauge, and are kept.
     """
-    import numpy as np
-
     time, like = _time(data), _first_alike(data)
     is_again = np.zeros(len(data), dtype=bool)
     starts: Iterable[int] = (
@@ -83,8 +81,6 @@ def each_block_once(data: DataFile) -> Tidied:
 
 def _first_alike(data: DataFile) -> NDArray[np.intp]:
     """Return for each row the place of the first one that is equal in every cell."""
-    import numpy as np
-
     columns = [_as_numbers(values).view(np.uint64) for values in (data.runs, *data.columns.values())]
     mixed = np.zeros(len(data), dtype=np.uint64)
     for bits in columns:
@@ -98,8 +94,6 @@ def _first_alike(data: DataFile) -> NDArray[np.intp]:
 
 def _as_numbers(values: NDArray[Any]) -> NDArray[np.float64]:
     """Return one number per cell that is equal where the cells are: one NaN, one zero, words by their number."""
-    import numpy as np
-
     if values.dtype == object:
         return numbered(values.tolist())[0].astype(float)
     return np.where(np.isnan(values), np.nan, values + 0.0)
@@ -107,8 +101,6 @@ def _as_numbers(values: NDArray[Any]) -> NDArray[np.float64]:
 
 def in_time_order(data: DataFile) -> Tidied:
     """Put runs one after another, by their first time, and sort rows by time inside each; without a time as given."""
-    import numpy as np
-
     run_of, names = numbered(data.runs.tolist())
     time = _time(data)
     by_run = np.argsort(run_of, kind="stable")
@@ -125,8 +117,6 @@ def in_time_order(data: DataFile) -> Tidied:
 
 def _time(data: DataFile) -> NDArray[np.float64] | None:
     """Return the times of the rows where they are known; a result of that name is no clock."""
-    import numpy as np
-
     if data.parts.get(TIME) in {None, "label", "word", "measured"}:
         return None
     time = data.columns[TIME]
@@ -135,8 +125,6 @@ def _time(data: DataFile) -> NDArray[np.float64] | None:
 
 def _late(time: NDArray[np.float64], sizes: NDArray[np.intp]) -> int:
     """Count the rows that stand behind a later one of their run."""
-    import numpy as np
-
     late = 0
     for part in np.split(np.where(np.isnan(time), -math.inf, time), np.cumsum(sizes)[:-1]):
         late += int((part < np.maximum.accumulate(part))[np.isfinite(part)].sum())
@@ -149,8 +137,6 @@ def in_one_piece(data: DataFile, model: Model[Any, Any]) -> Tidied:
     A run is a sweep if 95 % of its steps are below 90 degrees once it is joined and at most every fourth step jumps.
     An input whose bounds would not hold stays as it is.
     """
-    import numpy as np
-
     columns, notes = dict(data.columns), []
     for name in data.named("input", "series", "condition"):
         if not is_angle(_declared_unit(name, model)):
@@ -167,8 +153,6 @@ def in_one_piece(data: DataFile, model: Model[Any, Any]) -> Tidied:
 
 def _joined(angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:
     """Return a sweep without its jumps by a turn and their number; anything else as it is."""
-    import numpy as np
-
     known = np.flatnonzero(np.isfinite(angles))
     steps = np.diff(angles[known])
     jumps = int((np.abs(steps) > np.pi).sum())
@@ -181,16 +165,12 @@ def _joined(angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:
 
 
 def _keeps_bounds(name: str, values: NDArray[np.float64], model: Model[Any, Any]) -> bool:
-    import numpy as np
-
     item = model.input_fields.get(name)
     return item is None or not any(broken_bound(item, float(end)) for end in (np.nanmin(values), np.nanmax(values)))
 
 
 def is_angle(unit: str) -> bool:
     """Whether a unit is one of plane angles."""
-    from truing.units import same_dimension
-
     return unit not in PURE and same_dimension(unit, "rad")
 
 
@@ -201,8 +181,6 @@ def _declared_unit(name: str, model: Model[Any, Any]) -> str:
 
 def _each_run(data: DataFile) -> Sequence[NDArray[np.intp]]:
     """Give the rows of each run; runs stand one after another."""
-    import numpy as np
-
     run_of, _ = numbered(data.runs.tolist())
     return np.split(np.arange(len(data)), np.flatnonzero(np.diff(run_of)) + 1)
 
