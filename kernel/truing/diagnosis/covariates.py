@@ -9,8 +9,7 @@ import numpy as np
 
 from truing.declare.builtin import may_stand
 from truing.declare.near_miss import near_miss
-from truing.diagnosis.data_file import Part
-from truing.diagnosis.joining import Joined
+from truing.diagnosis.data_file import DataRows, Part
 from truing.diagnosis.readings import reading_of
 from truing.diagnosis.records import Covariate, Role
 from truing.diagnosis.tidying import TIME, counted, is_angle
@@ -32,21 +31,20 @@ _ROLES: dict[Part, Role] = {
 }  # fmt: skip
 
 
-def covariates_of(joined: Joined, setup: Setup) -> tuple[dict[str, Covariate], list[str]]:
+def covariates_of(joined: DataRows, setup: Setup) -> tuple[dict[str, Covariate], list[str]]:
     """Return every covariate by name, in the order inputs, conditions, others; and what is to be said of them.
 
     Where no time was measured, the place in the record stands for it.
     """
-    data = joined.data
     found: dict[str, Covariate] = {}
     turning = _turning(setup)
     for part, usual in _ROLES.items():
-        for name in data.named(part):
+        for name in joined.named(part):
             if part == "word" and setup.model.input_fields[name].kind != "integer":
                 continue
             if part == "other" and name in setup.diagnose.flags:  # it says what came out, and is no reason for it
                 continue
-            values, unit = data.columns[name].astype(float), _unit(name, joined, setup)
+            values, unit = joined.columns[name].astype(float), _unit(name, joined, setup)
             if np.isfinite(values).any():
                 role: Role = "time" if name == TIME and _is_time(unit) else usual
                 item = Covariate(name, values, unit, role, is_angle(unit))
@@ -65,14 +63,14 @@ def _turning(setup: Setup) -> set[str]:
     return {name for effect in known for name in (*effect.reads, *(need.name for need in effect.needs))}
 
 
-def _unit(name: str, joined: Joined, setup: Setup) -> str:
+def _unit(name: str, joined: DataRows, setup: Setup) -> str:
     """Return the unit to print a covariate in."""
     model = setup.model
     if name in model.known_conditions:
         return setup.units.get(name, model.known_conditions[name].unit)
     if name in model.input_fields or name in model.own_result_fields:
         return setup.print_unit(name)
-    unit = joined.data.units.get(name, "")
+    unit = joined.units.get(name, "")
     return "" if unit in PURE else unit
 
 
@@ -80,22 +78,22 @@ def _is_time(unit: str) -> bool:
     return unit not in PURE and same_dimension(unit, "s")
 
 
-def _of_others(joined: Joined, setup: Setup, found: dict[str, Covariate]) -> list[str]:
+def _of_others(joined: DataRows, setup: Setup, found: dict[str, Covariate]) -> list[str]:
     """Say which columns nobody declared, and what they are taken for."""
     model = setup.model
     known = [*model.measurable, *model.known_conditions, *model.input_fields]
     notes = []
     asked_for = {setup.diagnose.held_out[0], *setup.diagnose.flags}
-    for name in joined.data.named("other", "label"):
-        is_label = joined.data.parts[name] == "label" and any(joined.data.columns[name].tolist())
+    for name in joined.named("other", "label"):
+        is_label = joined.parts[name] == "label" and any(joined.columns[name].tolist())
         if name in asked_for and (is_label or name not in found):
             continue
         words = "it is kept as words, on which nothing can depend" if is_label else "it holds no value and is not used"
         use = "it is kept as something an error may depend on" if name in found else words
         near = near_miss(name[:80], known)
-        hint = near if near and near.split("'")[1] not in joined.data.columns else ""
+        hint = near if near and near.split("'")[1] not in joined.columns else ""
         notes.append(f"column {shown(name)} is neither input, result nor condition; {use}.{hint}".rstrip("."))
-    unused = [name for name in joined.data.named("sigma") if name.removeprefix(SIGMA) not in joined.data.columns]
+    unused = [name for name in joined.named("sigma") if name.removeprefix(SIGMA) not in joined.columns]
     return [*notes, *(f"column {shown(name)} is of a result that is not measured and is not used" for name in unused)]
 
 
@@ -108,37 +106,38 @@ def _of_constants(found: dict[str, Covariate]) -> list[str]:
     return [f"{what}, so nothing can be seen of what depends on it: {', '.join(names)}"]
 
 
-def held_out_rows(joined: Joined, setup: Setup) -> tuple[NDArray[np.bool_], list[str]]:
+def held_out_rows(joined: DataRows, setup: Setup) -> DataRows:
     """Mark the rows that only judge, as ``[studies.diagnose] hold_out`` says. Raises InputError where it finds none."""
     column, word = setup.diagnose.held_out
     if not column:
-        return np.zeros(len(joined), dtype=bool), []
+        return joined
     found = _marked("hold_out", column, word, joined, setup)
-    return found, [f"{counted(int(found.sum()), 'row only judges', 'rows only judge')}: {column} = {word}"]
+    sentence = f"{counted(int(found.sum()), 'row only judges', 'rows only judge')}: {column} = {word}"
+    return replace(joined, held_out=found).noted(sentence)
 
 
-def _marked(option: str, column: str, word: str, joined: Joined, setup: Setup) -> NDArray[np.bool_]:
+def _marked(option: str, column: str, word: str, joined: DataRows, setup: Setup) -> NDArray[np.bool_]:
     """Mark the rows that hold a word in a column. Raises InputError where there is no such column, or no such row."""
-    data, place = joined.data, setup.places.get(f"studies.diagnose.{option}", (setup.file, None))
-    cells = data.runs if column == "run" else data.columns.get(column)
+    place = setup.places.get(f"studies.diagnose.{option}", (setup.file, None))
+    cells = joined.runs if column == "run" else joined.columns.get(column)
     if cells is None:
-        near = near_miss(column[:80], list(data.columns))
+        near = near_miss(column[:80], list(joined.columns))
         raise InputError([Fault(f"{option}: no file has a column {shown(column)}.{near}", *place)])
-    found = _equal(cells, word, data.units.get(column, ""))
+    found = _equal(cells, word, joined.units.get(column, ""))
     if not found.any():
         raise InputError([Fault(f"{option}: no row has {shown(word)} in the column {shown(column)}", *place)])
     return found
 
 
-def censored_rows(joined: Joined, setup: Setup) -> tuple[Joined, dict[str, Sides], list[str]]:
+def censored_rows(joined: DataRows, setup: Setup) -> tuple[DataRows, dict[str, Sides], list[str]]:
     """Find the readings that say only beyond which end the true value lies: marked ones, and a gauge at its end.
 
     A reading beyond the end of its gauge is one at the end. Raises InputError where a mark marks nothing.
     """
-    columns, asked = dict(joined.data.columns), setup.diagnose
+    columns, asked = dict(joined.columns), setup.diagnose
     sides: dict[str, Sides] = {}
     notes = []
-    for name in joined.data.named("measured"):
+    for name in joined.named("measured"):
         low, high = asked.clipped.get(name, (-np.inf, np.inf))
         side = np.where(columns[name] >= high, 1, np.where(columns[name] <= low, -1, 0)).astype(np.int8)
         columns[name] = np.clip(columns[name], low, high)
@@ -150,7 +149,7 @@ def censored_rows(joined: Joined, setup: Setup) -> tuple[Joined, dict[str, Sides
             sides[name] = side
             of = f"{int((side != 0).sum())} of {int(np.isfinite(columns[name]).sum())} readings"
             notes.append(f"{of} of '{name}' are censored: the true value lies beyond what was read")
-    return replace(joined, data=replace(joined.data, columns=columns)), sides, notes
+    return replace(joined, columns=columns), sides, notes
 
 
 def _equal(cells: NDArray[np.object_], word: str, unit: str) -> NDArray[np.bool_]:

@@ -1,10 +1,10 @@
-"""One file of measurements: every column in SI with the part it plays, and every fault of the file at once."""
+"""Files of measurements: every column in SI with the part it plays, and every fault of a file at once."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -18,7 +18,7 @@ from truing.inputs_file.values import broken_bound
 from truing.kernel import Offer
 from truing.measurements.csv_text import Faults
 from truing.measurements.overriding import WORDS, read_word, word_header_fault
-from truing.measurements.row_count import UNCOUNTED, RowCount
+from truing.measurements.row_count import RowCount
 from truing.measurements.table import RUN, SIGMA, DataTable, gather_table
 from truing.units import check_unit, from_si
 from truing.units.grammar import shown
@@ -30,20 +30,28 @@ Part = Literal["input", "word", "series", "condition", "axis", "measured", "sigm
 
 
 @dataclass(frozen=True)
-class DataFile:
-    """Rows of one file: columns by name, shape (n,), in SI, NaN (words: None) where a cell is empty.
+class DataRows:
+    """Rows of files, one behind another: columns by name, shape (n,), in SI, NaN (words: None) where a cell is empty.
 
-    ``parts`` says what each column is; words and labels are arrays of objects. ``units`` are those of the header.
-    ``count`` says how many rows the file holds, with those left out.
+    ``parts`` says what each column is; words and labels are arrays of objects. ``units`` are those of the headers.
+    ``file_of`` and ``lines`` say where each row stands, ``counts`` how many rows each file holds, with those left out;
+    ``runs`` of several files are unique. ``notes`` says what was done, one sentence each. ``absent`` names the
+    conditions that are not measured, ``answers`` holds what the model says by result, SI, and ``held_out`` marks the
+    rows that only judge.
     """
 
-    file: str
+    files: tuple[str, ...]
     columns: Mapping[str, NDArray[Any]]
     parts: Mapping[str, Part]
     units: Mapping[str, str]
+    file_of: NDArray[np.intp]
     lines: NDArray[np.intp]
     runs: NDArray[Any]
-    count: RowCount = UNCOUNTED
+    held_out: NDArray[np.bool_]
+    counts: tuple[RowCount, ...]
+    notes: tuple[str, ...] = ()
+    absent: frozenset[str] = frozenset()
+    answers: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -52,17 +60,34 @@ class DataFile:
         """Return the names of the columns that play one of these parts."""
         return [name for name in self.columns if self.parts[name] in parts]
 
-    def taken(self, rows: NDArray[Any]) -> DataFile:
+    def place(self, row: int) -> str:
+        """Return "FILE:LINE" of a row."""
+        return f"{self.files[int(self.file_of[row])]}:{int(self.lines[row])}"
+
+    def noted(self, *sentences: str) -> DataRows:
+        """Return the same rows with more that was done to them."""
+        return replace(self, notes=(*self.notes, *sentences))
+
+    def taken(self, rows: NDArray[Any]) -> DataRows:
         """Return some of the rows, in this order."""
-        columns = {name: values[rows] for name, values in self.columns.items()}
-        return replace(self, columns=columns, lines=self.lines[rows], runs=self.runs[rows])
+        return replace(
+            self,
+            columns={name: values[rows] for name, values in self.columns.items()},
+            file_of=self.file_of[rows],
+            lines=self.lines[rows],
+            runs=self.runs[rows],
+            held_out=self.held_out[rows],
+            answers={name: values[rows] for name, values in self.answers.items()},
+        )
 
-    def without(self, rows: NDArray[np.bool_], reason: str) -> DataFile:
-        """Leave out the rows that a mask names, for a reason that the count keeps."""
-        return replace(self.taken(~rows), count=self.count.without(reason, self.lines[rows].tolist()))
+    def without(self, rows: NDArray[np.bool_], reason: str) -> DataRows:
+        """Leave out the rows that a mask names, for a reason that the counts keep."""
+        lines = [self.lines[rows & (self.file_of == place)].tolist() for place in range(len(self.counts))]
+        counts = tuple(count.without(reason, taken) for count, taken in zip(self.counts, lines, strict=True))
+        return replace(self.taken(~rows), counts=counts)
 
 
-def read_data_file(path: Path, offer: Offer) -> tuple[DataFile, Faults]:
+def read_data_file(path: Path, offer: Offer) -> tuple[DataRows, Faults]:
     """Read one file for this calculation, with the faults of its headers, cells and bounds.
 
     Raises InputError where the file cannot be read at all.
@@ -83,9 +108,18 @@ def read_data_file(path: Path, offer: Offer) -> tuple[DataFile, Faults]:
     if not set(table.units) & set(model.measurable):
         faults.add(_nothing_measured(table, model), table.header_line)
     runs = table.columns.get(RUN, ()) if RUN not in model.input_fields else ()
-    units = {name: table.units[name] for name in columns}
-    lines = np.array(table.lines, dtype=np.intp)
-    return DataFile(str(path), columns, parts, units, lines, objects(runs or ("",) * len(table)), table.count), faults
+    rows = DataRows(
+        files=(str(path),),
+        columns=columns,
+        parts=parts,
+        units={name: table.units[name] for name in columns},
+        file_of=np.zeros(len(table), dtype=np.intp),
+        lines=np.array(table.lines, dtype=np.intp),
+        runs=objects(runs or ("",) * len(table)),
+        held_out=np.zeros(len(table), dtype=bool),
+        counts=(table.count,),
+    )
+    return rows, faults
 
 
 def objects(values: Iterable[Any]) -> NDArray[Any]:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from truing.diagnosis.covariates import censored_rows, covariates_of, held_out_rows
-from truing.diagnosis.data_file import DataFile, read_data_file
-from truing.diagnosis.joining import Joined, complete_rows, join, measured_rows, rows_of, settle_conditions
-from truing.diagnosis.records import FEWEST_READINGS, Records, Slip
-from truing.diagnosis.slips import Answers, factor_that_works, suspected_slips
+from truing.diagnosis.data_file import DataRows, read_data_file
+from truing.diagnosis.joining import complete_rows, join, measured_rows, rows_of, settle_conditions
+from truing.diagnosis.records import FEWEST_READINGS, Records
+from truing.diagnosis.slips import factor_that_works, suspected_slips
 from truing.diagnosis.tidying import counted, numbered, tidy
 from truing.errors import Fault, InputError
 from truing.gauge import one_machine, read_by_gauge
@@ -39,31 +39,16 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_slip
     an error may depend on. Raises InputError with every fault of every file: nothing measured, a unit that is unknown
     or of another dimension, cells that are no numbers, columns without any value, fewer than three rows.
     """
-    files, notes = _read(paths, offer)
+    files = _read(paths, offer)
     joined = join(files, setup)
-    _demand_rows(len(joined), joined, notes)
-    joined, said = settle_conditions(joined, files, setup)
-    notes += said
-    joined, said = complete_rows(joined, setup)
-    notes += said
-    _demand_rows(len(joined), joined, notes)
+    _demand_rows(joined)
+    joined = complete_rows(settle_conditions(joined, files, setup), setup)
+    _demand_rows(joined)
     _demand_logarithms(joined, setup)
-    joined, answers, said = _answered(joined, setup)
-    notes += said
-    held_out, said = held_out_rows(joined, setup)
-    notes += said
-    _demand_rows(int((~held_out).sum()), joined, notes)
-    joined, said = _enough_values(joined, ~held_out, notes, setup)
-    notes += said
-    joined, held_out, answers = _without_idle(joined, held_out, answers)
-    slips = suspected_slips(joined, answers, setup) if with_slips else ()
-    return _records(joined, setup, held_out, notes, slips)
-
-
-def _records(
-    joined: Joined, setup: Setup, held_out: NDArray[np.bool_], notes: Sequence[str], slips: tuple[Slip, ...]
-) -> Records:
-    """Put together what was read."""
+    joined = held_out_rows(_answered(joined, setup), setup)
+    _demand_rows(joined)
+    joined = measured_rows(_enough_values(joined, setup))
+    slips = suspected_slips(joined, setup) if with_slips else ()
     joined, sides, censored = censored_rows(joined, setup)
     covariates, said = covariates_of(joined, setup)
     sigma, unused = _sigma(joined)
@@ -71,13 +56,13 @@ def _records(
         files=joined.files,
         rows=rows_of(joined),
         file_of=joined.file_of,
-        run_of=numbered(joined.data.runs.tolist())[0],
-        lines=joined.data.lines,
-        measured={name: joined.data.columns[name] for name in joined.data.named("measured")},
+        run_of=numbered(joined.runs.tolist())[0],
+        lines=joined.lines,
+        measured={name: joined.columns[name] for name in joined.named("measured")},
         sigma=sigma,
         covariates=covariates,
-        held_out=held_out,
-        notes=(*notes, *said, *unused, *censored),
+        held_out=joined.held_out,
+        notes=(*joined.notes, *said, *unused, *censored),
         slips=slips,
         absent=joined.absent,
         sides=sides,
@@ -85,14 +70,11 @@ def _records(
     )
 
 
-def _read(paths: Sequence[Path], offer: Offer) -> tuple[list[DataFile], list[str]]:
+def _read(paths: Sequence[Path], offer: Offer) -> list[DataRows]:
     """Read every file and put its rows in order; raises InputError with the faults of all."""
     faults: list[Fault] = []
-    files: list[DataFile] = []
-    notes: list[str] = []
+    files: list[DataRows] = []
     once = {path.resolve(): path for path in reversed(paths)}
-    if len(once) < len(paths):
-        notes.append(f"{counted(len(paths) - len(once), 'file is', 'files are')} given twice and read once")
     for path in reversed(once.values()):
         try:
             file, found = read_data_file(path, offer)
@@ -100,64 +82,68 @@ def _read(paths: Sequence[Path], offer: Offer) -> tuple[list[DataFile], list[str
         except InputError as error:
             faults += error.faults
             continue
-        file, said = tidy(file, offer.model)
-        files.append(file)
-        notes += [f"{path}: {sentence}" if len(once) > 1 else sentence for sentence in said]
+        file = tidy(file, offer.model)
+        notes = [f"{path}: {sentence}" if len(once) > 1 else sentence for sentence in file.notes]
+        if not files and len(once) < len(paths):
+            notes.insert(0, f"{counted(len(paths) - len(once), 'file is', 'files are')} given twice and read once")
+        files.append(replace(file, notes=tuple(notes)))
     if faults:
         raise InputError(faults)
-    return files, notes
+    return files
 
 
-def _demand_rows(rows: int, joined: Joined, notes: Sequence[str]) -> None:
-    """Raise InputError where too few rows are left to explain anything; a short file is shown where it ends."""
+def _demand_rows(joined: DataRows, most: int | None = None) -> None:
+    """Raise InputError where too few rows are left to explain anything; a short file is shown where it ends.
+
+    ``most`` is the number of rows that can be used; of all that do not only judge where it is not given.
+    """
+    rows = int((~joined.held_out).sum()) if most is None else most
     if rows >= FEWEST:
         return
     files = joined.files
-    why = f" ({'; '.join(notes)})" if notes else ""
+    why = f" ({'; '.join(joined.notes)})" if joined.notes else ""
     held = f"holds {_FEW[rows]}" if len(files) == 1 else f"the files hold {_FEW[rows]} together"
     left = f"{_FEW[rows]} can be used" if why else held
     sentence = f"{left}; a diagnosis needs {FEWEST} rows at the very least, better fifty{why}"
-    end = int(joined.data.lines[-1]) if rows and not why else None
+    end = int(joined.lines[-1]) if rows and not why else None
     raise InputError([Fault(sentence, files[0], end) if len(files) == 1 else Fault(sentence)])
 
 
-def _sigma(joined: Joined) -> tuple[dict[str, NDArray[np.float64]], list[str]]:
+def _sigma(joined: DataRows) -> tuple[dict[str, NDArray[np.float64]], list[str]]:
     """Return the standard deviations that are given, by result; one of 0 is none."""
-    data, notes = joined.data, []
-    used = [name for name in data.named("sigma") if name.removeprefix(SIGMA) in data.columns]
+    notes = []
+    used = [name for name in joined.named("sigma") if name.removeprefix(SIGMA) in joined.columns]
     for name in used:
-        zero = int((data.columns[name] == 0).sum())
+        zero = int((joined.columns[name] == 0).sum())
         if zero:
             notes.append(f"'{name}' is 0 in {counted(zero)}, which no gauge is; it counts as not given there")
-    found = {name: np.where(data.columns[name] > 0, data.columns[name], np.nan) for name in used}
+    found = {name: np.where(joined.columns[name] > 0, joined.columns[name], np.nan) for name in used}
     return {name.removeprefix(SIGMA): values for name, values in found.items()}, notes
 
 
-def _demand_logarithms(joined: Joined, setup: Setup) -> None:
+def _demand_logarithms(joined: DataRows, setup: Setup) -> None:
     """Raise InputError where a reading that is to be compared as a logarithm has none."""
     faults = []
-    for name in joined.data.named("measured"):
+    for name in joined.named("measured"):
         if name in setup.diagnose.lognormal:
-            for row in (joined.data.columns[name] <= 0).nonzero()[0].tolist():
+            for row in (joined.columns[name] <= 0).nonzero()[0].tolist():
                 sentence = f"{name} is not above 0, so it has no logarithm; its noise cannot be lognormal"
-                faults.append(Fault(sentence, joined.files[int(joined.file_of[row])], int(joined.data.lines[row])))
+                faults.append(Fault(sentence, joined.files[int(joined.file_of[row])], int(joined.lines[row])))
     if faults:
         raise InputError(faults)
 
 
-def _enough_values(
-    joined: Joined, fitted: NDArray[np.bool_], notes: Sequence[str], setup: Setup
-) -> tuple[Joined, list[str]]:
+def _enough_values(joined: DataRows, setup: Setup) -> DataRows:
     """Leave out measured results with too few values to explain; raises InputError where none is left."""
-    measured = joined.data.named("measured")
+    measured = joined.named("measured")
     _, sides, censored = censored_rows(joined, setup)
-    known = {name: np.isfinite(joined.data.columns[name]) & (sides.get(name, 0) == np.int8(0)) for name in measured}
-    values = {name: int(known[name][fitted].sum()) for name in measured}
+    known = {name: np.isfinite(joined.columns[name]) & (sides.get(name, 0) == np.int8(0)) for name in measured}
+    values = {name: int(known[name][~joined.held_out].sum()) for name in measured}
     fewest = FEWEST_BESIDE if max(values.values()) >= FEWEST_BESIDE else FEWEST
     few = {name: count for name, count in values.items() if count < fewest}
     if len(few) == len(measured):
-        _demand_rows(max(few.values()), joined, [*notes, *censored])
-    columns = {name: column for name, column in joined.data.columns.items() if name not in few}
+        _demand_rows(joined.noted(*censored), max(few.values()))
+    columns = {name: column for name, column in joined.columns.items() if name not in few}
     more = f" to tell its noise; measure it {fewest} times or more" if fewest > FEWEST else ""
     said = [
         f"'{name}' is not used: {counted(count, 'value is', 'values are')} too few{more}" for name, count in few.items()
@@ -165,15 +151,15 @@ def _enough_values(
     readings = sum(count for name, count in values.items() if name not in few)
     if readings < FEWEST_READINGS:
         said.append(f"{readings} readings tell no cause from chance, so none is named; take twenty or more")
-    return replace(joined, data=replace(joined.data, columns=columns)), said
+    return replace(joined, columns=columns).noted(*said)
 
 
-def _answered(joined: Joined, setup: Setup) -> tuple[Joined, Answers, list[str]]:
+def _answered(joined: DataRows, setup: Setup) -> DataRows:
     """Hold the rows against the model as it stands; leave out those in which it fails."""
-    measured = joined.data.named("measured")
+    measured = joined.named("measured")
     found = read_by_gauge(one_machine(setup), rows_of(joined), measured)
     notes: list[str] = []
-    answers = dict(found.results)
+    joined = replace(joined, answers=found.results)
     if found.failed.any():
         first, reason = next(iter(found.reasons.items()))
         rows = counted(int(found.failed.sum()), "row is", "rows are")
@@ -181,34 +167,25 @@ def _answered(joined: Joined, setup: Setup) -> tuple[Joined, Answers, list[str]]
         hint = factor_that_works(joined, setup) if found.failed.mean() > MOST_FAILED else ""
         notes += [hint] if hint else []
         joined = _without_failed(joined, found.failed, found.reasons)
-        answers = {name: values[~found.failed] for name, values in answers.items()}
-    columns = dict(joined.data.columns)
+    columns = dict(joined.columns)
     for name in measured:
-        lost = np.isnan(answers[name]) & np.isfinite(columns[name])
+        lost = np.isnan(joined.answers[name]) & np.isfinite(columns[name])
         if lost.any():
             columns[name] = np.where(lost, np.nan, columns[name])
             notes.append(f"'{name}' is not used in {counted(int(lost.sum()))} that its axis does not reach")
-        if name in setup.diagnose.lognormal and (below := (answers[name] <= 0) & np.isfinite(columns[name])).any():
+        below = (joined.answers[name] <= 0) & np.isfinite(columns[name])
+        if name in setup.diagnose.lognormal and below.any():
             columns[name] = np.where(below, np.nan, columns[name])
             words = "in which the model says 0 or less, which has no logarithm"
             notes.append(f"'{name}' is not used in {counted(int(below.sum()))} {words}")
-    joined = replace(joined, data=replace(joined.data, columns=columns))
-    return joined, answers, notes
+    return replace(joined, columns=columns).noted(*notes)
 
 
-def _without_idle(
-    joined: Joined, held_out: NDArray[np.bool_], answers: Answers
-) -> tuple[Joined, NDArray[np.bool_], Answers]:
-    """Leave out the rows in which only results were measured that are not used."""
-    joined, idle = measured_rows(joined)
-    return joined, held_out[~idle], {name: values[~idle] for name, values in answers.items()}
-
-
-def _without_failed(joined: Joined, failed: NDArray[np.bool_], reasons: Mapping[int, str]) -> Joined:
+def _without_failed(joined: DataRows, failed: NDArray[np.bool_], reasons: Mapping[int, str]) -> DataRows:
     """Leave out the rows in which the model fails, each for its own reason."""
     lines: list[dict[str, list[int]]] = [{} for _ in joined.counts]
     for row in failed.nonzero()[0].tolist():
         of_file = lines[int(joined.file_of[row])]
-        of_file.setdefault(f"the model fails: {reasons[row]}", []).append(int(joined.data.lines[row]))
+        of_file.setdefault(f"the model fails: {reasons[row]}", []).append(int(joined.lines[row]))
     counts = tuple(count.without_all(taken) for count, taken in zip(joined.counts, lines, strict=True))
     return replace(joined.taken(~failed), counts=counts)

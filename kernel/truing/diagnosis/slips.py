@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from truing.diagnosis.joining import Joined, rows_of
+from truing.diagnosis.data_file import DataRows
+from truing.diagnosis.joining import rows_of
 from truing.diagnosis.records import Slip
 from truing.diagnosis.tidying import is_angle
 from truing.gauge import one_machine, read_by_gauge
@@ -63,11 +64,11 @@ class _Gauge:
         return best
 
 
-def suspected_slips(joined: Joined, answers: Answers, setup: Setup) -> tuple[Slip, ...]:
+def suspected_slips(joined: DataRows, setup: Setup) -> tuple[Slip, ...]:
     """Return the columns whose unit is probably wrong, by what each factor does to the error of the model."""
     out_of_range = tuple(_out_of_range(joined, setup))
-    measured = joined.data.named("measured")
-    if not any(_is_far(joined.data.columns[name], answers[name]) for name in measured):
+    measured = joined.named("measured")
+    if not any(_is_far(joined.columns[name], joined.answers[name]) for name in measured):
         return out_of_range
     few = joined.taken(_some_rows(joined))
     gauges = _gauges(few, setup)
@@ -101,23 +102,23 @@ def _is_beyond(one: _Gauge) -> bool:
     return any(_size(one.measured - one.answer, mode) > BETTER * one.reach[mode] for mode in (0, 1))
 
 
-def _some_rows(joined: Joined) -> NDArray[np.intp]:
+def _some_rows(joined: DataRows) -> NDArray[np.intp]:
     """Return rows spread over the whole record; where series make records, the first whole ones."""
-    if not joined.data.named("series"):
+    if not joined.named("series"):
         return np.unique(np.linspace(0, len(joined) - 1, MOST_ROWS).astype(np.intp))
-    first = joined.data.runs == joined.data.runs[0]
+    first = joined.runs == joined.runs[0]
     return np.flatnonzero(first)
 
 
-def _answers(few: Joined, machine: Setup, trials: Sequence[Trial]) -> list[Answers]:
-    return list(read_trials(machine, rows_of(few), trials, few.data.named("measured")))
+def _answers(few: DataRows, machine: Setup, trials: Sequence[Trial]) -> list[Answers]:
+    return list(read_trials(machine, rows_of(few), trials, few.named("measured")))
 
 
-def _gauges(few: Joined, setup: Setup) -> list[_Gauge]:
+def _gauges(few: DataRows, setup: Setup) -> list[_Gauge]:
     """Return every measured result on these rows, with how far one standard deviation of each tolerance reaches."""
     machine = one_machine(setup)
     scatter = [(name, each.sd) for by_input in setup.distributions().values() for name, each in by_input.items()]
-    moved = [{name: few.data.columns.get(name, machine.nominal(name)) + sd} for name, sd in scatter]
+    moved = [{name: few.columns.get(name, machine.nominal(name)) + sd} for name, sd in scatter]
     answers, *others = _answers(few, machine, [{}, *moved])
     reach = {name: np.zeros(2) for name in answers}
     for other in others:
@@ -126,9 +127,9 @@ def _gauges(few: Joined, setup: Setup) -> list[_Gauge]:
             reach[result] += np.where(np.isfinite(sizes), sizes, 0.0) ** 2
     found = []
     for name, values in answers.items():
-        here = np.isfinite(few.data.columns[name])
+        here = np.isfinite(few.columns[name])
         raw, about = np.sqrt(reach[name]).tolist()
-        found.append(_Gauge(name, few.data.columns[name], np.where(here, values, np.nan), (raw, about)))
+        found.append(_Gauge(name, few.columns[name], np.where(here, values, np.nan), (raw, about)))
     return found
 
 
@@ -140,7 +141,7 @@ def _factors(unit: str) -> Mapping[float, str]:
     return {**FACTORS, **(INCHES if is_length else {}), **(ANGLES if is_angle(unit) else {})}
 
 
-def _own_slip(one: _Gauge, few: Joined, setup: Setup) -> Slip | None:
+def _own_slip(one: _Gauge, few: DataRows, setup: Setup) -> Slip | None:
     """Return the slip in the unit of a measured result, if one factor on it explains the error."""
     unit = setup.model.own_result_fields[one.name].unit
     gains = {factor: one.gain(one.measured * factor, one.answer) for factor in _factors(unit)}
@@ -151,11 +152,11 @@ def _own_slip(one: _Gauge, few: Joined, setup: Setup) -> Slip | None:
     return _slip(one.name, best, few, _off(one, after, setup), _factors(unit)[best])
 
 
-def _input_slip(few: Joined, gauges: list[_Gauge], beyond: list[_Gauge], setup: Setup) -> Slip | None:
+def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup: Setup) -> Slip | None:
     """Return the slip of an input or condition that explains every error that is too large, and worsens none."""
     best: tuple[float, Slip] | None = None
     trials = list(_trials(few, setup))
-    scaled = [{name: few.data.columns[name] * factor} for name, factor, _ in trials]
+    scaled = [{name: few.columns[name] * factor} for name, factor, _ in trials]
     for (name, factor, words), answers in zip(trials, _answers(few, one_machine(setup), scaled), strict=True):
         gains = [one.gain(one.measured, answers[one.name]) for one in beyond]
         if not all(gains) or any(_is_worse(one, answers[one.name]) for one in gauges):
@@ -172,15 +173,15 @@ def _is_worse(one: _Gauge, answer: NDArray[np.float64]) -> bool:
     return after > LIKE * BETTER * max(before, one.reach[0])
 
 
-def _trials(few: Joined, setup: Setup) -> Iterator[tuple[str, float, str]]:
+def _trials(few: DataRows, setup: Setup) -> Iterator[tuple[str, float, str]]:
     """Give every column that the model sees with every factor that its bounds allow."""
     seen = {need.name for item in setup.effects for need in item.effect.needs}
-    for name in few.data.named("input", "series", "condition"):
+    for name in few.named("input", "series", "condition"):
         item = setup.model.input_fields.get(name)
         if item is None and name not in seen:
             continue
         unit = item.unit if item is not None else setup.model.known_conditions[name].unit
-        values = few.data.columns[name]
+        values = few.columns[name]
         ends = (float(np.nanmin(values)), float(np.nanmax(values)))
         for factor, words in _factors(unit).items():
             if item is None or not any(broken_bound(item, factor * end) for end in ends):
@@ -197,24 +198,24 @@ def _off(one: _Gauge, after: NDArray[np.float64], setup: Setup) -> str:
     return f"the model is then {sizes[1]:.3g}{scale} off '{one.name}'{about} instead of {sizes[0]:.3g}{scale}"
 
 
-def _slip(name: str, factor: float, joined: Joined, why: str, words: str) -> Slip:
+def _slip(name: str, factor: float, joined: DataRows, why: str, words: str) -> Slip:
     header = _header(name, joined)
     return Slip(name, factor, f"the unit of column {header} is probably wrong: multiply it by {words}; {why}")
 
 
-def _header(name: str, joined: Joined) -> str:
-    unit = joined.data.units.get(name, "")
+def _header(name: str, joined: DataRows) -> str:
+    unit = joined.units.get(name, "")
     return shown(f"{name} [{unit or '1'}]")
 
 
-def _out_of_range(joined: Joined, setup: Setup) -> Iterator[Slip]:
+def _out_of_range(joined: DataRows, setup: Setup) -> Iterator[Slip]:
     """Give conditions that lie far beyond the range in which they can be set, where one factor brings them into it."""
-    for name in joined.data.named("condition"):
+    for name in joined.named("condition"):
         condition = setup.model.known_conditions[name]
         if condition.low is None or condition.high is None or condition.derived:
             continue
         low, high = to_si(condition.low, condition.unit), to_si(condition.high, condition.unit)
-        values, span = joined.data.columns[name], high - low
+        values, span = joined.columns[name], high - low
         if np.mean((values < low - BETTER * span) | (values > high + BETTER * span)) < 0.5:
             continue
         for factor, words in _factors(condition.unit).items():
@@ -225,14 +226,12 @@ def _out_of_range(joined: Joined, setup: Setup) -> Iterator[Slip]:
                 break
 
 
-def factor_that_works(joined: Joined, setup: Setup) -> str:
+def factor_that_works(joined: DataRows, setup: Setup) -> str:
     """Say with which factor on a column the model would not fail, where there is one; nothing otherwise."""
     few = joined.taken(_some_rows(joined))
-    machine, wanted = one_machine(setup), joined.data.named("measured")
+    machine, wanted = one_machine(setup), joined.named("measured")
     for name, factor, words in _trials(few, setup):
-        scaled = replace(
-            few, data=replace(few.data, columns={**few.data.columns, name: few.data.columns[name] * factor})
-        )
+        scaled = replace(few, columns={**few.columns, name: few.columns[name] * factor})
         if read_by_gauge(machine, rows_of(scaled), wanted).failed.mean() <= 1 - INLIERS:
             return f"the model works where column {_header(name, joined)} is multiplied by {words}: is its unit right?"
     return ""

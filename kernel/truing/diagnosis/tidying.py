@@ -1,6 +1,6 @@
 """Rows of one file put in order: no block twice, sorted by time inside each run, angles in one piece, histories made.
 
-Nothing is done in silence: every function returns what it did as sentences.
+Nothing is done in silence: every function notes what it did.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from truing.declare.model import Model
-from truing.diagnosis.data_file import DataFile, Part
+from truing.diagnosis.data_file import DataRows, Part
 from truing.inputs_file.values import broken_bound
 from truing.measurements.derived import derive
 from truing.units import same_dimension
@@ -30,17 +30,11 @@ MOST_JUMPS = 0.25
 FEWEST_IN_BLOCK = 3
 """Fewer rows that repeat earlier ones may be chance where the gauge is coarse."""
 BLOCK_AGAIN = "in a block that repeats an earlier one in every cell, times included"
-Tidied = tuple[DataFile, list[str]]
 
 
-def tidy(data: DataFile, model: Model[Any, Any]) -> Tidied:
-    """Return the rows of a file in order, and what was done to them, one sentence each."""
-    notes: list[str] = []
-    for step in (each_block_once, in_time_order):
-        data, said = step(data)
-        notes += said
-    data, said = in_one_piece(data, model)
-    return with_histories(data, model), notes + said
+def tidy(data: DataRows, model: Model[Any, Any]) -> DataRows:
+    """Return the rows of a file in order."""
+    return with_histories(in_one_piece(in_time_order(each_block_once(data)), model), model)
 
 
 def counted(number: int, one: str = "row", many: str = "") -> str:
@@ -55,7 +49,7 @@ def numbered(labels: Iterable[Any]) -> tuple[NDArray[np.intp], list[Any]]:
     return np.array(numbers, dtype=np.intp), list(known)
 
 
-def each_block_once(data: DataFile) -> Tidied:
+def each_block_once(data: DataRows) -> DataRows:
     """Leave out blocks of rows that were written twice: where the clock goes back and the rows that follow are there.
 
     A block has three rows or more over two times at the least, each equal in every cell, its time included, to the row
@@ -74,12 +68,12 @@ def each_block_once(data: DataFile) -> Tidied:
         if time is not None and end - start >= FEWEST_IN_BLOCK and np.ptp(time[start:end]) > 0:
             is_again[start:end] = True
     if not is_again.any():
-        return data, []
+        return data
     again = counted(int(is_again.sum()), "row is", "rows are")
-    return data.without(is_again, BLOCK_AGAIN), [f"{again} left out: {BLOCK_AGAIN}"]
+    return data.without(is_again, BLOCK_AGAIN).noted(f"{again} left out: {BLOCK_AGAIN}")
 
 
-def _first_alike(data: DataFile) -> NDArray[np.intp]:
+def _first_alike(data: DataRows) -> NDArray[np.intp]:
     """Return for each row the place of the first one that is equal in every cell."""
     columns = [_as_numbers(values).view(np.uint64) for values in (data.runs, *data.columns.values())]
     mixed = np.zeros(len(data), dtype=np.uint64)
@@ -99,23 +93,23 @@ def _as_numbers(values: NDArray[Any]) -> NDArray[np.float64]:
     return np.where(np.isnan(values), np.nan, values + 0.0)
 
 
-def in_time_order(data: DataFile) -> Tidied:
+def in_time_order(data: DataRows) -> DataRows:
     """Put runs one after another, by their first time, and sort rows by time inside each; without a time as given."""
     run_of, names = numbered(data.runs.tolist())
     time = _time(data)
     by_run = np.argsort(run_of, kind="stable")
     if time is None:
-        return data.taken(by_run), []
+        return data.taken(by_run)
     starts = np.full(len(names), np.inf)
     np.fmin.at(starts, run_of, time)
     rank = np.empty(len(names), dtype=np.intp)
     rank[np.argsort(starts, kind="stable")] = np.arange(len(names))
     late = _late(time[by_run], np.bincount(run_of, minlength=len(names)))
     sentence = f"{counted(late, 'row was', 'rows were')} out of order and sorted by time inside the run"
-    return data.taken(np.lexsort((time, rank[run_of]))), [sentence] if late else []
+    return data.taken(np.lexsort((time, rank[run_of]))).noted(*[sentence] if late else ())
 
 
-def _time(data: DataFile) -> NDArray[np.float64] | None:
+def _time(data: DataRows) -> NDArray[np.float64] | None:
     """Return the times of the rows where they are known; a result of that name is no clock."""
     if data.parts.get(TIME) in {None, "label", "word", "measured"}:
         return None
@@ -131,7 +125,7 @@ def _late(time: NDArray[np.float64], sizes: NDArray[np.intp]) -> int:
     return late
 
 
-def in_one_piece(data: DataFile, model: Model[Any, Any]) -> Tidied:
+def in_one_piece(data: DataRows, model: Model[Any, Any]) -> DataRows:
     """Join angles of inputs and conditions that jump by a turn inside a sweep.
 
     A run is a sweep if 95 % of its steps are below 90 degrees once it is joined and at most every fourth step jumps.
@@ -148,7 +142,7 @@ def in_one_piece(data: DataFile, model: Model[Any, Any]) -> Tidied:
         if jumps and _keeps_bounds(name, joined, model):
             columns[name] = joined
             notes.append(f"'{name}' jumps by a turn at {counted(jumps, 'place')} of a sweep and was joined there")
-    return replace(data, columns=columns), notes
+    return replace(data, columns=columns).noted(*notes)
 
 
 def _joined(angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:
@@ -179,13 +173,13 @@ def _declared_unit(name: str, model: Model[Any, Any]) -> str:
     return item.unit if item is not None else model.known_conditions[name].unit
 
 
-def _each_run(data: DataFile) -> Sequence[NDArray[np.intp]]:
+def _each_run(data: DataRows) -> Sequence[NDArray[np.intp]]:
     """Give the rows of each run; runs stand one after another."""
     run_of, _ = numbered(data.runs.tolist())
     return np.split(np.arange(len(data)), np.flatnonzero(np.diff(run_of)) + 1)
 
 
-def with_histories(data: DataFile, model: Model[Any, Any]) -> DataFile:
+def with_histories(data: DataRows, model: Model[Any, Any]) -> DataRows:
     """Make the conditions that are derived from whole runs: what has been, since the first row of the file."""
     made: dict[str, NDArray[Any]] = {}
     parts: dict[str, Part] = dict(data.parts)
