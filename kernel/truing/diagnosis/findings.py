@@ -18,6 +18,7 @@ from truing.diagnosis.result import Amount, Finding, Kind, Noise, Wrong
 from truing.diagnosis.sample import Channel, errors_of, residuals_of
 from truing.diagnosis.shape_words import in_unit as in_unit
 from truing.diagnosis.shape_words import order_in_words, shape_in_words, step_in_words
+from truing.diagnosis.shares import added_by
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -147,7 +148,7 @@ def _finding(found: Fit, extended: Extended, p_value: float, name: str, unit: st
     """Describe an explanation of one cause as it was fitted."""
     (cause,), (values,) = found.causes, found.values
     machine = found.sample.machine
-    added = _added(found, extended)[cause.tag][name]
+    added = added_by(found, extended)[cause.name][name]
     label = _label(found, name)
     kind: Kind = "order" if label[0] == "order" else "step" if label[0] == "step" else "trend"
     if cause.shape is not None:
@@ -158,27 +159,13 @@ def _finding(found: Fit, extended: Extended, p_value: float, name: str, unit: st
     return Finding(kind, " and ".join(label[1:]), p_value, text)
 
 
-def _added(found: Fit, extended: Extended) -> dict[str, dict[str, Matrix]]:
-    """Return by cause what it adds to each result of an explanation, SI on all rows of the records."""
-    points = [(found.values, found.moved)]
-    for place, cause in enumerate(found.causes):
-        off = found.values[place].copy()
-        off[cause.amplitudes] = 0.0
-        points.append(((*found.values[:place], off, *found.values[place + 1 :]), found.moved))
-    whole, *without = extended.at(found.causes, points)
-    made = {}
-    for cause, less in zip(found.causes, without, strict=True):
-        made[cause.tag] = {name: np.nan_to_num(whole[name] - shown) for name, shown in less.items()}
-    return made
-
-
 def _acting(chosen: Chosen) -> dict[str, tuple[Cause, ...]]:
     """Return by result the registered effects of the explanation that show in it."""
     best = chosen.best
-    added = _added(best, chosen.competition.extended) if best.causes else {}
+    added = added_by(best, chosen.competition.extended) if best.causes else {}
     registered = [cause for cause in best.causes if cause.effect is not None]
     return {
-        channel.name: tuple(cause for cause in registered if _shows(channel, added[cause.tag][channel.name]))
+        channel.name: tuple(cause for cause in registered if _shows(channel, added[cause.name][channel.name]))
         for channel in best.sample.channels
     }
 

@@ -1,4 +1,4 @@
-"""How much of what the model missed each named cause accounts for."""
+"""What each cause adds to the model, and how much of what the model missed each named one accounts for."""
 
 from __future__ import annotations
 
@@ -8,10 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.extended import Extended
+from truing.diagnosis.fitted import Fit
 from truing.diagnosis.result import Cause
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
 
 
 def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
@@ -23,15 +27,14 @@ def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
     if len(causes) < 2:
         return causes
     best = chosen.best
-    points = [(_without(chosen, name), best.moved) for name in ("", *(cause.effect for cause in causes))]
-    whole, *rest = chosen.competition.extended.at(best.causes, points)
+    added = added_by(best, chosen.competition.extended)
     squares = np.array(
         [
             sum(
-                np.nansum(((whole[each.name] - less[each.name])[each.rows] * each.factors / each.weights) ** 2)
+                np.sum((added[cause.effect][each.name][each.rows] * each.factors / each.weights) ** 2)
                 for each in best.sample.channels
             )
-            for less in rest
+            for cause in causes
         ]
     )
     if not squares.sum() > 0:
@@ -40,10 +43,20 @@ def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
     return tuple(sorted(weighed, key=lambda cause: -cause.share))
 
 
-def _without(chosen: Chosen, name: str) -> list[NDArray[np.float64]]:
-    """Return the numbers of the explanation with the amplitudes of one name at zero."""
+def added_by(found: Fit, extended: Extended) -> dict[str, dict[str, Matrix]]:
+    """Return by name of a cause what all that it names adds to each result of an explanation, SI on all rows."""
+    names = list(dict.fromkeys(cause.name for cause in found.causes))
+    whole, *without = extended.at(found.causes, [(_without(found, name), found.moved) for name in ("", *names)])
+    return {
+        name: {result: np.nan_to_num(whole[result] - values) for result, values in less.items()}
+        for name, less in zip(names, without, strict=True)
+    }
+
+
+def _without(found: Fit, name: str) -> list[Matrix]:
+    """Return the numbers of an explanation with the amplitudes of one name at zero."""
     made = []
-    for cause, values in zip(chosen.best.causes, chosen.best.values, strict=True):
+    for cause, values in zip(found.causes, found.values, strict=True):
         made.append(values.copy())
         if cause.name == name:
             made[-1][cause.amplitudes] = 0.0
