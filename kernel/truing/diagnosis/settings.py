@@ -13,8 +13,9 @@ from scipy.stats import qmc
 from truing.declare.fields import InputField
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.records import Covariate, Records
+from truing.diagnosis.tidying import is_angle
 from truing.measurements import RowsFile
-from truing.units import same_dimension, to_si
+from truing.units import to_si
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -69,8 +70,7 @@ def _input_box(field: InputField, low: float, high: float, *, is_time: bool) -> 
     declared = [getattr(field.spec, key, None) for key in ("at_least", "above", "at_most", "below")]
     lows = [float(to_si(value, field.unit)) for value in declared[:2] if isinstance(value, (int, float))]
     highs = [float(to_si(value, field.unit)) for value in declared[2:] if isinstance(value, (int, float))]
-    is_angle = field.unit not in {"", "1", "-"} and same_dimension(field.unit, "rad")
-    if is_angle and not lows and not highs:
+    if is_angle(field.unit) and not lows and not highs:
         return min(low, -pi), max(high, pi)
     reach = (high - low) / 2
     if is_time:

@@ -81,9 +81,7 @@ def _place(item: Covariate, at: float) -> str:
 
 
 def _length(item: Covariate, value: float) -> str:
-    """Write a distance along a covariate, in rows where it is the place in the record."""
-    if item.role == "order":
-        return f"{format_number(value, PLACE_DIGITS)} rows"
+    """Write a distance along a covariate."""
     unit = readable_unit(item.unit, value)
     length = f"{format_number(float(from_si(value, unit)), PLACE_DIGITS)} {unit}".strip()
     return f"{length} of {item.name}" if item.role != "time" else length

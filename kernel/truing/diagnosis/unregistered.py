@@ -57,11 +57,6 @@ class Shape:
     results: tuple[str, ...]
     terms: Callable[[Sequence[float], Mapping[str, Covariate]], list[Term]]
 
-    @property
-    def words(self) -> str:
-        """What it is, for rankings."""
-        return f"{self.kind} over {' and '.join(self.depends_on)}"
-
 
 def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_steps: bool) -> list[Cause]:
     """Return the shapes over every covariate that moved, for every result alone and for all of them together.
