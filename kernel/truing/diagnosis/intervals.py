@@ -90,6 +90,15 @@ def value_of(found: Fit, place: int) -> float:
     return float(np.concatenate(found.values)[place])
 
 
+def input_value(found: Fit, place: int) -> float:
+    """Return a tolerated input as calibrated and shifted, SI."""
+    machine = found.sample.machine
+    shifts = zip(found.causes, found.values, strict=True)
+    off = float(found.moved[place]) + sum(float(values[0]) for cause, values in shifts if cause.tolerated == place)
+    item = machine.inputs[place]
+    return float(machine.start.nominal(item.name)) + item.mean + off * item.sd
+
+
 def certainty_of(found: Fit, extended: Extended) -> Certainty:
     """Return how certain the numbers of a fit are.
 
@@ -136,14 +145,10 @@ def _scores(slopes: Matrix, left: Matrix, inverse: Matrix) -> Matrix:
 
 
 def interval(found: Fit, certainty: Certainty, place: int) -> tuple[float, float]:
-    """Return the 95 % interval of a number in SI, within its bounds."""
-    number, unit = numbers_of(found)[place], float(certainty.units[place])
-    value, reach = value_of(found, place), certainty.reach_of(place)
-    if number.is_log:
-        low, high = value * exp(-min(reach, 700.0)), value * exp(min(reach, 700.0))
-    else:
-        low, high = value - reach * unit, value + reach * unit
-    return max(low, min(number.low, value)), min(high, max(number.high, value))
+    """Return the 95 % interval of an amplitude in SI, within its bounds."""
+    number, value = numbers_of(found)[place], value_of(found, place)
+    reach = certainty.reach_of(place) * float(certainty.units[place])
+    return max(value - reach, min(number.low, value)), min(value + reach, max(number.high, value))
 
 
 def may_be_zero(found: Fit, certainty: Certainty, cause: Cause) -> bool:

@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from truing.declare.sources import Unknown
-from truing.diagnosis.causes import INPUT, Number
 from truing.diagnosis.causes import Cause as Competitor
+from truing.diagnosis.causes import Number
 from truing.diagnosis.chosen import Chosen, Rival
 from truing.diagnosis.extended import Extended, shape_added
+from truing.diagnosis.extended import switched_on as effects_on
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import (
     Certainty,
     certainty_of,
+    input_value,
     interval,
     numbers_of,
     places_of,
@@ -95,7 +97,7 @@ def _input(known: _Known, parts: Sequence[Competitor]) -> Cause:
         own[places_of(found, cause)[0]] = 1.0
         if len(found.inputs):
             own[-len(found.inputs) :] = found.sample.directions[cause.tolerated]
-        value, reach = _input_value(found, cause.tolerated), known.certainty.reach(own) * given.sd
+        value, reach = input_value(found, cause.tolerated), known.certainty.reach(own) * given.sd
         made[machine.records.files[given.file] if given.file >= 0 else ""] = value, value - reach, value + reach
     return Cause(parts[0].name, (_of_files(name, made, machine.start.unit_of(name)),))
 
@@ -137,23 +139,15 @@ def _fitted(known: _Known, unknown: Unknown, own: Sequence[int]) -> FittedUnknow
 
 def switched_on(chosen: Chosen, causes: Sequence[Cause]) -> tuple[SwitchedOn, ...]:
     """Return the named effects as they are switched on in the extended model; what was not excited is 0."""
-    start = chosen.best.sample.machine.start
-    known, before = start.model.known_effects, {item.effect.name: item.values for item in start.effects}
+    best = chosen.best
+    fitted = {on.effect.name: on for on in effects_on(best.causes, best.values, best.sample.machine)}
     made = []
     for cause in causes:
-        if cause.effect.startswith(INPUT):
-            continue
-        effect = known[cause.effect]
-        values = {unknown.name: unknown.value for unknown in cause.unknowns}
-        if not (effect.parts and effect.takes_any):
-            rest = dict.fromkeys((each.name for each in effect.unknowns), 0.0)
-            values = {**rest, **before.get(cause.effect, {}), **values}
-        sds = {}
-        if cause.covariance:
-            names = [unknown.name for unknown in cause.unknowns]
-            sds = {name: cause.covariance[place][place] ** 0.5 for place, name in enumerate(names)}
-        complete = cause.covariance if len(cause.unknowns) == len(values) > 1 else ()
-        made.append(SwitchedOn(effect, values, sds, complete))
+        if cause.effect in fitted:
+            on, variances = fitted[cause.effect], np.diag(cause.covariance or np.zeros((0, 0))).tolist()
+            sds = {unknown.name: square**0.5 for unknown, square in zip(cause.unknowns, variances, strict=False)}
+            complete = cause.covariance if len(cause.unknowns) == len(on.values) > 1 else ()
+            made.append(replace(on, sds=sds, covariance=complete))
     return tuple(made)
 
 
@@ -175,18 +169,9 @@ def input_values(found: Fit) -> Mapping[str, tuple[float, float]]:
     """Return every tolerated input as calibrated, SI, and how far it moved in units of its sd (the first file's)."""
     made: dict[str, tuple[float, float]] = {}
     for place, item in enumerate(found.sample.machine.inputs):
-        value = _input_value(found, place)
+        value = input_value(found, place)
         made.setdefault(item.name, (value, (value - item.design) / item.sd))
     return made
-
-
-def _input_value(found: Fit, place: int) -> float:
-    """Return a tolerated input as calibrated and shifted, SI."""
-    machine = found.sample.machine
-    shifts = zip(found.causes, found.values, strict=True)
-    off = float(found.moved[place]) + sum(float(values[0]) for cause, values in shifts if cause.tolerated == place)
-    item = machine.inputs[place]
-    return float(machine.start.nominal(item.name)) + item.mean + off * item.sd
 
 
 def calibrated_of(found: Fit) -> tuple[Calibrated, ...]:

@@ -7,6 +7,7 @@ from math import inf
 from truing.diagnosis.alarms import AT_BOUND, OUTSIDE
 from truing.diagnosis.causes import Number
 from truing.diagnosis.fitted import Fit
+from truing.diagnosis.intervals import input_value
 
 
 def signs_of_wrong(found: Fit) -> int:
@@ -31,11 +32,5 @@ def is_at_bound(number: Number, value: float) -> bool:
 def far_inputs(found: Fit) -> list[int]:
     """Return the places of inputs that no cause shifts and that were moved far beyond their tolerances."""
     shifted = {cause.tolerated for cause in found.causes}
-    inputs, moved = found.sample.machine.inputs, found.moved
-    start = found.sample.machine.start
-    made = []
-    for place, item in enumerate(inputs):
-        off = (float(start.nominal(item.name)) + item.mean + float(moved[place]) * item.sd - item.design) / item.sd
-        if place not in shifted and abs(off) > OUTSIDE:
-            made.append(place)
-    return made
+    free = [(place, item) for place, item in enumerate(found.sample.machine.inputs) if place not in shifted]
+    return [place for place, item in free if abs((input_value(found, place) - item.design) / item.sd) > OUTSIDE]

@@ -22,6 +22,7 @@ from truing.diagnosis.design import Proposal, is_physical, name_of, rival_fits
 from truing.diagnosis.extended import switched_on
 from truing.diagnosis.findings import in_unit
 from truing.diagnosis.fitted import Fit
+from truing.diagnosis.intervals import input_value
 from truing.diagnosis.machine import Machine, machine_of, predict
 from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import Records
@@ -76,15 +77,10 @@ def rival_explanations(chosen: Chosen) -> list[Explanation]:
 
 
 def _explanation(found: Fit) -> Explanation:
-    machine, off = found.sample.machine, np.array(found.moved)
-    shifted = [cause for cause in found.causes if cause.tolerated >= 0]
-    for cause in shifted:
-        off[cause.tolerated] += found.of(cause)[0]
-    inputs: dict[str, float] = {}
-    for cause in shifted:
-        given = machine.inputs[cause.tolerated]
-        value = float(machine.start.nominal(given.name)) + given.mean + float(off[cause.tolerated]) * given.sd
-        inputs.setdefault(given.name, value)
+    machine, inputs = found.sample.machine, dict[str, float]()
+    for cause in found.causes:
+        if cause.tolerated >= 0:
+            inputs.setdefault(machine.inputs[cause.tolerated].name, input_value(found, cause.tolerated))
     return Explanation(name_of(found), tuple(switched_on(found.causes, found.values, machine)), inputs)
 
 
