@@ -206,7 +206,7 @@ def test_a_setting_added_by_one_rank_is_a_full_refit(gauges: int) -> None:
     signal = {name: rng.normal(size=5) for name in names}
     start = inverse @ data.T @ truth
     first = float(np.sum((truth - data @ start) ** 2) + start @ start)
-    duel = _Duel(("a", "b"), first, start, inverse, signal, rows)
+    duel = _Duel(("a", "b"), first, start, inverse, np.array([*signal.values()]), np.array([*rows.values()]))
     design, target = np.concatenate([data, np.eye(3)]), np.concatenate([truth, np.zeros(3)])
     for place in (3, 0, 4):
         gain = duel.gains()[place]

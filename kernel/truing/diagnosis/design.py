@@ -50,25 +50,25 @@ UNSEEN = 1e-9
 class _Duel:
     """One explanation believed, a rival refitted to it: the rival's coefficients and inverse normal matrix.
 
-    ``signal`` and ``rows`` hold, by result, what the believed one says at every setting (T,), and the rival's row
-    there (T, p), both in units of the noise of one value.
+    ``signal`` (R, T) is what the believed one says of every result at every setting, ``rows`` (R, T, p) the rival's
+    rows there, both in units of the noise of one value.
     """
 
     names: tuple[str, str]
     separation: float
     coefficients: Matrix
     inverse: Matrix
-    signal: Mapping[str, Matrix]
-    rows: Mapping[str, Matrix]
+    signal: Matrix
+    rows: Matrix
 
     def gains(self) -> Matrix:
         """Return what every setting would add to the separation, shape (T,)."""
-        total = np.zeros(len(next(iter(self.signal.values()))))
-        for name, signal in self.signal.items():
-            rows = self.rows[name]
-            leverage = np.einsum("ij,jk,ik->i", rows, self.inverse, rows)
-            total += (signal - rows @ self.coefficients) ** 2 / (1 + leverage)
-        return total
+        leverage = np.einsum("rti,ij,rtj->rt", self.rows, self.inverse, self.rows)
+        return np.asarray(np.sum(self.left() ** 2 / (1 + leverage), axis=0))
+
+    def left(self) -> Matrix:
+        """Return what the rival gets wrong at every setting, (R, T)."""
+        return np.asarray(self.signal - self.rows @ self.coefficients)
 
     def needed(self, places: Sequence[int]) -> int | None:
         """Return how many points at these settings, each as often as the others, tell the two apart; None: too many.
@@ -76,9 +76,8 @@ class _Duel:
         ``times`` readings at every setting leave the rival ``left' (1 / times + R inverse R')^-1 left`` more than now,
         R its rows there and ``left`` what it gets wrong before it is fitted to them.
         """
-        rows = np.concatenate([rows[list(places)] for rows in self.rows.values()])
-        signal = np.concatenate([signal[list(places)] for signal in self.signal.values()])
-        left, carried = signal - rows @ self.coefficients, rows @ self.inverse @ rows.T
+        rows = self.rows[:, list(places)].reshape(-1, self.rows.shape[-1])
+        left, carried = self.left()[:, list(places)].ravel(), rows @ self.inverse @ rows.T
         point = np.arange(len(rows)) % max(len(places), 1)
         counts: list[int] = [*range(1, len(places)), *range(len(places), MOST_POINTS + 1, len(places) or MOST_POINTS)]
         for count in counts:
@@ -90,11 +89,10 @@ class _Duel:
 
     def measure(self, place: int) -> None:
         """Add one setting to the data: the rival refits (exact rank-one update)."""
-        for name, signal in self.signal.items():
-            row = self.rows[name][place]
+        for signal, row in zip(self.signal[:, place], self.rows[:, place], strict=True):
             carried = self.inverse @ row
             scale = 1 + float(row @ carried)
-            left = float(signal[place] - row @ self.coefficients)
+            left = float(signal - row @ self.coefficients)
             self.separation += left**2 / scale
             self.coefficients = self.coefficients + carried * (left / scale)
             self.inverse = self.inverse - carried[:, None] * carried[None, :] / scale
@@ -225,15 +223,15 @@ def _points(chosen: Chosen, settings: Mapping[str, Matrix], live: Sequence[_Duel
 class _Seen:
     """An explanation on the data and at the settings that are tried.
 
-    ``there`` is what it predicts by result at the settings (T,), SI. Columns are derivatives by its free numbers, as
-    the fit sees them, and by the directions of the inputs: of the sample's rows in units of the noise, (rows, p), and
-    at the settings in SI, (T, p).
+    ``there`` is what it predicts of the results at the settings (R, T), SI. Columns are derivatives by its free
+    numbers, as the fit sees them, and by the directions of the inputs: of the sample's rows in units of the noise,
+    (rows, p), and at the settings in SI, (R, T, p).
     """
 
     found: Fit
     columns: Matrix
-    there: Mapping[str, Matrix]
-    columns_there: Mapping[str, Matrix]
+    there: Matrix
+    columns_there: Matrix
 
 
 def _duels(chosen: Chosen, several: Sequence[Fit], settings: Mapping[str, Matrix]) -> list[_Duel]:
@@ -242,7 +240,7 @@ def _duels(chosen: Chosen, several: Sequence[Fit], settings: Mapping[str, Matrix
     tried = elsewhere(made.extended, machine_there(made.sample.machine, settings))
     roots = made.sample.roots(chosen.best.in_sample(made.sample).left)
     seen = [_seen(found.in_sample(made.sample), made.extended, tried) for found in several]
-    spreads = _spreads(made.sample, chosen.best)
+    spreads = np.array(list(_spreads(made.sample, chosen.best).values()))[:, None]
     return [_duel(a, b, roots, spreads) for a, b in permutations(seen, 2) if not a.found.key <= b.found.key]
 
 
@@ -252,7 +250,7 @@ def _spreads(sample: Sample, best: Fit) -> dict[str, float]:
     return {each.name: each.scale * float(square) ** 0.5 for each, square in zip(sample.channels, squares, strict=True)}
 
 
-def _duel(true: _Seen, rival: _Seen, roots: Matrix, spreads: Mapping[str, float]) -> _Duel:
+def _duel(true: _Seen, rival: _Seen, roots: Matrix, spreads: Matrix) -> _Duel:
     """Set up one believed explanation against one rival, which refits to what the believed one says of this data.
 
     The rival pays for its inputs what they are off their means, the believed one has paid for its own already.
@@ -268,10 +266,8 @@ def _duel(true: _Seen, rival: _Seen, roots: Matrix, spreads: Mapping[str, float]
     start = inverse @ (design.T @ apart)
     left = apart - design @ start
     paid = float(start[count - k :] @ start[count - k :]) - float(true.found.inputs @ true.found.inputs)
-    rows = {name: rival.columns_there[name] / spread for name, spread in spreads.items()}
-    signal = {
-        name: (true.there[name] - rival.there[name]) / spread + rows[name] @ at for name, spread in spreads.items()
-    }
+    rows = rival.columns_there / spreads[..., None]
+    signal = (true.there - rival.there) / spreads + rows @ at
     names = name_of(true.found), name_of(rival.found)
     return _Duel(names, max(0.0, float(left @ left) + paid), start, inverse, signal, rows)
 
@@ -283,16 +279,14 @@ def _seen(found: Fit, extended: Extended, tried: Extended) -> _Seen:
     own, inputs = slopes_at(found, extended)
     there, slopes = _there(found, numbers, tried)
     kept = np.concatenate([free, np.ones(len(found.inputs), dtype=bool)])
-    return _Seen(
-        found,
-        np.column_stack([own, inputs])[:, kept],
-        there,
-        {name: columns[:, kept] for name, columns in slopes.items()},
-    )
+    return _Seen(found, np.column_stack([own, inputs])[:, kept], there, slopes[..., kept])
 
 
-def _there(found: Fit, numbers: Sequence[Number], tried: Extended) -> tuple[dict[str, Matrix], dict[str, Matrix]]:
-    """Return what a fit says at the settings that are tried, and its derivatives by all numbers and directions."""
+def _there(found: Fit, numbers: Sequence[Number], tried: Extended) -> tuple[Matrix, Matrix]:
+    """Return what a fit says at the settings that are tried (R, T), and its derivatives by all numbers and directions.
+
+    The derivatives have shape (R, T, numbers + K).
+    """
     sample, k, units = found.sample, len(found.inputs), unit_of(found)
     flat = np.concatenate(found.values)
     wide = WIDE if tried.grain else STEP
@@ -305,14 +299,12 @@ def _there(found: Fit, numbers: Sequence[Number], tried: Extended) -> tuple[dict
         points.append((parts_of(found.causes, point), found.moved))
     for half in 0.5 * np.eye(k):
         points += [(list(found.values), moved_by(sample, found.inputs + sign * half)) for sign in (1, -1)]
-    made = tried.at(found.causes, points)
-    base, own, ups, downs = made[0], made[1 : 1 + len(flat)], made[1 + len(flat) :: 2], made[2 + len(flat) :: 2]
-    slopes = {}
-    for name, shown in base.items():
-        columns = [(each[name] - shown) * unit / step for each, unit, step in zip(own, units, steps, strict=True)]
-        columns += [up[name] - down[name] for up, down in zip(ups, downs, strict=True)]
-        slopes[name] = np.column_stack(columns)
-    return base, slopes
+    names = [channel.name for channel in sample.channels]
+    base, *moved = np.array([[shown[name] for name in names] for shown in tried.at(found.causes, points)])
+    own, ups, downs = moved[: len(flat)], moved[len(flat) :: 2], moved[len(flat) + 1 :: 2]
+    slopes = [(each - base) * unit / step for each, unit, step in zip(own, units, steps, strict=True)]
+    slopes += [up - down for up, down in zip(ups, downs, strict=True)]
+    return base, np.stack(slopes, axis=-1)
 
 
 def _amounts(chosen: Chosen, settings: Mapping[str, Matrix], place: int) -> dict[str, Amount]:
@@ -334,14 +326,10 @@ def _followed(machine: Machine, names: Sequence[str]) -> set[str]:
 def _why(chosen: Chosen, settings: Mapping[str, Matrix], place: int, duel: _Duel) -> str:
     """Say what makes a setting worth measuring: how far the two then differ, and where it leaves the record."""
     sample = chosen.competition.sample
-    gaps = {
-        name: abs(float(signal[place] - duel.rows[name][place] @ duel.coefficients))
-        for name, signal in duel.signal.items()
-    }
-    name = max(gaps, key=lambda key: gaps[key])
-    spread = _spreads(sample, chosen.best)[name]
+    gaps = np.abs(duel.left()[:, place])
+    name, spread = list(_spreads(sample, chosen.best).items())[int(np.argmax(gaps))]
     unit = readable_unit(sample.machine.start.print_unit(name), spread)
-    words = f"{duel.names[0]} and {duel.names[1]} there differ by {in_unit(gaps[name] * spread, unit)} in {name}"
+    words = f"{duel.names[0]} and {duel.names[1]} there differ by {in_unit(float(gaps.max()) * spread, unit)} in {name}"
     asked = _followed(sample.machine, duel.names)
     farthest = _farthest(sample.machine.records, {key: values[place] for key, values in settings.items()}, asked)
     if not farthest:
