@@ -75,15 +75,10 @@ def each_block_once(data: DataRows) -> DataRows:
 
 def _first_alike(data: DataRows) -> NDArray[np.intp]:
     """Return for each row the place of the first one that is equal in every cell."""
-    columns = [_as_numbers(values).view(np.uint64) for values in (data.runs, *data.columns.values())]
-    mixed = np.zeros(len(data), dtype=np.uint64)
-    for bits in columns:
-        mixed = (mixed ^ bits) * np.uint64(0x9E3779B97F4A7C15)
-        mixed ^= mixed >> np.uint64(29)
-    _, first, group = np.unique(mixed, return_index=True, return_inverse=True)
-    like = first[group]
-    is_alike = np.logical_and.reduce([bits == bits[like] for bits in columns])
-    return np.where(is_alike, like, np.arange(len(data)))
+    cells = np.column_stack([_as_numbers(values) for values in (data.runs, *data.columns.values())])
+    whole_rows = cells.view(np.dtype((np.void, cells.itemsize * cells.shape[1])))[:, 0]
+    _, first, group = np.unique(whole_rows, return_index=True, return_inverse=True)
+    return np.asarray(first[group])
 
 
 def _as_numbers(values: NDArray[Any]) -> NDArray[np.float64]:
