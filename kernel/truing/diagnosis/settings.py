@@ -12,7 +12,7 @@ from scipy.stats import qmc
 
 from truing.declare.fields import InputField
 from truing.diagnosis.machine import Machine
-from truing.diagnosis.records import Covariate, Records
+from truing.diagnosis.records import Covariate
 from truing.diagnosis.tidying import is_angle
 from truing.measurements import RowsFile
 from truing.units import to_si
@@ -82,26 +82,14 @@ def machine_there(machine: Machine, settings: Mapping[str, Matrix]) -> Machine:
     """Return the machine at the settings that are tried; what is not set has the middle of what was measured."""
     count = len(next(iter(settings.values())))
     columns = {
-        name: np.full(count, _middle(values))
+        name: np.full(count, np.nanmedian(values))
         for name, values in machine.records.rows.columns.items()
         if isinstance(values, np.ndarray) and values.dtype.kind == "f"
     }
-    zeros = np.zeros(count, dtype=np.intp)
     known = machine.records.covariates
-    records = Records(
-        files=machine.records.files,
+    records = replace(
+        machine.records.part(np.zeros(count, dtype=np.intp)),
         rows=RowsFile("", columns | dict(settings), {}, {}, tuple(range(count))),
-        file_of=zeros,
-        run_of=zeros,
-        lines=np.arange(count),
-        measured={name: np.zeros(count) for name in machine.records.measured},
-        sigma={},
         covariates={name: replace(known[name], values=values) for name, values in settings.items()},
-        held_out=np.zeros(count, dtype=bool),
-        absent=machine.records.absent,
     )
     return replace(machine, records=records, base={}, slopes={})
-
-
-def _middle(values: Matrix) -> float:
-    return float(np.nanmedian(values))
