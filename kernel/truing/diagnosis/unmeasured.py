@@ -147,7 +147,7 @@ def result_to_measure(
         return None, set()
     there = machine_of(start, _few_rows(machine.records, names))
     found = [_changes(there, explanation) for explanation in explanations]
-    best: tuple[Any, ...] = ()
+    ranked: list[tuple[tuple[Any, ...], _Gap, list[_Gap]]] = []
     for place, name in enumerate(names):
         gaps = [
             gap
@@ -159,16 +159,12 @@ def result_to_measure(
             parted = sum(explanations[0].name in gap.names for gap in gaps)
             is_goal = name in _goals(start.model)
             clearness = float(f"{faintest.clearness:.2g}")
-            rank = (is_goal or _has_unit(start.model, name), parted, is_goal, len(gaps), clearness, -place)
-            best = max(best, (*rank, faintest, gaps), key=lambda item: item[:6] if item else ())
-    if not best:
+            has_gauge = is_goal or start.model.own_result_fields[name].unit not in PURE
+            ranked.append(((has_gauge, parted, is_goal, len(gaps), clearness, -place), faintest, gaps))
+    if not ranked:
         return None, set()
-    return _point(start, best[6]), {frozenset(gap.names) for gap in best[7]}
-
-
-def _has_unit(model: Any, name: str) -> bool:
-    """Whether a result is more than a pure number: there is no gauge for a factor."""
-    return model.own_result_fields[name].unit not in PURE
+    _, faintest, gaps = max(ranked, key=lambda each: each[0])
+    return _point(start, faintest), {frozenset(gap.names) for gap in gaps}
 
 
 def _unmeasured(machine: Machine) -> list[str]:
