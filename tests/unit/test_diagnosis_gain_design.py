@@ -26,9 +26,9 @@ from diagnosis_models import (
 )
 from numpy.testing import assert_allclose, assert_array_equal
 from numpy.typing import NDArray
+from scipy.integrate import quad
 from scipy.linalg import toeplitz
 from scipy.stats import binom, kstest, norm
-from scipy.stats import t as student
 
 from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.competition import Competition
@@ -88,9 +88,16 @@ def test_rows_that_were_not_judged_and_blocks_without_rows_count_for_nothing() -
 
 @pytest.mark.parametrize("freedom", [3.0, 4.0, 10.0, 30.0, inf])
 def test_densities_are_of_unit_variance(freedom: float) -> None:
+    whole, variance = (
+        quad(lambda z, power=power: z**power * float(np.exp(_log_density(z, freedom))), -inf, inf)[0]
+        for power in (0, 2)
+    )
+    assert_allclose([whole, variance], 1, rtol=1e-6)
+
+
+def test_the_density_of_three_degrees_of_freedom_is_its_closed_form() -> None:
     z = np.linspace(-5, 5, 11)
-    law = norm() if freedom >= 30 else student(freedom, scale=np.sqrt((freedom - 2) / freedom))
-    assert_allclose(_log_density(z, freedom), law.logpdf(z), rtol=1e-12)
+    assert_allclose(_log_density(z, 3.0), np.log(2 / np.pi / (1 + z**2) ** 2), rtol=1e-12)
 
 
 def ready(folder: Path, error: Array, runs: list[str] | None = None, **more: Any) -> Competition:

@@ -6,7 +6,7 @@ registered are causes too: see ``unregistered``.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import inf
 from pathlib import PurePath
@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from truing.declare.builtin import may_stand
+from truing.declare.builtin import Reading, may_stand
 from truing.declare.sources import Effect, Unknown
 from truing.diagnosis.machine import Machine
-from truing.diagnosis.readings import followed_by, gauged, reading_of
 from truing.diagnosis.tidying import is_angle
 from truing.errors import PluginError
 from truing.gauge import read_by_gauge
@@ -114,6 +113,27 @@ def si_bounds(unknown: Unknown) -> tuple[float, float]:
     return float(to_si(unknown.low, unknown.unit)), float(to_si(unknown.high, unknown.unit))
 
 
+def reading_of(effect: Effect[Any, Any]) -> Reading | None:
+    """Return the reading of a built-in effect; None for other effects."""
+    return effect.function if isinstance(effect.function, Reading) else None
+
+
+def gauged(cause: Cause, measured: Iterable[str]) -> str:
+    """Return the measured result whose reading a part of a built-in effect changes, or nothing."""
+    reading = None if cause.effect is None else reading_of(cause.effect)
+    names = {number.name for number in cause.numbers}
+    for item, roles in reading.roles if reading is not None else ():
+        if item.name in set(measured) and names == set(roles.values()):
+            return item.name
+    return ""
+
+
+def followed_by(cause: Cause) -> str:
+    """Return the name of the input, condition or axis that a built-in effect follows; nothing for an offset or gain."""
+    reading = None if cause.effect is None else reading_of(cause.effect)
+    return reading.seen.name if reading is not None and reading.seen is not None else ""
+
+
 def effects_of(machine: Machine) -> list[Cause]:
     """Return every effect, or part of one, that could act: the model's in the order of declaration, the kernel's last.
 
@@ -208,14 +228,10 @@ def at_rest(cause: Cause, machine: Machine) -> dict[str, float]:
     if effect is None:
         return {}
     before = next((item.values for item in machine.start.effects if item.effect.name == effect.name), {})
-    if effect.parts and effect.takes_any:
-        names = {number.name for number in cause.numbers}
-        return {unknown.name: _rest(unknown) for unknown in effect.unknowns if unknown.name in names}
-    return {unknown.name: _rest(unknown) for unknown in effect.unknowns if unknown.name not in before}
-
-
-def _rest(unknown: Unknown) -> float:
-    return 0.0 if unknown.is_amplitude else si_bounds(unknown)[0]
+    own = {number.name for number in cause.numbers}
+    takes_any = effect.parts and effect.takes_any
+    resting = [each for each in effect.unknowns if (each.name in own if takes_any else each.name not in before)]
+    return {each.name: 0.0 if each.is_amplitude else si_bounds(each)[0] for each in resting}
 
 
 def failure_of(machine: Machine, cause: Cause) -> str:
@@ -225,13 +241,11 @@ def failure_of(machine: Machine, cause: Cause) -> str:
     rest = at_rest(cause, machine)
     measured = np.logical_or.reduce([np.isfinite(values) for values in machine.records.measured.values()])
     for number in cause.numbers:
-        for end in (number.low, number.high) if number.is_amplitude else ():
+        for end in filter(None, (number.low, number.high)) if number.is_amplitude else ():
             on = SwitchedOn(cause.effect, {**rest, number.name: LITTLE * end})
             setup = machine.start.with_effects([on])
             try:
-                reasons: Mapping[int, str] = (
-                    read_by_gauge(setup, machine.records.rows, tuple(machine.records.measured)).reasons if end else {}
-                )
+                reasons = read_by_gauge(setup, machine.records.rows, tuple(machine.records.measured)).reasons
             except PluginError as error:
                 return f"the model fails with it: {error}"
             row = next((row for row in sorted(reasons) if measured[row]), None)

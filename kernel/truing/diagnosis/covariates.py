@@ -9,8 +9,8 @@ import numpy as np
 
 from truing.declare.builtin import may_stand
 from truing.declare.near_miss import near_miss
+from truing.diagnosis.causes import reading_of
 from truing.diagnosis.data_file import DataRows, Part
-from truing.diagnosis.readings import reading_of
 from truing.diagnosis.records import Covariate, Role
 from truing.diagnosis.tidying import TIME, counted, is_angle
 from truing.errors import Fault, InputError

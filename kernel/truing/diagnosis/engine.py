@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from truing.declare.near_miss import near_miss
-from truing.diagnosis.causes import effects_of, inputs_of
+from truing.diagnosis.causes import effects_of, followed_by, inputs_of
 from truing.diagnosis.choice import choose
 from truing.diagnosis.chosen import Chosen, Rival
 from truing.diagnosis.competition import Competition, competition_of, search
@@ -24,7 +24,6 @@ from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.naming import alternative_of, calibrated_of, causes_of, extended_setup, remainder_of
 from truing.diagnosis.probing import probe
 from truing.diagnosis.readable import readable_unit
-from truing.diagnosis.readings import followed_by
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.result import Alternative, Curves, Diagnosis
 from truing.diagnosis.sample import sample_of

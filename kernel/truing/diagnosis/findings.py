@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from truing.diagnosis.causes import Cause
+from truing.diagnosis.causes import Cause, followed_by, gauged
 from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
+from truing.diagnosis.gain import floor_of
 from truing.diagnosis.noise import robust_sd
-from truing.diagnosis.readings import followed_by, gauged
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Amount, Finding, Kind, Noise, Wrong
 from truing.diagnosis.sample import Channel, errors_of, residuals_of
@@ -53,8 +53,7 @@ def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, tuple[Cause, .
     machine = best.sample.machine
     own = best.sample.noise[name]
     before, after = (errors_of(machine, name, own, found.predicted[name])[rows] for found in (chosen.null, best))
-    used = (best.size + len(best.inputs)) / len(best.sample.channels)
-    floor = float(np.sqrt(np.sum(after**2) / max(len(rows) - used, 1.0)))
+    floor = floor_of(best, best.sample.channels.index(channel))
     rmse = float(np.sqrt(np.mean(before**2)))
     share = max(0.0, 1 - floor**2 / rmse**2) if rmse > 0 and best.causes else 0.0
     found = [

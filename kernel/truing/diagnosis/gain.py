@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import inf, log, pi, sqrt
+from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import gammaln
+from scipy.stats import norm
+from scipy.stats import t as student
 
 from truing.diagnosis.choice import CLOSE
 from truing.diagnosis.chosen import Chosen
@@ -146,11 +147,8 @@ def _log_chance(machine: Machine, name: str, noise: Noise, found: Fit) -> Matrix
 
 def _log_density(z: Matrix, freedom: float) -> Matrix:
     """Return the log density of Student's t with unit variance, the normal law for many degrees of freedom."""
-    if freedom == inf or freedom >= 30:
-        return np.asarray(-0.5 * z**2 - 0.5 * log(2 * pi))
-    shrink = freedom / (freedom - 2)
-    norm = gammaln((freedom + 1) / 2) - gammaln(freedom / 2) - 0.5 * np.log((freedom - 2) * pi)
-    return np.asarray(norm - (freedom + 1) / 2 * np.log1p(z**2 * shrink / freedom))
+    law = norm() if freedom >= 30 else student(freedom, scale=sqrt((freedom - 2) / freedom))
+    return np.asarray(law.logpdf(z))
 
 
 def gains_of(chosen: Chosen, judged: Nested, units: Mapping[str, str]) -> tuple[Gain, ...]:
@@ -183,9 +181,8 @@ def floor_of(found: Fit, place: int) -> float:
     """Return the root mean square that an explanation leaves of one result, SI, its numbers paid for."""
     channel, sample = found.sample.channels[place], found.sample
     errors = errors_of(sample.machine, channel.name, sample.noise[channel.name], found.predicted[channel.name])
-    left = errors[channel.rows]
     used = (found.size + len(found.inputs)) / len(sample.channels)
-    return sqrt(float(left @ left) / max(len(left) - used, 1.0))
+    return float(np.sqrt(np.sum(errors[channel.rows] ** 2) / max(len(channel) - used, 1.0)))
 
 
 def _held_out(chosen: Chosen, name: str) -> tuple[float, float] | None:
