@@ -37,6 +37,11 @@ SHORTEST_SETTLING, LONGEST_SETTLING = 0.02, 1.0
 """Time constants that are looked for, in lengths of the record."""
 
 
+Axis = tuple[str, "Matrix"]
+"""The name of a covariate, and its values, (n,), SI."""
+Family = tuple[Kind, tuple[str, ...], int, tuple[Number, ...], Callable[..., "list[Term]"]]
+
+
 @dataclass(frozen=True)
 class Term:
     """One term of a shape: Python over covariates in SI, and its values on all rows of some records, (n,)."""
@@ -47,7 +52,7 @@ class Term:
 
 @dataclass(frozen=True)
 class Shape:
-    """How a shape is calculated: ``terms`` of its shape numbers (SI) and the covariates of some records.
+    """How a shape is calculated: ``made`` returns its terms from its covariates and its shape numbers (SI).
 
     Its amplitudes are those of its terms, result after result.
     """
@@ -55,7 +60,11 @@ class Shape:
     kind: Kind
     depends_on: tuple[str, ...]
     results: tuple[str, ...]
-    terms: Callable[[Sequence[float], Mapping[str, Covariate]], list[Term]]
+    made: Callable[..., list[Term]]
+
+    def terms(self, numbers: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
+        """Return the terms on the rows of some covariates."""
+        return self.made(*(_axis(name, covariates) for name in self.depends_on), *numbers)
 
 
 def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_steps: bool) -> list[Cause]:
@@ -94,11 +103,6 @@ def _correlation(one: Matrix, other: Matrix) -> float:
     return float(np.corrcoef(one[both], other[both])[0, 1]) if both.sum() > 2 else 0.0
 
 
-Family = tuple[
-    Kind, tuple[str, ...], int, tuple[Number, ...], Callable[[Sequence[float], Mapping[str, Covariate]], list[Term]]
-]
-
-
 def _families(
     moved: Sequence[Covariate], registered: Mapping[str, Sequence[int]], *, has_steps: bool, rows: int
 ) -> Iterator[Family]:
@@ -108,17 +112,15 @@ def _families(
         for degree in DEGREES:
             if item.goes_round and item.is_angle:
                 if degree == DEGREES[0]:
-                    yield "trend", (item.name,), 3, (), partial(_harmonics, item.name)
+                    yield "trend", (item.name,), 3, (), _harmonics
             elif distinct > degree:
-                yield "trend", (item.name,), degree + 1, (), partial(_powers, item.name, degree)
+                yield "trend", (item.name,), degree + 1, (), partial(_powers, degree)
         yield from _at_zero(item)
         if distinct >= FEWEST_VALUES:
             yield from _ordered(item, registered.get(item.name, ()), has_steps=has_steps, rows=rows)
     for first, second in combinations(moved, 2):
         for degree in (1, 2):
-            names = first.name, second.name
-            count = len(_exponents(degree))
-            yield "product", names, count, (), partial(_products, names, degree)
+            yield "product", (first.name, second.name), len(_exponents(degree)), (), partial(_products, degree)
 
 
 def _at_zero(item: Covariate) -> Iterator[Family]:
@@ -127,11 +129,11 @@ def _at_zero(item: Covariate) -> Iterator[Family]:
     if min((values > 0).mean(), (values < 0).mean()) < EITHER_SIDE or (item.is_angle and item.goes_round):
         return
     on, largest = (item.name,), float(np.abs(values).max())
-    yield "jump", on, 1, (), partial(_jump, item.name)
-    yield "kink", on, 1, (), partial(_kink, item.name)
+    yield "jump", on, 1, (), _jump
+    yield "kink", on, 1, (), _kink
     if len(np.unique(values)) >= FEWEST_VALUES:
         width = Number("width", 0.02 * largest, 0.9 * largest, is_amplitude=False)
-        yield "dead zone", on, 1, (width,), partial(_dead_zone, item.name)
+        yield "dead zone", on, 1, (width,), _dead_zone
 
 
 def _ordered(item: Covariate, registered: Sequence[int], *, has_steps: bool, rows: int) -> Iterator[Family]:
@@ -143,23 +145,18 @@ def _ordered(item: Covariate, registered: Sequence[int], *, has_steps: bool, row
         high = min(HIGHEST_ORDER, highest_order(item.values))
         if high > low:
             order = Number("order", low, high, is_amplitude=False, whole=True)
-            yield "order", on, 2, (order,), partial(_waves, item.name, 1.0)
+            yield "order", on, 2, (order,), partial(_waves, 1.0)
         return
     most = min(0.5 * len(np.unique(values)), 0.5 * rows, MOST_WAVES)
     frequency = Number("frequency", 1.0 / span, max(most, 2.0) / span, is_amplitude=False)
-    yield "wave", on, 2, (frequency,), partial(_waves, item.name, 2 * pi)
+    yield "wave", on, 2, (frequency,), partial(_waves, 2 * pi)
     if item.role == "time":
         if not has_steps:
             ends = (float(values.min() + ENDS * span), float(values.max() - ENDS * span))
-            yield (
-                "step",
-                on,
-                1,
-                (Number("place", *ends, is_amplitude=False, along=item.name),),
-                partial(_step, item.name),
-            )
+            place = Number("place", *ends, is_amplitude=False, along=item.name)
+            yield "step", on, 1, (place,), _step
         reach = (SHORTEST_SETTLING * span, LONGEST_SETTLING * span)
-        yield "settling", on, 2, (Number("constant", *reach, is_amplitude=False),), partial(_settling, item.name)
+        yield "settling", on, 2, (Number("constant", *reach, is_amplitude=False),), _settling
 
 
 def highest_order(angle: Matrix) -> int:
@@ -175,25 +172,26 @@ def highest_order(angle: Matrix) -> int:
     return int(np.ceil(pi / float(inner.mean()) - 1e-6)) - 1  # places are rounded to 1e-9
 
 
-def _known(covariates: Mapping[str, Covariate], name: str) -> Matrix:
+def _axis(name: str, covariates: Mapping[str, Covariate]) -> Axis:
+    """Return a covariate with its mean where it is missing."""
     values = covariates[name].values
-    return np.where(np.isfinite(values), values, np.nanmean(values))
+    return name, np.where(np.isfinite(values), values, np.nanmean(values))
 
 
-def _scaled(covariates: Mapping[str, Covariate], name: str) -> tuple[str, Matrix, float, float]:
-    """Return a covariate from -1 to 1 over the record: as Python, its values, its middle and half of its range."""
-    values = _known(covariates, name)
+def _scaled(axis: Axis) -> tuple[str, Matrix]:
+    """Return a covariate from -1 to 1 over the record, as Python and its values."""
+    name, values = axis
     middle, half = float(values.max() + values.min()) / 2, float(np.ptp(values)) / 2 or 1.0
-    return f"(({name} - {middle!r}) / {half!r})", (values - middle) / half, middle, half
+    return f"(({name} - {middle!r}) / {half!r})", (values - middle) / half
 
 
-def _powers(name: str, degree: int, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
-    text, z, _, _ = _scaled(covariates, name)
+def _powers(degree: int, axis: Axis) -> list[Term]:
+    text, z = _scaled(axis)
     return [Term("1" if not power else f"{text}**{power}", z**power) for power in range(degree + 1)]
 
 
-def _harmonics(name: str, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
-    return [Term("1", np.ones(len(covariates[name].values))), *_waves(name, 1.0, [1.0], covariates)]
+def _harmonics(axis: Axis) -> list[Term]:
+    return [Term("1", np.ones(len(axis[1]))), *_waves(1.0, axis, 1.0)]
 
 
 def _exponents(degree: int) -> list[tuple[int, int]]:
@@ -201,43 +199,41 @@ def _exponents(degree: int) -> list[tuple[int, int]]:
     return [(0, 0), (1, 0), (0, 1), (1, 1), *([(2, 0), (0, 2), (2, 1), (1, 2)] if degree > 1 else [])]
 
 
-def _products(
-    names: tuple[str, str], degree: int, shape: Sequence[float], covariates: Mapping[str, Covariate]
-) -> list[Term]:
-    (one, a, _, _), (other, b, _, _) = (_scaled(covariates, name) for name in names)
+def _products(degree: int, first: Axis, second: Axis) -> list[Term]:
+    (one, a), (other, b) = _scaled(first), _scaled(second)
     return [Term(f"{one}**{i} * {other}**{j}", a**i * b**j) for i, j in _exponents(degree)]
 
 
-def _waves(name: str, turn: float, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
-    angle = turn * float(shape[0])
-    values = _known(covariates, name)
+def _waves(turn: float, axis: Axis, number: float) -> list[Term]:
+    (name, values), angle = axis, turn * number
     return [Term(f"np.{word}({angle!r} * {name})", getattr(np, word)(angle * values)) for word in ("sin", "cos")]
 
 
-def _step(name: str, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
-    place = float(shape[0])
-    return [Term(f"({name} >= {place!r})", (_known(covariates, name) >= place).astype(float))]
+def _step(axis: Axis, place: float) -> list[Term]:
+    name, values = axis
+    return [Term(f"({name} >= {place!r})", (values >= place).astype(float))]
 
 
-def _settling(name: str, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
-    values, constant = _known(covariates, name), float(shape[0])
+def _settling(axis: Axis, constant: float) -> list[Term]:
+    name, values = axis
     start = float(values.min())
     text = f"np.exp(-({name} - {start!r}) / {constant!r})"
     return [Term("1", np.ones(len(values))), Term(text, np.exp(-(values - start) / constant))]
 
 
-def _jump(name: str, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
-    return [Term(f"np.sign({name})", np.sign(_known(covariates, name)))]
+def _jump(axis: Axis) -> list[Term]:
+    name, values = axis
+    return [Term(f"np.sign({name})", np.sign(values))]
 
 
-def _kink(name: str, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
-    values = _known(covariates, name)
+def _kink(axis: Axis) -> list[Term]:
+    name, values = axis
     largest = float(np.abs(values).max())
     return [Term(f"np.abs({name}) / {largest!r}", np.abs(values) / largest)]
 
 
-def _dead_zone(name: str, shape: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
-    values, width = _known(covariates, name), float(shape[0])
+def _dead_zone(axis: Axis, width: float) -> list[Term]:
+    name, values = axis
     largest = float(np.abs(values).max())
     text = f"np.sign({name}) * np.maximum(np.abs({name}) - {width!r}, 0) / {largest!r}"
     return [Term(text, np.sign(values) * np.maximum(np.abs(values) - width, 0) / largest)]
