@@ -35,9 +35,7 @@ def alarms_of(diagnosis: Diagnosis) -> Iterator[str]:
             moved_inputs(diagnosis),
             _growing(diagnosis),
             _unstable(diagnosis),
-            _contradicting(diagnosis),
-            _thinned(diagnosis),
-            _trading(diagnosis),
+            _torn(diagnosis),
             _overfitted(diagnosis),
             wandering(diagnosis),
             diagnosis.hindrances,
@@ -109,28 +107,23 @@ def _unstable(diagnosis: Diagnosis) -> Iterator[str]:
         )
 
 
-def _contradicting(diagnosis: Diagnosis) -> Iterator[str]:
+def _torn(diagnosis: Diagnosis) -> Iterator[str]:
+    """Give the amplitudes that parts of the record, or tolerances, do not let be what all rows say."""
     for each in diagnosis.contradictions:
         yield (
             f"{each.unknown} of {each.effect} is {_amount(each.first)} in one half of the rows and "
             f"{_amount(each.second)} in the other: the two contradict one another; look at what changed between them"
         )
-
-
-def _thinned(diagnosis: Diagnosis) -> Iterator[str]:
-    for each in diagnosis.thinned:
+    for half in diagnosis.thinned:
         yield (
-            f"on {each.rows}, {' + '.join(each.causes)} explains more, by {each.ahead:.1f} in score: rows that should "
+            f"on {half.rows}, {' + '.join(half.causes)} explains more, by {half.ahead:.1f} in score: rows that should "
             "say the same do not; look at what alternates between them, and measure more rows"
         )
-
-
-def _trading(diagnosis: Diagnosis) -> Iterator[str]:
-    for each in diagnosis.trades:
+    for two in diagnosis.trades:
         yield (
-            f"{each.unknown} of {each.effect} and {each.input} trade against one another (correlation "
-            f"{each.correlation:.3f}): {each.input}, off by what its tolerance allows, draws nearly the same; measure "
-            f"{each.input}, or state its tolerance narrower if it is known better"
+            f"{two.unknown} of {two.effect} and {two.input} trade against one another (correlation "
+            f"{two.correlation:.3f}): {two.input}, off by what its tolerance allows, draws nearly the same; measure "
+            f"{two.input}, or state its tolerance narrower if it is known better"
         )
 
 
