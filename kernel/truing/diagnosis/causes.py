@@ -130,7 +130,11 @@ def gauged(cause: Cause, measured: Iterable[str]) -> str:
 
 def followed_by(cause: Cause) -> str:
     """Return the name of the input, condition or axis that a built-in effect follows; nothing for an offset or gain."""
-    reading = None if cause.effect is None else reading_of(cause.effect)
+    return "" if cause.effect is None else _followed(cause.effect)
+
+
+def _followed(effect: Effect[Any, Any]) -> str:
+    reading = reading_of(effect)
     return reading.seen.name if reading is not None and reading.seen is not None else ""
 
 
@@ -143,7 +147,7 @@ def effects_of(machine: Machine) -> list[Cause]:
     model, on = machine.start.model, {item.effect.name: item.values for item in machine.start.effects}
     made: list[Cause] = []
     for order, effect in enumerate(model.known_effects.values()):
-        if any(need.name in machine.records.absent for need in effect.needs):
+        if any(need.name in machine.records.absent for need in effect.needs) or _stands_still(effect, machine):
             continue
         parts = effect.parts or (tuple(unknown.name for unknown in effect.unknowns),)
         for place, part in enumerate(parts):
@@ -153,8 +157,7 @@ def effects_of(machine: Machine) -> list[Cause]:
             numbers = tuple(_numbers(effect, part, machine))
             own = effect.name in model.effects
             made.append(Cause(effect.name, tag, numbers, order, effect, is_kernel=not own))
-    offered = [cause for cause in made if not cause.is_kernel or _is_offered(cause, machine)]
-    return [cause for cause in offered if not stands_still(cause, machine)]
+    return [cause for cause in made if not cause.is_kernel or _is_offered(cause, machine)]
 
 
 def _numbers(effect: Effect[Any, Any], part: Sequence[str], machine: Machine) -> Iterator[Number]:
@@ -188,10 +191,9 @@ def _is_offered(cause: Cause, machine: Machine) -> bool:
     return not may_stand(effect) or any(not is_angle(item.unit) or item.goes_round for item in own)
 
 
-def stands_still(cause: Cause, machine: Machine) -> bool:
-    """Whether nothing that the effect follows has moved; one that acts at the references follows nothing."""
-    effect = cause.effect
-    if effect is None or effect.acts_at_reference:
+def _stands_still(effect: Effect[Any, Any], machine: Machine) -> bool:
+    """Whether nothing that an effect follows has moved; one that acts at the references follows nothing."""
+    if effect.acts_at_reference:
         return False
     covariates = machine.records.covariates
     names = [*(need.name for need in effect.needs), *effect.reads]
@@ -211,13 +213,11 @@ def idle_of(machine: Machine) -> tuple[str, ...]:
     """Return the names of effects that nothing in this record excites, and of which it is worth saying so."""
     model, on = machine.start.model, {item.effect.name for item in machine.start.effects}
     names = []
-    for order, effect in enumerate(model.known_effects.values()):
-        own = effect.name in model.effects
-        cause = Cause(effect.name, effect.name, (), order, effect, is_kernel=not own)
+    for effect in model.known_effects.values():
         if effect.name in on or any(need.name in machine.records.absent for need in effect.needs):
             continue
-        followed = followed_by(cause) if cause.is_kernel else ""
-        if stands_still(cause, machine) and (not followed or followed in machine.records.covariates):
+        followed = "" if effect.name in model.effects else _followed(effect)
+        if _stands_still(effect, machine) and (not followed or followed in machine.records.covariates):
             names.append(effect.name)
     return tuple(names)
 
