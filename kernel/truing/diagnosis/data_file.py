@@ -130,6 +130,13 @@ def objects(values: Iterable[Any]) -> NDArray[Any]:
     return found
 
 
+def is_missing(values: NDArray[Any]) -> NDArray[np.bool_]:
+    """Mark the cells that are empty, (n,)."""
+    if values.dtype == object:
+        return np.array([value is None for value in values.tolist()], dtype=bool)
+    return np.asarray(np.isnan(values))
+
+
 def part_of(name: str, model: Model[Any, Any], *, is_number: bool = True) -> Part:
     """Return the part that a column of this name plays."""
     item = model.input_fields.get(name)
@@ -249,8 +256,7 @@ def _empty(columns: Mapping[str, NDArray[Any]], parts: Mapping[str, Part], fault
             continue
         if any(fault.message.startswith(f"{name}:") for fault in faults.found):
             continue
-        is_empty = np.array([value is None for value in values]) if values.dtype == object else np.isnan(values)
-        if is_empty.all():
+        if is_missing(values).all():
             yield f"column '{name}' holds no value in any row; fill it or leave it out"
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from truing.diagnosis.data_file import DataRows, Part, objects
+from truing.diagnosis.data_file import DataRows, Part, is_missing, objects
 from truing.diagnosis.tidying import counted
 from truing.errors import Fault, InputError
 from truing.measurements import RowsFile
@@ -143,7 +143,7 @@ def complete_rows(joined: DataRows, setup: Setup) -> DataRows:
     notes: list[str] = []
     for name in joined.named("input", "word", "series", "condition"):
         item = setup.model.input_fields.get(name)
-        missing = _is_missing(joined.columns[name])
+        missing = is_missing(joined.columns[name])
         if missing.any() and not (item is not None and item.is_optional):
             joined = joined.without(missing, f"'{name}' is empty")
             notes.append(f"{counted(int(missing.sum()), 'row is', 'rows are')} left out where '{name}' is empty")
@@ -163,13 +163,6 @@ def measured_rows(joined: DataRows) -> DataRows:
     for name in joined.named("measured"):
         nothing &= np.isnan(joined.columns[name])
     return joined.without(nothing, "nothing was measured that is used") if nothing.any() else joined
-
-
-def _is_missing(values: NDArray[Any]) -> NDArray[np.bool_]:
-    if values.dtype == object:
-        return np.array([value is None for value in values.tolist()], dtype=bool)
-    missing: NDArray[np.bool_] = np.isnan(values)
-    return missing
 
 
 def rows_of(joined: DataRows) -> RowsFile:
