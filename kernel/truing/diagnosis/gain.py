@@ -91,8 +91,7 @@ def contenders(chosen: Chosen) -> list[Fit]:
     made, best = chosen.competition, chosen.best
     if not best.causes:
         return []
-    kinds = {(cause.shape is None, cause.tolerated < 0) for cause in best.causes}
-    plain = kinds == {(True, True)}
+    plain = all(cause.effect is not None for cause in best.causes)
     near = made.ranked(
         lambda found: (
             0 < len(found.causes) <= len(best.causes)

@@ -6,21 +6,19 @@ second row. Rows without an order are parted at random.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from math import hypot, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from truing.diagnosis.causes import UNKNOWN
 from truing.diagnosis.choice import CLOSE
 from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.exact import refit
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import refitted
 from truing.diagnosis.gain import contenders
-from truing.diagnosis.intervals import certainty_of, value_of
+from truing.diagnosis.intervals import certainty_of, places_of, value_of
 from truing.diagnosis.noise import Setting
 from truing.diagnosis.result import Amount, Contradiction, Thinned
 from truing.diagnosis.sample import Channel, Sample, has_order
@@ -51,29 +49,22 @@ def contradictions_of(chosen: Chosen) -> tuple[Contradiction, ...]:
     if len(fitted) < 2:
         return ()
     certain = [certainty_of(found, extended) for found in fitted]
-    known, made = best.sample.machine.start.model.known_effects, []
-    for place, (name, number) in enumerate(_amplitudes(best)):
-        if not name:
-            continue
-        values = [value_of(found, place) for found in fitted]
-        error = hypot(*(each.in_si([place])[0][0] ** 0.5 for each in certain))
-        if error > 0 and abs(values[0] - values[1]) > APART * error:
-            unit = next(each.unit for each in known[name].unknowns if each.name == number)
-            made.append(Contradiction(name, number, Amount(values[0], unit), Amount(values[1], unit)))
+    made = []
+    for cause in best.causes:
+        for place, number in zip(places_of(best, cause), cause.numbers, strict=True):
+            if cause.effect is None or not number.is_amplitude or number.file >= 0:
+                continue
+            first, second = (value_of(found, place) for found in fitted)
+            error = hypot(*(each.in_si([place])[0][0] ** 0.5 for each in certain))
+            if error > 0 and abs(first - second) > APART * error:
+                unit = next(each.unit for each in cause.effect.unknowns if each.name == number.name)
+                made.append(Contradiction(cause.name, number.name, Amount(first, unit), Amount(second, unit)))
     return tuple(made)
 
 
 def _are_few(best: Fit) -> bool:
     """Whether half of the rows is too little for an explanation, or there is none."""
     return not best.causes or best.sample.known < 2 * FEWEST * (best.size + len(best.inputs) ** 0.5)
-
-
-def _amplitudes(best: Fit) -> Iterator[tuple[str, str]]:
-    """Give effect and unknown of every number; no effect where the number is no amplitude of one, or of one file."""
-    for cause in best.causes:
-        for number in cause.numbers:
-            is_one = cause.effect is not None and number.is_amplitude and number.file < 0
-            yield cause.name if is_one else "", number.name
 
 
 def _in_turn(sample: Sample, seed: int = 1) -> NDArray[np.intp]:
@@ -128,7 +119,7 @@ def _score(chosen: Chosen, found: Fit, sample: Sample) -> float:
 
 
 def _names(found: Fit) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(UNKNOWN if cause.shape is not None else cause.name for cause in found.causes))
+    return tuple(dict.fromkeys(cause.name for cause in found.causes))
 
 
 def _thinned(sample: Sample, rows: NDArray[np.intp]) -> Sample:
