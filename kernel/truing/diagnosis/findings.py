@@ -19,6 +19,7 @@ from truing.diagnosis.sample import Channel, errors_of, residuals_of
 from truing.diagnosis.shape_words import in_unit as in_unit
 from truing.diagnosis.shape_words import order_in_words, shape_in_words, step_in_words
 from truing.diagnosis.shares import added_by
+from truing.diagnosis.tidying import counted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -64,10 +65,8 @@ def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, tuple[Cause, .
     ]
     noise = _noise(best, channel, after[channel.read], Amount(floor, unit))
     if noise.outliers:
-        text = f"{len(noise.outliers)} suspected outliers, beyond four standard deviations of the noise"
-        found.append(
-            Finding("outlier", "", None, text if len(noise.outliers) > 1 else text.replace("outliers", "outlier"))
-        )
+        words = f"{counted(len(noise.outliers), 'suspected outlier')}, beyond four standard deviations of the noise"
+        found.append(Finding("outlier", "", None, words))
     stated = _stated(machine.records, channel)
     said = Amount(stated, unit) if stated > 0 else None
     return Wrong(name, len(rows), Amount(rmse, unit), Amount(floor, unit), share, noise, tuple(found), said)

@@ -58,10 +58,8 @@ def _box(machine: Machine, name: str, item: Covariate) -> tuple[float, float] | 
     low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
     condition = start.model.known_conditions.get(name)
     if condition is not None:
-        limits = [
-            None if each is None else float(to_si(each, condition.unit)) for each in (condition.low, condition.high)
-        ]
-        return low if limits[0] is None else limits[0], high if limits[1] is None else limits[1]
+        low = low if condition.low is None else float(to_si(condition.low, condition.unit))
+        return low, high if condition.high is None else float(to_si(condition.high, condition.unit))
     field = start.model.input_fields.get(name)
     return None if field is None or not field.varies else _input_box(field, low, high, is_time=item.role == "time")
 
