@@ -94,7 +94,7 @@ def read_data_file(path: Path, offer: Offer) -> tuple[DataRows, Faults]:
     """
     model = offer.model
     words = [name for name, item in model.input_fields.items() if item.kind in WORDS]
-    table, faults = gather_table(path, _units(model), words=words)
+    table, faults = gather_table(path, declared_units(model), words=words)
     columns: dict[str, NDArray[Any]] = {}
     for name, values in table.columns.items():
         if name == RUN and name not in model.input_fields:
@@ -151,7 +151,7 @@ def part_of(name: str, model: Model[Any, Any], *, is_number: bool = True) -> Par
     return "other" if is_number else "label"
 
 
-def _units(model: Model[Any, Any]) -> dict[str, str]:
+def declared_units(model: Model[Any, Any]) -> dict[str, str]:
     """Return the declared unit of every column of numbers that is known by name."""
     conditions = model.known_conditions.values()
     found = {item.made_from: item.unit for item in conditions if item.derived and item.history != "direction"}

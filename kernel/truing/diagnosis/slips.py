@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from truing.diagnosis.data_file import DataRows
+from truing.diagnosis.data_file import DataRows, declared_units
 from truing.diagnosis.joining import rows_of
 from truing.diagnosis.records import Slip
 from truing.diagnosis.tidying import is_angle
@@ -175,15 +175,14 @@ def _is_worse(one: _Gauge, answer: NDArray[np.float64]) -> bool:
 
 def _trials(few: DataRows, setup: Setup) -> Iterator[tuple[str, float, str]]:
     """Give every column that the model sees with every factor that its bounds allow."""
-    seen = {need.name for item in setup.effects for need in item.effect.needs}
+    seen, units = {need.name for item in setup.effects for need in item.effect.needs}, declared_units(setup.model)
     for name in few.named("input", "series", "condition"):
         item = setup.model.input_fields.get(name)
         if item is None and name not in seen:
             continue
-        unit = item.unit if item is not None else setup.model.known_conditions[name].unit
         values = few.columns[name]
         ends = (float(np.nanmin(values)), float(np.nanmax(values)))
-        for factor, words in _factors(unit).items():
+        for factor, words in _factors(units[name]).items():
             if item is None or not any(broken_bound(item, factor * end) for end in ends):
                 yield name, factor, words
 

@@ -6,14 +6,14 @@ Nothing is done in silence: every function notes what it did.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from truing.declare.model import Model
-from truing.diagnosis.data_file import DataRows, Part
+from truing.diagnosis.data_file import DataRows, Part, declared_units
 from truing.inputs_file.values import broken_bound
 from truing.measurements.derived import derive
 from truing.units import same_dimension
@@ -126,12 +126,14 @@ def in_one_piece(data: DataRows, model: Model[Any, Any]) -> DataRows:
     A run is a sweep if 95 % of its steps are below 90 degrees once it is joined and at most every fourth step jumps.
     An input whose bounds would not hold stays as it is.
     """
-    columns, notes = dict(data.columns), []
+    columns, units, notes = dict(data.columns), declared_units(model), []
+    run_of, _ = numbered(data.runs.tolist())
+    runs = np.split(np.arange(len(data)), np.flatnonzero(np.diff(run_of)) + 1)
     for name in data.named("input", "series", "condition"):
-        if not is_angle(_declared_unit(name, model)):
+        if not is_angle(units[name]):
             continue
         joined, jumps = np.array(columns[name]), 0
-        for rows in _each_run(data):
+        for rows in runs:
             joined[rows], more = _joined(joined[rows])
             jumps += more
         if jumps and _keeps_bounds(name, joined, model):
@@ -161,17 +163,6 @@ def _keeps_bounds(name: str, values: NDArray[np.float64], model: Model[Any, Any]
 def is_angle(unit: str) -> bool:
     """Whether a unit is one of plane angles."""
     return unit not in PURE and same_dimension(unit, "rad")
-
-
-def _declared_unit(name: str, model: Model[Any, Any]) -> str:
-    item = model.input_fields.get(name)
-    return item.unit if item is not None else model.known_conditions[name].unit
-
-
-def _each_run(data: DataRows) -> Sequence[NDArray[np.intp]]:
-    """Give the rows of each run; runs stand one after another."""
-    run_of, _ = numbered(data.runs.tolist())
-    return np.split(np.arange(len(data)), np.flatnonzero(np.diff(run_of)) + 1)
 
 
 def with_histories(data: DataRows, model: Model[Any, Any]) -> DataRows:
