@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -103,12 +104,10 @@ def spread(cause: Cause, count: int) -> Matrix:
     points = []
     if len(cause.amplitudes) == 1 and len(shapes) <= 1:
         grid = placed(shapes, _few_places(shapes)) if shapes else np.zeros((1, 0))
-        for place, end in ends:
-            for level in LEVELS:
-                for values in grid:
-                    point = np.zeros(cause.size)
-                    point[cause.shapes], point[place] = values, level * end
-                    points.append(point)
+        for (place, end), level, values in product(ends, LEVELS, grid):
+            point = np.zeros(cause.size)
+            point[cause.shapes], point[place] = values, level * end
+            points.append(point)
         return np.array(points)
     sampler = qmc.Sobol(cause.size + 1, seed=1).random(count)
     for u in sampler:

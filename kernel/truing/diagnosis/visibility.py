@@ -104,7 +104,7 @@ def smallest_visible(chosen: Chosen) -> list[Seen]:
     skipped = {*failing, *chosen.competition.extended.budget.unseen}
     limit = needed(len(effects) + comb(len(effects), 2))
     names = [cause.name for cause in effects]
-    found: dict[str, Seen] = {}
+    found: dict[str, list[Seen]] = {}
     for cause in effects:
         amplitudes = {cause.numbers[place].name for place in cause.amplitudes}
         several = names.count(cause.name) > 1 or len(amplitudes) > 1
@@ -113,11 +113,10 @@ def smallest_visible(chosen: Chosen) -> list[Seen]:
             seen = _seen(f"{cause.name}.{number.name}" if several else cause.name, cause, number, _look(
                 chosen, eye, cause, place, limit,
             ))  # fmt: skip
-            known = found.get(seen.name)
-            if known is None or _size_of(seen) < _size_of(known):
-                found[seen.name] = seen
+            found.setdefault(seen.name, []).append(seen)
+    smallest = [min(each, key=lambda seen: seen.smallest.value if seen.smallest else inf) for each in found.values()]
     still = [Seen(name, None, "not excited") for name in idle_of(machine) if name not in failing]
-    return [*found.values(), *still, *(Seen(name, None, "cannot be fitted", why) for name, why in failing.items())]
+    return [*smallest, *still, *(Seen(name, None, "cannot be fitted", why) for name, why in failing.items())]
 
 
 def _failing(chosen: Chosen, effects: Sequence[Cause]) -> dict[str, str]:
@@ -126,10 +125,6 @@ def _failing(chosen: Chosen, effects: Sequence[Cause]) -> dict[str, str]:
     unknown = [cause for cause in effects if frozenset({cause.tag}) not in made.known]
     reasons = {cause.name: failure_of(made.extended.machine, cause) for cause in unknown}
     return {name: why for name, why in reasons.items() if why}
-
-
-def _size_of(seen: Seen) -> float:
-    return inf if seen.smallest is None else seen.smallest.value
 
 
 def _seen(name: str, cause: Cause, number: Number, look: _Look | None) -> Seen:
