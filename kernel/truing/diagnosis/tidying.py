@@ -55,17 +55,16 @@ def each_block_once(data: DataRows) -> DataRows:
     A block has three rows or more over two times at the least, each equal in every cell, its time included, to the row
     that follows in the earlier block. Single rows that are alike are real repeats of a coarse gauge, and are kept.
     """
-    time, like = _time(data), _first_alike(data)
-    is_again = np.zeros(len(data), dtype=bool)
-    starts: Iterable[int] = (
-        [] if time is None else np.flatnonzero((np.diff(time) < 0) & (like[1:] <= np.arange(len(time) - 1))) + 1
-    )
-    for start in starts:
+    time = _time(data)
+    if time is None or not (np.diff(time) < 0).any():
+        return data
+    like, is_again = _first_alike(data), np.zeros(len(data), dtype=bool)
+    for start in np.flatnonzero((np.diff(time) < 0) & (like[1:] <= np.arange(len(time) - 1))) + 1:
         first = like[start]
         rows = min(len(data) - start, start - first)
         differ = np.flatnonzero(like[start : start + rows] != like[first : first + rows])
         end = start + (int(differ[0]) if len(differ) else rows)
-        if time is not None and end - start >= FEWEST_IN_BLOCK and np.ptp(time[start:end]) > 0:
+        if end - start >= FEWEST_IN_BLOCK and np.ptp(time[start:end]) > 0:
             is_again[start:end] = True
     if not is_again.any():
         return data
