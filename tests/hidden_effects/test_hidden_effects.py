@@ -166,3 +166,12 @@ def test_a_cause_is_named_beside_something_unregistered(seed: int, wish: Wish) -
     demand_named(document, [*({effect} for effect in wish.effects), {"unknown"}])
     assert [cause["effect"] for cause in document["causes"]] == list(wish.effects)
     assert set(case.shape.depends_on) <= set(document["remainder"]["depends_on"])
+
+
+def test_a_small_cause_beside_a_rough_shape_is_not_excluded() -> None:
+    """Its 26 is 5 % of what the shape is worth, so that it may mend the shape: but the shape alone is not stated."""
+    case, document, judged = answered(882158, Wish())
+    assert case.shape is not None
+    assert list(case.hidden) == ["slider_inertia"]
+    assert (document["verdict"], document["causes"], document["shared"]) == ("one_of", [], ["unknown"])
+    assert judged["in_set"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,6 +28,7 @@ from truing.setup import Setup, default_setup
 
 Array = NDArray[np.float64]
 FIRST_FELT = 5.0
+MOST_CLOGGED = 1e7  # um
 NOISE = 0.5  # um
 
 
@@ -38,6 +40,7 @@ class Bearing:
     speed: Float = given(1.0, "m/s", above=0)
     film: Float = given(0.0, "", note="neutral 0: thickness over that of the formula")
     growth: Float = given(0.0, "1/km", note="neutral 0: of the rate of wear")
+    clog: Float = given(0.0, "um/km", note="neutral 0: worn beside, which ends at ten metres")
 
 
 @results
@@ -47,16 +50,16 @@ class Height:
     lost: Float = found("um")
 
 
-def worn(path_km: Float, speed: Float, film: Float, growth: Float) -> Float:
-    """um: a micrometre per km, less by the film from a felt thickness on, growing exponentially."""
+def worn(path_km: Float, speed: Float, film: Float, growth: Float, clog: Float = 0.0) -> Float:
+    """um: a micrometre per km, less by the film from a felt thickness on, growing; more where it clogs, to a bound."""
     carried = np.clip((film * speed - FIRST_FELT) / 10.0, 0.0, 1.0)
     grown = np.where(growth == 0, path_km, np.expm1(growth * path_km) / np.where(growth == 0, 1.0, growth))
-    return (1.0 - carried) * grown
+    return (1.0 - carried) * grown + clog * path_km * speed / (1.0 + clog * path_km * speed / MOST_CLOGGED)
 
 
 def bearing(it: Bearing) -> Height:
     """Lose height."""
-    return Height(lost=1e-6 * worn(it.path / 1e3, it.speed, it.film, it.growth * 1e3))
+    return Height(lost=1e-6 * worn(it.path / 1e3, it.speed, it.film, it.growth * 1e3, it.clog * 1e9))
 
 
 def filmed(it: Bearing, *, thickness: Float) -> Bearing:
@@ -65,6 +68,10 @@ def filmed(it: Bearing, *, thickness: Float) -> Bearing:
 
 def hastened(it: Bearing, *, growth: Float) -> Bearing:
     return replace(it, growth=it.growth + growth)
+
+
+def clogging(it: Bearing, *, rate: Float) -> Bearing:
+    return replace(it, clog=it.clog + rate)
 
 
 def slowed(it: Bearing, *, share: Float) -> Bearing:
@@ -79,20 +86,25 @@ EFFECTS = [
 MODEL = Model(name="bearing", title="Bearing", function=bearing, errors=EFFECTS)
 
 
-def setup_and_file(folder: Path, film: float, growth: float) -> tuple[Offer, Setup, Path]:
-    """Rows of a bearing with this film and growth, with the noise of its gauge."""
+def setup_and_file(
+    folder: Path, film: float, growth: float, clog: float = 0.0, effects: Sequence[Effect] = EFFECTS
+) -> tuple[Offer, Setup, Path]:
+    """Rows of a bearing with this film, growth and clogging, with the noise of its gauge."""
     rng = np.random.default_rng(8)
     path, speed = np.sort(rng.uniform(0, 20, 80)), rng.uniform(0.3, 2.0, 80)
-    lost = worn(path, speed, film, growth) + rng.normal(0, NOISE, 80)
+    lost = worn(path, speed, film, growth, clog) + rng.normal(0, NOISE, 80)
     lines = [",".join(repr(float(cell)) for cell in row) for row in zip(path, speed, lost, strict=True)]
     file = folder / "record.csv"
     file.write_text("\n".join(["path [km],speed [m/s],lost [um]", *lines]) + "\n", encoding="utf-8")
-    offer = Offer("bearing", MODEL, Origin("bearing", "1.0", "bearings", "bearing.py", "entry:bearing"))
-    return offer, default_setup(MODEL, offer.origin), file
+    model = replace(MODEL, errors=list(effects))
+    offer = Offer("bearing", model, Origin("bearing", "1.0", "bearings", "bearing.py", "entry:bearing"))
+    return offer, default_setup(model, offer.origin), file
 
 
-def asked(folder: Path, film: float = 0.0, growth: float = 0.0) -> Diagnosis:
-    offer, setup, file = setup_and_file(folder, film, growth)
+def asked(
+    folder: Path, film: float = 0.0, growth: float = 0.0, clog: float = 0.0, effects: Sequence[Effect] = EFFECTS
+) -> Diagnosis:
+    offer, setup, file = setup_and_file(folder, film, growth, clog, effects)
     return diagnose(setup, read_records([file], offer, setup))
 
 
@@ -114,6 +126,20 @@ def test_a_cause_that_is_not_in_proportion_to_its_size_is_named_alone(
     half = (unknown.high - unknown.low) / 2
     assert abs(unknown.value - size) < 1.5 * half  # three standard errors
     assert half < 0.2 * size
+
+
+def test_a_cause_far_below_the_smallest_size_looked_at_is_fitted(tmp_path: Path) -> None:
+    """Its bound is ten million times what is there: it bends at every size looked at, and is a line where it is."""
+    clogged = Effect("clogged", on_inputs=clogging, unknowns=[Unknown("rate", 0, 1e6, "um/km")])
+    answer = asked(tmp_path, clog=0.2, effects=[*EFFECTS, clogged])
+    (cause,) = answer.causes
+    assert cause.effect == "clogged"
+    (unknown,) = cause.unknowns
+    assert unknown.low is not None
+    assert unknown.high is not None
+    half = (unknown.high - unknown.low) / 2
+    assert abs(unknown.value - 0.2e-9) < 1.5 * half  # three standard errors
+    assert half < 0.2 * 0.2e-9
 
 
 def test_a_film_that_is_not_there_is_not_found(tmp_path: Path) -> None:

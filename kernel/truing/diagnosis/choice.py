@@ -62,6 +62,7 @@ def choose(made: Competition, *, seed: int) -> Chosen:
         best = _named_weakest(made, _registered(made, best))
     best = made.exact(best)
     near = [Rival(made.exact(rival.fit), rival.behind) for rival in _rivals(made, best)]
+    near = [rival for rival in near if not _adds_nothing(made, best, rival.fit)]
     return Chosen(made, best, tuple(near), _same(made, best), decision.law, decision.p_further)
 
 
@@ -83,6 +84,12 @@ def _certain(made: Competition, best: Fit) -> Fit:
         else:
             return best
     return best
+
+
+def _adds_nothing(made: Competition, best: Fit, found: Fit) -> bool:
+    """Whether an explanation is the winner and a cause whose every amplitude may as well be zero."""
+    added = [cause for cause in found.causes if cause.tag not in best.key] if best.key < found.key else []
+    return any(may_be_zero(found, certainty_of(found, made.extended), cause) for cause in added)
 
 
 def _exchanged(made: Competition, best: Fit) -> Fit:
@@ -185,8 +192,7 @@ def _is_near(made: Competition, best: Fit, found: Fit) -> bool:
     behind = made.score(found) - made.score(best)
     if best.key < found.key:
         added = [cause for cause in found.causes if cause.tag not in best.key]
-        is_named = shapes_in(best) == 0
-        return is_named and behind < NEARLY and len(added) == 1 and added[0].effect is not None
+        return behind < NEARLY and len(added) == 1 and added[0].effect is not None
     if len(found.causes) > len(best.causes) or (found.key < best.key and behind >= CLOSE):
         return False
     if (shifts_inputs(found) and not shifts_inputs(best)) or shapes_in(found) > max(shapes_in(best), 1):

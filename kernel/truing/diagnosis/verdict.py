@@ -49,24 +49,38 @@ def _by_name(names: Sequence[str], same: Mapping[str, Sequence[str]]) -> Iterato
 
 
 def shared_of(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """Return the names that every one of several explanations holds: so much is sure where the rest is open."""
+    """Return the names that every one of several explanations holds: so much is sure where the rest is open.
+
+    A shape that nobody registered is the same in two of them where it is one over the same covariates.
+    """
     first, *others = explanations_of(diagnosis) or ((),)
-    return tuple(name for name in first if others and all(name in names for names in others))
+    over = ",".join(diagnosis.remainder.depends_on) if diagnosis.remainder is not None else ""
+    names = {name: {name, f"{UNKNOWN}:{over}"} if name == UNKNOWN else {name} for name in first}
+    return tuple(name for name, words in names.items() if others and all(words & set(each) for each in others))
+
+
+def further_of(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """Return the names of what may be there beside the best explanation, where every other one holds all of it."""
+    first, *others = explanations_of(diagnosis) or ((),)
+    if len(shared_of(diagnosis)) < len(first):
+        return ()
+    return tuple(dict.fromkeys(name for names in others for name in names if name.split(":")[0] not in first))
 
 
 def verdict_of(diagnosis: Diagnosis) -> Verdict:
     """Return the verdict; "one_of" wherever a cause has another name or a rival is near, "none" without any doubt.
 
-    One explanation that an alarm speaks against is not named: it is undecided.
+    One explanation that an alarm speaks against is not named, with or without what may be there as well: it is
+    undecided.
     """
     explanations = explanations_of(diagnosis)
     if not explanations:
         return "undecided" if any(doubts(diagnosis)) else "none"
     if all(name.startswith(UNKNOWN) for names in explanations for name in names):
         return "unknown"
-    if len(explanations) > 1:
-        return "one_of"
-    return "undecided" if any(alarms_of(diagnosis)) else "named"
+    if (len(explanations) == 1 or further_of(diagnosis)) and any(alarms_of(diagnosis)):
+        return "undecided"
+    return "one_of" if len(explanations) > 1 else "named"
 
 
 def doubts(diagnosis: Diagnosis) -> Iterator[str]:

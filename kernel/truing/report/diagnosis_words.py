@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from truing.diagnosis.verdict import UNKNOWN, doubts, explanations_of, shared_of
+from truing.diagnosis.verdict import UNKNOWN, doubts, explanations_of, further_of, shared_of
 from truing.numbers import ABSENT, format_number, format_value, pretty, with_unit
 
 if TYPE_CHECKING:
@@ -165,9 +165,13 @@ def verdict_word(diagnosis: Diagnosis) -> str:
 
 
 def shared_words(diagnosis: Diagnosis) -> Iterator[str]:
-    """Say what all explanations hold, where there are several: friction is in all of them."""
+    """Say what all explanations hold, where there are several, or what may be there beside the one that all hold."""
     shared, count = shared_of(diagnosis), len(explanations_of(diagnosis))
-    if shared:
+    further = further_of(diagnosis)
+    if further:
+        names = listed([spoken(name) for name in further], "or")
+        yield f"whether {names} is there as well, this record cannot say"
+    elif shared:
         names = listed([spoken(name) for name in shared])
         yield f"{names} {'is' if len(shared) == 1 else 'are'} in {'both' if count == 2 else 'all'} of them"
 
@@ -239,7 +243,8 @@ def is_perhaps_gain(item: Gain) -> bool:
 
 def _cause_sentences(diagnosis: Diagnosis) -> Iterator[str]:
     results = listed([spoken(name) for name in wrong_results(diagnosis)])
-    is_open = diagnosis.verdict == "one_of"
+    has_further = bool(further_of(diagnosis))
+    is_open = diagnosis.verdict == "one_of" and not has_further
     if is_open:
         names = [together(names) for names in explanations_of(diagnosis)]
         yield f"what the model misses in {results} is drawn alike by {listed(names, 'or')}."
@@ -259,6 +264,8 @@ def _cause_sentences(diagnosis: Diagnosis) -> Iterator[str]:
         of_results = listed([spoken(name) for name in remainder.results])
         what = "beside it something" if diagnosis.causes else "something"
         yield f"{what} that no registered effect explains is in {of_results}, over {over}: {prose(remainder.shape)}."
+    if has_further:
+        yield from (f"{words}." for words in shared_words(diagnosis))
 
 
 def _gain_sentences(diagnosis: Diagnosis) -> Iterator[str]:
