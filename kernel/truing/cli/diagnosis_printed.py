@@ -184,14 +184,14 @@ def _blind(item: Seen) -> str:
 
 
 def _model(diagnosis: Diagnosis) -> Iterator[str]:
+    if not diagnosis.causes:
+        yield "nothing was named: the model stands as it is"
     for cause in diagnosis.causes:
         yield cause_text(cause)
     for item in diagnosis.alternatives:
         sizes = [fitted_text(unknown) for unknowns in item.unknowns.values() for unknown in unknowns]
         if sizes:
             yield f"or {explanation(item)}, {'; '.join(sizes)}"
-    if not diagnosis.causes:
-        yield "nothing was named: the model stands as it is"
     moved = sorted(diagnosis.calibrated, key=lambda item: -abs(item.of_its_sd))[:MOST_MOVED]
     if moved:
         shifts = ", ".join(f"{spoken(item.name)} by {score_text(item.of_its_sd)}" for item in moved)
