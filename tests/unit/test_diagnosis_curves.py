@@ -306,7 +306,7 @@ def test_a_coefficient_that_nothing_excites_draws_nothing(tmp_path: Path) -> Non
     made = made_of(tmp_path, ["skewed"], bench=bench, error=0.1 * bench.travel)
     found = looked(alone(made, "skewed"), beside_of(made.null, made.extended))
     assert found is not None
-    assert_allclose(np.linalg.norm(found.basis[0], axis=-1), [1, 0], atol=1e-12)
+    assert_allclose(np.linalg.norm(found.span.vectors(0), axis=-1), [1, 0], atol=1e-12)
     along, across = found.starts[0][1]
     assert_allclose(along, 1e-4, rtol=0.02)
     assert across == 0

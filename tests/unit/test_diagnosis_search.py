@@ -207,7 +207,7 @@ def _greedy(made: Competition, seen: dict[str, Looked] | object, values: Array, 
     for _ in range(steps):
         tried = []
         for cause in made.causes:
-            for basis in seen[cause.tag].basis if cause.tag in seen else ():
+            for basis in seen[cause.tag].span.basis if cause.tag in seen else ():
                 rest = left - basis.T @ (basis @ left)
                 gain = 140.0 * log((left @ left) / (rest @ rest)) - made.price_of(cause)
                 tried.append((gain, rest))

@@ -19,6 +19,7 @@ from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.machine import Predicted
 from truing.diagnosis.sample import Sample
+from truing.diagnosis.sweeps import Pass, Swept, Table, passed, units_of, without_taken
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,16 +38,32 @@ TOGETHER = 500_000
 """Curves with so many values at most are compared at once."""
 
 
+@dataclass(frozen=True, eq=False)
+class Spanned:
+    """Curves of a cause beside an explanation, (M, q, rows + K), orthonormal within a point."""
+
+    basis: Matrix
+
+    def inner(self, drawn: Matrix, known: object) -> Matrix:
+        """Return what they share with draws (rows + K, draws), (M, q, draws)."""
+        flat = self.basis.reshape(-1, self.basis.shape[-1])
+        return np.asarray((flat @ drawn.astype(flat.dtype)).reshape(*self.basis.shape[:2], -1))
+
+    def vectors(self, place: int) -> Matrix:
+        """Return the curves at one of the points, (q, rows + K)."""
+        return np.asarray(self.basis[place])
+
+
 @dataclass(frozen=True)
 class Looked:
     """What a cause could draw beside an explanation: gains in score with the numbers to begin with, the best first.
 
-    ``tries`` counts its independent curves; ``basis`` (M, q, rows + K) is orthonormal within a point.
+    ``tries`` counts its independent curves, which ``span`` holds or makes again.
     """
 
     starts: tuple[tuple[float, Matrix], ...]
     tries: float
-    basis: Matrix
+    span: Spanned | Swept
 
 
 @dataclass(frozen=True)
@@ -94,14 +111,50 @@ def beside_of(found: Fit, extended: Extended) -> Beside:
 def look(curves: Curves, at: Fit, causes: Sequence[Cause]) -> Mapping[str, Looked]:
     """Compare all causes with what an explanation leaves, by their tag."""
     beside = beside_of(at, curves.extended)
-    bundles = (curves.of(cause, at) for cause in causes if cause.tag not in at.key)
-    return {tag: each for group in _grouped(bundles) for tag, each in compared(group, beside)}
+    bundles = [curves.of(cause, at) for cause in causes if cause.tag not in at.key]
+    made = {tag: each for group in _grouped(bundles) for tag, each in compared(group, beside)}
+    passes: dict[tuple[Table, int], Pass] = {}
+    for bundle in bundles:
+        if bundle.table is not None and (each := _swept(bundle, bundle.table, beside, passes)) is not None:
+            made[bundle.cause.tag] = each
+    return made
+
+
+def _swept(bundle: Bundle, table: Table, beside: Beside, passes: dict[tuple[Table, int], Pass]) -> Looked | None:
+    """Compare a table with what an explanation leaves; each result is passed through once."""
+    shape, names = bundle.cause.shape, [channel.name for channel in beside.sample.channels]
+    places = [names.index(name) for name in (shape.results if shape is not None else ())]
+    for place in places:
+        if (table, place) not in passes:
+            passes[table, place] = passed(table, beside, place)
+    own = tuple(passes[table, place] for place in places)
+    raw, normal, following = without_taken(own)
+    sizes = [np.sqrt(np.maximum(np.einsum("mqq->mq", each), 0.0)) for each in (normal, raw)]
+    points, is_own = np.flatnonzero(_draws(*sizes)), (sizes[0] > OWN * sizes[1]).any(axis=1)
+    if not len(points):
+        return None
+    right, span = np.concatenate([each.right for each in own], axis=1), Swept(own, units_of(normal), points)
+    gains, values = _starts(bundle, bundle.points[points], right[points], normal[points])
+    inner = span.units[1:] @ following @ span.units[:-1].swapaxes(1, 2)
+    tries = 1.0 + _turned(inner[is_own[1:] & is_own[:-1]], normal.shape[1])
+    return Looked(_best(gains, values, span, beside.sample.known), tries, span)
+
+
+def _draws(size: Matrix, raw: Matrix) -> NDArray[np.bool_]:
+    """Mark the points at which curves of these sizes, with and without what is taken, draw anything."""
+    return np.asarray(((size > 1e-6 * raw) & (raw > FAINT)).any(axis=1))
+
+
+def _turned(inner: Matrix, q: int) -> float:
+    """Return how many curves more lie on the way between neighbours that share so much."""
+    same = np.clip((inner**2).sum(axis=(1, 2)) / q, 0, 1)
+    return float(np.sqrt(1 - same).sum() / 2)
 
 
 def _grouped(bundles: Iterable[Bundle]) -> Iterator[list[Bundle]]:
     """Give bundles of one number of columns together, so many at once as memory has room for."""
     waiting: dict[int, list[Bundle]] = {}
-    for bundle in bundles:
+    for bundle in (each for each in bundles if each.table is None):
         several = waiting.setdefault(bundle.curves.shape[1], [])
         if several and sum(each.curves.size for each in several) + bundle.curves.size > TOGETHER:
             yield waiting.pop(bundle.curves.shape[1])
@@ -120,7 +173,7 @@ def compared(bundles: list[Bundle], beside: Beside) -> Iterator[tuple[str, Looke
         own = begin + np.flatnonzero(kept[begin:end])
         if len(own):
             gains, values = _starts(bundle, bundle.points[own - begin], right[own], normal[own])
-            drawn = basis[own] if len(own) < len(basis) else basis
+            drawn = Spanned(basis[own] if len(own) < len(basis) else basis)
             tries = independent(basis[own[is_own[own]]], is_sweep=bundle.is_sweep)
             yield bundle.cause.tag, Looked(_best(gains, values, drawn, beside.sample.known), tries, drawn)
         begin = end
@@ -140,17 +193,23 @@ def _weighed(curves: Matrix, beside: Beside) -> tuple[Any, Any, Matrix, Matrix, 
         weighed = beside.beyond(rows)
         raw, size = np.linalg.norm(rows, axis=-1), np.linalg.norm(weighed, axis=-1)
         basis[begin : begin + step] = _orthonormal(weighed, size)
-        kept, is_own = ((size > 1e-6 * raw) & (raw > FAINT)).any(axis=1), (size > OWN * raw).any(axis=1)
-        parts.append((kept, is_own, weighed @ beside.left, np.einsum("mqn,mpn->mqp", weighed, weighed)))
+        parts.append(
+            (
+                _draws(size, raw),
+                (size > OWN * raw).any(axis=1),
+                weighed @ beside.left,
+                weighed @ weighed.swapaxes(1, 2),
+            )
+        )
     kept, is_own, right, normal = (np.concatenate(each) for each in zip(*parts, strict=True))
     return kept, is_own, basis, right, normal
 
 
-def _best(gains: Matrix, values: Matrix, basis: Matrix, known: float) -> tuple[tuple[float, Matrix], ...]:
+def _best(gains: Matrix, values: Matrix, span: Spanned | Swept, known: float) -> tuple[tuple[float, Matrix], ...]:
     """Return the best points that do not draw the same, with what each is worth in score."""
     chosen: list[int] = []
     for place in np.argsort(-gains, kind="stable")[:200].tolist():
-        if gains[place] > 0 and not any(_is_same(basis[place], basis[other]) for other in chosen):
+        if gains[place] > 0 and not any(_is_same(span.vectors(place), span.vectors(other)) for other in chosen):
             chosen.append(place)
         if len(chosen) == KEPT:
             break
@@ -216,9 +275,7 @@ def independent(basis: Matrix, *, is_sweep: bool) -> float:
         return 1.0
     q = max(int((np.linalg.norm(basis, axis=-1) > 0.5).sum(axis=1).max()), 1)
     if is_sweep:
-        inner = np.einsum("mqn,mpn->mqp", basis[1:], basis[:-1])
-        same = np.clip((inner**2).sum(axis=(1, 2)) / q, 0, 1)
-        return float(1 + np.sqrt(1 - same).sum() / 2)
+        return 1.0 + _turned(basis[1:] @ basis[:-1].swapaxes(1, 2), q)
     flat = basis.reshape(-1, basis.shape[-1])
     gram = flat @ flat.T
     return float(np.trace(gram) ** 2 / max(float((gram**2).sum()), 1e-300) / q)

@@ -19,6 +19,7 @@ from truing.diagnosis.compared import shares
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import Setting, colour, whiten
+from truing.diagnosis.sweeps import Pass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -80,23 +81,24 @@ def _drawn(at: Fit, more: Fit, count: int, generator: np.random.Generator) -> Ma
 
 def _largest(made: Competition, seen: Mapping[str, Looked], drawn: Matrix, known: float, steps: int) -> Matrix:
     """Return by draw the largest gain of so many causes, one after another, each paid for, (draws,)."""
-    summed = np.zeros(drawn.shape[1])
+    summed, drawn = np.zeros(drawn.shape[1]), np.array(drawn)
     prices = {cause.tag: made.price_of(cause) for cause in made.causes}
     for _ in range(steps):
         whole = np.sum(drawn**2, axis=0)
         best = np.full(drawn.shape[1], -np.inf)
-        taken = np.zeros_like(drawn)
+        chosen: dict[int, tuple[Looked, int, Matrix]] = {}
+        passed: dict[Pass, Matrix] = {}
         for tag, each in seen.items():
-            flat = each.basis.reshape(-1, each.basis.shape[-1])
-            inner = (flat @ drawn.astype(flat.dtype)).reshape(*each.basis.shape[:2], -1)
+            inner = each.span.inner(drawn, passed)
             squares = np.sum(inner**2, axis=1)
             place = squares.argmax(axis=0)
             lowered = np.take_along_axis(squares, place[None], 0)[0]
             gain = -known * np.log(np.maximum(1 - lowered / np.maximum(whole, 1e-300), 1e-9)) - prices[tag]
             better = np.flatnonzero(gain > best)
             best[better] = gain[better]
-            for draw in better if steps > 1 else ():
-                taken[:, draw] = each.basis[place[draw]].T @ inner[place[draw], :, draw]
+            for draw in better.tolist() if steps > 1 else ():
+                chosen[draw] = each, int(place[draw]), inner[place[draw], :, draw]
         summed += best
-        drawn = drawn - taken
+        for draw, (each, point, size) in chosen.items():
+            drawn[:, draw] -= each.span.vectors(point).T @ size
     return summed

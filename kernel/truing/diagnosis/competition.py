@@ -82,11 +82,11 @@ class Competition:
     # ---- scores
 
     def price(self, found: Fit) -> float:
-        """Return what an explanation pays for its numbers, for the choice of its causes and of their curves."""
+        """Return what an explanation pays for its numbers, for the choice of causes and curves, and for its signs."""
         many, most = len(found.causes), max(len(self.causes), len(found.causes))
         choice = 2 * (lgamma(most + 1) - lgamma(many + 1) - lgamma(most - many + 1))
         if found not in self.paid:
-            self.paid[found] = self.price_of_size(found)
+            self.paid[found] = self.price_of_size(found) + MARGIN * signs_of_wrong(found)
         return choice + sum(self.price_of(cause) for cause in found.causes) + self.paid[found]
 
     def price_of(self, cause: Cause) -> float:
@@ -112,15 +112,15 @@ class Competition:
         return total
 
     def score(self, found: Fit) -> float:
-        """Return how unlikely an explanation is: its cost, its price, and the signs of a wrong one."""
-        return found.cost + self.price(found) + MARGIN * signs_of_wrong(found)
+        """Return how unlikely an explanation is: its cost, and its price."""
+        return found.cost + self.price(found)
 
     def own_score(self, found: Fit) -> float:
         """Return the same where what is left counts as noise with the memory that suits it best."""
         if found not in self.owned:
             self.owned[found] = as_noise(self.sample, found.predicted)
         inputs = float(found.inputs @ found.inputs)
-        return self.owned[found] + inputs + self.price(found) + MARGIN * signs_of_wrong(found)
+        return self.owned[found] + inputs + self.price(found)
 
     def ranked(self, accept: Callable[[Fit], bool] = lambda _: True) -> list[Fit]:
         """Return what was fitted and is accepted, the best first."""

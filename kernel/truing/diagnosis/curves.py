@@ -18,7 +18,20 @@ from scipy.stats import qmc
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.points import FINEST, LEVELS, SPREAD, first_places, middle, placed, refined, spread, thinned
+from truing.diagnosis.points import (
+    FINEST,
+    LEVELS,
+    SPREAD,
+    first_places,
+    is_known,
+    middle,
+    placed,
+    refined,
+    spread,
+    thinned,
+)
+from truing.diagnosis.sweeps import Table
+from truing.diagnosis.unregistered import Shape
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,7 +43,9 @@ STRAIGHT = 1e-4
 
 LARGEST = 8_000_000
 """Bundles of more values are made anew each time, and compared in single precision."""
-ROOM = 24_000_000
+LARGE = 1_000_000
+"""Shapes that nobody registered, with more values than that in their curves, have them in a table."""
+ROOM = 5_000_000
 """A bundle has no more values: a cause is looked at in fewer points on a long record, two per level at least."""
 
 
@@ -40,6 +55,7 @@ class Bundle:
 
     Of a bundle in proportion, column j is the change per unit of amplitude j and coefficients are amplitudes; else
     there is one column, the change itself, and its coefficient is near 1. At ``lost`` points more the model fails.
+    The curves of a shape on a long record are in a ``table`` instead.
     """
 
     cause: Cause
@@ -47,6 +63,7 @@ class Bundle:
     curves: Matrix
     is_straight: bool
     lost: int = 0
+    table: Table | None = None
 
     @property
     def is_sweep(self) -> bool:
@@ -63,6 +80,7 @@ class Curves:
         """By effect: at how many points the model fails with it, of how many that were tried where it fails at all."""
         self._alone: dict[str, Bundle] = {}
         self._straight: dict[str, bool] = {}
+        self._tables: dict[tuple[str, ...], Table] = {}
 
     def of(self, cause: Cause, beside: Fit) -> Bundle:
         """Return the curves of a cause beside an explanation; those beside nothing where that makes no difference.
@@ -97,7 +115,7 @@ class Curves:
 
     def _made(self, cause: Cause, place: _Place) -> Bundle:
         if cause.shape is not None:
-            return _swept(cause, lambda values: place.of_shape(cause, values), is_straight=True)
+            return self._of_shape(cause, cause.shape, place)
         if cause.tolerated >= 0:
             return place.of_input(cause)
         if cause.tag not in self._straight:
@@ -106,6 +124,23 @@ class Curves:
             most = place.most(cause)
             return _swept(cause, lambda values: place.slopes(cause, values), is_straight=True, most=most)
         return place.bent(cause)
+
+    def _of_shape(self, cause: Cause, shape: Shape, place: _Place) -> Bundle:
+        """Return the curves of a shape; of one with many, on a long record, a table that all results share."""
+        records = self.extended.machine.records
+        shapes = [cause.numbers[number] for number in cause.shapes]
+        u = first_places(shapes[0]) if len(shapes) == 1 and is_known(shapes[0]) else np.zeros(0)
+        if len(u) * len(cause.amplitudes) * place.readings <= LARGE:
+            return _swept(cause, lambda values: place.of_shape(cause, values), is_straight=True)
+        family = shape.kind, *shape.depends_on
+        values = placed(shapes, u[:, None])
+        if family not in self._tables:
+            terms = [[term.values for term in shape.terms(each.tolist(), records.covariates)] for each in values]
+            self._tables[family] = Table(np.array(terms, dtype=np.float32))
+        points = np.zeros((len(values), cause.size))
+        points[:, cause.shapes] = values
+        curves = np.zeros((0, len(cause.amplitudes), place.readings))
+        return Bundle(cause, points, curves, is_straight=True, table=self._tables[family])
 
 
 class _Place:
@@ -248,7 +283,7 @@ def _swept(cause: Cause, make: Callable[[Matrix], Matrix], *, is_straight: bool,
     u = thinned(u, most)
     values = placed(shapes, u)
     made = make(values)
-    if len(shapes) == 1 and not shapes[0].whole and not shapes[0].along:
+    if len(shapes) == 1 and not is_known(shapes[0]):
         u, made = refined(shapes, u, made, make, most)
         values = placed(shapes, u)
     works = _works(made.reshape(len(made), -1))

@@ -46,6 +46,7 @@ def on_all_rows(chosen: Chosen, machine: Machine) -> Chosen:
     made.stage, made.extended.grain = "fits to all rows", few.extended.grain
     made.extended.budget = few.extended.budget.of_rows(len(machine.records) / len(few.sample.machine.records))
     made.tries = dict(few.tries)
+    few.curves, few.looked = made.curves, {}  # those of some rows are much, and needed no more
     wanted = {found.key: found for found in _wanted(chosen)}
     for found in wanted.values():
         made.fitted(found.causes, found.values, None)

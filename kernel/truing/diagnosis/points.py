@@ -67,6 +67,11 @@ def first_places(number: Number) -> Matrix:
     return np.linspace(0, 1, FIRST)
 
 
+def is_known(number: Number) -> bool:
+    """Whether a sweep begins as finely as its curves change."""
+    return number.whole or bool(number.along) or number.name == "frequency"
+
+
 def thinned(points: Matrix, most: int) -> Matrix:
     """Return some points, at most so many, evenly from all."""
     if len(points) <= most:
@@ -78,7 +83,7 @@ def refined(
     shapes: Sequence[Number], u: Matrix, made: Matrix, make: Callable[[Matrix], Matrix], most: int = FINEST
 ) -> tuple[Matrix, Matrix]:
     """Put points between neighbours that are no longer alike, until all are or there are enough."""
-    while shapes[0].name != "frequency" and len(u) < most:
+    while len(u) < most:
         flat = np.nan_to_num(made.reshape(len(made), -1))
         size = np.linalg.norm(flat, axis=1)
         cosine = np.abs(np.einsum("ij,ij->i", flat[1:], flat[:-1])) / np.maximum(size[1:] * size[:-1], 1e-300)

@@ -120,6 +120,14 @@ class Channel:
             made = made * shares(self.off(predicted), self.sides)
         return np.asarray(made)
 
+    def curve(self, added: Matrix, at: Matrix | None = None) -> Matrix:
+        """Return what is added to predictions (all rows,) or (all rows, c), SI, in units of the noise, (n,) or (n, c).
+
+        Rows that are censored or compared as logarithms follow it as they do about a prediction, ``at``.
+        """
+        factors = self.factors if at is None or self.at is None else self.factors_at(at)
+        return self.white((added[self.rows].T * factors).T)
+
     def white(self, values: Matrix) -> Matrix:
         """Return values in units of the noise, (n,) or (n, c), with the memory of the noise taken out."""
         return whiten(values, self.starts, self.memory)
@@ -187,15 +195,10 @@ class Sample:
         return np.concatenate([each.white(each.left(predicted[each.name])) for each in self.channels])
 
     def curve(self, added: Predicted, at: Predicted | None = None) -> Matrix:
-        """Return what is added to predictions, (n,) or (n, c), in units of the noise, (rows,) or (rows, c).
-
-        Rows that are censored or compared as logarithms follow it as they do about a prediction, ``at``.
-        """
-        parts = []
-        for each in self.channels:
-            factors = each.factors if at is None or each.at is None else each.factors_at(at[each.name])
-            parts.append(each.white((added[each.name][each.rows].T * factors).T))
-        return np.concatenate(parts)
+        """Return what is added to predictions, (n,) or (n, c), in units of the noise, (rows,) or (rows, c)."""
+        return np.concatenate(
+            [each.curve(added[each.name], None if at is None else at[each.name]) for each in self.channels]
+        )
 
     @cached_property
     def drawn(self) -> Matrix:

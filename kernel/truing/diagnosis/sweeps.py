@@ -1,0 +1,165 @@
+"""Shapes that nobody registered, on long records: curves that are passed through, too many to keep what each leaves.
+
+What a shape adds to a result is the same for every result, and whatever stands beside it: its terms are kept once, in
+single precision. Each result is passed through block by block, and what is needed of it is small; shapes of several
+results are put together from what their results gave.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from truing.diagnosis.sample import Channel
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from truing.diagnosis.beside import Beside
+
+    Matrix = NDArray[np.float64]
+
+BLOCK = 500_000
+"""So many values are passed through at once."""
+DEPENDS = 1e-6
+"""Share of a column that is left beside others when it depends on them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Terms of a shape at many points, on all rows of the records, (M, c, n)."""
+
+    terms: NDArray[np.float32]
+
+    @property
+    def size(self) -> int:
+        """How many values it holds."""
+        return self.terms.size
+
+    def blocks(self) -> Iterator[slice]:
+        """Give the points, so many at once as memory has room for."""
+        step = max(1, BLOCK // max(self.terms[0].size, 1))
+        for begin in range(0, len(self.terms), step):
+            yield slice(begin, min(begin + step, len(self.terms)))
+
+
+@dataclass(frozen=True, eq=False)
+class Pass:
+    """A table passed through one result of a sample beside an explanation, every row in units of its noise.
+
+    ``right`` (M, c) is what it shares with what is left, ``taken`` (M, c, t) with what the explanation draws itself,
+    ``normal`` (M, c, c) with itself and ``next`` (M - 1, c, c) with the next point.
+    """
+
+    table: Table
+    beside: Beside
+    place: int
+    right: Matrix
+    taken: Matrix
+    normal: Matrix
+    next: Matrix
+
+    @property
+    def part(self) -> slice:
+        """Where the rows of the result stand among all rows of the sample."""
+        return self.beside.sample.parts[self.place]
+
+    def rows(self, block: slice) -> Matrix:
+        """Return the terms at some points in units of the noise, (m, c, rows of the result)."""
+        return _rows(self.table, self.beside, self.place, block)
+
+    def inner(self, drawn: Matrix) -> Matrix:
+        """Return what the terms share with draws (rows + K, draws), (M, c, draws)."""
+        own, (count, c, _) = drawn[self.part].astype(np.float32), self.table.terms.shape
+        rows = (self.rows(block).astype(np.float32).reshape(-1, len(own)) for block in self.table.blocks())
+        return np.concatenate([each @ own for each in rows]).reshape(count, c, -1)
+
+
+def _rows(table: Table, beside: Beside, place: int, block: slice) -> Matrix:
+    channel: Channel = beside.sample.channels[place]
+    terms = np.asarray(table.terms[block], dtype=float)
+    flat = channel.curve(terms.reshape(-1, terms.shape[-1]).T, beside.at[channel.name]).T
+    return np.asarray(flat.reshape(*terms.shape[:2], -1) * beside.roots[beside.sample.parts[place]])
+
+
+def passed(table: Table, beside: Beside, place: int) -> Pass:
+    """Pass a table through one result beside an explanation."""
+    part, several = beside.sample.parts[place], []
+    against = np.column_stack([beside.left[part], beside.taken[part]])
+    last: Matrix | None = None
+    following = []
+    for block in table.blocks():
+        rows = _rows(table, beside, place, block)
+        several.append((rows @ against, rows @ rows.swapaxes(1, 2)))
+        whole = rows if last is None else np.concatenate([last, rows])
+        following.append(whole[1:] @ whole[:-1].swapaxes(1, 2))
+        last = rows[-1:]
+    shared, normal = (np.concatenate(each) for each in zip(*several, strict=True))
+    return Pass(table, beside, place, shared[..., 0], shared[..., 1:], normal, np.concatenate(following))
+
+
+@dataclass(frozen=True, eq=False)
+class Swept:
+    """The curves of a shape over some results, once the explanation and the inputs have taken their part.
+
+    ``units`` (M, q, q) make them orthonormal within a point, ``points`` (m,) are those that draw anything.
+    """
+
+    passes: tuple[Pass, ...]
+    units: Matrix
+    points: NDArray[np.intp]
+
+    def inner(self, drawn: Matrix, known: dict[Pass, Matrix]) -> Matrix:
+        """Return what they share with draws that the explanation has no part in, (m, q, draws); each pass made once."""
+        for each in self.passes:
+            if each not in known:
+                known[each] = each.inner(drawn)
+        raw = np.concatenate([known[each][self.points] for each in self.passes], axis=1)
+        return np.asarray(self.units[self.points] @ raw)
+
+    def vectors(self, place: int) -> Matrix:
+        """Return the orthonormal curves at one of the points, (q, rows + K)."""
+        beside, at = self.passes[0].beside, int(self.points[place])
+        terms = [each.rows(slice(at, at + 1))[0] for each in self.passes]
+        rows = np.zeros((sum(len(each) for each in terms), beside.sample.rows))
+        begin = 0
+        for each, own in zip(self.passes, terms, strict=True):
+            rows[begin : begin + len(own), each.part] = own
+            begin += len(own)
+        return np.asarray(self.units[at] @ beside.beyond(rows))
+
+
+def side_by_side(blocks: list[Matrix]) -> Matrix:
+    """Return square blocks (M, c, c) as the diagonal of larger ones."""
+    ends = np.cumsum([0, *(each.shape[-1] for each in blocks)])
+    made = np.zeros((len(blocks[0]), int(ends[-1]), int(ends[-1])))
+    for begin, end, each in zip(ends, ends[1:], blocks, strict=False):
+        made[:, begin:end, begin:end] = each
+    return made
+
+
+def without_taken(passes: tuple[Pass, ...]) -> tuple[Matrix, Matrix, Matrix]:
+    """Return squares within every point with and without what is taken, and those with the next point without it."""
+    taken = np.concatenate([each.taken for each in passes], axis=1)
+    raw = side_by_side([each.normal for each in passes])
+    following = side_by_side([each.next for each in passes]) - taken[1:] @ taken[:-1].swapaxes(1, 2)
+    return raw, raw - taken @ taken.swapaxes(1, 2), following
+
+
+def units_of(normal: Matrix) -> Matrix:
+    """Return what makes columns with these squares (M, q, q) orthonormal, row by row; 0 for what depends on others."""
+    size = np.sqrt(np.maximum(np.einsum("mqq->mq", normal), 1e-300))
+    scaled = normal / (size[:, :, None] * size[:, None, :])
+    units = np.zeros_like(normal)
+    for column in range(normal.shape[1]):
+        unit = np.zeros(normal.shape[:2])
+        unit[:, column] = 1.0
+        for _ in range(2):
+            inner = np.einsum("mpq,mqr,mr->mp", units, scaled, unit)
+            unit = unit - np.einsum("mp,mpq->mq", inner, units)
+        left = np.sqrt(np.maximum(np.einsum("mq,mqr,mr->m", unit, scaled, unit), 0.0))
+        units[:, column] = unit * np.where(left > DEPENDS, 1 / np.maximum(left, 1e-300), 0.0)[:, None]
+    return np.asarray(units / size[:, None, :])
