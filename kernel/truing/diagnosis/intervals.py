@@ -6,7 +6,7 @@ known of a time constant is seldom symmetric and often open on one side: the int
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import exp, log, log1p, sqrt
 from typing import TYPE_CHECKING
@@ -40,6 +40,13 @@ SHORTEST, LONGEST = 1e-3, 0.25
 """Of the way to a bound: between these is the first step along a profile."""
 CLOSE = 5e-3
 """Of its distance from the fitted value: how well the end of a profile is known."""
+PLACES = 7.35
+"""What the cost of a place at which something begins may rise by (B. E. Hansen, Sample splitting and threshold
+estimation, Econometrica 68, 2000, 575)."""
+WHOLE = 6.0
+"""The same of a whole number: what is not excluded elsewhere."""
+MOST_WHOLE = 12
+"""So many whole numbers are tried on either side."""
 HIGHEST = 100.0
 """In units of what a profile may rise by: how high it is where the model fails."""
 
@@ -161,14 +168,84 @@ def may_be_zero(found: Fit, certainty: Certainty, cause: Cause) -> bool:
 def shape_interval(
     found: Fit, extended: Extended, certainty: Certainty, place: int
 ) -> tuple[float | None, float | None]:
-    """Return the 95 % profile interval of a shape in SI; an end is None where the profile stays open to its bound."""
+    """Return the 95 % profile interval of a number in SI; an end is None where the profile stays open to its bound."""
     profile = _Profile(found, extended, certainty, place)
     low, high = (profile.end(bound) for bound in profile.bounds)
     return low, high
 
 
+def amplitude_interval(
+    found: Fit, extended: Extended, certainty: Certainty, place: int
+) -> tuple[float | None, float | None]:
+    """Return the 95 % interval of an amplitude in SI: a profile where its cause bends with a shape that is free.
+
+    Where its cause has a whole number, it holds the intervals at every one that is not excluded.
+    """
+    (cause,) = (each for each in found.causes if place in places_of(found, each))
+    numbers, begin = [cause.numbers[shape] for shape in cause.shapes], places_of(found, cause)[0]
+    if any(number.is_free for number in numbers):
+        return shape_interval(found, extended, certainty, place)
+    whole = [begin + shape for shape in cause.shapes if cause.numbers[shape].whole]
+    fits = (each for shape in whole for each in whole_left(found, extended, shape))
+    several = [interval(each, certainty_of(each, extended), place) for each in fits]
+    several.append(interval(found, certainty, place))
+    return min(low for low, _ in several), max(high for _, high in several)
+
+
+def whole_left(found: Fit, extended: Extended, place: int) -> list[Fit]:
+    """Return the fits at other whole numbers that the readings do not exclude."""
+    number, own = numbers_of(found)[place], round(value_of(found, place))
+    ends = max(number.low, own - MOST_WHOLE), min(number.high, own + MOST_WHOLE)
+    others = [value for value in range(round(ends[0]), round(ends[1]) + 1) if value != own]
+    fits = (_kept_at(found, extended, place, float(value)) for value in others)
+    return [each for each in fits if each is not None and each.cost < found.cost + WHOLE]
+
+
+def _kept_at(found: Fit, extended: Extended, place: int, value: float) -> Fit | None:
+    """Fit again with a number that keeps its start at another value."""
+    flat = np.concatenate(found.values)
+    flat[place] = value
+    return fit(found.sample, extended, found.causes, parts_of(found.causes, flat), found)
+
+
+def place_interval(found: Fit, extended: Extended, place: int) -> tuple[float, float]:
+    """Return the rows of the record, SI, between which lies, at 95 %, a place at which something begins."""
+    number, value = numbers_of(found)[place], value_of(found, place)
+    item = found.sample.machine.records.covariates.get(number.along)
+    if item is None:
+        return value, value
+    rows = np.unique(item.values[np.isfinite(item.values)])
+    own = int(np.searchsorted(rows, value))
+
+    def before(off: int) -> bool:
+        return holds(own - off)
+
+    def behind(off: int) -> bool:
+        return holds(own + off)
+
+    def holds(gap: int) -> bool:
+        made = _kept_at(found, extended, place, float(rows[gap - 1 : gap + 1].mean()))
+        return made is not None and made.cost <= found.cost + PLACES
+
+    last = len(rows) - 1
+    low, high = own - 1 - _farthest(before, own - 1), own + _farthest(behind, last - own)
+    return float(rows[max(low, 0)]), float(rows[min(high, last)])
+
+
+def _farthest(holds: Callable[[int], bool], limit: int) -> int:
+    """Return how far something holds, from 0 on, in doubled steps and then between."""
+    near, far = 0, 1
+    while far <= limit and holds(far):
+        near, far = far, 2 * far
+    far = min(far, limit + 1)
+    while far - near > 1:
+        middle = (near + far) // 2
+        near, far = (middle, far) if holds(middle) else (near, middle)
+    return near
+
+
 class _Profile:
-    """The least cost with one shape held, everything else fitted again from the nearest point that is known."""
+    """The least cost with one number held, everything else fitted again from the nearest point that is known."""
 
     def __init__(self, found: Fit, extended: Extended, certainty: Certainty, place: int) -> None:
         self.extended, self.place, self.number = extended, place, numbers_of(found)[place]
@@ -183,14 +260,14 @@ class _Profile:
         self.reach = certainty.reach_of(place)
 
     def _fitted(self, near: Fit, u: float) -> Fit | None:
-        """Fit with the shape held, from a fit nearby."""
+        """Fit with the number held, from a fit nearby."""
         flat = np.concatenate(near.values)
         flat[self.place] = self.outward(u)
         values = parts_of(near.causes, flat)
         return fit(near.sample, self.extended, near.causes, values, near, held=[self.number])
 
     def outward(self, u: float) -> float:
-        """Return the shape in SI."""
+        """Return the number in SI."""
         return exp(u) if self.number.is_log else u * self.unit
 
     def above(self, u: float) -> float:

@@ -10,20 +10,21 @@ import numpy as np
 
 from truing.declare.sources import Unknown
 from truing.diagnosis.causes import Cause as Competitor
-from truing.diagnosis.causes import Number
 from truing.diagnosis.chosen import Chosen, Rival
 from truing.diagnosis.extended import Extended, shape_added
 from truing.diagnosis.extended import switched_on as effects_on
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import (
     Certainty,
+    amplitude_interval,
     certainty_of,
     input_value,
-    interval,
     numbers_of,
+    place_interval,
     places_of,
     shape_interval,
     value_of,
+    whole_left,
 )
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.result import Alternative, Calibrated, Cause, FittedUnknown, Remainder, ShapeTerm
@@ -54,22 +55,16 @@ class _Known:
         return self.extended.machine
 
     def ends(self, place: int) -> Ends:
-        """Return the 95 % interval of a number, SI; of one that kept its start, what lies next to it."""
+        """Return the 95 % interval of a number, SI."""
         number = numbers_of(self.found)[place]
-        if not number.is_free:
-            return self._neighbours(number, value_of(self.found, place))
-        if number.is_amplitude:
-            return interval(self.found, self.certainty, place)
-        return shape_interval(self.found, self.extended, self.certainty, place)
-
-    def _neighbours(self, number: Number, value: float) -> tuple[float, float]:
-        """Return the places of the record before and behind a place; a whole number itself."""
-        item = self.machine.records.covariates.get(number.along)
-        if item is None:
-            return value, value
-        places = item.values[np.isfinite(item.values)]
-        before, behind = places[places < value], places[places > value]
-        return float(before.max()) if len(before) else value, float(behind.min()) if len(behind) else value
+        if number.whole:
+            fits = [self.found, *whole_left(self.found, self.extended, place)]
+            values = [value_of(each, place) for each in fits]
+            return min(values), max(values)
+        if number.along:
+            return place_interval(self.found, self.extended, place)
+        interval = amplitude_interval if number.is_amplitude else shape_interval
+        return interval(self.found, self.extended, self.certainty, place)
 
 
 def causes_of(chosen: Chosen, found: Fit) -> tuple[Cause, ...]:
