@@ -177,18 +177,19 @@ def shape_interval(
 def amplitude_interval(
     found: Fit, extended: Extended, certainty: Certainty, place: int
 ) -> tuple[float | None, float | None]:
-    """Return the 95 % interval of an amplitude in SI: a profile where its cause bends with a shape that is free.
+    """Return the 95 % interval of an amplitude in SI, with its profile where its cause has a shape that is free.
 
     Where its cause has a whole number, it holds the intervals at every one that is not excluded.
     """
     (cause,) = (each for each in found.causes if place in places_of(found, each))
     numbers, begin = [cause.numbers[shape] for shape in cause.shapes], places_of(found, cause)[0]
+    own = interval(found, certainty, place)
     if any(number.is_free for number in numbers):
-        return shape_interval(found, extended, certainty, place)
+        low, high = shape_interval(found, extended, certainty, place)
+        return None if low is None else min(low, own[0]), None if high is None else max(high, own[1])
     whole = [begin + shape for shape in cause.shapes if cause.numbers[shape].whole]
     fits = (each for shape in whole for each in whole_left(found, extended, shape))
-    several = [interval(each, certainty_of(each, extended), place) for each in fits]
-    several.append(interval(found, certainty, place))
+    several = [own, *(interval(each, certainty_of(each, extended), place) for each in fits)]
     return min(low for low, _ in several), max(high for _, high in several)
 
 
