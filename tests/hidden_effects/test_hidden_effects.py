@@ -175,12 +175,3 @@ def test_a_small_cause_beside_a_rough_shape_is_not_excluded() -> None:
     assert list(case.hidden) == ["slider_inertia"]
     assert (document["verdict"], document["causes"], document["shared"]) == ("one_of", [], ["unknown"])
     assert judged["in_set"]
-
-
-def test_a_name_that_fits_worse_than_an_unregistered_shape_is_not_alone() -> None:
-    """An order of 6 that nobody registered: the eccentricity of the encoder draws most of it, with fewer numbers."""
-    case, document, judged = answered(913155, Wish())
-    assert case.shape is not None
-    assert list(case.hidden) == []
-    assert document["verdict"] == "one_of"
-    assert judged["in_set"]

@@ -38,7 +38,7 @@ NEARLY = 4.0
 ALIKE = 1.0
 """Sum of squares, in units of the noise, by which two explanations differ that are one on this record."""
 TWIN = 0.98
-"""Share of a curve that a shape must draw to be a vaguer word for it, unless it fits better by ``CLOSE`` as well."""
+"""Share of a curve that a shape must draw to be a vaguer word for it."""
 RIVALS = 24
 ROUNDS = 2
 SURELY = 30.0
@@ -199,8 +199,7 @@ def _is_near(made: Competition, best: Fit, found: Fit) -> bool:
         return False
     if behind >= max(CLOSE, SURE * unsure(best, found)):
         return False
-    is_vaguer = found.cost > best.cost - CLOSE and _is_vaguer(made, best, found)
-    return not is_vaguer and not _acts_beside(made, best, found)
+    return not _is_vaguer(made, best, found) and not _acts_beside(made, best, found)
 
 
 def _is_vaguer(made: Competition, best: Fit, found: Fit) -> bool:
