@@ -111,10 +111,11 @@ def beside_of(found: Fit, extended: Extended) -> Beside:
 def look(curves: Curves, at: Fit, causes: Sequence[Cause]) -> Mapping[str, Looked]:
     """Compare all causes with what an explanation leaves, by their tag."""
     beside = beside_of(at, curves.extended)
-    bundles = [curves.of(cause, at) for cause in causes if cause.tag not in at.key]
+    wanted = [cause for cause in causes if cause.tag not in at.key]
+    bundles = (curves.of(cause, at) for cause in wanted)  # one after another: those of effects may be large
     made = {tag: each for group in _grouped(bundles) for tag, each in compared(group, beside)}
     passes: dict[tuple[Table, int], Pass] = {}
-    for bundle in bundles:
+    for bundle in (curves.of(cause, at) for cause in wanted if cause.shape is not None):
         if bundle.table is not None and (each := _swept(bundle, bundle.table, beside, passes)) is not None:
             made[bundle.cause.tag] = each
     return made

@@ -34,11 +34,6 @@ class Table:
 
     terms: NDArray[np.float32]
 
-    @property
-    def size(self) -> int:
-        """How many values it holds."""
-        return self.terms.size
-
     def blocks(self) -> Iterator[slice]:
         """Give the points, so many at once as memory has room for."""
         step = max(1, BLOCK // max(self.terms[0].size, 1))
