@@ -41,6 +41,11 @@ class Covariate:
     role: Role
     is_angle: bool = False
 
+    @cached_property
+    def filled(self) -> NDArray[np.float64]:
+        """The values with their mean where one is missing."""
+        return np.where(np.isfinite(self.values), self.values, np.nanmean(self.values))
+
     @property
     def goes_round(self) -> bool:
         """Whether it covers nearly a whole turn, as an angle of a design never does."""

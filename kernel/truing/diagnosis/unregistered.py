@@ -38,7 +38,7 @@ SHORTEST_SETTLING, LONGEST_SETTLING = 0.02, 1.0
 
 
 Axis = tuple[str, "Matrix"]
-"""The name of a covariate, and its values, (n,), SI."""
+"""The name of a covariate, and its values, (n,), SI, with their mean where one is missing."""
 Family = tuple[Kind, tuple[str, ...], int, tuple[Number, ...], Callable[..., "list[Term]"]]
 
 
@@ -64,7 +64,7 @@ class Shape:
 
     def terms(self, numbers: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
         """Return the terms on the rows of some covariates."""
-        return self.made(*(_axis(name, covariates) for name in self.depends_on), *numbers)
+        return self.made(*((name, covariates[name].filled) for name in self.depends_on), *numbers)
 
 
 def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_steps: bool) -> list[Cause]:
@@ -170,12 +170,6 @@ def highest_order(angle: Matrix) -> int:
     if not is_regular:
         return 10**6
     return int(np.ceil(pi / float(inner.mean()) - 1e-6)) - 1  # places are rounded to 1e-9
-
-
-def _axis(name: str, covariates: Mapping[str, Covariate]) -> Axis:
-    """Return a covariate with its mean where it is missing."""
-    values = covariates[name].values
-    return name, np.where(np.isfinite(values), values, np.nanmean(values))
 
 
 def _scaled(axis: Axis) -> tuple[str, Matrix]:
