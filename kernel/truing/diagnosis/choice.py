@@ -192,8 +192,9 @@ def _is_near(made: Competition, best: Fit, found: Fit) -> bool:
     behind = made.score(found) - made.score(best)
     if best.key < found.key:
         added = [cause for cause in found.causes if cause.tag not in best.key]
-        own = made.own_score(found) - made.own_score(best)
-        return min(behind, own) < NEARLY and len(added) == 1 and added[0].effect is not None
+        if made.sample.has_memory:
+            behind = min(behind, made.own_score(found) - made.own_score(best))
+        return behind < NEARLY and len(added) == 1 and added[0].effect is not None
     if len(found.causes) > len(best.causes) or (found.key < best.key and behind >= CLOSE):
         return False
     if (shifts_inputs(found) and not shifts_inputs(best)) or shapes_in(found) > max(shapes_in(best), 1):

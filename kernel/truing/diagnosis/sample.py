@@ -184,6 +184,11 @@ class Sample:
         """Number of measured values; of censored ones what they are worth beside the others."""
         return sum(channel.known for channel in self.channels)
 
+    @property
+    def has_memory(self) -> bool:
+        """Whether the noise of any result has a memory."""
+        return any(channel.memory != WITHOUT_MEMORY for channel in self.channels)
+
     @cached_property
     def parts(self) -> list[slice]:
         """Where the values of each channel stand among all."""
