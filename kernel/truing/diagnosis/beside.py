@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import log
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from truing.diagnosis.arrays import Mask, Matrix
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.curves import LARGEST, Bundle, Curves
 from truing.diagnosis.derivatives import slopes_left
@@ -20,11 +21,6 @@ from truing.diagnosis.fitted import Fit
 from truing.diagnosis.machine import Predicted
 from truing.diagnosis.sample import Sample
 from truing.diagnosis.sweeps import Pass, Swept, Table, passed, units_of, without_taken
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 KEPT = 3
 """So many points of a cause begin exact fits."""
@@ -141,7 +137,7 @@ def _swept(bundle: Bundle, table: Table, beside: Beside, passes: dict[tuple[Tabl
     return Looked(_best(gains, values, span, beside.sample.known), tries, span)
 
 
-def _draws(size: Matrix, raw: Matrix) -> NDArray[np.bool_]:
+def _draws(size: Matrix, raw: Matrix) -> Mask:
     """Mark the points at which curves of these sizes, with and without what is taken, draw anything."""
     return np.asarray(((size > 1e-6 * raw) & (raw > FAINT)).any(axis=1))
 
@@ -263,7 +259,7 @@ def _starts(bundle: Bundle, points: Matrix, right: Matrix, normal: Matrix) -> tu
     return gains, values
 
 
-def _are_smallest(cause: Cause, points: Matrix) -> NDArray[np.bool_]:
+def _are_smallest(cause: Cause, points: Matrix) -> Mask:
     """Mark the points with the smallest amplitudes: below them a curve is in proportion, if anywhere."""
     bounds = [max(abs(cause.numbers[place].low), abs(cause.numbers[place].high)) for place in cause.amplitudes]
     shares = np.max(np.abs(points[:, cause.amplitudes]) / bounds, axis=1)

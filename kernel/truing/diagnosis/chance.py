@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import comb, log, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.beside import Looked, beside_of
 from truing.diagnosis.chosen import Law
 from truing.diagnosis.compared import shares
@@ -20,11 +20,6 @@ from truing.diagnosis.competition import Competition
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import Setting, colour, whiten
 from truing.diagnosis.sweeps import Pass
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 DRAWS, FIRST_DRAWS = 299, 99
 HOPELESS = 12

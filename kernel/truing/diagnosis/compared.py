@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.special import erfcx, log_ndtr
 
+from truing.diagnosis.arrays import Matrix
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Matrix = NDArray[np.float64]
     Sides = NDArray[np.int8]
     """By row: 1 where the true value lies above the reading, -1 where it lies below, 0 where it was read."""
 

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import permutations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.beside import look
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.chosen import Chosen
@@ -32,11 +32,6 @@ from truing.diagnosis.settings import FEW, TRIED, machine_there, settings_of
 from truing.diagnosis.verdict import APART
 from truing.numbers import format_number
 from truing.units import from_si
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 POINTS = 4
 MOST_POINTS = 100

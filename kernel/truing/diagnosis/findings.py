@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, followed_by, gauged
 from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.extended import Extended
@@ -20,11 +20,6 @@ from truing.diagnosis.shape_words import in_unit as in_unit
 from truing.diagnosis.shape_words import order_in_words, shape_in_words, step_in_words
 from truing.diagnosis.shares import added_by
 from truing.diagnosis.tidying import counted
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 SIGNIFICANT = 0.05
 FAR = 4.0

@@ -4,17 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from math import inf, log
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.sample import Sample
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 STEP = 1e-4
 """Of a number, or of a hundredth of its range: by how much it is moved for a difference."""

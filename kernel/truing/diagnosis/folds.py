@@ -4,20 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import log, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Mask, Matrix, Places
 from truing.diagnosis.exact import refit
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import Setting
 from truing.diagnosis.sample import Sample, has_order
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 FOLDS = 5
 SHORTEST_BLOCK = 6
@@ -30,10 +25,10 @@ BLOCKS = 20
 class Folds:
     """The block that each row of the records lies in (n,), -1 for rows that only judge, and the number of folds."""
 
-    block_of: NDArray[np.intp]
+    block_of: Places
     count: int
 
-    def test(self, fold: int) -> NDArray[np.bool_]:
+    def test(self, fold: int) -> Mask:
         """Mark the rows that one fold leaves out."""
         return np.asarray((self.block_of >= 0) & (self.block_of % self.count == fold))
 
@@ -81,7 +76,7 @@ def ends_of(sample: Sample) -> Folds:
     return Folds(block_of, 2)
 
 
-def refitted(found: Fit, extended: Extended, test: NDArray[np.bool_]) -> Fit | None:
+def refitted(found: Fit, extended: Extended, test: Mask) -> Fit | None:
     """Fit an explanation to the rows that are not left out, from where it is."""
     sample = found.sample.of_rows(~test)
     if not all(len(channel) for channel in sample.channels):

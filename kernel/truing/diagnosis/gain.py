@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.stats import norm
 from scipy.stats import t as student
 
+from truing.diagnosis.arrays import Mask, Matrix, Places
 from truing.diagnosis.choice import CLOSE
 from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.compared import beyond, difference
@@ -24,11 +24,6 @@ from truing.diagnosis.folds import Folds, folds_of, refitted
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.result import Amount, Gain
 from truing.diagnosis.sample import Noise, errors_of
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 FLIPS = 999
 MOST_EXACT = 12
@@ -102,7 +97,7 @@ def contenders(chosen: Chosen) -> list[Fit]:
     return [made.known[best.key], *near[:CONTENDERS]]
 
 
-def _chosen_again(chosen: Chosen, base: Fit, several: list[Fit], test: NDArray[np.bool_]) -> Fit:
+def _chosen_again(chosen: Chosen, base: Fit, several: list[Fit], test: Mask) -> Fit:
     """Return what is chosen without the rows of a fold: the choice, unless another one is better by ``CLOSE``."""
     made = chosen.competition
     again = [found for each in several if (found := refitted(each, made.extended, test)) is not None]
@@ -114,7 +109,7 @@ def _chosen_again(chosen: Chosen, base: Fit, several: list[Fit], test: NDArray[n
     return best if made.score(best) < made.score(base) else base
 
 
-def _judge(judged: Judged, name: str, fits: tuple[Fit, Fit], test: NDArray[np.bool_]) -> None:
+def _judge(judged: Judged, name: str, fits: tuple[Fit, Fit], test: Mask) -> None:
     """Fill in the rows of one fold for one result, from the fits of base and extension without them."""
     sample = fits[0].sample
     place = [channel.name for channel in sample.channels].index(name)
@@ -206,7 +201,7 @@ def _held_out(chosen: Chosen, name: str) -> tuple[float, float] | None:
     return before, after
 
 
-def sign_flip_p(gain: Matrix, block_of: NDArray[np.intp], *, seed: int) -> float:
+def sign_flip_p(gain: Matrix, block_of: Places, *, seed: int) -> float:
     """Return the significance of a gain: how often random signs of the blocks give as much."""
     known = np.isfinite(gain) & (block_of >= 0)
     sums = np.bincount(block_of[known], weights=gain[known])

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import hypot, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Mask, Places
 from truing.diagnosis.choice import CLOSE
 from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.exact import refit
@@ -22,11 +22,6 @@ from truing.diagnosis.intervals import certainty_of, places_of, value_of
 from truing.diagnosis.noise import Setting
 from truing.diagnosis.result import Amount, Contradiction, Thinned
 from truing.diagnosis.sample import Channel, Sample, has_order
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Rows = NDArray[np.bool_]
 
 APART = 4.0
 """Standard errors by which an amplitude differs between halves that contradict one another: by chance 1 in 16,000."""
@@ -67,7 +62,7 @@ def _are_few(best: Fit) -> bool:
     return not best.causes or best.sample.known < 2 * FEWEST * (best.size + len(best.inputs) ** 0.5)
 
 
-def _in_turn(sample: Sample, seed: int = 1) -> NDArray[np.intp]:
+def _in_turn(sample: Sample, seed: int = 1) -> Places:
     """Return the rows of a sample in their order; in a random one where they have none."""
     usable = np.flatnonzero(sample.mask)
     if not has_order(sample.machine):
@@ -75,7 +70,7 @@ def _in_turn(sample: Sample, seed: int = 1) -> NDArray[np.intp]:
     return usable
 
 
-def _other_halves(sample: Sample) -> tuple[Rows, Rows]:
+def _other_halves(sample: Sample) -> tuple[Mask, Mask]:
     """Mark what is left out: the second half of the rows, and the first."""
     usable = _in_turn(sample)
     first = np.zeros(len(sample.mask), dtype=bool)
@@ -122,7 +117,7 @@ def _names(found: Fit) -> tuple[str, ...]:
     return tuple(dict.fromkeys(cause.name for cause in found.causes))
 
 
-def _thinned(sample: Sample, rows: NDArray[np.intp]) -> Sample:
+def _thinned(sample: Sample, rows: Places) -> Sample:
     """Return every second row, with the memory that the noise still has from one of them to the next."""
     mask = np.zeros(len(sample.mask), dtype=bool)
     mask[rows] = True
@@ -134,7 +129,7 @@ def _thinned(sample: Sample, rows: NDArray[np.intp]) -> Sample:
     return replace(few, channels=tuple(channels))
 
 
-def _starts(channel: Channel, kept: Rows) -> Rows:
+def _starts(channel: Channel, kept: Mask) -> Mask:
     """Mark the rows that are kept before which, since the last one, the noise began anew."""
     return np.asarray(np.diff(np.cumsum(channel.starts)[kept], prepend=0) > 0)
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import exp, log, log1p, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.special import stdtrit
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.columns import in_blocks
 from truing.diagnosis.derivatives import slopes_at, unit_of
@@ -22,11 +22,6 @@ from truing.diagnosis.exact import fit
 from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import Fit, inward
 from truing.diagnosis.sample import Sample
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 LEVEL = 0.975
 """Of Student's t at either end of an interval: together they hold 95 %."""

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import log
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Mask, Matrix
 from truing.diagnosis.columns import in_blocks
 from truing.diagnosis.compared import beyond, difference, scale_of
 from truing.diagnosis.machine import Machine, Predicted
@@ -37,11 +37,6 @@ from truing.diagnosis.sample import (
     residuals_of,
     typical_of,
 )
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 FEWEST_OF_MEMORY = 20
 """Rows from which on their memory is learnt."""
@@ -151,7 +146,7 @@ def _drivers(machine: Machine) -> dict[str, Matrix]:
     return made
 
 
-def memory_of(left: Matrix, starts: NDArray[np.bool_]) -> Setting:
+def memory_of(left: Matrix, starts: Mask) -> Setting:
     """Return the filter that makes what is left likeliest, its parameters paid for."""
     if len(left) < FEWEST_OF_MEMORY:
         return Setting()
@@ -159,7 +154,7 @@ def memory_of(left: Matrix, starts: NDArray[np.bool_]) -> Setting:
     return SETTINGS[int(np.argmin(costs))]
 
 
-def memory_cost(left: Matrix, starts: NDArray[np.bool_], setting: Setting) -> float:
+def memory_cost(left: Matrix, starts: Mask, setting: Setting) -> float:
     """Return -2 log likelihood of what is left as noise of this filter, its size free, its parameters paid for."""
     white = whiten(left, starts, setting)
     square = max(float(np.mean(white**2)), 1e-300)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from truing.declare.sources import Unknown
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause as Competitor
 from truing.diagnosis.chosen import Chosen, Rival
 from truing.diagnosis.extended import Extended, shape_added
@@ -31,11 +31,6 @@ from truing.diagnosis.result import Alternative, Calibrated, Cause, FittedUnknow
 from truing.diagnosis.shape_words import shape_in_words
 from truing.diagnosis.visibility import separation
 from truing.setup import Setup, SwitchedOn
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 Ends = tuple[float | None, float | None]
 Sized = tuple[float, float | None, float | None]

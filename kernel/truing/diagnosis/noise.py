@@ -8,15 +8,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.linalg.lapack import dtbtrs
 from scipy.optimize import minimize_scalar
 from scipy.special import gammaln, ndtri, stdtr
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from truing.diagnosis.arrays import Mask, Matrix, Places
 
 TAILS = {3.0: 1.9, 4.0: 2.1, 6.0: 2.5, 10.0: 3.0, inf: 4.5}
 """Degrees of freedom of Student's t, and where innovations are clipped, in standard deviations."""
@@ -64,9 +63,7 @@ SETTINGS = (
 )  # fmt: skip
 
 
-def carried_over(
-    driven: NDArray[np.float64], starts: NDArray[np.bool_], share: float, *, backwards: bool = False
-) -> NDArray[np.float64]:
+def carried_over(driven: Matrix, starts: Mask, share: float, *, backwards: bool = False) -> Matrix:
     """Return x_i = driven_i + share * x_{i-1} (backwards: x_{i+1}) inside every run, shape (n,) or (n, c).
 
     ``starts`` marks the first row of each run.
@@ -76,11 +73,11 @@ def carried_over(
     band = np.ones((2, len(starts)))
     band[1, :-1] = -share * ~starts[1:]
     solved, _ = dtbtrs(band, driven.reshape(len(starts), -1), uplo="L", trans="T" if backwards else "N", diag="U")
-    found: NDArray[np.float64] = solved.reshape(driven.shape)
+    found: Matrix = solved.reshape(driven.shape)
     return found
 
 
-def whiten(values: NDArray[np.float64], starts: NDArray[np.bool_], setting: Setting) -> NDArray[np.float64]:
+def whiten(values: Matrix, starts: Mask, setting: Setting) -> Matrix:
     """Turn noise of this filter into independent innovations, shape (n,) or (n, c), run by run."""
     ratio = setting.variance_ratio
     white = np.array(values, dtype=float)
@@ -94,7 +91,7 @@ def whiten(values: NDArray[np.float64], starts: NDArray[np.bool_], setting: Sett
     return white
 
 
-def colour(white: NDArray[np.float64], starts: NDArray[np.bool_], setting: Setting) -> NDArray[np.float64]:
+def colour(white: Matrix, starts: Mask, setting: Setting) -> Matrix:
     """Undo ``whiten``: make noise of this filter from independent innovations."""
     ratio = setting.variance_ratio
     driven = np.array(white, dtype=float)
@@ -121,12 +118,12 @@ class Tails:
         return "normal" if self.freedom == inf else f"heavy (t with {self.freedom:g} degrees of freedom)"
 
 
-def robust_sd(innovations: NDArray[np.float64]) -> float:
+def robust_sd(innovations: Matrix) -> float:
     """Return the standard deviation from the median absolute deviation."""
     return 1.4826 * float(np.median(np.abs(innovations - np.median(innovations))))
 
 
-def tails_of(innovations: NDArray[np.float64]) -> Tails:
+def tails_of(innovations: Matrix) -> Tails:
     """Return the normal law, or Student's t where its profile over the scale is likelier by ``HEAVIER``."""
     totals = _by_freedom(innovations)
     freedom = max(totals, key=lambda each: totals[each])
@@ -134,16 +131,16 @@ def tails_of(innovations: NDArray[np.float64]) -> Tails:
     return Tails(freedom, TAILS[freedom])
 
 
-def likelihood_of(innovations: NDArray[np.float64]) -> float:
+def likelihood_of(innovations: Matrix) -> float:
     """Return the log-likelihood of innovations under the tails that fit them best."""
     return max(_by_freedom(innovations).values()) - len(innovations) * float(np.log(_scale(innovations)))
 
 
-def _scale(innovations: NDArray[np.float64]) -> float:
+def _scale(innovations: Matrix) -> float:
     return robust_sd(innovations) or float(np.std(innovations)) or 1.0
 
 
-def _by_freedom(innovations: NDArray[np.float64]) -> dict[float, float]:
+def _by_freedom(innovations: Matrix) -> dict[float, float]:
     """Return the largest log-likelihood of scaled innovations by degrees of freedom."""
     u = innovations / _scale(innovations)
     factors = np.exp(np.linspace(-0.6, 0.6, 25))
@@ -161,7 +158,7 @@ def _by_freedom(innovations: NDArray[np.float64]) -> dict[float, float]:
     return dict(zip(TAILS, largest.tolist(), strict=True))
 
 
-def clipped(innovations: NDArray[np.float64], tails: Tails) -> NDArray[np.float64]:
+def clipped(innovations: Matrix, tails: Tails) -> Matrix:
     """Clip innovations at the limit of their tails: least squares on the rest is a one-step robust estimate."""
     scale = robust_sd(innovations) or float(np.std(innovations))
     return np.clip(innovations, -tails.limit * scale, tails.limit * scale)
@@ -183,14 +180,14 @@ class Spread:
         return f"{'grows' if self.slope > 0 else 'falls'} with {self.driver}"
 
 
-def standardised(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def standardised(values: Matrix) -> Matrix:
     """Return a driver with mean 0 and standard deviation 1, missing values at the mean."""
     filled = np.where(np.isfinite(values), values, np.nanmean(values))
     sd = float(np.std(filled))
     return (filled - filled.mean()) / sd if sd > 0 else np.zeros_like(filled)
 
 
-def spread_of(innovations: NDArray[np.float64], drivers: dict[str, NDArray[np.float64]]) -> Spread:
+def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> Spread:
     """Find what the spread of the innovations depends on, if on anything (Bonferroni over the drivers).
 
     Tested is the correlation of a driver with normal scores of the ranks of their sizes, which heavy tails do not reach
@@ -219,22 +216,20 @@ def spread_of(innovations: NDArray[np.float64], drivers: dict[str, NDArray[np.fl
     return Spread(name, slope, p_value)
 
 
-def _scores(sizes: NDArray[np.float64]) -> NDArray[np.float64]:
+def _scores(sizes: Matrix) -> Matrix:
     """Return for each size that which a normal number of its rank has; equal ones share their ranks."""
     _, place, counts = np.unique(sizes, return_inverse=True, return_counts=True)
     ranks = (np.cumsum(counts) - (counts - 1) / 2)[place]
     return np.asarray(ndtri(0.5 + 0.5 * ranks / (len(sizes) + 1)))
 
 
-def _p_of_line(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:
+def _p_of_line(x: Matrix, y: Matrix) -> float:
     """Return the two-sided p-value of the slope of a line, by Student's t."""
     r, freedom = float(np.corrcoef(x, y)[0, 1]), len(x) - 2
     return float(2 * stdtr(freedom, -abs(r) * np.sqrt(freedom / max(1 - r * r, 1e-300))))
 
 
-def weights_of(
-    spread: Spread, driver: NDArray[np.float64] | None, learnt: NDArray[np.intp], rows: int
-) -> NDArray[np.float64]:
+def weights_of(spread: Spread, driver: Matrix | None, learnt: Places, rows: int) -> Matrix:
     """Return the weight of each of ``rows`` rows: one over the relative standard deviation of its noise.
 
     ``learnt`` are the rows that the spread was learnt from: the driver is standardised over them.

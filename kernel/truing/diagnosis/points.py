@@ -4,17 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.stats import qmc
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 LEVELS = (1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001)
 """Shares of its bound at which an amplitude that bends is asked for."""

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import Covariate
 from truing.numbers import format_number
 from truing.units import from_si
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 SHOWN_DIGITS = 2
 PLACE_DIGITS = 3

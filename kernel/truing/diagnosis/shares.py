@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.result import Cause
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 
 def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:

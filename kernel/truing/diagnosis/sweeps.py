@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix, Places
 from truing.diagnosis.sample import Channel
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
     from truing.diagnosis.beside import Beside
 
-    Matrix = NDArray[np.float64]
 
 BLOCK = 500_000
 """So many values are passed through at once."""
@@ -105,7 +105,7 @@ class Swept:
 
     passes: tuple[Pass, ...]
     units: Matrix
-    points: NDArray[np.intp]
+    points: Places
 
     def inner(self, drawn: Matrix, known: dict[Pass, Matrix]) -> Matrix:
         """Return what they share with draws that the explanation has no part in, (m, q, draws); each pass made once."""

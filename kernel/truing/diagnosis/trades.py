@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import Certainty, certainty_of, places_of, value_of
 from truing.diagnosis.result import Trade
 from truing.diagnosis.verdict import APART
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 TRADED = 0.95
 """Correlation of an amplitude and an input above which they trade. With the input held at its value the standard error

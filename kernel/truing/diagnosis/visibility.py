@@ -6,12 +6,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from math import asin, comb, degrees, inf, log, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import lsq_linear
 from scipy.special import ndtri
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number, failure_of, idle_of
 from truing.diagnosis.chosen import Chosen
 from truing.diagnosis.derivatives import slopes_at, unit_of
@@ -21,11 +21,6 @@ from truing.diagnosis.machine import Machine
 from truing.diagnosis.points import LEVELS
 from truing.diagnosis.result import Amount, Seen, Sight
 from truing.diagnosis.sample import Sample
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 POWER = 0.9
 LEVEL = 0.05
