@@ -8,13 +8,13 @@ curves of all causes beside the simpler explanation, and pays what an explanatio
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from math import comb, log, sqrt
 
 import numpy as np
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.beside import Looked, beside_of
-from truing.diagnosis.chosen import Law
 from truing.diagnosis.compared import shares
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.fitted import Fit
@@ -25,6 +25,18 @@ DRAWS, FIRST_DRAWS = 299, 99
 HOPELESS = 12
 """So many simulated gains above the measured one, of the first draws, settle that it is nothing."""
 LARGEST_RHO = 0.985
+
+
+@dataclass(frozen=True)
+class Law:
+    """Largest gains that a search makes of noise alone, simulated (draws,), and the chance of the measured one."""
+
+    gains: Matrix
+    p_value: float
+
+    def p_of(self, gain: float) -> float:
+        """Return the chance of any other gain of the same search."""
+        return float((1 + (self.gains >= gain).sum()) / (1 + len(self.gains)))
 
 
 def carried(rho: float, rows: int) -> float:

@@ -16,7 +16,7 @@ import numpy as np
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.beside import look
 from truing.diagnosis.causes import Cause, Number
-from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.choice import Chosen
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.derivatives import slopes_at, unit_of
 from truing.diagnosis.exact import fit

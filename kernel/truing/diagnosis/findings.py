@@ -8,17 +8,17 @@ import numpy as np
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, followed_by, gauged
-from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.choice import Chosen
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.gain import floor_of
+from truing.diagnosis.naming import added_by
 from truing.diagnosis.noise import robust_sd
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Amount, Finding, Kind, Noise, Wrong
 from truing.diagnosis.sample import Channel, errors_of, residuals_of
 from truing.diagnosis.shape_words import in_unit as in_unit
 from truing.diagnosis.shape_words import order_in_words, shape_in_words, step_in_words
-from truing.diagnosis.shares import added_by
 from truing.diagnosis.tidying import counted
 
 SIGNIFICANT = 0.05

@@ -15,8 +15,7 @@ from scipy.stats import norm
 from scipy.stats import t as student
 
 from truing.diagnosis.arrays import Mask, Matrix, Places
-from truing.diagnosis.choice import CLOSE
-from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.choice import CLOSE, Chosen
 from truing.diagnosis.compared import beyond, difference
 from truing.diagnosis.extended import shape_added
 from truing.diagnosis.fitted import Fit

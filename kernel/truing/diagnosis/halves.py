@@ -12,8 +12,7 @@ from math import hypot, sqrt
 import numpy as np
 
 from truing.diagnosis.arrays import Mask, Places
-from truing.diagnosis.choice import CLOSE
-from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.choice import CLOSE, Chosen
 from truing.diagnosis.exact import refit
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import refitted

@@ -17,7 +17,7 @@ import numpy as np
 
 from truing.declare.goals import Maximise, Minimise, Require
 from truing.declare.specs import Axis
-from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.choice import Chosen
 from truing.diagnosis.design import Proposal, is_physical, name_of, rival_fits
 from truing.diagnosis.extended import switched_on
 from truing.diagnosis.findings import in_unit

@@ -13,14 +13,16 @@ from scipy.special import ndtri
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number, failure_of, idle_of
-from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.choice import Chosen
 from truing.diagnosis.derivatives import slopes_at, unit_of
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
+from truing.diagnosis.intervals import Certainty, certainty_of, places_of, value_of
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.points import LEVELS
-from truing.diagnosis.result import Amount, Seen, Sight
+from truing.diagnosis.result import Amount, Seen, Sight, Trade
 from truing.diagnosis.sample import Sample
+from truing.diagnosis.verdict import APART
 
 POWER = 0.9
 LEVEL = 0.05
@@ -36,6 +38,10 @@ FEW_SHAPES = 5
 """At so many shapes a cause that bends in several amplitudes is asked for each of them alone."""
 NEXT_LEVEL = 0.3
 """An amplitude that bends is asked for again at so much of it: its curve stands for no sizes beyond that."""
+
+TRADED = 0.95
+"""Correlation of an amplitude and an input above which they trade. With the input held at its value the standard error
+of the amplitude would be sqrt(1 - 0.95^2) of what it is, a third: so much is lost to the tolerance of the input."""
 
 
 def needed(explanations: int) -> float:
@@ -237,6 +243,56 @@ def _one_sided(machine: Machine) -> Iterator[str]:
         low, high = np.nanmin(item.values), np.nanmax(item.values)
         if low >= 0 or high <= 0:
             yield f"{name} never changed its sign: what jumps with the sign looks like a constant here"
+
+
+def trades_of(chosen: Chosen) -> tuple[Trade, ...]:
+    """Return the named effects that this record does not separate from one of the tolerated inputs.
+
+    The correlation is that of the exact fit, with the tolerances in force: an input that is known well enough has none.
+    A cause that is far from zero even with every input free is separated all the same: only what ``APART`` calls
+    separable at most weakly is returned.
+    """
+    best = chosen.best
+    if not len(best.inputs) or not any(cause.effect is not None for cause in best.causes):
+        return ()
+    certainty = certainty_of(best, chosen.competition.extended)
+    return tuple(_trades(best, certainty))
+
+
+def _trades(best: Fit, certainty: Certainty) -> Iterator[Trade]:
+    alike, inputs = _correlations(best, certainty), best.sample.machine.inputs
+    shifted = [cause.tolerated for cause in best.causes if cause.tolerated >= 0]
+    alike[:, shifted] = 0.0
+    for cause in best.causes:
+        if cause.effect is None:
+            continue
+        places = [places_of(best, cause)[place] for place in cause.amplitudes]
+        number, item = np.unravel_index(int(np.argmax(np.abs(alike[places]))), (len(places), len(inputs)))
+        correlation = float(alike[places[number], item])
+        separation = _separation(best, certainty, places)
+        if abs(correlation) > TRADED and separation < APART:
+            unknown = cause.numbers[cause.amplitudes[number]].name
+            yield Trade(cause.name, unknown, inputs[item].name, correlation, separation)
+
+
+def _correlations(best: Fit, certainty: Certainty) -> Matrix:
+    """Return the correlation of every number with every input, (numbers, inputs).
+
+    Of what the rows do not see of an input its tolerance is all that is known.
+    """
+    size, directions = best.size, best.sample.directions
+    covariance = certainty.covariance
+    seen = np.einsum("ij,jk,ik->i", directions, covariance[size:, size:], directions)
+    variance = seen + np.maximum(1 - np.sum(directions**2, axis=1), 0.0)
+    own = np.outer(np.diag(covariance)[:size], variance)
+    return np.asarray(covariance[:size, size:] @ directions.T / np.sqrt(np.maximum(own, 1e-300)))
+
+
+def _separation(best: Fit, certainty: Certainty, places: list[int]) -> float:
+    """Return how far the amplitudes of a cause are from zero, all else free: the squares that are lost, lambda."""
+    values = np.array([value_of(best, place) for place in places]) / certainty.units[places]
+    inverse = np.linalg.pinv(certainty.covariance[np.ix_(places, places)], hermitian=True)
+    return float(values @ inverse @ values)
 
 
 def separation(true: Fit, rival: Fit, extended: Extended) -> float:
