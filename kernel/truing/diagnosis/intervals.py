@@ -213,18 +213,13 @@ def place_interval(found: Fit, extended: Extended, place: int) -> tuple[float, f
     rows = np.unique(item.values[np.isfinite(item.values)])
     own = int(np.searchsorted(rows, value))
 
-    def before(off: int) -> bool:
-        return holds(own - off)
-
-    def behind(off: int) -> bool:
-        return holds(own + off)
-
     def holds(gap: int) -> bool:
         made = _kept_at(found, extended, place, float(rows[gap - 1 : gap + 1].mean()))
         return made is not None and made.cost <= found.cost + PLACES
 
     last = len(rows) - 1
-    low, high = own - 1 - _farthest(before, own - 1), own + _farthest(behind, last - own)
+    low = own - 1 - _farthest(lambda off: holds(own - off), own - 1)
+    high = own + _farthest(lambda off: holds(own + off), last - own)
     return float(rows[max(low, 0)]), float(rows[min(high, last)])
 
 

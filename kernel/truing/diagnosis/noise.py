@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 from scipy.linalg.lapack import dtbtrs
 from scipy.optimize import minimize_scalar
-from scipy.special import gammaln, ndtri, stdtr
+from scipy.special import gammaln, ndtri
+from scipy.stats import linregress, rankdata
 
 from truing.diagnosis.arrays import Mask, Matrix, Places
 
@@ -198,11 +199,11 @@ def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> Spread:
     tried = {name: z for name, z in tried.items() if np.ptp(z) > 0}
     if not tried or len(u) < 20:
         return Spread()
-    sizes = _scores(np.abs(u))
+    sizes = ndtri(0.5 + 0.5 * rankdata(np.abs(u)) / (len(u) + 1))
     if not np.ptp(sizes) > 0:
         return Spread()
-    p_values = {name: _p_of_line(z, sizes) for name, z in tried.items()}
-    name = min(p_values, key=lambda key: p_values[key])
+    p_values = {name: float(linregress(z, sizes).pvalue) for name, z in tried.items()}
+    name = min(p_values, key=p_values.__getitem__)
     p_value = min(1.0, p_values[name] * len(tried))
     if p_value >= SPREAD_LEVEL:
         return Spread()
@@ -214,19 +215,6 @@ def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> Spread:
 
     slope = float(minimize_scalar(cost, bounds=(-2.0, 2.0), method="bounded").x)
     return Spread(name, slope, p_value)
-
-
-def _scores(sizes: Matrix) -> Matrix:
-    """Return for each size that which a normal number of its rank has; equal ones share their ranks."""
-    _, place, counts = np.unique(sizes, return_inverse=True, return_counts=True)
-    ranks = (np.cumsum(counts) - (counts - 1) / 2)[place]
-    return np.asarray(ndtri(0.5 + 0.5 * ranks / (len(sizes) + 1)))
-
-
-def _p_of_line(x: Matrix, y: Matrix) -> float:
-    """Return the two-sided p-value of the slope of a line, by Student's t."""
-    r, freedom = float(np.corrcoef(x, y)[0, 1]), len(x) - 2
-    return float(2 * stdtr(freedom, -abs(r) * np.sqrt(freedom / max(1 - r * r, 1e-300))))
 
 
 def weights_of(spread: Spread, driver: Matrix | None, learnt: Places, rows: int) -> Matrix:

@@ -21,7 +21,6 @@ from truing.diagnosis.intervals import Certainty, certainty_of, places_of, value
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.points import LEVELS
 from truing.diagnosis.result import Amount, Seen, Sight, Trade
-from truing.diagnosis.sample import Sample
 from truing.diagnosis.verdict import APART
 
 POWER = 0.9
@@ -52,16 +51,17 @@ def needed(explanations: int) -> float:
     return float((ndtri(1 - LEVEL / (2 * max(explanations, 1))) + ndtri(POWER)) ** 2)
 
 
-@dataclass(frozen=True)
 class _Eye:
     """What a curve is on these rows: in units of the noise that the answer leaves, and without what inputs can draw.
 
     ``roots`` has shape (rows,); ``taken`` (rows + K, K) is an orthonormal basis of the inputs beside their prior.
     """
 
-    sample: Sample
-    roots: Matrix
-    taken: Matrix
+    def __init__(self, chosen: Chosen) -> None:
+        self.sample = chosen.best.sample
+        self.roots = self.sample.roots(chosen.best.left)
+        drawn = self.sample.drawn * self.roots[:, None]
+        self.taken = np.linalg.qr(np.concatenate([drawn, np.eye(drawn.shape[1])]))[0]
 
     def raw(self, curve: Matrix) -> Matrix:
         """Return a curve over all readings of the records, SI, as if nothing were tolerated, (rows,)."""
@@ -88,18 +88,9 @@ class _Look:
     curve: Matrix
 
 
-def _eye(chosen: Chosen) -> _Eye:
-    """Return how curves are seen in the noise that the answer leaves."""
-    sample = chosen.best.sample
-    roots = sample.roots(chosen.best.left)
-    drawn = sample.drawn * roots[:, None]
-    taken, _ = np.linalg.qr(np.concatenate([drawn, np.eye(drawn.shape[1])]))
-    return _Eye(sample, roots, np.asarray(taken))
-
-
 def smallest_visible(chosen: Chosen) -> list[Seen]:
     """Return for every effect how small it may be, whether the tolerances hide it, whether it was excited."""
-    machine, eye = chosen.competition.extended.machine, _eye(chosen)
+    machine, eye = chosen.competition.extended.machine, _Eye(chosen)
     effects = [cause for cause in chosen.competition.causes if cause.effect is not None]
     failing = _failing(chosen, effects)
     skipped = {*failing, *chosen.competition.extended.budget.unseen}
@@ -110,11 +101,9 @@ def smallest_visible(chosen: Chosen) -> list[Seen]:
         amplitudes = {cause.numbers[place].name for place in cause.amplitudes}
         several = names.count(cause.name) > 1 or len(amplitudes) > 1
         for place in cause.amplitudes if cause.name not in skipped else ():
-            number = cause.numbers[place]
-            seen = _seen(f"{cause.name}.{number.name}" if several else cause.name, cause, number, _look(
-                chosen, eye, cause, place, limit,
-            ))  # fmt: skip
-            found.setdefault(seen.name, []).append(seen)
+            number, look = cause.numbers[place], _look(chosen, eye, cause, place, limit)
+            name = f"{cause.name}.{number.name}" if several else cause.name
+            found.setdefault(name, []).append(_seen(name, cause, number, look))
     smallest = [min(each, key=lambda seen: seen.smallest.value if seen.smallest else inf) for each in found.values()]
     still = [Seen(name, None, "not excited") for name in idle_of(machine) if name not in failing]
     return [*smallest, *still, *(Seen(name, None, "cannot be fitted", why) for name, why in failing.items())]
@@ -201,7 +190,7 @@ def inseparable(chosen: Chosen) -> list[str]:
 
 def _alike(chosen: Chosen) -> Iterator[str]:
     """Say which causes without a shape of their own draw nearly the same."""
-    eye, angles = _eye(chosen), dict[tuple[str, str], float]()
+    eye, angles = _Eye(chosen), dict[tuple[str, str], float]()
     plain = [
         cause
         for cause in chosen.competition.causes
@@ -252,20 +241,17 @@ def trades_of(chosen: Chosen) -> tuple[Trade, ...]:
     A cause that is far from zero even with every input free is separated all the same: only what ``APART`` calls
     separable at most weakly is returned.
     """
-    best = chosen.best
-    if not len(best.inputs) or not any(cause.effect is not None for cause in best.causes):
-        return ()
+    named = [cause for cause in chosen.best.causes if cause.effect is not None]
+    return tuple(_trades(chosen, named)) if named and len(chosen.best.inputs) else ()
+
+
+def _trades(chosen: Chosen, named: Sequence[Cause]) -> Iterator[Trade]:
+    best, inputs = chosen.best, chosen.best.sample.machine.inputs
     certainty = certainty_of(best, chosen.competition.extended)
-    return tuple(_trades(best, certainty))
-
-
-def _trades(best: Fit, certainty: Certainty) -> Iterator[Trade]:
-    alike, inputs = _correlations(best, certainty), best.sample.machine.inputs
+    alike = _correlations(best, certainty)
     shifted = [cause.tolerated for cause in best.causes if cause.tolerated >= 0]
     alike[:, shifted] = 0.0
-    for cause in best.causes:
-        if cause.effect is None:
-            continue
+    for cause in named:
         places = [places_of(best, cause)[place] for place in cause.amplitudes]
         number, item = np.unravel_index(int(np.argmax(np.abs(alike[places]))), (len(places), len(inputs)))
         correlation = float(alike[places[number], item])
@@ -310,24 +296,23 @@ def separation(true: Fit, rival: Fit, extended: Extended) -> float:
     columns = np.concatenate(
         [np.column_stack([own, inputs]) * roots[:, None], np.column_stack([np.zeros((k, own.shape[1])), np.eye(k)])]
     )
-    low, high = _room(moved)
-    ends = np.concatenate([low, np.full(k, -inf)]), np.concatenate([high, np.full(k, inf)])
+    ends = np.full((2, columns.shape[1]), [[-inf], [inf]])
+    ends[:, : own.shape[1]] = _room(moved)
     size = np.linalg.norm(columns, axis=0)
     used = size > 0
     target = np.concatenate([apart, np.zeros(k)])
     if not used.any():
         return float(target @ target)
-    low, high = (end[used] * size[used] for end in ends)
+    low, high = ends[:, used] * size[used]
     return float(2 * lsq_linear(columns[:, used] / size[used], target, (low, high), method="bvls").cost)
 
 
-def _room(found: Fit) -> tuple[Matrix, Matrix]:
-    """Return how far every number may still go down and up, in units of the number as the fit sees it."""
+def _room(found: Fit) -> Matrix:
+    """Return how far every number may still go down and up, in units of the number as the fit sees it, (2, numbers)."""
     numbers = [number for cause in found.causes for number in cause.numbers]
     flat = np.concatenate(found.values).tolist() if found.causes else []
-    low, high = [], []
-    for number, value, unit in zip(numbers, flat, unit_of(found).tolist(), strict=True):
+    room = np.zeros((2, len(numbers)))
+    for place, (number, value, unit) in enumerate(zip(numbers, flat, unit_of(found).tolist(), strict=True)):
         ends = [log(end / value) if number.is_log else (end - value) / unit for end in (number.low, number.high)]
-        low.append(min(ends[0], -1e-12))
-        high.append(max(ends[1], 1e-12))
-    return np.array(low), np.array(high)
+        room[:, place] = min(ends[0], -1e-12), max(ends[1], 1e-12)
+    return room
