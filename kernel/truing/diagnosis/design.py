@@ -131,7 +131,7 @@ def is_physical(found: Fit) -> bool:
 
 def name_of(found: Fit) -> str:
     """Return what an explanation is called: the names of its causes, each once."""
-    return " + ".join(dict.fromkeys(cause.name for cause in found.causes))
+    return " + ".join(found.names)
 
 
 def rival_fits(chosen: Chosen) -> list[Fit]:

@@ -43,6 +43,11 @@ class Fit:
         return frozenset(cause.tag for cause in self.causes)
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """What the answer calls its causes, each once."""
+        return tuple(dict.fromkeys(cause.name for cause in self.causes))
+
+    @property
     def size(self) -> int:
         """How many numbers its causes have."""
         return sum(cause.size for cause in self.causes)

@@ -154,11 +154,11 @@ def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
 
 def added_by(found: Fit, extended: Extended) -> dict[str, dict[str, Matrix]]:
     """Return by name of a cause what all that it names adds to each result of an explanation, SI on all rows."""
-    names = list(dict.fromkeys(cause.name for cause in found.causes))
-    whole, *without = extended.at(found.causes, [(_without(found, name), found.moved) for name in ("", *names)])
+    points = [(_without(found, name), found.moved) for name in ("", *found.names)]
+    whole, *without = extended.at(found.causes, points)
     return {
         name: {result: np.nan_to_num(whole[result] - values) for result, values in less.items()}
-        for name, less in zip(names, without, strict=True)
+        for name, less in zip(found.names, without, strict=True)
     }
 
 
@@ -263,7 +263,7 @@ def alternative_of(chosen: Chosen, rival: Rival, *, with_sizes: bool = False) ->
         if others:
             same[cause.name] = tuple(dict.fromkeys(other for other in others if other != cause.name))
     return Alternative(
-        tuple(dict.fromkeys(cause.name for cause in found.causes)),
+        found.names,
         rival.behind,
         separation(chosen.best, found, chosen.competition.extended),
         _followed(found),

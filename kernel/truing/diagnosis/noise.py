@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
-from typing import Any
 
 import numpy as np
 from scipy.linalg.lapack import dtbtrs
@@ -74,8 +73,7 @@ def carried_over(driven: Matrix, starts: Mask, share: float, *, backwards: bool 
     band = np.ones((2, len(starts)))
     band[1, :-1] = -share * ~starts[1:]
     solved, _ = dtbtrs(band, driven.reshape(len(starts), -1), uplo="L", trans="T" if backwards else "N", diag="U")
-    found: Matrix = solved.reshape(driven.shape)
-    return found
+    return np.asarray(solved.reshape(driven.shape))
 
 
 def whiten(values: Matrix, starts: Mask, setting: Setting) -> Matrix:
@@ -176,9 +174,7 @@ class Spread:
     @property
     def words(self) -> str:
         """What an engineer reads."""
-        if not self.driver:
-            return "constant"
-        return f"{'grows' if self.slope > 0 else 'falls'} with {self.driver}"
+        return f"{'grows' if self.slope > 0 else 'falls'} with {self.driver}" if self.driver else "constant"
 
 
 def standardised(values: Matrix) -> Matrix:
@@ -228,5 +224,4 @@ def weights_of(spread: Spread, driver: Matrix | None, learnt: Places, rows: int)
     middle, sd = np.nanmean(here), np.nanstd(here)
     z = (np.where(np.isfinite(driver), driver, middle) - middle) / sd
     exponent = np.clip(spread.slope * z, -LARGEST_EXPONENT, LARGEST_EXPONENT)
-    weights: Any = np.exp(-exponent)
-    return np.asarray(weights, dtype=float)
+    return np.asarray(np.exp(-exponent))
