@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from truing.declare.sources import Unknown
+from truing.declare.sources import Effect
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause as Competitor
 from truing.diagnosis.choice import Chosen, Rival
-from truing.diagnosis.extended import Extended, shape_added
-from truing.diagnosis.extended import switched_on as effects_on
+from truing.diagnosis.extended import Extended, shape_added, switched_on
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import (
     Certainty,
@@ -45,9 +45,9 @@ class _Known:
     extended: Extended
     certainty: Certainty
 
-    @property
-    def machine(self) -> Machine:
-        return self.extended.machine
+    def file_named(self, file: int) -> str:
+        """Return the name of a file that has a number of its own; nothing for all files."""
+        return self.extended.machine.records.files[file] if file >= 0 else ""
 
     def ends(self, place: int) -> Ends:
         """Return the 95 % interval of a number, SI."""
@@ -68,28 +68,24 @@ def causes_of(chosen: Chosen, found: Fit) -> tuple[Cause, ...]:
         return ()
     extended = chosen.competition.extended
     known = _Known(found, extended, certainty_of(found, extended))
-    by_name: dict[str, list[Competitor]] = {}
-    for cause in found.causes:
-        if cause.is_registered:
-            by_name.setdefault(cause.name, []).append(cause)
-    effects = {name: parts for name, parts in by_name.items() if parts[0].effect is not None}
-    named = [_effect(known, chosen, name, parts) for name, parts in effects.items()]
-    return (*named, *(_input(known, parts) for name, parts in by_name.items() if name not in effects))
+    effects = {cause.name: cause.effect for cause in found.causes if cause.effect is not None}
+    inputs = dict.fromkeys(cause.name for cause in found.causes if cause.tolerated >= 0)
+    return (*(_effect(known, chosen, each) for each in effects.values()), *(_input(known, name) for name in inputs))
 
 
-def _input(known: _Known, parts: Sequence[Competitor]) -> Cause:
+def _input(known: _Known, effect: str) -> Cause:
     """Return an input that lies outside its band, with the interval of its value, in every file that has its own."""
-    found, machine, name = known.found, known.machine, parts[0].numbers[0].name
+    found, machine = known.found, known.extended.machine
     made: dict[str, Sized] = {}
-    for cause in parts:
+    for cause in [cause for cause in found.causes if cause.name == effect]:
         given = machine.inputs[cause.tolerated]
         own = np.zeros(len(known.certainty.covariance))
         own[places_of(found, cause)[0]] = 1.0
         if len(found.inputs):
             own[-len(found.inputs) :] = found.sample.directions[cause.tolerated]
         value, reach = input_value(found, cause.tolerated), known.certainty.reach(own) * given.sd
-        made[machine.records.files[given.file] if given.file >= 0 else ""] = value, value - reach, value + reach
-    return Cause(parts[0].name, (_of_files(name, made, machine.start.unit_of(name)),))
+        made[known.file_named(given.file)] = value, value - reach, value + reach
+    return Cause(effect, (_of_files(given.name, made, machine.start.unit_of(given.name)),))
 
 
 def _of_files(name: str, made: Mapping[str, Sized], unit: str) -> FittedUnknown:
@@ -99,32 +95,27 @@ def _of_files(name: str, made: Mapping[str, Sized], unit: str) -> FittedUnknown:
     return FittedUnknown(name, sum(value for value, _, _ in made.values()) / len(made), None, None, unit, made)
 
 
-def _effect(known: _Known, chosen: Chosen, name: str, parts: Sequence[Competitor]) -> Cause:
+def _effect(known: _Known, chosen: Chosen, effect: Effect[Any, Any]) -> Cause:
     """Return an effect with all its unknowns that were fitted."""
-    places = [place for cause in parts for place in places_of(known.found, cause)]
-    numbers = numbers_of(known.found)
-    declared: tuple[Unknown, ...] = parts[0].effect.unknowns if parts[0].effect is not None else ()
+    found, numbers = known.found, numbers_of(known.found)
+    parts = [cause for cause in found.causes if cause.effect is effect]
+    places = [place for cause in parts for place in places_of(found, cause)]
     unknowns, kept = [], []
-    for unknown in declared:
+    for unknown in effect.unknowns:
         own = [place for place in places if numbers[place].name == unknown.name]
         if own:
-            unknowns.append(_fitted(known, unknown, own))
+            sized = {known.file_named(numbers[each].file): (value_of(found, each), *known.ends(each)) for each in own}
+            unknowns.append(_of_files(unknown.name, sized, unknown.unit))
             kept.append(own[0])
     is_whole = all(numbers[place].is_free and numbers[place].file < 0 for place in kept)
-    same = [other for cause in parts for other in chosen.same.get(cause.tag, ()) if other != name]
-    return Cause(name, tuple(unknowns), known.certainty.in_si(kept) if is_whole else (), tuple(dict.fromkeys(same)))
+    covariance = known.certainty.in_si(kept) if is_whole else ()
+    return Cause(effect.name, tuple(unknowns), covariance, _other_names(chosen, found, effect.name))
 
 
-def _fitted(known: _Known, unknown: Unknown, own: Sequence[int]) -> FittedUnknown:
-    numbers, files = numbers_of(known.found), known.machine.records.files
-    made = {
-        files[numbers[place].file] if numbers[place].file >= 0 else "": (
-            value_of(known.found, place),
-            *known.ends(place),
-        )
-        for place in own
-    }
-    return _of_files(unknown.name, made, unknown.unit)
+def _other_names(chosen: Chosen, found: Fit, name: str) -> tuple[str, ...]:
+    """Return the names of others that draw the same curve as the causes of an explanation that have this name."""
+    same = [other for cause in found.causes if cause.name == name for other in chosen.same.get(cause.tag, ())]
+    return tuple(dict.fromkeys(other for other in same if other != name))
 
 
 def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
@@ -172,23 +163,9 @@ def _without(found: Fit, name: str) -> list[Matrix]:
     return made
 
 
-def switched_on(chosen: Chosen, causes: Sequence[Cause]) -> tuple[SwitchedOn, ...]:
-    """Return the named effects as they are switched on in the extended model; what was not excited is 0."""
-    best = chosen.best
-    fitted = {on.effect.name: on for on in effects_on(best.causes, best.values, best.sample.machine)}
-    made = []
-    for cause in causes:
-        if cause.effect in fitted:
-            on, variances = fitted[cause.effect], np.diag(cause.covariance or np.zeros((0, 0))).tolist()
-            sds = {unknown.name: square**0.5 for unknown, square in zip(cause.unknowns, variances, strict=False)}
-            complete = cause.covariance if len(cause.unknowns) == len(on.values) > 1 else ()
-            made.append(replace(on, sds=sds, covariance=complete))
-    return tuple(made)
-
-
 def extended_setup(chosen: Chosen, causes: Sequence[Cause]) -> Setup:
     """Return the model brought true: causes on, conditions as measured (their means), inputs calibrated."""
-    machine, on = chosen.best.sample.machine, switched_on(chosen, causes)
+    machine, on = chosen.best.sample.machine, tuple(_switched_on(chosen.best, causes))
     start = machine.start
     needed = {need.name for item in on for need in item.effect.needs}
     conditions = dict(start.conditions)
@@ -198,6 +175,17 @@ def extended_setup(chosen: Chosen, causes: Sequence[Cause]) -> Setup:
     calibrated = {name: value for name, (value, _) in input_values(chosen.best).items()}
     setup = replace(start, conditions=conditions).with_effects(on)
     return replace(setup, inputs=machine.design.inputs, calibrated={**start.calibrated, **calibrated})
+
+
+def _switched_on(best: Fit, causes: Sequence[Cause]) -> Iterator[SwitchedOn]:
+    """Give the named effects as they are switched on in the extended model; what was not excited is 0."""
+    fitted = {on.effect.name: on for on in switched_on(best.causes, best.values, best.sample.machine)}
+    for cause in causes:
+        if cause.effect in fitted:
+            on, variances = fitted[cause.effect], np.diag(cause.covariance or np.zeros((0, 0))).tolist()
+            sds = {unknown.name: square**0.5 for unknown, square in zip(cause.unknowns, variances, strict=False)}
+            complete = cause.covariance if len(cause.unknowns) == len(on.values) > 1 else ()
+            yield replace(on, sds=sds, covariance=complete)
 
 
 def input_values(found: Fit) -> Mapping[str, tuple[float, float]]:
@@ -257,11 +245,7 @@ def alternative_of(chosen: Chosen, rival: Rival, *, with_sizes: bool = False) ->
     """Return a rival explanation: how far behind, how separable, and on demand what its own fit says."""
     found = rival.fit
     sized = causes_of(chosen, found) if with_sizes else ()
-    same: dict[str, tuple[str, ...]] = {}
-    for cause in found.causes:
-        others = (*same.get(cause.name, ()), *chosen.same.get(cause.tag, ()))
-        if others:
-            same[cause.name] = tuple(dict.fromkeys(other for other in others if other != cause.name))
+    same = {name: others for name in found.names if (others := _other_names(chosen, found, name))}
     return Alternative(
         found.names,
         rival.behind,
