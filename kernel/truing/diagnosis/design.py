@@ -21,7 +21,6 @@ from truing.diagnosis.competition import Competition
 from truing.diagnosis.derivatives import slopes_at, unit_of
 from truing.diagnosis.exact import fit
 from truing.diagnosis.extended import Extended, elsewhere, parts_of
-from truing.diagnosis.findings import in_unit
 from truing.diagnosis.fitted import STEP, WIDE, Fit, moved_by
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.readable import readable_unit
@@ -29,6 +28,7 @@ from truing.diagnosis.records import Records
 from truing.diagnosis.result import Amount, NextPoint
 from truing.diagnosis.sample import Sample
 from truing.diagnosis.settings import FEW, TRIED, machine_there, settings_of
+from truing.diagnosis.shape_words import in_unit
 from truing.diagnosis.verdict import APART
 from truing.numbers import format_number
 from truing.units import from_si

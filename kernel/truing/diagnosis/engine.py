@@ -14,7 +14,7 @@ from truing.diagnosis.choice import Chosen, Rival, choose
 from truing.diagnosis.competition import Competition, competition_of, search
 from truing.diagnosis.design import next_points
 from truing.diagnosis.extended import Extended
-from truing.diagnosis.findings import in_unit, wrong_of
+from truing.diagnosis.findings import wrong_of
 from truing.diagnosis.gain import gains_of, nested
 from truing.diagnosis.halves import contradictions_of, thinned_of
 from truing.diagnosis.learning import first_noise
@@ -26,6 +26,7 @@ from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.result import Alternative, Curves, Diagnosis
 from truing.diagnosis.sample import sample_of
+from truing.diagnosis.shape_words import in_unit
 from truing.diagnosis.unmeasured import with_results
 from truing.diagnosis.unregistered import shapes_of
 from truing.diagnosis.visibility import inseparable, smallest_visible, trades_of

@@ -17,8 +17,7 @@ from truing.diagnosis.noise import robust_sd
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Amount, Finding, Kind, Noise, Wrong
 from truing.diagnosis.sample import Channel, errors_of, residuals_of
-from truing.diagnosis.shape_words import in_unit as in_unit
-from truing.diagnosis.shape_words import order_in_words, shape_in_words, step_in_words
+from truing.diagnosis.shape_words import in_unit, order_in_words, shape_in_words, step_in_words
 from truing.diagnosis.tidying import counted
 
 SIGNIFICANT = 0.05
