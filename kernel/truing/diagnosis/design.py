@@ -24,7 +24,6 @@ from truing.diagnosis.extended import Extended, elsewhere, parts_of
 from truing.diagnosis.fitted import STEP, WIDE, Fit, moved_by
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.readable import readable_unit
-from truing.diagnosis.records import Records
 from truing.diagnosis.result import Amount, NextPoint
 from truing.diagnosis.sample import Sample
 from truing.diagnosis.settings import FEW, TRIED, machine_there, settings_of
@@ -311,13 +310,6 @@ def _amounts(chosen: Chosen, settings: Mapping[str, Matrix], place: int) -> dict
     }
 
 
-def _followed(machine: Machine, names: Sequence[str]) -> set[str]:
-    """Return the conditions and inputs that the effects of two explanations follow."""
-    known = machine.start.model.known_effects
-    effects = [known[each] for name in names for each in name.split(" + ") if each in known]
-    return {key for effect in effects for key in (*(need.name for need in effect.needs), *effect.reads)}
-
-
 def _why(chosen: Chosen, settings: Mapping[str, Matrix], place: int, duel: _Duel) -> str:
     """Say what makes a setting worth measuring: how far the two then differ, and where it leaves the record."""
     sample = chosen.competition.sample
@@ -325,23 +317,21 @@ def _why(chosen: Chosen, settings: Mapping[str, Matrix], place: int, duel: _Duel
     name, spread = list(_spreads(sample, chosen.best).items())[int(np.argmax(gaps))]
     unit = readable_unit(sample.machine.start.print_unit(name), spread)
     words = f"{duel.names[0]} and {duel.names[1]} there differ by {in_unit(float(gaps.max()) * spread, unit)} in {name}"
-    asked = _followed(sample.machine, duel.names)
-    farthest = _farthest(sample.machine.records, {key: values[place] for key, values in settings.items()}, asked)
-    if not farthest:
-        return words
-    item = sample.machine.records.covariates[farthest]
-    low, high = (float(from_si(each, item.unit)) for each in (np.nanmin(item.values), np.nanmax(item.values)))
-    span = f"{format_number(low, 3)} to {format_number(high, 3)} {item.unit}".strip()
-    return f"{words}; {farthest} was only {span} so far"
+    setting = {key: float(values[place]) for key, values in settings.items()}
+    return words + _beyond_record(sample.machine, setting, duel.names)
 
 
-def _farthest(records: Records, setting: Mapping[str, float], asked: set[str]) -> str:
-    """Return what leaves the range of the record farthest, of what is asked for; nothing where none does."""
-    farthest, reach = "", 0.05
+def _beyond_record(machine: Machine, setting: Mapping[str, float], names: Sequence[str]) -> str:
+    """Say what leaves the range of the record farthest, of what the effects of two explanations follow, if any does."""
+    known = machine.start.model.known_effects
+    effects = [known[each] for name in names for each in name.split(" + ") if each in known]
+    asked = {key for effect in effects for key in (*(need.name for need in effect.needs), *effect.reads)}
+    words, reach = "", 0.05
     for key, value in setting.items():
-        item = records.covariates[key]
+        item = machine.records.covariates[key]
         low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
-        out = float(max(low - value, value - high)) / max(high - low, 1e-300)
+        out = max(low - value, value - high) / max(high - low, 1e-300)
         if (not asked or key in asked) and out > reach:
-            farthest, reach = key, out
-    return farthest
+            begin = format_number(float(from_si(low, item.unit)), 3)
+            words, reach = f"; {key} was only {begin} to {in_unit(high, item.unit, 3)} so far", out
+    return words

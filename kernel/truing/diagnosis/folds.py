@@ -11,7 +11,6 @@ from truing.diagnosis.arrays import Mask, Matrix, Places
 from truing.diagnosis.exact import refit
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.noise import Setting
 from truing.diagnosis.sample import Sample, has_order
 
 FOLDS = 5
@@ -49,7 +48,8 @@ def folds_of(sample: Sample, *, seed: int = 1) -> Folds:
     runs = records.run_of[usable]
     first = np.flatnonzero(np.append(True, runs[1:] != runs[:-1]))
     sizes = np.diff(np.append(first, len(runs)))
-    reach = max(_correlation_rows(channel.memory) for channel in sample.channels)
+    largest = max(channel.memory.rho for channel in sample.channels)
+    reach = -1 / log(largest) if largest > 0 else 0.0
     shortest = min(SHORTEST_BLOCK, max(2, len(runs) // FEWEST_BLOCKS))
     length = int(max(shortest, len(runs) // BLOCKS, min(3 * reach, len(runs) // (2 * FOLDS))))
     if sample.machine.start.diagnose.per_file:
@@ -58,10 +58,6 @@ def folds_of(sample: Sample, *, seed: int = 1) -> Folds:
     within = (np.arange(len(runs)) - np.repeat(first, sizes)) // length
     block_of[usable] = np.repeat(np.cumsum(blocks) - blocks, sizes) + within
     return Folds(block_of, min(FOLDS, int(block_of.max()) + 1))
-
-
-def _correlation_rows(setting: Setting) -> float:
-    return 0.0 if setting.rho <= 0 else -1.0 / log(setting.rho)
 
 
 def ends_of(sample: Sample) -> Folds:
