@@ -44,6 +44,8 @@ MOST_WHOLE = 12
 """So many whole numbers are tried on either side."""
 HIGHEST = 100.0
 """In units of what a profile may rise by: how high it is where the model fails."""
+Ends = tuple[float | None, float | None]
+"""An interval, SI; None is an open end."""
 
 
 @dataclass(frozen=True)
@@ -160,18 +162,25 @@ def may_be_zero(found: Fit, certainty: Certainty, cause: Cause) -> bool:
     return all(low <= 0 <= high for low, high in ends)
 
 
-def shape_interval(
-    found: Fit, extended: Extended, certainty: Certainty, place: int
-) -> tuple[float | None, float | None]:
+def ends_of(found: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
+    """Return the 95 % interval of any number, SI: of a whole one between those that are not excluded."""
+    number = numbers_of(found)[place]
+    if number.whole:
+        values = [value_of(each, place) for each in (found, *whole_left(found, extended, place))]
+        return min(values), max(values)
+    if number.along:
+        return place_interval(found, extended, place)
+    return (amplitude_interval if number.is_amplitude else shape_interval)(found, extended, certainty, place)
+
+
+def shape_interval(found: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
     """Return the 95 % profile interval of a number in SI; an end is None where the profile stays open to its bound."""
     profile = _Profile(found, extended, certainty, place)
     low, high = (profile.end(bound) for bound in profile.bounds)
     return low, high
 
 
-def amplitude_interval(
-    found: Fit, extended: Extended, certainty: Certainty, place: int
-) -> tuple[float | None, float | None]:
+def amplitude_interval(found: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
     """Return the 95 % interval of an amplitude in SI, with its profile where its cause has a shape that is free.
 
     Where its cause has a whole number, it holds the intervals at every one that is not excluded.
@@ -197,11 +206,12 @@ def whole_left(found: Fit, extended: Extended, place: int) -> list[Fit]:
     return [each for each in fits if each is not None and each.cost < found.cost + WHOLE]
 
 
-def _kept_at(found: Fit, extended: Extended, place: int, value: float) -> Fit | None:
-    """Fit again with a number that keeps its start at another value."""
-    flat = np.concatenate(found.values)
+def _kept_at(near: Fit, extended: Extended, place: int, value: float) -> Fit | None:
+    """Fit again from nearby with one number held at another value, SI."""
+    flat = np.concatenate(near.values)
     flat[place] = value
-    return fit(found.sample, extended, found.causes, parts_of(found.causes, flat), found)
+    held = [numbers_of(near)[place]]
+    return fit(near.sample, extended, near.causes, parts_of(near.causes, flat), near, held=held)
 
 
 def place_interval(found: Fit, extended: Extended, place: int) -> tuple[float, float]:
@@ -244,18 +254,11 @@ class _Profile:
         self.bounds = inward(self.number, self.unit)
         value = value_of(found, place)
         self.start = log(value) if self.number.is_log else value / self.unit
-        self.known = {self.start: self._fitted(found, self.start) or found}
+        self.known = {self.start: _kept_at(found, extended, place, self.outward(self.start)) or found}
         student = float(stdtrit(certainty.freedom, LEVEL))
         known = found.sample.known
         self.allowed = known * log1p(student**2 * certainty.variance / known)
         self.reach = certainty.reach_of(place)
-
-    def _fitted(self, near: Fit, u: float) -> Fit | None:
-        """Fit with the number held, from a fit nearby."""
-        flat = np.concatenate(near.values)
-        flat[self.place] = self.outward(u)
-        values = parts_of(near.causes, flat)
-        return fit(near.sample, self.extended, near.causes, values, near, held=[self.number])
 
     def outward(self, u: float) -> float:
         """Return the number in SI."""
@@ -264,7 +267,8 @@ class _Profile:
     def above(self, u: float) -> float:
         """Return how far a place lies outside of the interval: by the root of what the cost rises, nearly a line."""
         if u not in self.known:
-            made = self._fitted(self.known[min(self.known, key=lambda other: abs(other - u))], u)
+            nearest = self.known[min(self.known, key=lambda other: abs(other - u))]
+            made = _kept_at(nearest, self.extended, self.place, self.outward(u))
             if made is None:
                 return sqrt(HIGHEST * self.allowed)
             self.known[u] = made

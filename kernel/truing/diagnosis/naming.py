@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,78 +14,46 @@ from truing.diagnosis.causes import Cause as Competitor
 from truing.diagnosis.choice import Chosen, Rival
 from truing.diagnosis.extended import Extended, shape_added, switched_on
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.intervals import (
-    Certainty,
-    amplitude_interval,
-    certainty_of,
-    input_value,
-    numbers_of,
-    place_interval,
-    places_of,
-    shape_interval,
-    value_of,
-    whole_left,
-)
+from truing.diagnosis.intervals import Certainty, certainty_of, ends_of, input_value, numbers_of, places_of, value_of
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.result import Alternative, Calibrated, Cause, FittedUnknown, Remainder, ShapeTerm
 from truing.diagnosis.shape_words import shape_in_words
 from truing.diagnosis.visibility import separation
 from truing.setup import Setup, SwitchedOn
 
-Ends = tuple[float | None, float | None]
 Sized = tuple[float, float | None, float | None]
 """A fitted value with its interval, SI."""
-
-
-@dataclass(frozen=True)
-class _Known:
-    """A fit, the model that it is of, and how certain its numbers are."""
-
-    found: Fit
-    extended: Extended
-    certainty: Certainty
-
-    def file_named(self, file: int) -> str:
-        """Return the name of a file that has a number of its own; nothing for all files."""
-        return self.extended.machine.records.files[file] if file >= 0 else ""
-
-    def ends(self, place: int) -> Ends:
-        """Return the 95 % interval of a number, SI."""
-        number = numbers_of(self.found)[place]
-        if number.whole:
-            fits = [self.found, *whole_left(self.found, self.extended, place)]
-            values = [value_of(each, place) for each in fits]
-            return min(values), max(values)
-        if number.along:
-            return place_interval(self.found, self.extended, place)
-        interval = amplitude_interval if number.is_amplitude else shape_interval
-        return interval(self.found, self.extended, self.certainty, place)
 
 
 def causes_of(chosen: Chosen, found: Fit) -> tuple[Cause, ...]:
     """Return the named causes of an explanation; parts of one effect (offsets of two gauges) are one cause."""
     if all(cause.shape is not None for cause in found.causes):
         return ()
-    extended = chosen.competition.extended
-    known = _Known(found, extended, certainty_of(found, extended))
+    known = certainty_of(found, chosen.competition.extended)
     effects = {cause.name: cause.effect for cause in found.causes if cause.effect is not None}
     inputs = dict.fromkeys(cause.name for cause in found.causes if cause.tolerated >= 0)
-    return (*(_effect(known, chosen, each) for each in effects.values()), *(_input(known, name) for name in inputs))
+    named = [_effect(chosen, found, known, each) for each in effects.values()]
+    return (*named, *(_input(found, known, name) for name in inputs))
 
 
-def _input(known: _Known, effect: str) -> Cause:
+def _input(found: Fit, known: Certainty, effect: str) -> Cause:
     """Return an input that lies outside its band, with the interval of its value, in every file that has its own."""
-    found, machine = known.found, known.extended.machine
+    machine = found.sample.machine
     made: dict[str, Sized] = {}
     for cause in [cause for cause in found.causes if cause.name == effect]:
         given = machine.inputs[cause.tolerated]
-        own = np.zeros(len(known.certainty.covariance))
+        own = np.zeros(len(known.covariance))
         own[places_of(found, cause)[0]] = 1.0
         if len(found.inputs):
             own[-len(found.inputs) :] = found.sample.directions[cause.tolerated]
-        value, reach = input_value(found, cause.tolerated), known.certainty.reach(own) * given.sd
-        made[known.file_named(given.file)] = value, value - reach, value + reach
+        value, reach = input_value(found, cause.tolerated), known.reach(own) * given.sd
+        made[_file_named(machine, given.file)] = value, value - reach, value + reach
     return Cause(effect, (_of_files(given.name, made, machine.start.unit_of(given.name)),))
+
+
+def _file_named(machine: Machine, file: int) -> str:
+    """Return the name of a file that has a value of its own; nothing for all files."""
+    return machine.records.files[file] if file >= 0 else ""
 
 
 def _of_files(name: str, made: Mapping[str, Sized], unit: str) -> FittedUnknown:
@@ -95,20 +63,23 @@ def _of_files(name: str, made: Mapping[str, Sized], unit: str) -> FittedUnknown:
     return FittedUnknown(name, sum(value for value, _, _ in made.values()) / len(made), None, None, unit, made)
 
 
-def _effect(known: _Known, chosen: Chosen, effect: Effect[Any, Any]) -> Cause:
+def _effect(chosen: Chosen, found: Fit, known: Certainty, effect: Effect[Any, Any]) -> Cause:
     """Return an effect with all its unknowns that were fitted."""
-    found, numbers = known.found, numbers_of(known.found)
+    machine, extended, numbers = found.sample.machine, chosen.competition.extended, numbers_of(found)
     parts = [cause for cause in found.causes if cause.effect is effect]
     places = [place for cause in parts for place in places_of(found, cause)]
     unknowns, kept = [], []
     for unknown in effect.unknowns:
         own = [place for place in places if numbers[place].name == unknown.name]
         if own:
-            sized = {known.file_named(numbers[each].file): (value_of(found, each), *known.ends(each)) for each in own}
+            sized: dict[str, Sized] = {}
+            for each in own:
+                ends = ends_of(found, extended, known, each)
+                sized[_file_named(machine, numbers[each].file)] = value_of(found, each), *ends
             unknowns.append(_of_files(unknown.name, sized, unknown.unit))
             kept.append(own[0])
     is_whole = all(numbers[place].is_free and numbers[place].file < 0 for place in kept)
-    covariance = known.certainty.in_si(kept) if is_whole else ()
+    covariance = known.in_si(kept) if is_whole else ()
     return Cause(effect.name, tuple(unknowns), covariance, _other_names(chosen, found, effect.name))
 
 
