@@ -5,7 +5,6 @@ Nothing is done in silence: every function notes what it did.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -97,11 +96,12 @@ def in_time_order(data: DataRows) -> DataRows:
         return data.taken(by_run)
     starts = np.full(len(names), np.inf)
     np.fmin.at(starts, run_of, time)
-    rank = np.empty(len(names), dtype=np.intp)
-    rank[np.argsort(starts, kind="stable")] = np.arange(len(names))
-    late = _late(time[by_run], np.bincount(run_of, minlength=len(names)))
+    late = 0  # rows that stand behind a later one of their run
+    for part in np.split(time[by_run], np.cumsum(np.bincount(run_of))[:-1]):
+        known = part[np.isfinite(part)]
+        late += int((known < np.maximum.accumulate(known)).sum())
     sentence = f"{counted(late, 'row was', 'rows were')} out of order and sorted by time inside the run"
-    return data.taken(np.lexsort((time, rank[run_of]))).noted(*[sentence] if late else ())
+    return data.taken(np.lexsort((time, run_of, starts[run_of]))).noted(*[sentence] if late else ())
 
 
 def _time(data: DataRows) -> Matrix | None:
@@ -110,14 +110,6 @@ def _time(data: DataRows) -> Matrix | None:
         return None
     time = data.columns[TIME]
     return time if np.isfinite(time).any() else None
-
-
-def _late(time: Matrix, sizes: Places) -> int:
-    """Count the rows that stand behind a later one of their run."""
-    late = 0
-    for part in np.split(np.where(np.isnan(time), -math.inf, time), np.cumsum(sizes)[:-1]):
-        late += int((part < np.maximum.accumulate(part))[np.isfinite(part)].sum())
-    return late
 
 
 def in_one_piece(data: DataRows, model: Model[Any, Any]) -> DataRows:
