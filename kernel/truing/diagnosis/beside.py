@@ -93,10 +93,8 @@ def beside_of(found: Fit, extended: Extended) -> Beside:
     """Return an explanation as other causes see it."""
     sample, k = found.sample, len(found.inputs)
     roots = sample.roots(found.left)
-    own, inputs = slopes_left(found, extended)
-    columns = np.concatenate(
-        [np.column_stack([own, inputs]) * roots[:, None], np.column_stack([np.zeros((k, own.shape[1])), np.eye(k)])]
-    )
+    slopes = np.column_stack(slopes_left(found, extended)) * roots[:, None]
+    columns = np.concatenate([slopes, np.eye(k, found.size + k, found.size)])
     columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     basis, size, _ = np.linalg.svd(columns, full_matrices=False)
     taken = np.asarray(basis[:, size > 1e-9 * size.max()] if size.size else basis)

@@ -15,10 +15,9 @@ import numpy as np
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.beside import Looked, beside_of
-from truing.diagnosis.compared import shares
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.noise import Setting, colour, whiten
+from truing.diagnosis.noise import Setting, colour, shares, whiten
 from truing.diagnosis.sweeps import Pass
 
 DRAWS, FIRST_DRAWS = 299, 99

@@ -12,14 +12,16 @@ import numpy as np
 
 from truing.diagnosis.arrays import Mask, Matrix
 from truing.diagnosis.columns import in_blocks
-from truing.diagnosis.compared import beyond, difference, scale_of
 from truing.diagnosis.machine import Machine, Predicted
 from truing.diagnosis.noise import (
     SETTINGS,
     Setting,
+    beyond,
     clipped,
+    difference,
     likelihood_of,
     robust_sd,
+    scale_of,
     spread_of,
     standardised,
     tails_of,

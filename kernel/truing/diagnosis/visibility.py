@@ -292,12 +292,10 @@ def separation(true: Fit, rival: Fit, extended: Extended) -> float:
     (shown,) = extended.at(rival.causes, [(rival.values, true.moved)])
     roots = sample.roots(true.left)
     apart = roots * np.nan_to_num(sample.left(shown) - sample.left(true.predicted))
-    own, inputs = slopes_at(moved, extended)
-    columns = np.concatenate(
-        [np.column_stack([own, inputs]) * roots[:, None], np.column_stack([np.zeros((k, own.shape[1])), np.eye(k)])]
-    )
+    slopes = np.column_stack(slopes_at(moved, extended)) * roots[:, None]
+    columns = np.concatenate([slopes, np.eye(k, moved.size + k, moved.size)])
     ends = np.full((2, columns.shape[1]), [[-inf], [inf]])
-    ends[:, : own.shape[1]] = _room(moved)
+    ends[:, : moved.size] = _room(moved)
     size = np.linalg.norm(columns, axis=0)
     used = size > 0
     target = np.concatenate([apart, np.zeros(k)])
