@@ -54,16 +54,12 @@ def law_of(made: Competition, at: Fit, more: Fit, *, seed: int) -> Law:
     gain, steps = made.score(at) - made.score(more), len(more.causes) - len(at.causes)
     many, on = len(made.causes), len(at.causes)
     choice = 2 * (log(comb(many, on + steps)) - log(comb(many, on)))
-    gains: list[Matrix] = []
-    while (done := sum(len(each) for each in gains)) < DRAWS:
-        count = FIRST_DRAWS if done < FIRST_DRAWS else DRAWS - done
-        drawn = _drawn(at, more, count, generator)
+    gains = np.zeros(0)
+    while len(gains) < DRAWS and (gains >= gain).sum() < HOPELESS:
+        drawn = _drawn(at, more, DRAWS - len(gains) if len(gains) else FIRST_DRAWS, generator)
         drawn -= beside.taken @ (beside.taken.T @ drawn)
-        gains.append(_largest(made, seen, drawn, made.sample.known, steps) - choice)
-        if sum(int((each >= gain).sum()) for each in gains) >= HOPELESS:
-            break
-    together = np.concatenate(gains)
-    return Law(together, float((1 + (together >= gain).sum()) / (1 + len(together))))
+        gains = np.concatenate([gains, _largest(made, seen, drawn, made.sample.known, steps) - choice])
+    return Law(gains, float((1 + (gains >= gain).sum()) / (1 + len(gains))))
 
 
 def _drawn(at: Fit, more: Fit, count: int, generator: np.random.Generator) -> Matrix:

@@ -113,9 +113,8 @@ def next_points(chosen: Chosen) -> Proposal:
     fields = machine.start.model.own_result_fields
     is_along = any(fields[name].along for name in machine.records.measured)
     settings = {} if is_along else settings_of(machine, FEW if chosen.competition.extended.budget.is_dear else TRIED)
-    live: list[_Duel] = []
-    if settings:
-        live = _live(_live(_duels(chosen, several, settings)))  # what is the same chooses no setting for the others
+    duels = _duels(chosen, several, settings) if settings else []
+    live = _live(_live(duels))  # what is the same chooses no setting for the others
     winner = name_of(chosen.best)
     pairs = [(winner, name_of(found)) for found in several[1:]] if is_physical(chosen.best) else []
     apart = {frozenset(duel.names) for duel in live}
@@ -142,7 +141,7 @@ def rival_fits(chosen: Chosen) -> list[Fit]:
     own = [chosen.best, *_renamed(chosen)] if is_physical(chosen.best) else []
     by_name: dict[frozenset[str], Fit] = {}
     for found in (*own, *rivals):
-        by_name.setdefault(frozenset(cause.name for cause in found.causes), found)
+        by_name.setdefault(frozenset(found.names), found)
     return list(by_name.values())
 
 

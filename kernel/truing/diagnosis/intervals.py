@@ -21,7 +21,6 @@ from truing.diagnosis.derivatives import slopes_at, unit_of
 from truing.diagnosis.exact import fit
 from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import Fit, inward
-from truing.diagnosis.sample import Sample
 
 LEVEL = 0.975
 """Of Student's t at either end of an interval: together they hold 95 %."""
@@ -111,7 +110,8 @@ def certainty_of(found: Fit, extended: Extended) -> Certainty:
     its weight says.
     """
     sample, units = found.sample, unit_of(found)
-    roots, told = sample.roots(found.left), np.sqrt(_told(sample))
+    roots = sample.roots(found.left)
+    told = np.concatenate([np.full(len(each), sqrt(1 - 2 / (each.freedom + 3))) for each in sample.channels])
     slopes = np.column_stack(slopes_at(found, extended)) * (roots * told)[:, None]
     prior = np.diag(np.append(np.zeros(len(units)), np.ones(len(found.inputs))))
     normal = slopes.T @ slopes
@@ -122,12 +122,6 @@ def certainty_of(found: Fit, extended: Extended) -> Certainty:
     plain, sandwich = inverse * variance, inverse @ (scores + variance * prior) @ inverse
     ratio = np.sqrt(np.maximum(np.diag(sandwich) / np.maximum(np.diag(plain), 1e-300), 1.0))
     return Certainty(plain * np.outer(ratio, ratio), units, variance, max(sample.known - used, FEWEST_FREE))
-
-
-def _told(sample: Sample) -> Matrix:
-    """Return by row what it tells of what its weight says, (rows,)."""
-    shares = [1 - 2 / (channel.freedom + 3) for channel in sample.channels]
-    return np.repeat(shares, [len(channel) for channel in sample.channels])
 
 
 def _inverse(normal: Matrix) -> Matrix:

@@ -97,17 +97,13 @@ def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
     """
     if len(causes) < 2:
         return causes
-    best = chosen.best
-    added = added_by(best, chosen.competition.extended)
-    squares = np.array(
-        [
-            sum(
-                np.sum((added[cause.effect][each.name][each.rows] * each.factors / each.weights) ** 2)
-                for each in best.sample.channels
-            )
-            for cause in causes
-        ]
-    )
+    added, channels = added_by(chosen.best, chosen.competition.extended), chosen.best.sample.channels
+
+    def square(cause: Cause) -> float:
+        parts = ((added[cause.effect][each.name][each.rows] * each.factors / each.weights) for each in channels)
+        return float(sum(np.sum(part**2) for part in parts))
+
+    squares = np.array([square(cause) for cause in causes])
     if not squares.sum() > 0:
         return causes
     weighed = [replace(cause, share=float(share)) for cause, share in zip(causes, squares / squares.sum(), strict=True)]

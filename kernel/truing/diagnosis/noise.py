@@ -130,7 +130,7 @@ def robust_sd(innovations: Matrix) -> float:
 def tails_of(innovations: Matrix) -> Tails:
     """Return the normal law, or Student's t where its profile over the scale is likelier by ``HEAVIER``."""
     totals = _by_freedom(innovations)
-    freedom = max(totals, key=lambda each: totals[each])
+    freedom = max(totals, key=totals.__getitem__)
     freedom = freedom if totals[freedom] > totals[inf] + HEAVIER else inf
     return Tails(freedom, TAILS[freedom])
 
@@ -164,7 +164,7 @@ def _by_freedom(innovations: Matrix) -> dict[float, float]:
 
 def clipped(innovations: Matrix, tails: Tails) -> Matrix:
     """Clip innovations at the limit of their tails: least squares on the rest is a one-step robust estimate."""
-    scale = robust_sd(innovations) or float(np.std(innovations))
+    scale = _scale(innovations)
     return np.clip(innovations, -tails.limit * scale, tails.limit * scale)
 
 
