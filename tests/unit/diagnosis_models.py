@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
 from truing.diagnosis.causes import Cause, si_bounds
-from truing.diagnosis.choice import choose
-from truing.diagnosis.chosen import Chosen, Law, Rival
+from truing.diagnosis.chance import Law
+from truing.diagnosis.choice import Chosen, Rival, choose
 from truing.diagnosis.competition import Competition, search
 from truing.diagnosis.curves import Curves
 from truing.diagnosis.engine import diagnose, laid_out

@@ -27,12 +27,12 @@ from diagnosis_models import (
 from diagnosis_samples import named
 from numpy.testing import assert_allclose
 
-from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.choice import Chosen
 from truing.diagnosis.engine import _answer, _Steps
 from truing.diagnosis.halves import every_second, thinned_of
 from truing.diagnosis.noise import SETTINGS, Setting
 from truing.diagnosis.result import Amount, Contradiction, Diagnosis, Thinned, Trade
-from truing.diagnosis.trades import TRADED, trades_of
+from truing.diagnosis.visibility import TRADED, trades_of
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.setup import DiagnoseOptions
 

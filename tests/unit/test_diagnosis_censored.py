@@ -29,12 +29,12 @@ from scipy.integrate import quad
 from scipy.optimize import minimize, minimize_scalar
 from scipy.stats import norm
 
-from truing.diagnosis.compared import beyond, difference, expected, scale_of, shares, worth
 from truing.diagnosis.engine import laid_out
 from truing.diagnosis.exact import EXACTLY
 from truing.diagnosis.halves import _thinned, thinned_of
 from truing.diagnosis.learning import learnt
 from truing.diagnosis.machine import machine_of
+from truing.diagnosis.noise import beyond, difference, expected, scale_of, shares, worth
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.records import Records
 from truing.diagnosis.sample import errors_of, sample_of

@@ -30,7 +30,7 @@ from scipy.integrate import quad
 from scipy.linalg import toeplitz
 from scipy.stats import binom, kstest, norm
 
-from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.choice import Chosen
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.design import MOST_POINTS, POINTS, Proposal, next_points
 from truing.diagnosis.engine import diagnose

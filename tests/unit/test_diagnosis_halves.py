@@ -10,7 +10,7 @@ import pytest
 from diagnosis_models import UM, Array, Asked, chosen_as, drive_model, fit_of, gauge, name_sets, plain_competition, wide
 from numpy.testing import assert_allclose
 
-from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.choice import Chosen
 from truing.diagnosis.halves import APART, FEWEST, contradictions_of
 
 ROWS = 160

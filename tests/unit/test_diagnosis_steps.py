@@ -15,7 +15,7 @@ from numpy.testing import assert_allclose
 
 from truing.diagnosis import steps
 from truing.diagnosis.causes import Cause
-from truing.diagnosis.chosen import Law
+from truing.diagnosis.chance import Law
 from truing.diagnosis.competition import UNREGISTERED, Competition
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import ends_of, folds_of

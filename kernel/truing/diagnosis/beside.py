@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import log
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from truing.diagnosis.arrays import Mask, Matrix
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.curves import LARGEST, Bundle, Curves
 from truing.diagnosis.derivatives import slopes_left
@@ -19,12 +20,7 @@ from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.machine import Predicted
 from truing.diagnosis.sample import Sample
-from truing.diagnosis.sweeps import Pass, Swept, Table, passed, units_of, without_taken
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
+from truing.diagnosis.sweeps import Pass, Swept, Table, units_of, without_taken
 
 KEPT = 3
 """So many points of a cause begin exact fits."""
@@ -97,10 +93,8 @@ def beside_of(found: Fit, extended: Extended) -> Beside:
     """Return an explanation as other causes see it."""
     sample, k = found.sample, len(found.inputs)
     roots = sample.roots(found.left)
-    own, inputs = slopes_left(found, extended)
-    columns = np.concatenate(
-        [np.column_stack([own, inputs]) * roots[:, None], np.column_stack([np.zeros((k, own.shape[1])), np.eye(k)])]
-    )
+    slopes = np.column_stack(slopes_left(found, extended)) * roots[:, None]
+    columns = np.concatenate([slopes, np.eye(k, found.size + k, found.size)])
     columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     basis, size, _ = np.linalg.svd(columns, full_matrices=False)
     taken = np.asarray(basis[:, size > 1e-9 * size.max()] if size.size else basis)
@@ -127,7 +121,7 @@ def _swept(bundle: Bundle, table: Table, beside: Beside, passes: dict[tuple[Tabl
     places = [names.index(name) for name in (shape.results if shape is not None else ())]
     for place in places:
         if (table, place) not in passes:
-            passes[table, place] = passed(table, beside, place)
+            passes[table, place] = Pass(table, beside, place)
     own = tuple(passes[table, place] for place in places)
     raw, normal, following = without_taken(own)
     sizes = [np.sqrt(np.maximum(np.einsum("mqq->mq", each), 0.0)) for each in (normal, raw)]
@@ -141,7 +135,7 @@ def _swept(bundle: Bundle, table: Table, beside: Beside, passes: dict[tuple[Tabl
     return Looked(_best(gains, values, span, beside.sample.known), tries, span)
 
 
-def _draws(size: Matrix, raw: Matrix) -> NDArray[np.bool_]:
+def _draws(size: Matrix, raw: Matrix) -> Mask:
     """Mark the points at which curves of these sizes, with and without what is taken, draw anything."""
     return np.asarray(((size > 1e-6 * raw) & (raw > FAINT)).any(axis=1))
 
@@ -193,15 +187,9 @@ def _weighed(curves: Matrix, beside: Beside) -> tuple[Any, Any, Matrix, Matrix, 
         rows = beside.drawn(curves[begin : begin + step])
         weighed = beside.beyond(rows)
         raw, size = np.linalg.norm(rows, axis=-1), np.linalg.norm(weighed, axis=-1)
-        basis[begin : begin + step] = _orthonormal(weighed, size)
-        parts.append(
-            (
-                _draws(size, raw),
-                (size > OWN * raw).any(axis=1),
-                weighed @ beside.left,
-                weighed @ weighed.swapaxes(1, 2),
-            )
-        )
+        normal = weighed @ weighed.swapaxes(1, 2)
+        basis[begin : begin + step] = units_of(normal) @ weighed
+        parts.append((_draws(size, raw), (size > OWN * raw).any(axis=1), weighed @ beside.left, normal))
     kept, is_own, right, normal = (np.concatenate(each) for each in zip(*parts, strict=True))
     return kept, is_own, basis, right, normal
 
@@ -227,47 +215,23 @@ def _is_same(one: Matrix, other: Matrix) -> bool:
     return bool(np.linalg.norm(one @ other.T) ** 2 > 0.98 * min(len(one), len(other)))
 
 
-def _orthonormal(weighed: Matrix, size: Matrix) -> Matrix:
-    """Return columns (M, q, rows) orthonormal within each point; 0 for those that depend on others."""
-    made = np.array(weighed)
-    for column in range(made.shape[1]):
-        for _ in range(2):
-            for before in range(column):
-                inner = np.einsum("mn,mn->m", made[:, before], made[:, column])
-                made[:, column] -= inner[:, None] * made[:, before]
-        left = np.linalg.norm(made[:, column], axis=-1)
-        is_own = left > 1e-6 * np.maximum(size[:, column], 1e-300)
-        made[:, column] *= np.where(is_own, 1 / np.maximum(left, 1e-300), 0.0)[:, None]
-    return made
-
-
 def _starts(bundle: Bundle, points: Matrix, right: Matrix, normal: Matrix) -> tuple[Matrix, Matrix]:
     """Return what each point lowers the sum of squares by within the bounds of the cause, and the numbers there."""
     diagonal = np.einsum("mqq->mq", normal)
     scale = np.sqrt(np.maximum(diagonal, 1e-300))
     scaled = normal / (scale[:, :, None] * scale[:, None, :]) + 1e-9 * np.eye(normal.shape[1])
     solved = np.linalg.solve(scaled, (right / scale)[..., None])[..., 0] / scale
-    values = np.array(points)
+    values, own = np.array(points), bundle.cause.amplitudes
+    low, high = np.array([(bundle.cause.numbers[place].low, bundle.cause.numbers[place].high) for place in own]).T
     if bundle.is_straight:
-        numbers = [bundle.cause.numbers[place] for place in bundle.cause.amplitudes]
-        solved = np.clip(solved, [number.low for number in numbers], [number.high for number in numbers])
-        values[:, bundle.cause.amplitudes] = solved
-    else:
-        solved = np.clip(
-            solved, np.where(_are_smallest(bundle.cause, points), 0.0, 1 / NEAR_LEVEL)[:, None], NEAR_LEVEL
-        )
-        for place in bundle.cause.amplitudes:
-            number = bundle.cause.numbers[place]
-            values[:, place] = np.clip(points[:, place] * solved[:, 0], number.low, number.high)
+        values[:, own] = solved = np.clip(solved, low, high)
+    else:  # below its smallest amplitudes a curve is in proportion, if anywhere
+        levels = np.max(np.abs(points[:, own]) / np.maximum(np.abs(low), np.abs(high)), axis=1)
+        least = np.where(levels <= NEAR_LEVEL * levels.min(), 0.0, 1 / NEAR_LEVEL)
+        solved = np.clip(solved, least[:, None], NEAR_LEVEL)
+        values[:, own] = np.clip(points[:, own] * solved[:, :1], low, high)
     gains = 2 * np.einsum("mq,mq->m", solved, right) - np.einsum("mq,mqp,mp->m", solved, normal, solved)
     return gains, values
-
-
-def _are_smallest(cause: Cause, points: Matrix) -> NDArray[np.bool_]:
-    """Mark the points with the smallest amplitudes: below them a curve is in proportion, if anywhere."""
-    bounds = [max(abs(cause.numbers[place].low), abs(cause.numbers[place].high)) for place in cause.amplitudes]
-    shares = np.max(np.abs(points[:, cause.amplitudes]) / bounds, axis=1)
-    return np.asarray(shares <= NEAR_LEVEL * shares.min())
 
 
 def independent(basis: Matrix, *, is_sweep: bool) -> float:

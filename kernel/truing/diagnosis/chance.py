@@ -8,28 +8,34 @@ curves of all causes beside the simpler explanation, and pays what an explanatio
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from math import comb, log, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.beside import Looked, beside_of
-from truing.diagnosis.chosen import Law
-from truing.diagnosis.compared import shares
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.noise import Setting, colour, whiten
+from truing.diagnosis.noise import Setting, colour, shares, whiten
 from truing.diagnosis.sweeps import Pass
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 DRAWS, FIRST_DRAWS = 299, 99
 HOPELESS = 12
 """So many simulated gains above the measured one, of the first draws, settle that it is nothing."""
 LARGEST_RHO = 0.985
+
+
+@dataclass(frozen=True)
+class Law:
+    """Largest gains that a search makes of noise alone, simulated (draws,), and the chance of the measured one."""
+
+    gains: Matrix
+    p_value: float
+
+    def p_of(self, gain: float) -> float:
+        """Return the chance of any other gain of the same search."""
+        return float((1 + (self.gains >= gain).sum()) / (1 + len(self.gains)))
 
 
 def carried(rho: float, rows: int) -> float:
@@ -48,16 +54,12 @@ def law_of(made: Competition, at: Fit, more: Fit, *, seed: int) -> Law:
     gain, steps = made.score(at) - made.score(more), len(more.causes) - len(at.causes)
     many, on = len(made.causes), len(at.causes)
     choice = 2 * (log(comb(many, on + steps)) - log(comb(many, on)))
-    gains: list[Matrix] = []
-    while (done := sum(len(each) for each in gains)) < DRAWS:
-        count = FIRST_DRAWS if done < FIRST_DRAWS else DRAWS - done
-        drawn = _drawn(at, more, count, generator)
+    gains = np.zeros(0)
+    while len(gains) < DRAWS and (gains >= gain).sum() < HOPELESS:
+        drawn = _drawn(at, more, DRAWS - len(gains) if len(gains) else FIRST_DRAWS, generator)
         drawn -= beside.taken @ (beside.taken.T @ drawn)
-        gains.append(_largest(made, seen, drawn, made.sample.known, steps) - choice)
-        if sum(int((each >= gain).sum()) for each in gains) >= HOPELESS:
-            break
-    together = np.concatenate(gains)
-    return Law(together, float((1 + (together >= gain).sum()) / (1 + len(together))))
+        gains = np.concatenate([gains, _largest(made, seen, drawn, made.sample.known, steps) - choice])
+    return Law(gains, float((1 + (gains >= gain).sum()) / (1 + len(gains))))
 
 
 def _drawn(at: Fit, more: Fit, count: int, generator: np.random.Generator) -> Matrix:

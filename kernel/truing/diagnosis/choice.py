@@ -6,15 +6,15 @@ row (Q. H. Vuong, Likelihood ratio tests for model selection and non-nested hypo
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from truing.diagnosis.causes import Cause
-from truing.diagnosis.chosen import Chosen, Law, Rival
+from truing.diagnosis.chance import Law
 from truing.diagnosis.competition import Competition, exchange
 from truing.diagnosis.fitted import Fit, differ
 from truing.diagnosis.intervals import certainty_of, may_be_zero, places_of
@@ -43,6 +43,40 @@ RIVALS = 24
 ROUNDS = 2
 SURELY = 30.0
 """What a cause must be worth, in score, that is named although its interval holds zero."""
+
+
+@dataclass(frozen=True)
+class Rival:
+    """An explanation that is not excluded, and how far it lies behind in score."""
+
+    fit: Fit
+    behind: float
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """The answer of the competition: ``best`` as fitted with the memory of the noise taken out, and its rivals.
+
+    ``same`` holds, by the tag of a cause of ``best``, the names of other causes that draw its curve as it was fitted.
+    ``law`` is that of the first step; ``p_second`` is the chance of the last further cause, None where there is none.
+    """
+
+    competition: Competition
+    best: Fit
+    rivals: tuple[Rival, ...]
+    same: Mapping[str, tuple[str, ...]]
+    law: Law
+    p_second: float | None
+
+    @property
+    def p_any(self) -> float:
+        """The chance that noise alone gives the search as much as the best explanation."""
+        return self.law.p_value
+
+    @property
+    def null(self) -> Fit:
+        """The model as it is, calibrated within its tolerances."""
+        return self.competition.null
 
 
 def choose(made: Competition, *, seed: int) -> Chosen:

@@ -23,7 +23,7 @@ from truing.units.names import PURE
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from truing.diagnosis.compared import Sides
+    from truing.diagnosis.arrays import Sides
 
 ORDER = "order"
 _ROLES: dict[Part, Role] = {

@@ -10,33 +10,27 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import permutations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.beside import look
 from truing.diagnosis.causes import Cause, Number
-from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.choice import Chosen
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.derivatives import slopes_at, unit_of
 from truing.diagnosis.exact import fit
 from truing.diagnosis.extended import Extended, elsewhere, parts_of
-from truing.diagnosis.findings import in_unit
 from truing.diagnosis.fitted import STEP, WIDE, Fit, moved_by
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.readable import readable_unit
-from truing.diagnosis.records import Records
 from truing.diagnosis.result import Amount, NextPoint
 from truing.diagnosis.sample import Sample
 from truing.diagnosis.settings import FEW, TRIED, machine_there, settings_of
+from truing.diagnosis.shape_words import in_unit
 from truing.diagnosis.verdict import APART
 from truing.numbers import format_number
 from truing.units import from_si
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 POINTS = 4
 MOST_POINTS = 100
@@ -119,9 +113,8 @@ def next_points(chosen: Chosen) -> Proposal:
     fields = machine.start.model.own_result_fields
     is_along = any(fields[name].along for name in machine.records.measured)
     settings = {} if is_along else settings_of(machine, FEW if chosen.competition.extended.budget.is_dear else TRIED)
-    live: list[_Duel] = []
-    if settings:
-        live = _live(_live(_duels(chosen, several, settings)))  # what is the same chooses no setting for the others
+    duels = _duels(chosen, several, settings) if settings else []
+    live = _live(_live(duels))  # what is the same chooses no setting for the others
     winner = name_of(chosen.best)
     pairs = [(winner, name_of(found)) for found in several[1:]] if is_physical(chosen.best) else []
     apart = {frozenset(duel.names) for duel in live}
@@ -136,7 +129,7 @@ def is_physical(found: Fit) -> bool:
 
 def name_of(found: Fit) -> str:
     """Return what an explanation is called: the names of its causes, each once."""
-    return " + ".join(dict.fromkeys(cause.name for cause in found.causes))
+    return " + ".join(found.names)
 
 
 def rival_fits(chosen: Chosen) -> list[Fit]:
@@ -148,7 +141,7 @@ def rival_fits(chosen: Chosen) -> list[Fit]:
     own = [chosen.best, *_renamed(chosen)] if is_physical(chosen.best) else []
     by_name: dict[frozenset[str], Fit] = {}
     for found in (*own, *rivals):
-        by_name.setdefault(frozenset(cause.name for cause in found.causes), found)
+        by_name.setdefault(frozenset(found.names), found)
     return list(by_name.values())
 
 
@@ -316,13 +309,6 @@ def _amounts(chosen: Chosen, settings: Mapping[str, Matrix], place: int) -> dict
     }
 
 
-def _followed(machine: Machine, names: Sequence[str]) -> set[str]:
-    """Return the conditions and inputs that the effects of two explanations follow."""
-    known = machine.start.model.known_effects
-    effects = [known[each] for name in names for each in name.split(" + ") if each in known]
-    return {key for effect in effects for key in (*(need.name for need in effect.needs), *effect.reads)}
-
-
 def _why(chosen: Chosen, settings: Mapping[str, Matrix], place: int, duel: _Duel) -> str:
     """Say what makes a setting worth measuring: how far the two then differ, and where it leaves the record."""
     sample = chosen.competition.sample
@@ -330,23 +316,21 @@ def _why(chosen: Chosen, settings: Mapping[str, Matrix], place: int, duel: _Duel
     name, spread = list(_spreads(sample, chosen.best).items())[int(np.argmax(gaps))]
     unit = readable_unit(sample.machine.start.print_unit(name), spread)
     words = f"{duel.names[0]} and {duel.names[1]} there differ by {in_unit(float(gaps.max()) * spread, unit)} in {name}"
-    asked = _followed(sample.machine, duel.names)
-    farthest = _farthest(sample.machine.records, {key: values[place] for key, values in settings.items()}, asked)
-    if not farthest:
-        return words
-    item = sample.machine.records.covariates[farthest]
-    low, high = (float(from_si(each, item.unit)) for each in (np.nanmin(item.values), np.nanmax(item.values)))
-    span = f"{format_number(low, 3)} to {format_number(high, 3)} {item.unit}".strip()
-    return f"{words}; {farthest} was only {span} so far"
+    setting = {key: float(values[place]) for key, values in settings.items()}
+    return words + _beyond_record(sample.machine, setting, duel.names)
 
 
-def _farthest(records: Records, setting: Mapping[str, float], asked: set[str]) -> str:
-    """Return what leaves the range of the record farthest, of what is asked for; nothing where none does."""
-    farthest, reach = "", 0.05
+def _beyond_record(machine: Machine, setting: Mapping[str, float], names: Sequence[str]) -> str:
+    """Say what leaves the range of the record farthest, of what the effects of two explanations follow, if any does."""
+    known = machine.start.model.known_effects
+    effects = [known[each] for name in names for each in name.split(" + ") if each in known]
+    asked = {key for effect in effects for key in (*(need.name for need in effect.needs), *effect.reads)}
+    words, reach = "", 0.05
     for key, value in setting.items():
-        item = records.covariates[key]
+        item = machine.records.covariates[key]
         low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
-        out = float(max(low - value, value - high)) / max(high - low, 1e-300)
+        out = max(low - value, value - high) / max(high - low, 1e-300)
         if (not asked or key in asked) and out > reach:
-            farthest, reach = key, out
-    return farthest
+            begin = format_number(float(from_si(low, item.unit)), 3)
+            words, reach = f"; {key} was only {begin} to {in_unit(high, item.unit, 3)} so far", out
+    return words

@@ -10,28 +10,26 @@ import numpy as np
 
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.causes import effects_of, followed_by, inputs_of
-from truing.diagnosis.choice import choose
-from truing.diagnosis.chosen import Chosen, Rival
+from truing.diagnosis.choice import Chosen, Rival, choose
 from truing.diagnosis.competition import Competition, competition_of, search
 from truing.diagnosis.design import next_points
 from truing.diagnosis.extended import Extended
-from truing.diagnosis.findings import in_unit, wrong_of
+from truing.diagnosis.findings import wrong_of
 from truing.diagnosis.gain import gains_of, nested
 from truing.diagnosis.halves import contradictions_of, thinned_of
 from truing.diagnosis.learning import first_noise
 from truing.diagnosis.long_records import machine_for_search, on_all_rows
 from truing.diagnosis.machine import Machine, machine_of
-from truing.diagnosis.naming import alternative_of, calibrated_of, causes_of, extended_setup, remainder_of
+from truing.diagnosis.naming import alternative_of, by_share, calibrated_of, causes_of, extended_setup, remainder_of
 from truing.diagnosis.probing import probe
 from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.result import Alternative, Curves, Diagnosis
 from truing.diagnosis.sample import sample_of
-from truing.diagnosis.shares import by_share
-from truing.diagnosis.trades import trades_of
+from truing.diagnosis.shape_words import in_unit
 from truing.diagnosis.unmeasured import with_results
 from truing.diagnosis.unregistered import shapes_of
-from truing.diagnosis.visibility import inseparable, smallest_visible
+from truing.diagnosis.visibility import inseparable, smallest_visible, trades_of
 from truing.errors import UsageError
 from truing.setup import Setup
 from truing.studies.bench import FINE, Done, part_of, unheard

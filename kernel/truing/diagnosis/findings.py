@@ -2,29 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, followed_by, gauged
-from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.choice import Chosen
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.gain import floor_of
+from truing.diagnosis.naming import added_by
 from truing.diagnosis.noise import robust_sd
-from truing.diagnosis.records import Records
 from truing.diagnosis.result import Amount, Finding, Kind, Noise, Wrong
 from truing.diagnosis.sample import Channel, errors_of, residuals_of
-from truing.diagnosis.shape_words import in_unit as in_unit
-from truing.diagnosis.shape_words import order_in_words, shape_in_words, step_in_words
-from truing.diagnosis.shares import added_by
+from truing.diagnosis.shape_words import in_unit, order_in_words, shape_in_words, step_in_words
 from truing.diagnosis.tidying import counted
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 SIGNIFICANT = 0.05
 FAR = 4.0
@@ -49,7 +42,7 @@ def wrong_of(chosen: Chosen, units: Mapping[str, str]) -> tuple[Wrong, ...]:
     return tuple(_wrong(chosen, channel, acting, units[channel.name]) for channel in chosen.best.sample.channels)
 
 
-def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, tuple[Cause, ...]], unit: str) -> Wrong:
+def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, Sequence[Cause]], unit: str) -> Wrong:
     best, name, rows = chosen.best, channel.name, channel.rows
     machine = best.sample.machine
     own = best.sample.noise[name]
@@ -67,16 +60,10 @@ def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, tuple[Cause, .
     if noise.outliers:
         words = f"{counted(len(noise.outliers), 'suspected outlier')}, beyond four standard deviations of the noise"
         found.append(Finding("outlier", "", None, words))
-    stated = _stated(machine.records, channel)
-    said = Amount(stated, unit) if stated > 0 else None
-    return Wrong(name, len(rows), Amount(rmse, unit), Amount(floor, unit), share, noise, tuple(found), said)
-
-
-def _stated(records: Records, channel: Channel) -> float:
-    """Return the root mean square of the standard deviations that the record states for a result; 0 for none."""
-    given = records.sigma.get(channel.name, np.zeros(len(records)))[channel.rows]
+    given = machine.records.sigma.get(name, np.zeros(len(machine.records)))[rows]
     given = given[given > 0]
-    return float(np.sqrt(np.mean(given**2))) if len(given) else 0.0
+    stated = Amount(float(np.sqrt(np.mean(given**2))), unit) if len(given) else None
+    return Wrong(name, len(rows), Amount(rmse, unit), Amount(floor, unit), share, noise, tuple(found), stated)
 
 
 def _bias(chosen: Chosen, channel: Channel, residual: Matrix, unit: str) -> Iterator[Finding]:
@@ -102,8 +89,10 @@ def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[Finding]:
     """
     made = chosen.competition
     alone = [found for found in made.known.values() if len(found.causes) == 1]
-    constant = [made.score(found) for found in alone if _is_constant(found.causes[0], found, name)]
-    plain = min([made.score(made.null), *constant])
+    measured = made.sample.machine.records.measured
+    offsets = [found for found in alone if found.causes[0].name == "sensor_offset"]
+    constant = [found for found in offsets if gauged(found.causes[0], measured) == name]
+    plain = min(made.score(found) for found in (made.null, *constant))  # what a trend must beat to be one
     best: dict[tuple[str, ...], tuple[float, Fit]] = {}
     for found in alone:
         label, gain = _label(found, name), plain - made.score(found)
@@ -123,11 +112,6 @@ def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[Finding]:
         kept += 1
         if kept <= LARGEST_COUNT:
             yield _finding(found, made.extended, chosen.law.p_of(gain), name, unit)
-
-
-def _is_constant(cause: Cause, found: Fit, name: str) -> bool:
-    """Whether a cause is a mere constant on one result: what a trend must beat to be one."""
-    return cause.name == "sensor_offset" and gauged(cause, found.sample.machine.records.measured) == name
 
 
 def _label(found: Fit, name: str) -> tuple[str, ...]:
@@ -157,13 +141,13 @@ def _finding(found: Fit, extended: Extended, p_value: float, name: str, unit: st
     return Finding(kind, " and ".join(label[1:]), p_value, text)
 
 
-def _acting(chosen: Chosen) -> dict[str, tuple[Cause, ...]]:
+def _acting(chosen: Chosen) -> dict[str, list[Cause]]:
     """Return by result the registered effects of the explanation that show in it."""
     best = chosen.best
     added = added_by(best, chosen.competition.extended) if best.causes else {}
     registered = [cause for cause in best.causes if cause.effect is not None]
     return {
-        channel.name: tuple(cause for cause in registered if _shows(channel, added[cause.name][channel.name]))
+        channel.name: [cause for cause in registered if _shows(channel, added[cause.name][channel.name])]
         for channel in best.sample.channels
     }
 
@@ -174,7 +158,7 @@ def _shows(channel: Channel, added: Matrix) -> bool:
     return float(np.mean(size**2)) * len(channel) > SHOWS**2
 
 
-def _with_named(chosen: Chosen, acting: tuple[Cause, ...], found: list[Finding]) -> list[Finding]:
+def _with_named(chosen: Chosen, acting: Sequence[Cause], found: list[Finding]) -> list[Finding]:
     """Add what the named causes follow, where no shape has shown it: a cause is a sharper eye than any shape."""
     made = chosen.competition
     gain = made.score(made.null) - made.score(made.known[chosen.best.key])

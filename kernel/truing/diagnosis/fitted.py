@@ -4,17 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from math import inf, log
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.sample import Sample
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 STEP = 1e-4
 """Of a number, or of a hundredth of its range: by how much it is moved for a difference."""
@@ -46,6 +41,11 @@ class Fit:
     def key(self) -> frozenset[str]:
         """Which causes are on, whatever their order."""
         return frozenset(cause.tag for cause in self.causes)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What the answer calls its causes, each once."""
+        return tuple(dict.fromkeys(cause.name for cause in self.causes))
 
     @property
     def size(self) -> int:

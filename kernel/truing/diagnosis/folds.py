@@ -4,20 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import log, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Mask, Matrix, Places
 from truing.diagnosis.exact import refit
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.noise import Setting
 from truing.diagnosis.sample import Sample, has_order
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 FOLDS = 5
 SHORTEST_BLOCK = 6
@@ -30,10 +24,10 @@ BLOCKS = 20
 class Folds:
     """The block that each row of the records lies in (n,), -1 for rows that only judge, and the number of folds."""
 
-    block_of: NDArray[np.intp]
+    block_of: Places
     count: int
 
-    def test(self, fold: int) -> NDArray[np.bool_]:
+    def test(self, fold: int) -> Mask:
         """Mark the rows that one fold leaves out."""
         return np.asarray((self.block_of >= 0) & (self.block_of % self.count == fold))
 
@@ -54,7 +48,8 @@ def folds_of(sample: Sample, *, seed: int = 1) -> Folds:
     runs = records.run_of[usable]
     first = np.flatnonzero(np.append(True, runs[1:] != runs[:-1]))
     sizes = np.diff(np.append(first, len(runs)))
-    reach = max(_correlation_rows(channel.memory) for channel in sample.channels)
+    largest = max(channel.memory.rho for channel in sample.channels)
+    reach = -1 / log(largest) if largest > 0 else 0.0
     shortest = min(SHORTEST_BLOCK, max(2, len(runs) // FEWEST_BLOCKS))
     length = int(max(shortest, len(runs) // BLOCKS, min(3 * reach, len(runs) // (2 * FOLDS))))
     if sample.machine.start.diagnose.per_file:
@@ -63,10 +58,6 @@ def folds_of(sample: Sample, *, seed: int = 1) -> Folds:
     within = (np.arange(len(runs)) - np.repeat(first, sizes)) // length
     block_of[usable] = np.repeat(np.cumsum(blocks) - blocks, sizes) + within
     return Folds(block_of, min(FOLDS, int(block_of.max()) + 1))
-
-
-def _correlation_rows(setting: Setting) -> float:
-    return 0.0 if setting.rho <= 0 else -1.0 / log(setting.rho)
 
 
 def ends_of(sample: Sample) -> Folds:
@@ -81,7 +72,7 @@ def ends_of(sample: Sample) -> Folds:
     return Folds(block_of, 2)
 
 
-def refitted(found: Fit, extended: Extended, test: NDArray[np.bool_]) -> Fit | None:
+def refitted(found: Fit, extended: Extended, test: Mask) -> Fit | None:
     """Fit an explanation to the rows that are not left out, from where it is."""
     sample = found.sample.of_rows(~test)
     if not all(len(channel) for channel in sample.channels):

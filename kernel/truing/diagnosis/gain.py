@@ -9,26 +9,20 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.stats import norm
 from scipy.stats import t as student
 
-from truing.diagnosis.choice import CLOSE
-from truing.diagnosis.chosen import Chosen
-from truing.diagnosis.compared import beyond, difference
+from truing.diagnosis.arrays import Mask, Matrix, Places
+from truing.diagnosis.choice import CLOSE, Chosen
 from truing.diagnosis.extended import shape_added
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import Folds, folds_of, refitted
 from truing.diagnosis.machine import Machine
+from truing.diagnosis.noise import beyond, difference
 from truing.diagnosis.result import Amount, Gain
 from truing.diagnosis.sample import Noise, errors_of
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 FLIPS = 999
 MOST_EXACT = 12
@@ -81,8 +75,8 @@ def nested(chosen: Chosen, done: Callable[[int, int], None] = lambda count, of: 
             continue
         best = _chosen_again(chosen, base, several, test)
         same += best.key == chosen.best.key
-        for channel in base.sample.channels:
-            _judge(judged[channel.name], channel.name, (base, best), test)
+        for place, channel in enumerate(base.sample.channels):
+            _judge(judged[channel.name], place, (base, best), test)
     return Nested(judged, folds, same / max(folds.count, 1))
 
 
@@ -102,7 +96,7 @@ def contenders(chosen: Chosen) -> list[Fit]:
     return [made.known[best.key], *near[:CONTENDERS]]
 
 
-def _chosen_again(chosen: Chosen, base: Fit, several: list[Fit], test: NDArray[np.bool_]) -> Fit:
+def _chosen_again(chosen: Chosen, base: Fit, several: list[Fit], test: Mask) -> Fit:
     """Return what is chosen without the rows of a fold: the choice, unless another one is better by ``CLOSE``."""
     made = chosen.competition
     again = [found for each in several if (found := refitted(each, made.extended, test)) is not None]
@@ -114,11 +108,10 @@ def _chosen_again(chosen: Chosen, base: Fit, several: list[Fit], test: NDArray[n
     return best if made.score(best) < made.score(base) else base
 
 
-def _judge(judged: Judged, name: str, fits: tuple[Fit, Fit], test: NDArray[np.bool_]) -> None:
+def _judge(judged: Judged, place: int, fits: tuple[Fit, Fit], test: Mask) -> None:
     """Fill in the rows of one fold for one result, from the fits of base and extension without them."""
-    sample = fits[0].sample
-    place = [channel.name for channel in sample.channels].index(name)
-    channel, noise, machine = sample.channels[place], sample.noise[name], sample.machine
+    sample, channel, machine = fits[0].sample, fits[0].sample.channels[place], fits[0].sample.machine
+    name, noise = channel.name, sample.noise[channel.name]
     known, weights = machine.records.known(name), noise.weights[test] / channel.scale
     logs = []
     for found, errors in zip(fits, (judged.before, judged.after), strict=True):
@@ -198,15 +191,12 @@ def _held_out(chosen: Chosen, name: str) -> tuple[float, float] | None:
     for cause, values in zip(best.causes, best.values, strict=True):
         shaped = shaped + shape_added(best.sample.machine, cause, values).get(name, 0.0)
     extended = best.predicted[name] - np.where(is_other, shaped, 0.0)
-    errors = [
-        errors_of(best.sample.machine, name, best.sample.noise[name], values)[rows]
-        for values in (chosen.null.predicted[name], extended)
-    ]
-    before, after = (float(np.sqrt(np.mean(error**2))) for error in errors)
+    machine, noise, shown = best.sample.machine, best.sample.noise[name], (chosen.null.predicted[name], extended)
+    before, after = (float(np.sqrt(np.mean(errors_of(machine, name, noise, each)[rows] ** 2))) for each in shown)
     return before, after
 
 
-def sign_flip_p(gain: Matrix, block_of: NDArray[np.intp], *, seed: int) -> float:
+def sign_flip_p(gain: Matrix, block_of: Places, *, seed: int) -> float:
     """Return the significance of a gain: how often random signs of the blocks give as much."""
     known = np.isfinite(gain) & (block_of >= 0)
     sums = np.bincount(block_of[known], weights=gain[known])

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import hypot, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from truing.diagnosis.choice import CLOSE
-from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.arrays import Mask, Places
+from truing.diagnosis.choice import CLOSE, Chosen
 from truing.diagnosis.exact import refit
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import refitted
@@ -21,12 +20,7 @@ from truing.diagnosis.gain import contenders
 from truing.diagnosis.intervals import certainty_of, places_of, value_of
 from truing.diagnosis.noise import Setting
 from truing.diagnosis.result import Amount, Contradiction, Thinned
-from truing.diagnosis.sample import Channel, Sample, has_order
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Rows = NDArray[np.bool_]
+from truing.diagnosis.sample import Sample, has_order
 
 APART = 4.0
 """Standard errors by which an amplitude differs between halves that contradict one another: by chance 1 in 16,000."""
@@ -44,8 +38,9 @@ def contradictions_of(chosen: Chosen) -> tuple[Contradiction, ...]:
     if _are_few(best):
         return ()
     extended = chosen.competition.extended
-    halves = [refitted(best, extended, mask) for mask in _other_halves(best.sample)]
-    fitted = [found for found in halves if found is not None]
+    turn = _in_turn(best.sample)
+    halves = (turn[len(turn) // 2 :], turn[: len(turn) // 2])
+    fitted = [found for rows in halves if (found := refitted(best, extended, _marked(best.sample, rows))) is not None]
     if len(fitted) < 2:
         return ()
     certain = [certainty_of(found, extended) for found in fitted]
@@ -67,20 +62,10 @@ def _are_few(best: Fit) -> bool:
     return not best.causes or best.sample.known < 2 * FEWEST * (best.size + len(best.inputs) ** 0.5)
 
 
-def _in_turn(sample: Sample, seed: int = 1) -> NDArray[np.intp]:
+def _in_turn(sample: Sample) -> Places:
     """Return the rows of a sample in their order; in a random one where they have none."""
     usable = np.flatnonzero(sample.mask)
-    if not has_order(sample.machine):
-        usable = np.random.Generator(np.random.SFC64(seed)).permutation(usable)
-    return usable
-
-
-def _other_halves(sample: Sample) -> tuple[Rows, Rows]:
-    """Mark what is left out: the second half of the rows, and the first."""
-    usable = _in_turn(sample)
-    first = np.zeros(len(sample.mask), dtype=bool)
-    first[usable[: len(usable) // 2]] = True
-    return sample.mask & ~first, first
+    return usable if has_order(sample.machine) else np.random.Generator(np.random.SFC64(1)).permutation(usable)
 
 
 def thinned_of(chosen: Chosen) -> tuple[Thinned, ...]:
@@ -95,8 +80,7 @@ def thinned_of(chosen: Chosen) -> tuple[Thinned, ...]:
     if _are_few(best):
         return ()
     several = [found for found in contenders(chosen) if not (found.key < best.key or best.key < found.key)]
-    names = set(_names(best))
-    others = [found for found in several if set(_names(found)) != names][:RIVALS]
+    others = [found for found in several if set(found.names) != set(best.names)][:RIVALS]
     turn = _in_turn(best.sample)
     words, made = ORDERED if has_order(best.sample.machine) else UNORDERED, []
     for begin, said in enumerate(words):
@@ -106,7 +90,7 @@ def thinned_of(chosen: Chosen) -> tuple[Thinned, ...]:
         ahead = {found: _score(chosen, found, sample) for found in (best, *others)}
         top = min(ahead, key=ahead.__getitem__)
         if ahead[top] < ahead[best] - CLOSE < np.inf:
-            made.append(Thinned(said, _names(top), ahead[best] - ahead[top]))
+            made.append(Thinned(said, top.names, ahead[best] - ahead[top]))
     return tuple(made)
 
 
@@ -118,25 +102,18 @@ def _score(chosen: Chosen, found: Fit, sample: Sample) -> float:
     return np.inf if again is None else again.cost + (made.score(whole) - whole.cost) / 2
 
 
-def _names(found: Fit) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(cause.name for cause in found.causes))
-
-
-def _thinned(sample: Sample, rows: NDArray[np.intp]) -> Sample:
+def _thinned(sample: Sample, rows: Places) -> Sample:
     """Return every second row, with the memory that the noise still has from one of them to the next."""
-    mask = np.zeros(len(sample.mask), dtype=bool)
-    mask[rows] = True
-    few = sample.of_rows(mask)
-    channels = [
-        replace(own, starts=_starts(whole, mask[whole.rows]), memory=every_second(own.memory))
-        for whole, own in zip(sample.channels, few.channels, strict=True)
-    ]
+    mask = _marked(sample, rows)
+    few, channels = sample.of_rows(mask), []
+    for whole, own in zip(sample.channels, few.channels, strict=True):
+        begun = np.cumsum(whole.starts)[mask[whole.rows]]  # so many times the noise has begun anew up to here
+        channels.append(replace(own, starts=np.diff(begun, prepend=0) > 0, memory=every_second(own.memory)))
     return replace(few, channels=tuple(channels))
 
 
-def _starts(channel: Channel, kept: Rows) -> Rows:
-    """Mark the rows that are kept before which, since the last one, the noise began anew."""
-    return np.asarray(np.diff(np.cumsum(channel.starts)[kept], prepend=0) > 0)
+def _marked(sample: Sample, rows: Places) -> Mask:
+    return np.isin(np.arange(len(sample.mask)), rows)
 
 
 def every_second(memory: Setting) -> Setting:

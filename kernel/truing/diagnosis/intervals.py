@@ -9,24 +9,18 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import exp, log, log1p, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.special import stdtrit
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.columns import in_blocks
 from truing.diagnosis.derivatives import slopes_at, unit_of
 from truing.diagnosis.exact import fit
 from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import Fit, inward
-from truing.diagnosis.sample import Sample
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 LEVEL = 0.975
 """Of Student's t at either end of an interval: together they hold 95 %."""
@@ -49,6 +43,8 @@ MOST_WHOLE = 12
 """So many whole numbers are tried on either side."""
 HIGHEST = 100.0
 """In units of what a profile may rise by: how high it is where the model fails."""
+Ends = tuple[float | None, float | None]
+"""An interval, SI; None is an open end."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +110,8 @@ def certainty_of(found: Fit, extended: Extended) -> Certainty:
     its weight says.
     """
     sample, units = found.sample, unit_of(found)
-    roots, told = sample.roots(found.left), np.sqrt(_told(sample))
+    roots = sample.roots(found.left)
+    told = np.concatenate([np.full(len(each), sqrt(1 - 2 / (each.freedom + 3))) for each in sample.channels])
     slopes = np.column_stack(slopes_at(found, extended)) * (roots * told)[:, None]
     prior = np.diag(np.append(np.zeros(len(units)), np.ones(len(found.inputs))))
     normal = slopes.T @ slopes
@@ -125,12 +122,6 @@ def certainty_of(found: Fit, extended: Extended) -> Certainty:
     plain, sandwich = inverse * variance, inverse @ (scores + variance * prior) @ inverse
     ratio = np.sqrt(np.maximum(np.diag(sandwich) / np.maximum(np.diag(plain), 1e-300), 1.0))
     return Certainty(plain * np.outer(ratio, ratio), units, variance, max(sample.known - used, FEWEST_FREE))
-
-
-def _told(sample: Sample) -> Matrix:
-    """Return by row what it tells of what its weight says, (rows,)."""
-    shares = [1 - 2 / (channel.freedom + 3) for channel in sample.channels]
-    return np.repeat(shares, [len(channel) for channel in sample.channels])
 
 
 def _inverse(normal: Matrix) -> Matrix:
@@ -165,18 +156,25 @@ def may_be_zero(found: Fit, certainty: Certainty, cause: Cause) -> bool:
     return all(low <= 0 <= high for low, high in ends)
 
 
-def shape_interval(
-    found: Fit, extended: Extended, certainty: Certainty, place: int
-) -> tuple[float | None, float | None]:
+def ends_of(found: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
+    """Return the 95 % interval of any number, SI: of a whole one between those that are not excluded."""
+    number = numbers_of(found)[place]
+    if number.whole:
+        values = [value_of(each, place) for each in (found, *whole_left(found, extended, place))]
+        return min(values), max(values)
+    if number.along:
+        return place_interval(found, extended, place)
+    return (amplitude_interval if number.is_amplitude else shape_interval)(found, extended, certainty, place)
+
+
+def shape_interval(found: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
     """Return the 95 % profile interval of a number in SI; an end is None where the profile stays open to its bound."""
     profile = _Profile(found, extended, certainty, place)
     low, high = (profile.end(bound) for bound in profile.bounds)
     return low, high
 
 
-def amplitude_interval(
-    found: Fit, extended: Extended, certainty: Certainty, place: int
-) -> tuple[float | None, float | None]:
+def amplitude_interval(found: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
     """Return the 95 % interval of an amplitude in SI, with its profile where its cause has a shape that is free.
 
     Where its cause has a whole number, it holds the intervals at every one that is not excluded.
@@ -202,11 +200,12 @@ def whole_left(found: Fit, extended: Extended, place: int) -> list[Fit]:
     return [each for each in fits if each is not None and each.cost < found.cost + WHOLE]
 
 
-def _kept_at(found: Fit, extended: Extended, place: int, value: float) -> Fit | None:
-    """Fit again with a number that keeps its start at another value."""
-    flat = np.concatenate(found.values)
+def _kept_at(near: Fit, extended: Extended, place: int, value: float) -> Fit | None:
+    """Fit again from nearby with one number held at another value, SI."""
+    flat = np.concatenate(near.values)
     flat[place] = value
-    return fit(found.sample, extended, found.causes, parts_of(found.causes, flat), found)
+    held = [numbers_of(near)[place]]
+    return fit(near.sample, extended, near.causes, parts_of(near.causes, flat), near, held=held)
 
 
 def place_interval(found: Fit, extended: Extended, place: int) -> tuple[float, float]:
@@ -218,18 +217,13 @@ def place_interval(found: Fit, extended: Extended, place: int) -> tuple[float, f
     rows = np.unique(item.values[np.isfinite(item.values)])
     own = int(np.searchsorted(rows, value))
 
-    def before(off: int) -> bool:
-        return holds(own - off)
-
-    def behind(off: int) -> bool:
-        return holds(own + off)
-
     def holds(gap: int) -> bool:
         made = _kept_at(found, extended, place, float(rows[gap - 1 : gap + 1].mean()))
         return made is not None and made.cost <= found.cost + PLACES
 
     last = len(rows) - 1
-    low, high = own - 1 - _farthest(before, own - 1), own + _farthest(behind, last - own)
+    low = own - 1 - _farthest(lambda off: holds(own - off), own - 1)
+    high = own + _farthest(lambda off: holds(own + off), last - own)
     return float(rows[max(low, 0)]), float(rows[min(high, last)])
 
 
@@ -254,18 +248,11 @@ class _Profile:
         self.bounds = inward(self.number, self.unit)
         value = value_of(found, place)
         self.start = log(value) if self.number.is_log else value / self.unit
-        self.known = {self.start: self._fitted(found, self.start) or found}
+        self.known = {self.start: _kept_at(found, extended, place, self.outward(self.start)) or found}
         student = float(stdtrit(certainty.freedom, LEVEL))
         known = found.sample.known
         self.allowed = known * log1p(student**2 * certainty.variance / known)
         self.reach = certainty.reach_of(place)
-
-    def _fitted(self, near: Fit, u: float) -> Fit | None:
-        """Fit with the number held, from a fit nearby."""
-        flat = np.concatenate(near.values)
-        flat[self.place] = self.outward(u)
-        values = parts_of(near.causes, flat)
-        return fit(near.sample, self.extended, near.causes, values, near, held=[self.number])
 
     def outward(self, u: float) -> float:
         """Return the number in SI."""
@@ -274,7 +261,8 @@ class _Profile:
     def above(self, u: float) -> float:
         """Return how far a place lies outside of the interval: by the root of what the cost rises, nearly a line."""
         if u not in self.known:
-            made = self._fitted(self.known[min(self.known, key=lambda other: abs(other - u))], u)
+            nearest = self.known[min(self.known, key=lambda other: abs(other - u))]
+            made = _kept_at(nearest, self.extended, self.place, self.outward(u))
             if made is None:
                 return sqrt(HIGHEST * self.allowed)
             self.known[u] = made

@@ -7,20 +7,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import log
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Mask, Matrix
 from truing.diagnosis.columns import in_blocks
-from truing.diagnosis.compared import beyond, difference, scale_of
 from truing.diagnosis.machine import Machine, Predicted
 from truing.diagnosis.noise import (
     SETTINGS,
     Setting,
-    Tails,
+    beyond,
     clipped,
+    difference,
     likelihood_of,
     robust_sd,
+    scale_of,
     spread_of,
     standardised,
     tails_of,
@@ -37,11 +38,6 @@ from truing.diagnosis.sample import (
     residuals_of,
     typical_of,
 )
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 FEWEST_OF_MEMORY = 20
 """Rows from which on their memory is learnt."""
@@ -118,7 +114,7 @@ def _learnt(sample: Sample, channel: Channel, predicted: Matrix, drivers: Mappin
     innovations = whiten(weighted, starts, memory)
     is_noise = robust_sd(innovations) > 2 * floor
     tails = tails_of(innovations) if is_noise else before.tails
-    kept = _moved_in(weighted, innovations, tails) if is_noise else weighted
+    kept = weighted + clipped(innovations, tails) - innovations if is_noise else weighted
     scale = scale_of(kept, _short(channel, predicted, weights[channel.rows]), free)
     return Noise(
         max(scale, floor, 1e-300), before.given, weights, memory, tails, spread, typical,
@@ -134,11 +130,6 @@ def _short(channel: Channel, predicted: Matrix, weights: Matrix) -> Matrix:
     return np.asarray(short[channel.sides != 0])
 
 
-def _moved_in(weighted: Matrix, innovations: Matrix, tails: Tails) -> Matrix:
-    """Return what is left with the rows that are too far from what their neighbours say moved to where tails end."""
-    return weighted + clipped(innovations, tails) - innovations
-
-
 def _drivers(machine: Machine) -> dict[str, Matrix]:
     """Return what the spread of noise may depend on: every covariate, and its size where it changes sign."""
     made: dict[str, Matrix] = {}
@@ -151,20 +142,24 @@ def _drivers(machine: Machine) -> dict[str, Matrix]:
     return made
 
 
-def memory_of(left: Matrix, starts: NDArray[np.bool_]) -> Setting:
+def memory_of(left: Matrix, starts: Mask) -> Setting:
     """Return the filter that makes what is left likeliest, its parameters paid for."""
-    if len(left) < FEWEST_OF_MEMORY:
-        return Setting()
-    costs = [memory_cost(left, starts, setting) for setting in SETTINGS]
-    return SETTINGS[int(np.argmin(costs))]
+    return _likeliest(left, starts) if len(left) >= FEWEST_OF_MEMORY else Setting()
 
 
-def memory_cost(left: Matrix, starts: NDArray[np.bool_], setting: Setting) -> float:
+def _likeliest(left: Matrix, starts: Mask) -> Setting:
+    return min(SETTINGS, key=lambda setting: memory_cost(left, starts, setting))
+
+
+def memory_cost(left: Matrix, starts: Mask, setting: Setting) -> float:
     """Return -2 log likelihood of what is left as noise of this filter, its size free, its parameters paid for."""
-    white = whiten(left, starts, setting)
-    square = max(float(np.mean(white**2)), 1e-300)
-    ratio = int(starts.sum()) * log(setting.variance_ratio)
-    return len(left) * log(square) + ratio + setting.size * log(max(len(left), 2))
+    square = max(float(np.mean(whiten(left, starts, setting) ** 2)), 1e-300)
+    return len(left) * log(square) + _paid(starts, setting)
+
+
+def _paid(starts: Mask, setting: Setting) -> float:
+    """Return what a filter costs in -2 log likelihood: its larger noise where runs begin, and its parameters."""
+    return int(starts.sum()) * log(setting.variance_ratio) + setting.size * log(max(len(starts), 2))
 
 
 def as_noise(sample: Sample, predicted: Predicted) -> float:
@@ -172,7 +167,6 @@ def as_noise(sample: Sample, predicted: Predicted) -> float:
 
     The readings are taken as they are: those that were moved in were so for the sake of another explanation.
     """
-    settings = SETTINGS if has_order(sample.machine) else (Setting(),)
     total = 0.0
     for channel in sample.channels:
         rows, starts = channel.rows[channel.read], channel.starts[channel.read]
@@ -181,10 +175,8 @@ def as_noise(sample: Sample, predicted: Predicted) -> float:
         left = left * (channel.weights[channel.read] / channel.scale)
         if not np.ptp(left) > 0:
             continue
-        costs = [memory_cost(left, starts, each) for each in settings]
-        memory = settings[int(np.argmin(costs))]
-        paid = int(starts.sum()) * log(memory.variance_ratio) + memory.size * log(max(len(left), 2))
-        total += paid - 2 * likelihood_of(whiten(left, starts, memory))
+        memory = _likeliest(left, starts) if has_order(sample.machine) else Setting()
+        total += _paid(starts, memory) - 2 * likelihood_of(whiten(left, starts, memory))
         short = _short(channel, predicted[channel.name], channel.weights / channel.scale)
         size = max(scale_of(left, short, 0.0), 1e-300)
         total += float(np.sum(beyond(short / size, np.ones(len(short), dtype=np.int8)) ** 2))

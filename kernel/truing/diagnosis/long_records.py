@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing.diagnosis.chosen import Chosen, Rival
+from truing.diagnosis.choice import Chosen, Rival
 from truing.diagnosis.competition import Competition, competition_of
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit

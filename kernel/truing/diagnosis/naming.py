@@ -2,99 +2,58 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from truing.declare.sources import Unknown
+from truing.declare.sources import Effect
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause as Competitor
-from truing.diagnosis.chosen import Chosen, Rival
-from truing.diagnosis.extended import Extended, shape_added
-from truing.diagnosis.extended import switched_on as effects_on
+from truing.diagnosis.choice import Chosen, Rival
+from truing.diagnosis.extended import Extended, shape_added, switched_on
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.intervals import (
-    Certainty,
-    amplitude_interval,
-    certainty_of,
-    input_value,
-    numbers_of,
-    place_interval,
-    places_of,
-    shape_interval,
-    value_of,
-    whole_left,
-)
+from truing.diagnosis.intervals import Certainty, certainty_of, ends_of, input_value, numbers_of, places_of, value_of
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.result import Alternative, Calibrated, Cause, FittedUnknown, Remainder, ShapeTerm
 from truing.diagnosis.shape_words import shape_in_words
 from truing.diagnosis.visibility import separation
 from truing.setup import Setup, SwitchedOn
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
-
-Ends = tuple[float | None, float | None]
 Sized = tuple[float, float | None, float | None]
 """A fitted value with its interval, SI."""
-
-
-@dataclass(frozen=True)
-class _Known:
-    """A fit, the model that it is of, and how certain its numbers are."""
-
-    found: Fit
-    extended: Extended
-    certainty: Certainty
-
-    @property
-    def machine(self) -> Machine:
-        return self.extended.machine
-
-    def ends(self, place: int) -> Ends:
-        """Return the 95 % interval of a number, SI."""
-        number = numbers_of(self.found)[place]
-        if number.whole:
-            fits = [self.found, *whole_left(self.found, self.extended, place)]
-            values = [value_of(each, place) for each in fits]
-            return min(values), max(values)
-        if number.along:
-            return place_interval(self.found, self.extended, place)
-        interval = amplitude_interval if number.is_amplitude else shape_interval
-        return interval(self.found, self.extended, self.certainty, place)
 
 
 def causes_of(chosen: Chosen, found: Fit) -> tuple[Cause, ...]:
     """Return the named causes of an explanation; parts of one effect (offsets of two gauges) are one cause."""
     if all(cause.shape is not None for cause in found.causes):
         return ()
-    extended = chosen.competition.extended
-    known = _Known(found, extended, certainty_of(found, extended))
-    by_name: dict[str, list[Competitor]] = {}
-    for cause in found.causes:
-        if cause.is_registered:
-            by_name.setdefault(cause.name, []).append(cause)
-    effects = {name: parts for name, parts in by_name.items() if parts[0].effect is not None}
-    named = [_effect(known, chosen, name, parts) for name, parts in effects.items()]
-    return (*named, *(_input(known, parts) for name, parts in by_name.items() if name not in effects))
+    known = certainty_of(found, chosen.competition.extended)
+    effects = {cause.name: cause.effect for cause in found.causes if cause.effect is not None}
+    inputs = dict.fromkeys(cause.name for cause in found.causes if cause.tolerated >= 0)
+    named = [_effect(chosen, found, known, each) for each in effects.values()]
+    return (*named, *(_input(found, known, name) for name in inputs))
 
 
-def _input(known: _Known, parts: Sequence[Competitor]) -> Cause:
+def _input(found: Fit, known: Certainty, effect: str) -> Cause:
     """Return an input that lies outside its band, with the interval of its value, in every file that has its own."""
-    found, machine, name = known.found, known.machine, parts[0].numbers[0].name
+    machine = found.sample.machine
     made: dict[str, Sized] = {}
-    for cause in parts:
+    for cause in [cause for cause in found.causes if cause.name == effect]:
         given = machine.inputs[cause.tolerated]
-        own = np.zeros(len(known.certainty.covariance))
+        own = np.zeros(len(known.covariance))
         own[places_of(found, cause)[0]] = 1.0
         if len(found.inputs):
             own[-len(found.inputs) :] = found.sample.directions[cause.tolerated]
-        value, reach = input_value(found, cause.tolerated), known.certainty.reach(own) * given.sd
-        made[machine.records.files[given.file] if given.file >= 0 else ""] = value, value - reach, value + reach
-    return Cause(parts[0].name, (_of_files(name, made, machine.start.unit_of(name)),))
+        value, reach = input_value(found, cause.tolerated), known.reach(own) * given.sd
+        made[_file_named(machine, given.file)] = value, value - reach, value + reach
+    return Cause(effect, (_of_files(given.name, made, machine.start.unit_of(given.name)),))
+
+
+def _file_named(machine: Machine, file: int) -> str:
+    """Return the name of a file that has a value of its own; nothing for all files."""
+    return machine.records.files[file] if file >= 0 else ""
 
 
 def _of_files(name: str, made: Mapping[str, Sized], unit: str) -> FittedUnknown:
@@ -104,51 +63,76 @@ def _of_files(name: str, made: Mapping[str, Sized], unit: str) -> FittedUnknown:
     return FittedUnknown(name, sum(value for value, _, _ in made.values()) / len(made), None, None, unit, made)
 
 
-def _effect(known: _Known, chosen: Chosen, name: str, parts: Sequence[Competitor]) -> Cause:
+def _effect(chosen: Chosen, found: Fit, known: Certainty, effect: Effect[Any, Any]) -> Cause:
     """Return an effect with all its unknowns that were fitted."""
-    places = [place for cause in parts for place in places_of(known.found, cause)]
-    numbers = numbers_of(known.found)
-    declared: tuple[Unknown, ...] = parts[0].effect.unknowns if parts[0].effect is not None else ()
+    machine, extended, numbers = found.sample.machine, chosen.competition.extended, numbers_of(found)
+    parts = [cause for cause in found.causes if cause.effect is effect]
+    places = [place for cause in parts for place in places_of(found, cause)]
     unknowns, kept = [], []
-    for unknown in declared:
+    for unknown in effect.unknowns:
         own = [place for place in places if numbers[place].name == unknown.name]
         if own:
-            unknowns.append(_fitted(known, unknown, own))
+            sized: dict[str, Sized] = {}
+            for each in own:
+                ends = ends_of(found, extended, known, each)
+                sized[_file_named(machine, numbers[each].file)] = value_of(found, each), *ends
+            unknowns.append(_of_files(unknown.name, sized, unknown.unit))
             kept.append(own[0])
     is_whole = all(numbers[place].is_free and numbers[place].file < 0 for place in kept)
-    same = [other for cause in parts for other in chosen.same.get(cause.tag, ()) if other != name]
-    return Cause(name, tuple(unknowns), known.certainty.in_si(kept) if is_whole else (), tuple(dict.fromkeys(same)))
+    covariance = known.in_si(kept) if is_whole else ()
+    return Cause(effect.name, tuple(unknowns), covariance, _other_names(chosen, found, effect.name))
 
 
-def _fitted(known: _Known, unknown: Unknown, own: Sequence[int]) -> FittedUnknown:
-    numbers, files = numbers_of(known.found), known.machine.records.files
-    made = {
-        files[numbers[place].file] if numbers[place].file >= 0 else "": (
-            value_of(known.found, place),
-            *known.ends(place),
-        )
-        for place in own
+def _other_names(chosen: Chosen, found: Fit, name: str) -> tuple[str, ...]:
+    """Return the names of others that draw the same curve as the causes of an explanation that have this name."""
+    same = [other for cause in found.causes if cause.name == name for other in chosen.same.get(cause.tag, ())]
+    return tuple(dict.fromkeys(other for other in same if other != name))
+
+
+def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
+    """Return the causes with their shares, the largest first.
+
+    What a cause adds is the extended model less the same without it, at every row, in units of the noise. Its share is
+    that of its mean square in the sum of the mean squares of all.
+    """
+    if len(causes) < 2:
+        return causes
+    added, channels = added_by(chosen.best, chosen.competition.extended), chosen.best.sample.channels
+
+    def square(cause: Cause) -> float:
+        parts = ((added[cause.effect][each.name][each.rows] * each.factors / each.weights) for each in channels)
+        return float(sum(np.sum(part**2) for part in parts))
+
+    squares = np.array([square(cause) for cause in causes])
+    if not squares.sum() > 0:
+        return causes
+    weighed = [replace(cause, share=float(share)) for cause, share in zip(causes, squares / squares.sum(), strict=True)]
+    return tuple(sorted(weighed, key=lambda cause: -cause.share))
+
+
+def added_by(found: Fit, extended: Extended) -> dict[str, dict[str, Matrix]]:
+    """Return by name of a cause what all that it names adds to each result of an explanation, SI on all rows."""
+    points = [(_without(found, name), found.moved) for name in ("", *found.names)]
+    whole, *without = extended.at(found.causes, points)
+    return {
+        name: {result: np.nan_to_num(whole[result] - values) for result, values in less.items()}
+        for name, less in zip(found.names, without, strict=True)
     }
-    return _of_files(unknown.name, made, unknown.unit)
 
 
-def switched_on(chosen: Chosen, causes: Sequence[Cause]) -> tuple[SwitchedOn, ...]:
-    """Return the named effects as they are switched on in the extended model; what was not excited is 0."""
-    best = chosen.best
-    fitted = {on.effect.name: on for on in effects_on(best.causes, best.values, best.sample.machine)}
+def _without(found: Fit, name: str) -> list[Matrix]:
+    """Return the numbers of an explanation with the amplitudes of one name at zero."""
     made = []
-    for cause in causes:
-        if cause.effect in fitted:
-            on, variances = fitted[cause.effect], np.diag(cause.covariance or np.zeros((0, 0))).tolist()
-            sds = {unknown.name: square**0.5 for unknown, square in zip(cause.unknowns, variances, strict=False)}
-            complete = cause.covariance if len(cause.unknowns) == len(on.values) > 1 else ()
-            made.append(replace(on, sds=sds, covariance=complete))
-    return tuple(made)
+    for cause, values in zip(found.causes, found.values, strict=True):
+        made.append(values.copy())
+        if cause.name == name:
+            made[-1][cause.amplitudes] = 0.0
+    return made
 
 
 def extended_setup(chosen: Chosen, causes: Sequence[Cause]) -> Setup:
     """Return the model brought true: causes on, conditions as measured (their means), inputs calibrated."""
-    machine, on = chosen.best.sample.machine, switched_on(chosen, causes)
+    machine, on = chosen.best.sample.machine, tuple(_switched_on(chosen.best, causes))
     start = machine.start
     needed = {need.name for item in on for need in item.effect.needs}
     conditions = dict(start.conditions)
@@ -158,6 +142,17 @@ def extended_setup(chosen: Chosen, causes: Sequence[Cause]) -> Setup:
     calibrated = {name: value for name, (value, _) in input_values(chosen.best).items()}
     setup = replace(start, conditions=conditions).with_effects(on)
     return replace(setup, inputs=machine.design.inputs, calibrated={**start.calibrated, **calibrated})
+
+
+def _switched_on(best: Fit, causes: Sequence[Cause]) -> Iterator[SwitchedOn]:
+    """Give the named effects as they are switched on in the extended model; what was not excited is 0."""
+    fitted = {on.effect.name: on for on in switched_on(best.causes, best.values, best.sample.machine)}
+    for cause in causes:
+        if cause.effect in fitted:
+            on, variances = fitted[cause.effect], np.diag(cause.covariance or np.zeros((0, 0))).tolist()
+            sds = {unknown.name: square**0.5 for unknown, square in zip(cause.unknowns, variances, strict=False)}
+            complete = cause.covariance if len(cause.unknowns) == len(on.values) > 1 else ()
+            yield replace(on, sds=sds, covariance=complete)
 
 
 def input_values(found: Fit) -> Mapping[str, tuple[float, float]]:
@@ -217,13 +212,9 @@ def alternative_of(chosen: Chosen, rival: Rival, *, with_sizes: bool = False) ->
     """Return a rival explanation: how far behind, how separable, and on demand what its own fit says."""
     found = rival.fit
     sized = causes_of(chosen, found) if with_sizes else ()
-    same: dict[str, tuple[str, ...]] = {}
-    for cause in found.causes:
-        others = (*same.get(cause.name, ()), *chosen.same.get(cause.tag, ()))
-        if others:
-            same[cause.name] = tuple(dict.fromkeys(other for other in others if other != cause.name))
+    same = {name: others for name in found.names if (others := _other_names(chosen, found, name))}
     return Alternative(
-        tuple(dict.fromkeys(cause.name for cause in found.causes)),
+        found.names,
         rival.behind,
         separation(chosen.best, found, chosen.competition.extended),
         _followed(found),

@@ -4,17 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.stats import qmc
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 LEVELS = (1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001)
 """Shares of its bound at which an amplitude that bends is asked for."""
@@ -43,8 +38,7 @@ def _from_unit(number: Number, u: Matrix) -> Matrix:
     """Return values of a shape number for places from 0 to 1 in its range."""
     if number.whole:
         return np.minimum(np.floor(number.low + u * (number.high - number.low + 1)), number.high)
-    is_even = bool(number.along) or number.name == "frequency"
-    if number.is_log and not is_even and number.high / number.low > 10:
+    if number.is_log and not is_known(number) and number.high / number.low > 10:
         return np.asarray(number.low * (number.high / number.low) ** u)
     return np.asarray(number.low + u * (number.high - number.low))
 
@@ -100,28 +94,21 @@ def refined(
 def spread(cause: Cause, count: int) -> Matrix:
     """Return points over amplitudes of many sizes, to both sides, and over all shapes; so many over several numbers."""
     shapes = [cause.numbers[place] for place in cause.shapes]
-    ends = [
-        (place, end)
-        for place in cause.amplitudes
-        for end in (cause.numbers[place].low, cause.numbers[place].high)
-        if end
-    ]
     points = []
     if len(cause.amplitudes) == 1 and len(shapes) <= 1:
-        grid = placed(shapes, _few_places(shapes)) if shapes else np.zeros((1, 0))
-        for (place, end), level, values in product(ends, LEVELS, grid):
+        (place,) = cause.amplitudes
+        ends = [end for end in (cause.numbers[place].low, cause.numbers[place].high) if end]
+        for end, level, values in product(ends, LEVELS, _few_places(shapes)):
             point = np.zeros(cause.size)
             point[cause.shapes], point[place] = values, level * end
             points.append(point)
         return np.array(points)
-    sampler = qmc.Sobol(cause.size + 1, seed=1).random(count)
-    for u in sampler:
+    for u in qmc.Sobol(cause.size + 1, seed=1).random(count):
         point = np.zeros(cause.size)
-        point[cause.shapes] = placed(shapes, u[None, : len(shapes)])[0] if shapes else []
+        point[cause.shapes] = placed(shapes, u[None, : len(shapes)])[0]
         level = 10 ** (-3 * u[-1])
-        for column, place in enumerate(cause.amplitudes, start=len(shapes)):
+        for v, place in zip(u[len(shapes) :], cause.amplitudes, strict=False):
             number = cause.numbers[place]
-            v = u[column]
             side = number.high if (v >= 0.5 or not number.low) and number.high else number.low
             share = abs(2 * v - 1) if number.low and number.high else v
             point[place] = level * side * (0.05 + 0.95 * share)
@@ -130,5 +117,8 @@ def spread(cause: Cause, count: int) -> Matrix:
 
 
 def _few_places(shapes: Sequence[Number]) -> Matrix:
+    """Return a few values over the range of one shape number, (M, 1); of none one point without numbers."""
+    if not shapes:
+        return np.zeros((1, 0))
     places = first_places(shapes[0])
-    return places[:: max(1, len(places) // FIRST)][:, None]
+    return placed(shapes, places[:: max(1, len(places) // FIRST)][:, None])

@@ -15,7 +15,7 @@ from truing.measurements.row_count import RowCount
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from truing.diagnosis.compared import Sides
+    from truing.diagnosis.arrays import Sides
     from truing.measurements import RowsFile
 
 Role = Literal["input", "condition", "time", "other", "order"]

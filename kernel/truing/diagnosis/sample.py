@@ -17,19 +17,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from truing.diagnosis.compared import beyond, difference, expected, shares, worth
 from truing.diagnosis.machine import Machine, Predicted, gram_of
-from truing.diagnosis.noise import (
-    Setting,
-    Spread,
-    Tails,
-    whiten,
-)
+from truing.diagnosis.noise import Setting, Spread, Tails, beyond, difference, expected, shares, whiten, worth
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from truing.diagnosis.compared import Sides
+    from truing.diagnosis.arrays import Sides
 
     Matrix = NDArray[np.float64]
 

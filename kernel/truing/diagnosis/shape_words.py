@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.readable import readable_unit
@@ -13,21 +12,15 @@ from truing.diagnosis.records import Covariate
 from truing.numbers import format_number
 from truing.units import from_si
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
-
 SHOWN_DIGITS = 2
 PLACE_DIGITS = 3
 ONE_WAY = 0.9
 """Share of its range between the ends of a trend from which on it rises or falls; else it is curved."""
 
 
-def in_unit(value: float, unit: str) -> str:
-    """Write a difference with its unit, two digits."""
-    number = format_number(float(from_si(value, unit)), SHOWN_DIGITS)
-    return f"{number} {unit}".strip()
+def in_unit(value: float, unit: str, digits: int = SHOWN_DIGITS) -> str:
+    """Write an SI number with its unit."""
+    return f"{format_number(float(from_si(value, unit)), digits)} {unit}".strip()
 
 
 def shape_in_words(machine: Machine, cause: Cause, values: Matrix, added: Matrix, unit: str) -> str:
@@ -77,13 +70,12 @@ def _change(item: Covariate, added: Matrix) -> float:
 
 
 def _place(item: Covariate, at: float) -> str:
-    return f"{item.name} = {format_number(float(from_si(at, item.unit)), PLACE_DIGITS)} {item.unit}".strip()
+    return f"{item.name} = {in_unit(at, item.unit, PLACE_DIGITS)}"
 
 
 def _length(item: Covariate, value: float) -> str:
     """Write a distance along a covariate."""
-    unit = readable_unit(item.unit, value)
-    length = f"{format_number(float(from_si(value, unit)), PLACE_DIGITS)} {unit}".strip()
+    length = in_unit(value, readable_unit(item.unit, value), PLACE_DIGITS)
     return f"{length} of {item.name}" if item.role != "time" else length
 
 

@@ -14,8 +14,7 @@ import numpy as np
 
 from truing.diagnosis.alarms import OUTSIDE
 from truing.diagnosis.causes import Cause
-from truing.diagnosis.chance import law_of
-from truing.diagnosis.chosen import Law
+from truing.diagnosis.chance import Law, law_of
 from truing.diagnosis.competition import MARGIN, MOST_CAUSES, Competition
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import Folds, carries_over, ends_of, folds_of

@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from truing.diagnosis.sample import Channel
+from truing.diagnosis.arrays import Matrix, Places
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from truing.diagnosis.beside import Beside
 
-    Matrix = NDArray[np.float64]
 
 BLOCK = 500_000
 """So many values are passed through at once."""
@@ -41,59 +40,42 @@ class Table:
             yield slice(begin, min(begin + step, len(self.terms)))
 
 
-@dataclass(frozen=True, eq=False)
 class Pass:
     """A table passed through one result of a sample beside an explanation, every row in units of its noise.
 
     ``right`` (M, c) is what it shares with what is left, ``taken`` (M, c, t) with what the explanation draws itself,
-    ``normal`` (M, c, c) with itself and ``next`` (M - 1, c, c) with the next point.
+    ``normal`` (M, c, c) with itself and ``next`` (M - 1, c, c) with the next point. ``part`` is where the rows of the
+    result stand among all rows of the sample.
     """
 
-    table: Table
-    beside: Beside
-    place: int
-    right: Matrix
-    taken: Matrix
-    normal: Matrix
-    next: Matrix
-
-    @property
-    def part(self) -> slice:
-        """Where the rows of the result stand among all rows of the sample."""
-        return self.beside.sample.parts[self.place]
+    def __init__(self, table: Table, beside: Beside, place: int) -> None:
+        self.table, self.beside = table, beside
+        self.channel, self.part = beside.sample.channels[place], beside.sample.parts[place]
+        against = np.column_stack([beside.left[self.part], beside.taken[self.part]])
+        shared, normal, following = [], [], []
+        last = np.zeros((0, table.terms.shape[1], len(self.channel)))
+        for block in table.blocks():
+            rows = self.rows(block)
+            shared.append(rows @ against)
+            normal.append(rows @ rows.swapaxes(1, 2))
+            whole = np.concatenate([last, rows])
+            following.append(whole[1:] @ whole[:-1].swapaxes(1, 2))
+            last = rows[-1:]
+        every = np.concatenate(shared)
+        self.right, self.taken = every[..., 0], every[..., 1:]
+        self.normal, self.next = np.concatenate(normal), np.concatenate(following)
 
     def rows(self, block: slice) -> Matrix:
         """Return the terms at some points in units of the noise, (m, c, rows of the result)."""
-        return _rows(self.table, self.beside, self.place, block)
+        terms = np.asarray(self.table.terms[block], dtype=float)
+        flat = self.channel.curve(terms.reshape(-1, terms.shape[-1]).T, self.beside.at[self.channel.name]).T
+        return np.asarray(flat.reshape(*terms.shape[:2], -1) * self.beside.roots[self.part])
 
     def inner(self, drawn: Matrix) -> Matrix:
         """Return what the terms share with draws (rows + K, draws), (M, c, draws)."""
         own, (count, c, _) = drawn[self.part].astype(np.float32), self.table.terms.shape
         rows = (self.rows(block).astype(np.float32).reshape(-1, len(own)) for block in self.table.blocks())
         return np.concatenate([each @ own for each in rows]).reshape(count, c, -1)
-
-
-def _rows(table: Table, beside: Beside, place: int, block: slice) -> Matrix:
-    channel: Channel = beside.sample.channels[place]
-    terms = np.asarray(table.terms[block], dtype=float)
-    flat = channel.curve(terms.reshape(-1, terms.shape[-1]).T, beside.at[channel.name]).T
-    return np.asarray(flat.reshape(*terms.shape[:2], -1) * beside.roots[beside.sample.parts[place]])
-
-
-def passed(table: Table, beside: Beside, place: int) -> Pass:
-    """Pass a table through one result beside an explanation."""
-    part, several = beside.sample.parts[place], []
-    against = np.column_stack([beside.left[part], beside.taken[part]])
-    last: Matrix | None = None
-    following = []
-    for block in table.blocks():
-        rows = _rows(table, beside, place, block)
-        several.append((rows @ against, rows @ rows.swapaxes(1, 2)))
-        whole = rows if last is None else np.concatenate([last, rows])
-        following.append(whole[1:] @ whole[:-1].swapaxes(1, 2))
-        last = rows[-1:]
-    shared, normal = (np.concatenate(each) for each in zip(*several, strict=True))
-    return Pass(table, beside, place, shared[..., 0], shared[..., 1:], normal, np.concatenate(following))
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +87,7 @@ class Swept:
 
     passes: tuple[Pass, ...]
     units: Matrix
-    points: NDArray[np.intp]
+    points: Places
 
     def inner(self, drawn: Matrix, known: dict[Pass, Matrix]) -> Matrix:
         """Return what they share with draws that the explanation has no part in, (m, q, draws); each pass made once."""
@@ -119,12 +101,10 @@ class Swept:
         """Return the orthonormal curves at one of the points, (q, rows + K)."""
         beside, at = self.passes[0].beside, int(self.points[place])
         terms = [each.rows(slice(at, at + 1))[0] for each in self.passes]
-        rows = np.zeros((sum(len(each) for each in terms), beside.sample.rows))
-        begin = 0
-        for each, own in zip(self.passes, terms, strict=True):
-            rows[begin : begin + len(own), each.part] = own
-            begin += len(own)
-        return np.asarray(self.units[at] @ beside.beyond(rows))
+        rows = np.zeros((len(terms), len(terms[0]), beside.sample.rows))
+        for each, own, kept in zip(self.passes, terms, rows, strict=True):
+            kept[:, each.part] = own
+        return np.asarray(self.units[at] @ beside.beyond(rows.reshape(-1, beside.sample.rows)))
 
 
 def side_by_side(blocks: list[Matrix]) -> Matrix:

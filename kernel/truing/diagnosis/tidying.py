@@ -5,7 +5,6 @@ Nothing is done in silence: every function notes what it did.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from truing.declare.model import Model
+from truing.diagnosis.arrays import Matrix, Places
 from truing.diagnosis.data_file import DataRows, Part, declared_units
 from truing.inputs_file.values import broken_bound
 from truing.measurements.derived import derive
@@ -42,7 +42,7 @@ def counted(number: int, one: str = "row", many: str = "") -> str:
     return f"{number} {one}" if number == 1 else f"{number} {many or one + 's'}"
 
 
-def numbered(labels: Iterable[Any]) -> tuple[NDArray[np.intp], list[Any]]:
+def numbered(labels: Iterable[Any]) -> tuple[Places, list[Any]]:
     """Number labels from 0 in the order they first appear; return the number of each row and the labels."""
     known: dict[Any, int] = {}
     numbers = [known.setdefault(label, len(known)) for label in labels]
@@ -72,7 +72,7 @@ def each_block_once(data: DataRows) -> DataRows:
     return data.without(is_again, BLOCK_AGAIN).noted(f"{again} left out: {BLOCK_AGAIN}")
 
 
-def _first_alike(data: DataRows) -> NDArray[np.intp]:
+def _first_alike(data: DataRows) -> Places:
     """Return for each row the place of the first one that is equal in every cell."""
     cells = np.column_stack([_as_numbers(values) for values in (data.runs, *data.columns.values())])
     whole_rows = cells.view(np.dtype((np.void, cells.itemsize * cells.shape[1])))[:, 0]
@@ -80,7 +80,7 @@ def _first_alike(data: DataRows) -> NDArray[np.intp]:
     return np.asarray(first[group])
 
 
-def _as_numbers(values: NDArray[Any]) -> NDArray[np.float64]:
+def _as_numbers(values: NDArray[Any]) -> Matrix:
     """Return one number per cell that is equal where the cells are: one NaN, one zero, words by their number."""
     if values.dtype == object:
         return numbered(values.tolist())[0].astype(float)
@@ -96,27 +96,20 @@ def in_time_order(data: DataRows) -> DataRows:
         return data.taken(by_run)
     starts = np.full(len(names), np.inf)
     np.fmin.at(starts, run_of, time)
-    rank = np.empty(len(names), dtype=np.intp)
-    rank[np.argsort(starts, kind="stable")] = np.arange(len(names))
-    late = _late(time[by_run], np.bincount(run_of, minlength=len(names)))
+    late = 0  # rows that stand behind a later one of their run
+    for part in np.split(time[by_run], np.cumsum(np.bincount(run_of))[:-1]):
+        known = part[np.isfinite(part)]
+        late += int((known < np.maximum.accumulate(known)).sum())
     sentence = f"{counted(late, 'row was', 'rows were')} out of order and sorted by time inside the run"
-    return data.taken(np.lexsort((time, rank[run_of]))).noted(*[sentence] if late else ())
+    return data.taken(np.lexsort((time, run_of, starts[run_of]))).noted(*[sentence] if late else ())
 
 
-def _time(data: DataRows) -> NDArray[np.float64] | None:
+def _time(data: DataRows) -> Matrix | None:
     """Return the times of the rows where they are known; a result of that name is no clock."""
     if data.parts.get(TIME) in {None, "label", "word", "measured"}:
         return None
     time = data.columns[TIME]
     return time if np.isfinite(time).any() else None
-
-
-def _late(time: NDArray[np.float64], sizes: NDArray[np.intp]) -> int:
-    """Count the rows that stand behind a later one of their run."""
-    late = 0
-    for part in np.split(np.where(np.isnan(time), -math.inf, time), np.cumsum(sizes)[:-1]):
-        late += int((part < np.maximum.accumulate(part))[np.isfinite(part)].sum())
-    return late
 
 
 def in_one_piece(data: DataRows, model: Model[Any, Any]) -> DataRows:
@@ -141,7 +134,7 @@ def in_one_piece(data: DataRows, model: Model[Any, Any]) -> DataRows:
     return replace(data, columns=columns).noted(*notes)
 
 
-def _joined(angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:
+def _joined(angles: Matrix) -> tuple[Matrix, int]:
     """Return a sweep without its jumps by a turn and their number; anything else as it is."""
     known = np.flatnonzero(np.isfinite(angles))
     steps = np.diff(angles[known])
@@ -154,7 +147,7 @@ def _joined(angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:
     return (whole, jumps) if small.mean() >= SWEEPING else (angles, 0)
 
 
-def _keeps_bounds(name: str, values: NDArray[np.float64], model: Model[Any, Any]) -> bool:
+def _keeps_bounds(name: str, values: Matrix, model: Model[Any, Any]) -> bool:
     item = model.input_fields.get(name)
     return item is None or not any(broken_bound(item, float(end)) for end in (np.nanmin(values), np.nanmax(values)))
 

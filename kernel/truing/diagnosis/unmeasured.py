@@ -17,16 +17,16 @@ import numpy as np
 
 from truing.declare.goals import Maximise, Minimise, Require
 from truing.declare.specs import Axis
-from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.choice import Chosen
 from truing.diagnosis.design import Proposal, is_physical, name_of, rival_fits
 from truing.diagnosis.extended import switched_on
-from truing.diagnosis.findings import in_unit
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import input_value
 from truing.diagnosis.machine import Machine, machine_of, predict
 from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Amount, Fact, NextPoint, Tie
+from truing.diagnosis.shape_words import in_unit
 from truing.diagnosis.verdict import APART
 from truing.setup import SwitchedOn
 from truing.units import read_quantity

@@ -32,20 +32,16 @@ def explanations_of(diagnosis: Diagnosis) -> tuple[Explanation, ...]:
     if not diagnosis.causes and diagnosis.remainder is None:
         return ()
     best = [cause.effect for cause in diagnosis.causes]
-    same = {cause.effect: cause.same_as for cause in diagnosis.causes}
-    found = [*_by_name([*best, UNKNOWN] if diagnosis.remainder is not None else best, same)]
+    same: Mapping[str, Sequence[str]] = {cause.effect: cause.same_as for cause in diagnosis.causes}
+    found = [([*best, UNKNOWN] if diagnosis.remainder is not None else best, same)]
     for rival in diagnosis.alternatives:
         over = [f"{UNKNOWN}:{','.join(rival.depends_on)}" if name == UNKNOWN else name for name in rival.causes]
-        found += _by_name(over, rival.same_as)
+        found.append((over, rival.same_as))
     once: dict[frozenset[str], Explanation] = {}
-    for names in found:
-        once.setdefault(frozenset(names), names)
+    for names, same in found:
+        for each in product(*((name, *same.get(name, ())) for name in names)):
+            once.setdefault(frozenset(each), each)
     return tuple(once.values())
-
-
-def _by_name(names: Sequence[str], same: Mapping[str, Sequence[str]]) -> Iterator[Explanation]:
-    """Give an explanation under every name that its causes may have."""
-    yield from product(*((name, *same.get(name, ())) for name in names))
 
 
 def shared_of(diagnosis: Diagnosis) -> tuple[str, ...]:

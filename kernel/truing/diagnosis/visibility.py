@@ -6,26 +6,22 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from math import asin, comb, degrees, inf, log, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import lsq_linear
 from scipy.special import ndtri
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number, failure_of, idle_of
-from truing.diagnosis.chosen import Chosen
+from truing.diagnosis.choice import Chosen
 from truing.diagnosis.derivatives import slopes_at, unit_of
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
+from truing.diagnosis.intervals import Certainty, certainty_of, places_of, value_of
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.points import LEVELS
-from truing.diagnosis.result import Amount, Seen, Sight
-from truing.diagnosis.sample import Sample
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
+from truing.diagnosis.result import Amount, Seen, Sight, Trade
+from truing.diagnosis.verdict import APART
 
 POWER = 0.9
 LEVEL = 0.05
@@ -42,6 +38,10 @@ FEW_SHAPES = 5
 NEXT_LEVEL = 0.3
 """An amplitude that bends is asked for again at so much of it: its curve stands for no sizes beyond that."""
 
+TRADED = 0.95
+"""Correlation of an amplitude and an input above which they trade. With the input held at its value the standard error
+of the amplitude would be sqrt(1 - 0.95^2) of what it is, a third: so much is lost to the tolerance of the input."""
+
 
 def needed(explanations: int) -> float:
     """Return the noncentrality that shows one parameter with 90 % power after so many explanations were searched.
@@ -51,16 +51,17 @@ def needed(explanations: int) -> float:
     return float((ndtri(1 - LEVEL / (2 * max(explanations, 1))) + ndtri(POWER)) ** 2)
 
 
-@dataclass(frozen=True)
 class _Eye:
     """What a curve is on these rows: in units of the noise that the answer leaves, and without what inputs can draw.
 
     ``roots`` has shape (rows,); ``taken`` (rows + K, K) is an orthonormal basis of the inputs beside their prior.
     """
 
-    sample: Sample
-    roots: Matrix
-    taken: Matrix
+    def __init__(self, chosen: Chosen) -> None:
+        self.sample = chosen.best.sample
+        self.roots = self.sample.roots(chosen.best.left)
+        drawn = self.sample.drawn * self.roots[:, None]
+        self.taken = np.linalg.qr(np.concatenate([drawn, np.eye(drawn.shape[1])]))[0]
 
     def raw(self, curve: Matrix) -> Matrix:
         """Return a curve over all readings of the records, SI, as if nothing were tolerated, (rows,)."""
@@ -87,18 +88,9 @@ class _Look:
     curve: Matrix
 
 
-def _eye(chosen: Chosen) -> _Eye:
-    """Return how curves are seen in the noise that the answer leaves."""
-    sample = chosen.best.sample
-    roots = sample.roots(chosen.best.left)
-    drawn = sample.drawn * roots[:, None]
-    taken, _ = np.linalg.qr(np.concatenate([drawn, np.eye(drawn.shape[1])]))
-    return _Eye(sample, roots, np.asarray(taken))
-
-
 def smallest_visible(chosen: Chosen) -> list[Seen]:
     """Return for every effect how small it may be, whether the tolerances hide it, whether it was excited."""
-    machine, eye = chosen.competition.extended.machine, _eye(chosen)
+    machine, eye = chosen.competition.extended.machine, _Eye(chosen)
     effects = [cause for cause in chosen.competition.causes if cause.effect is not None]
     failing = _failing(chosen, effects)
     skipped = {*failing, *chosen.competition.extended.budget.unseen}
@@ -109,11 +101,9 @@ def smallest_visible(chosen: Chosen) -> list[Seen]:
         amplitudes = {cause.numbers[place].name for place in cause.amplitudes}
         several = names.count(cause.name) > 1 or len(amplitudes) > 1
         for place in cause.amplitudes if cause.name not in skipped else ():
-            number = cause.numbers[place]
-            seen = _seen(f"{cause.name}.{number.name}" if several else cause.name, cause, number, _look(
-                chosen, eye, cause, place, limit,
-            ))  # fmt: skip
-            found.setdefault(seen.name, []).append(seen)
+            number, look = cause.numbers[place], _look(chosen, eye, cause, place, limit)
+            name = f"{cause.name}.{number.name}" if several else cause.name
+            found.setdefault(name, []).append(_seen(name, cause, number, look))
     smallest = [min(each, key=lambda seen: seen.smallest.value if seen.smallest else inf) for each in found.values()]
     still = [Seen(name, None, "not excited") for name in idle_of(machine) if name not in failing]
     return [*smallest, *still, *(Seen(name, None, "cannot be fitted", why) for name, why in failing.items())]
@@ -200,7 +190,7 @@ def inseparable(chosen: Chosen) -> list[str]:
 
 def _alike(chosen: Chosen) -> Iterator[str]:
     """Say which causes without a shape of their own draw nearly the same."""
-    eye, angles = _eye(chosen), dict[tuple[str, str], float]()
+    eye, angles = _Eye(chosen), dict[tuple[str, str], float]()
     plain = [
         cause
         for cause in chosen.competition.causes
@@ -244,6 +234,53 @@ def _one_sided(machine: Machine) -> Iterator[str]:
             yield f"{name} never changed its sign: what jumps with the sign looks like a constant here"
 
 
+def trades_of(chosen: Chosen) -> tuple[Trade, ...]:
+    """Return the named effects that this record does not separate from one of the tolerated inputs.
+
+    The correlation is that of the exact fit, with the tolerances in force: an input that is known well enough has none.
+    A cause that is far from zero even with every input free is separated all the same: only what ``APART`` calls
+    separable at most weakly is returned.
+    """
+    named = [cause for cause in chosen.best.causes if cause.effect is not None]
+    return tuple(_trades(chosen, named)) if named and len(chosen.best.inputs) else ()
+
+
+def _trades(chosen: Chosen, named: Sequence[Cause]) -> Iterator[Trade]:
+    best, inputs = chosen.best, chosen.best.sample.machine.inputs
+    certainty = certainty_of(best, chosen.competition.extended)
+    alike = _correlations(best, certainty)
+    shifted = [cause.tolerated for cause in best.causes if cause.tolerated >= 0]
+    alike[:, shifted] = 0.0
+    for cause in named:
+        places = [places_of(best, cause)[place] for place in cause.amplitudes]
+        number, item = np.unravel_index(int(np.argmax(np.abs(alike[places]))), (len(places), len(inputs)))
+        correlation = float(alike[places[number], item])
+        separation = _separation(best, certainty, places)
+        if abs(correlation) > TRADED and separation < APART:
+            unknown = cause.numbers[cause.amplitudes[number]].name
+            yield Trade(cause.name, unknown, inputs[item].name, correlation, separation)
+
+
+def _correlations(best: Fit, certainty: Certainty) -> Matrix:
+    """Return the correlation of every number with every input, (numbers, inputs).
+
+    Of what the rows do not see of an input its tolerance is all that is known.
+    """
+    size, directions = best.size, best.sample.directions
+    covariance = certainty.covariance
+    seen = np.einsum("ij,jk,ik->i", directions, covariance[size:, size:], directions)
+    variance = seen + np.maximum(1 - np.sum(directions**2, axis=1), 0.0)
+    own = np.outer(np.diag(covariance)[:size], variance)
+    return np.asarray(covariance[:size, size:] @ directions.T / np.sqrt(np.maximum(own, 1e-300)))
+
+
+def _separation(best: Fit, certainty: Certainty, places: list[int]) -> float:
+    """Return how far the amplitudes of a cause are from zero, all else free: the squares that are lost, lambda."""
+    values = np.array([value_of(best, place) for place in places]) / certainty.units[places]
+    inverse = np.linalg.pinv(certainty.covariance[np.ix_(places, places)], hermitian=True)
+    return float(values @ inverse @ values)
+
+
 def separation(true: Fit, rival: Fit, extended: Extended) -> float:
     """Return lambda: the deviance that is lost if an explanation is true and a rival is refitted in its place.
 
@@ -255,28 +292,25 @@ def separation(true: Fit, rival: Fit, extended: Extended) -> float:
     (shown,) = extended.at(rival.causes, [(rival.values, true.moved)])
     roots = sample.roots(true.left)
     apart = roots * np.nan_to_num(sample.left(shown) - sample.left(true.predicted))
-    own, inputs = slopes_at(moved, extended)
-    columns = np.concatenate(
-        [np.column_stack([own, inputs]) * roots[:, None], np.column_stack([np.zeros((k, own.shape[1])), np.eye(k)])]
-    )
-    low, high = _room(moved)
-    ends = np.concatenate([low, np.full(k, -inf)]), np.concatenate([high, np.full(k, inf)])
+    slopes = np.column_stack(slopes_at(moved, extended)) * roots[:, None]
+    columns = np.concatenate([slopes, np.eye(k, moved.size + k, moved.size)])
+    ends = np.full((2, columns.shape[1]), [[-inf], [inf]])
+    ends[:, : moved.size] = _room(moved)
     size = np.linalg.norm(columns, axis=0)
     used = size > 0
     target = np.concatenate([apart, np.zeros(k)])
     if not used.any():
         return float(target @ target)
-    low, high = (end[used] * size[used] for end in ends)
+    low, high = ends[:, used] * size[used]
     return float(2 * lsq_linear(columns[:, used] / size[used], target, (low, high), method="bvls").cost)
 
 
-def _room(found: Fit) -> tuple[Matrix, Matrix]:
-    """Return how far every number may still go down and up, in units of the number as the fit sees it."""
+def _room(found: Fit) -> Matrix:
+    """Return how far every number may still go down and up, in units of the number as the fit sees it, (2, numbers)."""
     numbers = [number for cause in found.causes for number in cause.numbers]
     flat = np.concatenate(found.values).tolist() if found.causes else []
-    low, high = [], []
-    for number, value, unit in zip(numbers, flat, unit_of(found).tolist(), strict=True):
+    room = np.zeros((2, len(numbers)))
+    for place, (number, value, unit) in enumerate(zip(numbers, flat, unit_of(found).tolist(), strict=True)):
         ends = [log(end / value) if number.is_log else (end - value) / unit for end in (number.low, number.high)]
-        low.append(min(ends[0], -1e-12))
-        high.append(max(ends[1], 1e-12))
-    return np.array(low), np.array(high)
+        room[:, place] = min(ends[0], -1e-12), max(ends[1], 1e-12)
+    return room
