@@ -30,10 +30,9 @@ from numpy.testing import assert_allclose
 from truing import Effect, Float, Model, Tolerance, Unknown, normal, trials
 from truing.diagnosis import competition, long_records, machine
 from truing.diagnosis.choice import choose
-from truing.diagnosis.columns import times
 from truing.diagnosis.engine import diagnose, laid_out
 from truing.diagnosis.learning import first_noise
-from truing.diagnosis.machine import predict
+from truing.diagnosis.machine import predict, times
 
 
 def test_many_rows_times_a_vector_are_summed_in_double_precision() -> None:
@@ -68,7 +67,7 @@ def test_the_first_idea_of_the_noise_is_what_least_squares_leave(
     rest = left - design @ np.linalg.lstsq(design, left)[0]
     expected = 1e-6 * np.sqrt(rest @ rest / (400 - design.shape[1]))
     assert_allclose(first_noise(there)["deflection"].scale, expected, rtol=1e-6)
-    monkeypatch.setattr("truing.diagnosis.columns.BLOCK", 60)
+    monkeypatch.setattr("truing.diagnosis.machine.BLOCK", 60)
     assert_allclose(first_noise(there)["deflection"].scale, expected, rtol=1e-6)
 
 

@@ -6,7 +6,7 @@ from math import pi
 
 import pytest
 
-from truing.diagnosis.readable import readable_unit
+from truing.diagnosis.result import readable_unit
 
 MINUTE = pi / 10_800
 

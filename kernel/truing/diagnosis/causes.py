@@ -128,13 +128,9 @@ def gauged(cause: Cause, measured: Iterable[str]) -> str:
     return ""
 
 
-def followed_by(cause: Cause) -> str:
+def followed_by(effect: Effect[Any, Any] | None) -> str:
     """Return the name of the input, condition or axis that a built-in effect follows; nothing for an offset or gain."""
-    return "" if cause.effect is None else _followed(cause.effect)
-
-
-def _followed(effect: Effect[Any, Any]) -> str:
-    reading = reading_of(effect)
+    reading = None if effect is None else reading_of(effect)
     return reading.seen.name if reading is not None and reading.seen is not None else ""
 
 
@@ -144,19 +140,17 @@ def effects_of(machine: Machine) -> list[Cause]:
     Effects, and parts of effects, that are on already are part of the model; an effect whose conditions nobody measured
     is left out, and so is one that follows only what never moved.
     """
-    model, on = machine.start.model, {item.effect.name: item.values for item in machine.start.effects}
-    made: list[Cause] = []
+    model, made = machine.start.model, list[Cause]()
     for order, effect in enumerate(model.known_effects.values()):
         if any(need.name in machine.records.absent for need in effect.needs) or _stands_still(effect, machine):
             continue
         parts = effect.parts or (tuple(unknown.name for unknown in effect.unknowns),)
+        is_kernel = effect.name not in model.effects
         for place, part in enumerate(parts):
-            if set(part) & set(on.get(effect.name, ())):
-                continue
-            tag = effect.name if len(parts) == 1 else f"{effect.name}.{place}"
-            numbers = tuple(_numbers(effect, part, machine))
-            own = effect.name in model.effects
-            made.append(Cause(effect.name, tag, numbers, order, effect, is_kernel=not own))
+            if not set(part) & set(machine.on.get(effect.name, ())):
+                tag = effect.name if len(parts) == 1 else f"{effect.name}.{place}"
+                numbers = tuple(_numbers(effect, part, machine))
+                made.append(Cause(effect.name, tag, numbers, order, effect, is_kernel=is_kernel))
     return [cause for cause in made if not cause.is_kernel or _is_offered(cause, machine)]
 
 
@@ -211,12 +205,11 @@ def inputs_of(machine: Machine) -> list[Cause]:
 
 def idle_of(machine: Machine) -> tuple[str, ...]:
     """Return the names of effects that nothing in this record excites, and of which it is worth saying so."""
-    model, on = machine.start.model, {item.effect.name for item in machine.start.effects}
-    names = []
+    model, names = machine.start.model, []
     for effect in model.known_effects.values():
-        if effect.name in on or any(need.name in machine.records.absent for need in effect.needs):
+        if effect.name in machine.on or any(need.name in machine.records.absent for need in effect.needs):
             continue
-        followed = "" if effect.name in model.effects else _followed(effect)
+        followed = "" if effect.name in model.effects else followed_by(effect)
         if _stands_still(effect, machine) and (not followed or followed in machine.records.covariates):
             names.append(effect.name)
     return tuple(names)
@@ -227,7 +220,7 @@ def at_rest(cause: Cause, machine: Machine) -> dict[str, float]:
     effect = cause.effect
     if effect is None:
         return {}
-    before = next((item.values for item in machine.start.effects if item.effect.name == effect.name), {})
+    before = machine.on.get(effect.name, {})
     own = {number.name for number in cause.numbers}
     takes_any = effect.parts and effect.takes_any
     resting = [each for each in effect.unknowns if (each.name in own if takes_any else each.name not in before)]

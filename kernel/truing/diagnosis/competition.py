@@ -21,10 +21,9 @@ from truing.diagnosis.causes import Cause, are_exclusive
 from truing.diagnosis.curves import Curves
 from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit, is_too_large, nothing, refit
 from truing.diagnosis.extended import Extended, shape_added
-from truing.diagnosis.fitted import Fit, differ
+from truing.diagnosis.fitted import Fit, differ, signs_of_wrong
 from truing.diagnosis.learning import as_noise, learnt
 from truing.diagnosis.sample import Sample, sample_of
-from truing.diagnosis.signs import signs_of_wrong
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

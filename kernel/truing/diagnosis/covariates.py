@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.builtin import may_stand
 from truing.declare.near_miss import near_miss
+from truing.diagnosis.arrays import Mask, Sides
 from truing.diagnosis.causes import reading_of
 from truing.diagnosis.data_file import DataRows, Part
 from truing.diagnosis.records import Covariate, Role
@@ -19,11 +20,6 @@ from truing.setup import Setup, column_and_word
 from truing.units import same_dimension, to_si
 from truing.units.grammar import shown
 from truing.units.names import PURE
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from truing.diagnosis.arrays import Sides
 
 ORDER = "order"
 _ROLES: dict[Part, Role] = {
@@ -40,14 +36,13 @@ def covariates_of(joined: DataRows, setup: Setup) -> tuple[dict[str, Covariate],
     turning = _turning(setup)
     for part, usual in _ROLES.items():
         for name in joined.named(part):
-            if part == "word" and setup.model.input_fields[name].kind != "integer":
-                continue
-            if part == "other" and name in setup.diagnose.flags:  # it says what came out, and is no reason for it
+            is_flag = part == "other" and name in setup.diagnose.flags  # it says what came out, and is no reason for it
+            if is_flag or (part == "word" and setup.model.input_fields[name].kind != "integer"):
                 continue
             values, unit = joined.columns[name].astype(float), _unit(name, joined, setup)
             if np.isfinite(values).any():
-                role: Role = "time" if name == TIME and _is_time(unit) else usual
-                item = Covariate(name, values, unit, role, is_angle(unit))
+                is_time = name == TIME and unit not in PURE and same_dimension(unit, "s")
+                item = Covariate(name, values, unit, "time" if is_time else usual, is_angle(unit))
                 is_design = part in {"input", "series"} and name not in turning and not item.goes_round
                 found[name] = replace(item, is_angle=False) if is_design else item
     if not any(item.role == "time" for item in found.values()):
@@ -74,10 +69,6 @@ def _unit(name: str, joined: DataRows, setup: Setup) -> str:
     return "" if unit in PURE else unit
 
 
-def _is_time(unit: str) -> bool:
-    return unit not in PURE and same_dimension(unit, "s")
-
-
 def _of_others(joined: DataRows, setup: Setup, found: dict[str, Covariate]) -> list[str]:
     """Say which columns nobody declared, and what they are taken for."""
     model = setup.model
@@ -102,8 +93,8 @@ def _of_constants(found: dict[str, Covariate]) -> list[str]:
     names = [shown(item.name) for item in found.values() if item.is_constant]
     if not names:
         return []
-    what = "1 column never changes" if len(names) == 1 else f"{len(names)} columns never change"
-    return [f"{what}, so nothing can be seen of what depends on it: {', '.join(names)}"]
+    columns = counted(len(names), "column never changes", "columns never change")
+    return [f"{columns}, so nothing can be seen of what depends on it: {', '.join(names)}"]
 
 
 def held_out_rows(joined: DataRows, setup: Setup) -> DataRows:
@@ -116,7 +107,7 @@ def held_out_rows(joined: DataRows, setup: Setup) -> DataRows:
     return replace(joined, held_out=found).noted(sentence)
 
 
-def _marked(option: str, column: str, word: str, joined: DataRows, setup: Setup) -> NDArray[np.bool_]:
+def _marked(option: str, column: str, word: str, joined: DataRows, setup: Setup) -> Mask:
     """Mark the rows that hold a word in a column. Raises InputError where there is no such column, or no such row."""
     place = setup.places.get(f"studies.diagnose.{option}", (setup.file, None))
     cells = joined.runs if column == "run" else joined.columns.get(column)
@@ -152,7 +143,7 @@ def censored_rows(joined: DataRows, setup: Setup) -> tuple[DataRows, dict[str, S
     return replace(joined, columns=columns), sides, notes
 
 
-def _equal(cells: NDArray[np.object_], word: str, unit: str) -> NDArray[np.bool_]:
+def _equal(cells: NDArray[np.object_], word: str, unit: str) -> Mask:
     """Whether cells hold a word, or the number it is."""
     if cells.dtype == object:
         return np.array([str(cell).strip() == word for cell in cells.tolist()], dtype=bool)

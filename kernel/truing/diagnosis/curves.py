@@ -175,7 +175,7 @@ class _Place:
     def most(self, cause: Cause) -> int:
         """Return at how many points memory and the budget of calls allow to look at a cause."""
         room = max(2 * len(LEVELS), min(FINEST, ROOM // max(self.readings, 1)))
-        points = self.extended.most_points if self.extended.costs(cause) else None
+        points = self.extended.budget.points if self.extended.costs(cause) else None
         return room if points is None else min(points, room)
 
     def is_straight(self, cause: Cause) -> bool:

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.fields import Axis, InputField
 from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
+from truing.diagnosis.arrays import Mask, Matrix, Places
 from truing.errors import UnitError
 from truing.inputs_file.values import broken_bound
 from truing.kernel import Offer
@@ -20,11 +21,8 @@ from truing.measurements.csv_text import Faults
 from truing.measurements.overriding import WORDS, read_word, word_header_fault
 from truing.measurements.row_count import RowCount
 from truing.measurements.table import RUN, SIGMA, DataTable, gather_table
-from truing.units import check_unit, from_si
+from truing.units import check_unit
 from truing.units.grammar import shown
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 Part = Literal["input", "word", "series", "condition", "axis", "measured", "sigma", "other", "label"]
 
@@ -44,14 +42,14 @@ class DataRows:
     columns: Mapping[str, NDArray[Any]]
     parts: Mapping[str, Part]
     units: Mapping[str, str]
-    file_of: NDArray[np.intp]
-    lines: NDArray[np.intp]
+    file_of: Places
+    lines: Places
     runs: NDArray[Any]
-    held_out: NDArray[np.bool_]
+    held_out: Mask
     counts: tuple[RowCount, ...]
     notes: tuple[str, ...] = ()
     absent: frozenset[str] = frozenset()
-    answers: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    answers: Mapping[str, Matrix] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -59,10 +57,6 @@ class DataRows:
     def named(self, *parts: Part) -> list[str]:
         """Return the names of the columns that play one of these parts."""
         return [name for name in self.columns if self.parts[name] in parts]
-
-    def place(self, row: int) -> str:
-        """Return "FILE:LINE" of a row."""
-        return f"{self.files[int(self.file_of[row])]}:{int(self.lines[row])}"
 
     def noted(self, *sentences: str) -> DataRows:
         """Return the same rows with more that was done to them."""
@@ -80,10 +74,13 @@ class DataRows:
             answers={name: values[rows] for name, values in self.answers.items()},
         )
 
-    def without(self, rows: NDArray[np.bool_], reason: str) -> DataRows:
-        """Leave out the rows that a mask names, for a reason that the counts keep."""
-        lines = [self.lines[rows & (self.file_of == place)].tolist() for place in range(len(self.counts))]
-        counts = tuple(count.without(reason, taken) for count, taken in zip(self.counts, lines, strict=True))
+    def without(self, rows: Mask, reason: str | Mapping[int, str]) -> DataRows:
+        """Leave out the rows that a mask names, for a reason that the counts keep: one for all, or one by row."""
+        lines: list[dict[str, list[int]]] = [{} for _ in self.counts]
+        for row in np.flatnonzero(rows).tolist():
+            why = reason if isinstance(reason, str) else reason[row]
+            lines[int(self.file_of[row])].setdefault(why, []).append(int(self.lines[row]))
+        counts = tuple(count.without_all(taken) for count, taken in zip(self.counts, lines, strict=True))
         return replace(self.taken(~rows), counts=counts)
 
 
@@ -97,10 +94,8 @@ def read_data_file(path: Path, offer: Offer) -> tuple[DataRows, Faults]:
     table, faults = gather_table(path, declared_units(model), words=words)
     columns: dict[str, NDArray[Any]] = {}
     for name, values in table.columns.items():
-        if name == RUN and name not in model.input_fields:
-            continue
-        made = _column(name, values, table, model, faults)
-        if made is not None:
+        is_run = name == RUN and name not in model.input_fields
+        if not is_run and (made := _column(name, values, table, model, faults)) is not None:
             columns[name] = made
     parts = {name: part_of(name, model, is_number=values.dtype != object) for name, values in columns.items()}
     for sentence in (*_unfit(table, model), *_empty(columns, parts, faults)):
@@ -124,13 +119,10 @@ def read_data_file(path: Path, offer: Offer) -> tuple[DataRows, Faults]:
 
 def objects(values: Iterable[Any]) -> NDArray[Any]:
     """Return words, or whatever else, as an array (n,)."""
-    items = list(values)
-    found = np.empty(len(items), dtype=object)
-    found[:] = items
-    return found
+    return np.fromiter(values, dtype=object)
 
 
-def is_missing(values: NDArray[Any]) -> NDArray[np.bool_]:
+def is_missing(values: NDArray[Any]) -> Mask:
     """Mark the cells that are empty, (n,)."""
     if values.dtype == object:
         return np.array([value is None for value in values.tolist()], dtype=bool)
@@ -163,7 +155,6 @@ def declared_units(model: Model[Any, Any]) -> dict[str, str]:
 
 def _column(name: str, values: Any, table: DataTable, model: Model[Any, Any], faults: Faults) -> NDArray[Any] | None:
     """Return one column as an array, its bounds checked; None where it cannot be used."""
-
     item = model.input_fields.get(name)
     if item is not None and item.kind in WORDS:
         return _words(item, values, table, faults)
@@ -171,21 +162,14 @@ def _column(name: str, values: Any, table: DataTable, model: Model[Any, Any], fa
         return objects(values)
     if item is not None:
         _keep_bounds(item, values, table, faults)
-    elif part_of(name, model) == "other" and not _has_known_unit(name, table, faults):
-        return None
-    numbers: NDArray[np.float64] = values
-    return numbers
-
-
-def _has_known_unit(name: str, table: DataTable, faults: Faults) -> bool:
-    """Whether the unit of a column that nobody declared is one; if not, say so."""
-    try:
-        check_unit(table.units[name])
-    except UnitError as error:
-        hint = "; leave the brackets out where a number has no unit"
-        faults.add(f"column {shown(name)}: {error}{hint}", table.header_line)
-        return False
-    return True
+    elif part_of(name, model) == "other":
+        try:
+            check_unit(table.units[name])
+        except UnitError as error:
+            hint = "leave the brackets out where a number has no unit"
+            faults.add(f"column {shown(name)}: {error}; {hint}", table.header_line)
+            return None
+    return np.asarray(values)
 
 
 def _words(item: InputField, cells: tuple[str, ...], table: DataTable, faults: Faults) -> NDArray[Any] | None:
@@ -201,27 +185,22 @@ def _words(item: InputField, cells: tuple[str, ...], table: DataTable, faults: F
             try:
                 known[cell] = read_word(item, cell, decimal_comma=True)
             except ValueError as error:
-                sentence = str(error)
-                own = sentence if sentence.startswith(item.name) else f"{item.name}: {sentence}"
-                faults.add(own, table.lines[row])
+                is_named = str(error).startswith(item.name)
+                faults.add(str(error) if is_named else f"{item.name}: {error}", table.lines[row])
                 continue
         found[row] = known[cell]
     return found
 
 
-def _keep_bounds(item: InputField, values: NDArray[np.float64], table: DataTable, faults: Faults) -> None:
+def _keep_bounds(item: InputField, values: Matrix, table: DataTable, faults: Faults) -> None:
     """Say which rows break a declared bound."""
-    finite = values[np.isfinite(values)]
-    if not len(finite):
+    distinct = np.unique(values[np.isfinite(values)]).tolist()
+    tried = distinct if getattr(item.spec, "whole", False) else [*distinct[:1], *distinct[-1:]]
+    if not any(broken_bound(item, value) for value in tried):
         return
-    outer = (float(finite.min()), float(finite.max()))
-    numbers = from_si(finite, item.unit)
-    is_broken = getattr(item.spec, "whole", False) and (np.abs(numbers - numbers.round()) > 1e-9).any()
-    if not is_broken and not any(broken_bound(item, value) for value in outer):
-        return
-    broken = {float(value): broken_bound(item, float(value)) for value in np.unique(finite)}
+    broken = {value: broken_bound(item, value) for value in distinct}
     for row, value in enumerate(values.tolist()):
-        if not math.isnan(value) and broken[value]:
+        if broken.get(value):
             faults.add(broken[value], table.lines[row])
 
 
@@ -251,19 +230,16 @@ def _without_axis(name: str, table: DataTable, model: Model[Any, Any]) -> Iterat
 
 def _empty(columns: Mapping[str, NDArray[Any]], parts: Mapping[str, Part], faults: Faults) -> Iterator[str]:
     """Say which columns that must hold something hold nothing, not even what cannot be read."""
+    needed = {"measured", "input", "series", "word", "axis"}
     for name, values in columns.items():
-        if parts[name] not in {"measured", "input", "series", "word", "axis"} or not len(values):
-            continue
-        if any(fault.message.startswith(f"{name}:") for fault in faults.found):
-            continue
-        if is_missing(values).all():
+        is_empty = parts[name] in needed and len(values) > 0 and is_missing(values).all()
+        if is_empty and not any(fault.message.startswith(f"{name}:") for fault in faults.found):
             yield f"column '{name}' holds no value in any row; fill it or leave it out"
 
 
 def _nothing_measured(table: DataTable, model: Model[Any, Any]) -> str:
     results = model.measurable
-    units = {name: model.own_result_fields[name].unit or "1" for name in results}
-    listed = ", ".join(f"{name} [{units[name]}]" for name in results[:12])
+    listed = ", ".join(f"{name} [{model.own_result_fields[name].unit or '1'}]" for name in results[:12])
     more = f" and {len(results) - 12} more" if len(results) > 12 else ""
     near = next((hint for name in table.units if (hint := near_miss(name[:80], results))), "")
     return f"no column is a result of {model.name}, so nothing is measured; it could be {listed}{more}.{near}"

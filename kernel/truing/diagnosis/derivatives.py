@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.exact import Fitting
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit, size_of
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 
 def slopes_at(found: Fit, extended: Extended) -> tuple[Matrix, Matrix]:

@@ -23,8 +23,7 @@ from truing.diagnosis.exact import fit
 from truing.diagnosis.extended import Extended, elsewhere, parts_of
 from truing.diagnosis.fitted import STEP, WIDE, Fit, moved_by
 from truing.diagnosis.machine import Machine
-from truing.diagnosis.readable import readable_unit
-from truing.diagnosis.result import Amount, NextPoint
+from truing.diagnosis.result import Amount, NextPoint, readable_unit
 from truing.diagnosis.sample import Sample
 from truing.diagnosis.settings import FEW, TRIED, machine_there, settings_of
 from truing.diagnosis.shape_words import in_unit

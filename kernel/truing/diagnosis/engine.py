@@ -22,9 +22,8 @@ from truing.diagnosis.long_records import machine_for_search, on_all_rows
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.naming import alternative_of, by_share, calibrated_of, causes_of, extended_setup, remainder_of
 from truing.diagnosis.probing import probe
-from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import FEWEST_READINGS, Records
-from truing.diagnosis.result import Alternative, Curves, Diagnosis
+from truing.diagnosis.result import Alternative, Curves, Diagnosis, readable_unit
 from truing.diagnosis.sample import sample_of
 from truing.diagnosis.shape_words import in_unit
 from truing.diagnosis.unmeasured import with_results
@@ -72,7 +71,7 @@ def laid_out(machine: Machine) -> Competition:
     """Lay out what competes on the records of a machine, and fit the model as it is."""
     records, effects = machine.records, effects_of(machine)
     orders = {
-        followed_by(cause): range(int(number.low), int(number.high) + 1)
+        followed_by(cause.effect): range(int(number.low), int(number.high) + 1)
         for cause in effects
         if cause.is_kernel and cause.name.startswith("periodic_order")
         for number in cause.numbers

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import inf
+from typing import Any
 
 import numpy as np
 
-from truing.diagnosis.budget import Budget
+from truing.declare.sources import Effect
+from truing.diagnosis.arrays import Matrix, Places
 from truing.diagnosis.causes import Cause, at_rest
 from truing.diagnosis.machine import Machine, Tolerated, predict_each
 from truing.errors import PluginError
@@ -17,18 +19,68 @@ from truing.evaluate import effect_column
 from truing.repeated import REMEMBERED as REPEATED
 from truing.setup import Setup, SwitchedOn
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
-
 REMEMBERED = 64
 """So many setups with moved inputs are kept, and what the model showed at so many points."""
 LARGEST = 1_000_000
 """So many rows of what the model showed are kept."""
+LEAST_PER_EFFECT = 40
+"""Calls for every effect on the inputs that are given however long they take: fewer show none of them as it is."""
+MORE = 4
+"""So many times the budget is proposed where it ended first."""
 Key = tuple[frozenset[str], bytes]
-Point = tuple[Sequence["Matrix"], "Matrix"]
+Point = tuple[Sequence[Matrix], Matrix]
 """The numbers of every cause, SI, and how far each tolerated input is moved, in standard deviations from its mean."""
+
+
+@dataclass
+class Budget:
+    """So many calls of the model on all rows, of which the present stage of the search may spend up to a share.
+
+    ``takes`` is how long a call takes, in seconds, a power of ten; 0 where the number is stated. ``left_out`` counts
+    what was not tried, ``unseen`` names effects that were not looked at. ``points`` says at how many points each effect
+    may be asked for its curves; None for all there are.
+    """
+
+    calls: float = inf
+    takes: float = 0.0
+    share: float = 1.0
+    left_out: dict[str, int] = field(default_factory=dict)
+    unseen: list[str] = field(default_factory=list)
+    points: int | None = None
+
+    @property
+    def is_dear(self) -> bool:
+        """Whether calls are counted at all."""
+        return self.calls < inf
+
+    def lasts(self, spent: int) -> bool:
+        """Whether the present stage may go on after so many calls."""
+        return spent < self.share * self.calls
+
+    def allows(self, spent: int, what: str) -> bool:
+        """Whether one thing more may be tried; what may not is counted."""
+        if self.lasts(spent):
+            return True
+        self.left_out[what] = self.left_out.get(what, 0) + 1
+        return False
+
+    def of_rows(self, ratio: float) -> Budget:
+        """Return what the same time allows on so many times as many rows; what it leaves out is told with the rest."""
+        return replace(self, calls=max(self.calls / ratio, LEAST_PER_EFFECT), share=1.0, points=None)
+
+    def told(self) -> tuple[str, ...]:
+        """Say what the budget left out, in one sentence; nothing where it did not end."""
+        parts = [f"{what} ({count})" for what, count in self.left_out.items()]
+        if self.unseen:
+            parts.insert(0, f"any look at {', '.join(dict.fromkeys(self.unseen))}")
+        if not parts:
+            return ()
+        calls = int(self.calls)
+        time = f", of which one takes about {self.takes:g} s," if self.takes else ""
+        return (
+            f"the search ended after {calls} calls of the model{time} and left out: {', '.join(parts)}; another "
+            f"explanation may lie there; look further with [studies.diagnose] budget = {MORE * calls}",
+        )
 
 
 class Extended:
@@ -42,12 +94,10 @@ class Extended:
         self.calls, self.budget = 0, Budget()
         self.grain: dict[str, float] = {}
         """By result: by how much the answers of the model jump or scatter by themselves, SI."""
-        self.most_points: int | None = None
-        """At so many points each effect may be looked at; None for all there are."""
-        self._asked: deque[bytes] = deque(maxlen=REPEATED)
+        self._asked: deque[str] = deque(maxlen=REPEATED)
         self._setups: dict[frozenset[str], Setup] = {}
         self._shown: dict[Key, Mapping[str, Matrix]] = {}
-        self._machines: dict[tuple[frozenset[str], bytes], Setup] = {}
+        self._machines: dict[Key, Setup] = {}
 
     def at(self, causes: Sequence[Cause], points: Sequence[Point]) -> list[dict[str, Matrix]]:
         """Return what the gauges show at several points, by result, SI on all rows; NaN where the model fails.
@@ -55,15 +105,16 @@ class Extended:
         Shapes that nobody registered are added to what the model shows: points that differ in them alone are one call.
         """
         own = [place for place, cause in enumerate(causes) if cause.shape is None]
-        kept = [causes[place] for place in own]
+        bare_causes = [causes[place] for place in own]
         bare = [([values[place] for place in own], moved) for values, moved in points]
-        tags = frozenset(cause.tag for cause in kept)
+        tags = frozenset(cause.tag for cause in bare_causes)
         keys = [(tags, b"".join(np.asarray(each).tobytes() for each in (*values, moved))) for values, moved in bare]
         new = {key: point for key, point in zip(keys, bare, strict=True) if key not in self._shown}
-        shown = {**self._shown, **dict(zip(new, self._called(kept, list(new.values())), strict=True))}
-        self._remember({key: shown[key] for key in keys})
+        shown = {**self._shown, **dict(zip(new, self._called(bare_causes, list(new.values())), strict=True))}
+        kept = min(REMEMBERED, max(1, LARGEST // max(len(self.machine.records), 1)))  # a fit goes on from the last
+        self._shown = dict(list({**self._shown, **{key: shown[key] for key in keys}}.items())[-kept:])
         return [
-            {name: base + _of_shapes(self.machine, causes, values, name) for name, base in shown[key].items()}
+            _with_shapes(shown[key], self.machine, causes, values)
             for key, (values, _) in zip(keys, points, strict=True)
         ]
 
@@ -99,7 +150,7 @@ class Extended:
         for values, moved in points:
             own = zip(causes, values, strict=True)
             before = [f"{each.tag}={value.tolist()}" for each, value in own if each.acts_on_inputs]
-            key = repr((before, moved.tolist())).encode()
+            key = repr((before, moved.tolist()))
             if key not in self._asked:
                 self.calls += 1
                 self._asked.append(key)
@@ -117,23 +168,16 @@ class Extended:
         """Whether the budget lasts for one thing more; what it does not last for is counted."""
         return self.budget.allows(self.calls, what)
 
-    def _remember(self, latest: Mapping[Key, Mapping[str, Matrix]]) -> None:
-        """Keep what the model showed last: a fit goes on from there."""
-        few = max(1, LARGEST // max(len(self.machine.records), 1))
-        self._shown = dict(list({**self._shown, **latest}.items())[-min(few, REMEMBERED) :])
-
     def _with(self, causes: Sequence[Cause]) -> Setup:
         """Return the setup with the effects of these causes on; parts of one effect are on together."""
         tags = frozenset(cause.tag for cause in causes if cause.effect is not None)
         if tags not in self._setups:
-            values: dict[str, dict[str, float]] = {}
-            effects = {}
+            on: dict[str, SwitchedOn] = {}
             for cause in causes:
                 if cause.effect is not None:
-                    values.setdefault(cause.name, {}).update(at_rest(cause, self.machine))
-                    effects[cause.name] = cause.effect
-            on = tuple(SwitchedOn(effects[name], own) for name, own in values.items())
-            self._setups[tags] = self.machine.start.with_effects(on) if on else self.machine.start
+                    parts = on[cause.name].values if cause.name in on else {}
+                    on[cause.name] = SwitchedOn(cause.effect, {**parts, **at_rest(cause, self.machine)})
+            self._setups[tags] = self.machine.start.with_effects(tuple(on.values())) if on else self.machine.start
         return self._setups[tags]
 
     def _share_inputs(self, causes: Sequence[Cause], points: Sequence[Point]) -> bool:
@@ -157,45 +201,41 @@ class Extended:
 
     def _inputs(self, causes: Sequence[Cause], values: Sequence[Matrix], moved: Matrix) -> dict[str, Any]:
         """Return the columns that set every tolerated input, SI, (n,)."""
-        files, off = self.machine.records.file_of, np.array(moved, dtype=float)
-        made: dict[str, Any] = {}
+        off = np.array(moved, dtype=float)
         for cause, own in zip(causes, values, strict=True):
             if cause.tolerated >= 0:
                 off[cause.tolerated] += own[0]
-        for given, sds in zip(self.machine.inputs, off, strict=True):
-            made[given.name] = _in_file(made.get(given.name), given.file, files, self._value(given, sds))
-        return _columns(made, len(files))
+        inputs = zip(self.machine.inputs, off, strict=True)
+        settings = ((given.name, given.file, self._value(given, sds)) for given, sds in inputs)
+        return _columns(settings, self.machine.records.file_of)
 
 
 def _unknowns(machine: Machine, causes: Sequence[Cause], values: Sequence[Matrix]) -> dict[str, Any]:
     """Return the columns that set every unknown, SI, (n,)."""
+    settings = (
+        (effect_column(cause.name, number.name), number.file, float(value))
+        for cause, own in zip(causes, values, strict=True)
+        if cause.effect is not None
+        for number, value in zip(cause.numbers, own, strict=True)
+    )
+    return _columns(settings, machine.records.file_of)
+
+
+def _columns(settings: Iterable[tuple[str, int, float]], files: Places) -> dict[str, Any]:
+    """Return columns (n,) that have each value in the rows of its file, or in all where the file is -1."""
     made: dict[str, Any] = {}
-    for cause, own in zip(causes, values, strict=True):
-        for number, value in zip(cause.numbers, own, strict=True) if cause.effect is not None else ():
-            column = effect_column(cause.name, number.name)
-            made[column] = _in_file(made.get(column), number.file, machine.records.file_of, float(value))
-    return _columns(made, len(machine.records))
+    for name, file, value in settings:
+        everywhere = np.broadcast_to(value, (len(files),))
+        made[name] = everywhere if file < 0 else np.where(files == file, value, made.get(name, 0.0))
+    return made
 
 
-def _columns(made: dict[str, Any], size: int) -> dict[str, Any]:
-    return {name: np.broadcast_to(value, (size,)) for name, value in made.items()}
-
-
-def _in_file(held: Any, file: int, files: Any, value: float) -> Any:
-    """Return a value for all rows, or one per row that holds in its file."""
-    if file < 0:
-        return value
-    before = np.zeros(len(files)) if held is None else np.broadcast_to(held, (len(files),))
-    return np.where(files == file, value, before)
-
-
-def _of_shapes(machine: Machine, causes: Sequence[Cause], values: Sequence[Matrix], name: str) -> Any:
-    """Return what unregistered shapes add to a result, SI: an array (n,), or 0 where there are none."""
-    added: Any = 0.0
-    for cause, own in zip(causes, values, strict=True):
-        if cause.shape is not None:
-            added = added + shape_added(machine, cause, own).get(name, 0.0)
-    return added
+def _with_shapes(
+    shown: Mapping[str, Matrix], machine: Machine, causes: Sequence[Cause], values: Sequence[Matrix]
+) -> dict[str, Matrix]:
+    """Return what is shown with what unregistered shapes add to it, SI, (n,)."""
+    added = [shape_added(machine, cause, own) for cause, own in zip(causes, values, strict=True)]
+    return {name: base + sum(each[name] for each in added if name in each) for name, base in shown.items()}
 
 
 def shape_added(machine: Machine, cause: Cause, values: Matrix) -> dict[str, Matrix]:
@@ -223,19 +263,13 @@ def parts_of(causes: Sequence[Cause], flat: Matrix) -> list[Matrix]:
 
 def switched_on(causes: Sequence[Cause], values: Sequence[Matrix], machine: Machine) -> Iterator[SwitchedOn]:
     """Give the effects of an explanation as they are on, with their fitted unknowns (SI); of files, their mean."""
-    merged: dict[str, tuple[Cause, dict[str, list[float]]]] = {}
+    merged: dict[str, tuple[Effect[Any, Any], dict[str, float], dict[str, list[float]]]] = {}
     for cause, own in zip(causes, values, strict=True):
         if cause.effect is not None:
-            _, known = merged.setdefault(cause.name, (cause, {}))
+            *_, known = merged.setdefault(cause.name, (cause.effect, at_rest(cause, machine), {}))
             for number, value in zip(cause.numbers, own, strict=True):
                 known.setdefault(number.name, []).append(float(value))
-    for name, (cause, known) in merged.items():
-        effect = cause.effect
-        if effect is None:
-            continue
-        before: Mapping[str, float] = next(
-            (item.values for item in machine.start.effects if item.effect.name == name), {}
-        )
-        rest = {} if effect.parts and effect.takes_any else at_rest(replace(cause, numbers=cause.numbers), machine)
+    for name, (effect, rest, known) in merged.items():
+        others = {} if effect.parts and effect.takes_any else rest
         stated = {key: sum(every) / len(every) for key, every in known.items()}
-        yield SwitchedOn(effect, {**rest, **before, **stated})
+        yield SwitchedOn(effect, {**others, **machine.on.get(name, {}), **stated})

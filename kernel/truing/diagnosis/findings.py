@@ -123,7 +123,7 @@ def _label(found: Fit, name: str) -> tuple[str, ...]:
     if not cause.is_kernel or gauged(cause, found.sample.machine.records.measured) != name:
         return ()
     kind = {"periodic_order": "order", "step": "step"}.get(cause.name.partition("_of_")[0], "")
-    return (kind, followed_by(cause)) if kind else ()
+    return (kind, followed_by(cause.effect)) if kind else ()
 
 
 def _finding(found: Fit, extended: Extended, p_value: float, name: str, unit: str) -> Finding:

@@ -7,6 +7,7 @@ from math import inf, log
 
 import numpy as np
 
+from truing.diagnosis.alarms import AT_BOUND, OUTSIDE
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.sample import Sample
@@ -103,3 +104,34 @@ def differ(one: Fit, other: Fit) -> float:
     sample = one.sample
     apart = sample.left(one.predicted) - sample.left(other.predicted)
     return float(np.sum((sample.roots(one.left) * apart) ** 2))
+
+
+def input_value(found: Fit, place: int) -> float:
+    """Return a tolerated input as calibrated and shifted, SI."""
+    machine = found.sample.machine
+    shifts = zip(found.causes, found.values, strict=True)
+    off = float(found.moved[place]) + sum(float(values[0]) for cause, values in shifts if cause.tolerated == place)
+    item = machine.inputs[place]
+    return float(machine.start.nominal(item.name)) + item.mean + off * item.sd
+
+
+def signs_of_wrong(found: Fit) -> int:
+    """Count what a wrong explanation looks like: unknowns at their bounds, inputs far outside of their tolerances."""
+    registered = [pair for pair in zip(found.causes, found.values, strict=True) if pair[0].effect is not None]
+    numbers = [pair for cause, values in registered for pair in zip(cause.numbers, values, strict=True)]
+    return sum(is_at_bound(number, float(value)) for number, value in numbers) + len(far_inputs(found))
+
+
+def is_at_bound(number: Number, value: float) -> bool:
+    """Whether a fitted number lies at an end of its declared range, other than at zero."""
+    if not number.is_free:
+        return False
+    reach = AT_BOUND * (number.high - number.low)
+    return any(end and abs(end) < inf and abs(value - end) <= reach for end in (number.low, number.high))
+
+
+def far_inputs(found: Fit) -> list[int]:
+    """Return the places of inputs that no cause shifts and that were moved far beyond their tolerances."""
+    shifted = {cause.tolerated for cause in found.causes}
+    free = [(place, item) for place, item in enumerate(found.sample.machine.inputs) if place not in shifted]
+    return [place for place, item in free if abs((input_value(found, place) - item.design) / item.sd) > OUTSIDE]

@@ -16,11 +16,11 @@ from scipy.special import stdtrit
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
-from truing.diagnosis.columns import in_blocks
 from truing.diagnosis.derivatives import slopes_at, unit_of
 from truing.diagnosis.exact import fit
 from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import Fit, inward
+from truing.diagnosis.machine import in_blocks
 
 LEVEL = 0.975
 """Of Student's t at either end of an interval: together they hold 95 %."""
@@ -91,15 +91,6 @@ def places_of(found: Fit, cause: Cause) -> range:
 def value_of(found: Fit, place: int) -> float:
     """Return one of all numbers, SI."""
     return float(np.concatenate(found.values)[place])
-
-
-def input_value(found: Fit, place: int) -> float:
-    """Return a tolerated input as calibrated and shifted, SI."""
-    machine = found.sample.machine
-    shifts = zip(found.causes, found.values, strict=True)
-    off = float(found.moved[place]) + sum(float(values[0]) for cause, values in shifts if cause.tolerated == place)
-    item = machine.inputs[place]
-    return float(machine.start.nominal(item.name)) + item.mean + off * item.sd
 
 
 def certainty_of(found: Fit, extended: Extended) -> Certainty:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from truing.diagnosis.data_file import DataRows, Part, is_missing, objects
 from truing.diagnosis.tidying import counted
@@ -17,9 +18,6 @@ from truing.units import same_dimension
 from truing.units.grammar import shown
 from truing.units.names import PURE
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
 MOST_MISSING = 0.5
 """A condition that is empty in a larger share of the rows is not measured."""
 
@@ -29,19 +27,14 @@ def join(files: Sequence[DataRows], setup: Setup) -> DataRows:
 
     An input that a file does not give is as the inputs file says; anything else is missing in its rows.
     """
-    faults = [*_contradictions(files)]
-    if faults:
+    if faults := list(_contradictions(files)):
         raise InputError(faults)
     parts = _parts(files)
-    units = {name: unit for file in reversed(files) for name, unit in file.units.items()}
-    columns = {
-        name: np.concatenate([_cells(file, name, part, setup) for file in files]) for name, part in parts.items()
-    }
     return DataRows(
         files=tuple(name for file in files for name in file.files),
-        columns=columns,
+        columns={name: np.concatenate([_cells(file, name, parts[name], setup) for file in files]) for name in parts},
         parts=parts,
-        units=units,
+        units={name: unit for file in reversed(files) for name, unit in file.units.items()},
         file_of=np.repeat(np.arange(len(files)), [len(file) for file in files]),
         lines=np.concatenate([file.lines for file in files]),
         runs=np.concatenate([_runs(file, alone=len(files) == 1) for file in files]),

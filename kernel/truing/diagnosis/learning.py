@@ -11,8 +11,7 @@ from math import log
 import numpy as np
 
 from truing.diagnosis.arrays import Mask, Matrix
-from truing.diagnosis.columns import in_blocks
-from truing.diagnosis.machine import Machine, Predicted
+from truing.diagnosis.machine import Machine, Predicted, in_blocks
 from truing.diagnosis.noise import (
     SETTINGS,
     Setting,

@@ -6,15 +6,13 @@ step. The decision is that of these rows; estimates, intervals and gains are tho
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from truing.diagnosis.choice import Chosen, Rival
-from truing.diagnosis.competition import Competition, competition_of
+from truing.diagnosis.competition import competition_of
 from truing.diagnosis.extended import Extended
-from truing.diagnosis.fitted import Fit
 from truing.diagnosis.learning import first_noise
 from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.records import Records
@@ -47,30 +45,17 @@ def on_all_rows(chosen: Chosen, machine: Machine) -> Chosen:
     made.extended.budget = few.extended.budget.of_rows(len(machine.records) / len(few.sample.machine.records))
     made.tries = dict(few.tries)
     few.curves, few.looked = made.curves, {}  # those of some rows are much, and needed no more
-    wanted = {found.key: found for found in _wanted(chosen)}
-    for found in wanted.values():
+    rivals_there = [few.known[rival.fit.key] for rival in chosen.rivals]
+    singles = few.ranked(lambda found: len(found.causes) == 1)[:SINGLES]
+    wanted = [few.known[chosen.best.key], *rivals_there, *few.ranked()[:RANKED], *singles]
+    for found in {found.key: found for found in wanted}.values():
         made.fitted(found.causes, found.values, None)
     made.renew()
     made.refresh()
     best = made.known.get(chosen.best.key, made.null)
-    rivals = tuple(
-        Rival(
-            made.exact(made.known[rival.fit.key]),
-            max(0.0, made.score(made.known[rival.fit.key]) - made.score(best)),
-        )
-        for rival in chosen.rivals
-        if rival.fit.key in made.known
-    )
+    ends = [made.exact(made.known[rival.fit.key]) for rival in chosen.rivals if rival.fit.key in made.known]
+    rivals = tuple(Rival(found, max(0.0, made.score(found) - made.score(best))) for found in ends)
     return replace(chosen, competition=made, best=made.exact(best), rivals=rivals)
-
-
-def _wanted(chosen: Chosen) -> Iterator[Fit]:
-    """Give the explanations that are fitted to all rows."""
-    few: Competition = chosen.competition
-    yield few.known[chosen.best.key]
-    yield from (few.known[rival.fit.key] for rival in chosen.rivals)
-    yield from few.ranked()[:RANKED]
-    yield from few.ranked(lambda found: len(found.causes) == 1)[:SINGLES]
 
 
 def machine_for_search(machine: Machine, *, seed: int) -> Machine:

@@ -11,22 +11,23 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import permutations
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from truing.diagnosis.columns import MANY, in_blocks, times
+import numpy as np
+
+from truing.diagnosis.arrays import Matrix, Places
 from truing.diagnosis.records import Records
 from truing.gauge import one_machine
 from truing.setup import Setup
 from truing.studies.scatter import root_of, scatter_of
 from truing.trials import Trial, read_trials
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-Predicted = Mapping[str, "NDArray[np.float64]"]
+Predicted = Mapping[str, Matrix]
 STEP = 0.5
 FAINTEST = 0.01
+MANY = 200_000
+"""Slopes of more rows than this are kept in single precision, and added up in double precision."""
+BLOCK = 8192
 
 
 @dataclass(frozen=True)
@@ -60,18 +61,19 @@ class Machine:
     slopes: Predicted
 
     @cached_property
+    def on(self) -> Mapping[str, Mapping[str, float]]:
+        """By effect that is on at the start: its unknowns, SI."""
+        return {item.effect.name: item.values for item in self.start.effects}
+
+    @cached_property
     def shifts(self) -> Predicted:
         """By result (n,): what the means of the tolerances add to the prediction at the start."""
-        import numpy as np
-
         means = np.array([item.mean / item.sd for item in self.inputs])
         return {name: times(slopes, means) for name, slopes in self.slopes.items()}
 
     @cached_property
-    def together(self) -> NDArray[np.float64] | None:
+    def together(self) -> Matrix | None:
         """How unit directions move the inputs, in standard deviations (inputs, inputs); None where none are drawn."""
-        import numpy as np
-
         alike = np.eye(len(self.inputs))
         for cause in scatter_of(self.start).causes:
             if cause.function is None:
@@ -85,11 +87,8 @@ class Machine:
                     alike[here, there] = covariance[one, other] / (first.sd * second.sd)
         return root_of(alike) if np.any(alike != np.eye(len(alike))) else None
 
-    def directions(self, gram: NDArray[np.float64], rows: int) -> NDArray[np.float64]:
-        """Return the combinations of inputs that the data can see, (inputs, K), each with unit prior.
-
-        ``gram`` holds the inner products of the slopes over ``rows`` values, in units of the noise.
-        """
+    def directions(self, gram: Matrix, rows: int) -> Matrix:
+        """Return the combinations of inputs that the data can see, as they are drawn: see ``directions_of``."""
         if self.together is None:
             return directions_of(gram, rows)
         return self.together @ directions_of(self.together.T @ gram @ self.together, rows)
@@ -109,8 +108,14 @@ def tolerated_inputs(setup: Setup, records: Records) -> list[Tolerated]:
     """Return every input or condition that scatters and is not itself measured."""
     start = one_machine(setup)
     per_file = set(setup.diagnose.per_file) if len(records.files) > 1 else set()
+    priors: dict[str, tuple[float, float]] = {}  # mean, from the nominal, and sd: two on one input add up
+    for by_input in setup.distributions().values():
+        for name, distribution in by_input.items():
+            mean, sd = priors.get(name, (0.0, 0.0))
+            off = distribution.mean - float(setup.nominal(name))
+            priors[name] = (mean + off, float((sd**2 + distribution.sd**2) ** 0.5))
     found: list[Tolerated] = []
-    for name, (mean, sd) in _priors(setup).items():
+    for name, (mean, sd) in priors.items():
         if name in records.rows.columns or name in records.rows.series or sd <= 0:
             continue
         design = float(setup.nominal(name))
@@ -120,21 +125,8 @@ def tolerated_inputs(setup: Setup, records: Records) -> list[Tolerated]:
     return found
 
 
-def _priors(setup: Setup) -> dict[str, tuple[float, float]]:
-    """Return mean (from the nominal) and standard deviation of everything that scatters; two on one input add up."""
-    found: dict[str, tuple[float, float]] = {}
-    for by_input in setup.distributions().values():
-        for name, distribution in by_input.items():
-            mean, sd = found.get(name, (0.0, 0.0))
-            off = distribution.mean - float(setup.nominal(name))
-            found[name] = (mean + off, float((sd**2 + distribution.sd**2) ** 0.5))
-    return found
-
-
 def machine_of(setup: Setup, records: Records) -> Machine:
     """Evaluate the model at the start and around it, twice per tolerated input."""
-    import numpy as np
-
     start = one_machine(setup)
     base = predict(start, records)
     inputs = tolerated_inputs(setup, records)
@@ -152,12 +144,8 @@ def machine_of(setup: Setup, records: Records) -> Machine:
     return Machine(setup, start, records, base, tuple(inputs), slopes)
 
 
-def _slopes(
-    start: Setup, records: Records, inputs: Sequence[Tolerated]
-) -> Iterator[tuple[str, dict[str, NDArray[np.float64]]]]:
+def _slopes(start: Setup, records: Records, inputs: Sequence[Tolerated]) -> Iterator[tuple[str, dict[str, Matrix]]]:
     """Give by input the central difference of every result over one standard deviation, 0 where the model fails."""
-    import numpy as np
-
     moves = {item.name: STEP * item.sd for item in inputs}
     ends = [{name: float(start.nominal(name)) + sign * move} for name, move in moves.items() for sign in (1, -1)]
     answers = predict_each(start, records, ends)
@@ -166,10 +154,8 @@ def _slopes(
         yield name, {result: np.where(np.isfinite(slope), slope, 0.0) for result, slope in slopes.items()}
 
 
-def gram_of(slopes: NDArray[np.float64], rows: NDArray[np.intp] | None = None) -> NDArray[np.float64]:
+def gram_of(slopes: Matrix, rows: Places | None = None) -> Matrix:
     """Return the inner products of columns over some rows, block by block in double precision."""
-    import numpy as np
-
     total = np.zeros((slopes.shape[1], slopes.shape[1]))
     for block in in_blocks(len(slopes) if rows is None else len(rows)):
         part = slopes[block if rows is None else rows[block]].astype(float)
@@ -177,19 +163,30 @@ def gram_of(slopes: NDArray[np.float64], rows: NDArray[np.intp] | None = None) -
     return total
 
 
-def directions_of(gram: NDArray[np.float64], rows: int, faintest: float = FAINTEST) -> NDArray[np.float64]:
+def directions_of(gram: Matrix, rows: int) -> Matrix:
     """Return the combinations of inputs that the data can see, shape (inputs, K), columns of unit length.
 
     ``gram`` holds the inner products of the slopes over ``rows`` values, in units of the noise. Kept are singular
     values above a hundredth of the noise per row; with a prior of one standard deviation on every input, each
     direction has the same prior.
     """
-    import numpy as np
-
     if len(gram) == 0:
         return np.zeros((0, 0))
     values, vectors = np.linalg.eigh(gram)
-    kept = np.sqrt(np.maximum(values, 0) / max(rows, 1)) > faintest
+    kept = np.sqrt(np.maximum(values, 0) / max(rows, 1)) > FAINTEST
     vectors = vectors[:, kept][:, ::-1]
     upright = np.sign(np.linspace(1, 2, len(vectors)) ** 2 @ vectors)  # eigenvectors have no sign of their own
     return np.ascontiguousarray(vectors * np.where(upright == 0, 1.0, upright))
+
+
+def in_blocks(rows: int) -> Iterator[slice]:
+    """Give the rows in blocks, one after another."""
+    return (slice(begin, begin + BLOCK) for begin in range(0, rows, BLOCK))
+
+
+def times(matrix: Matrix, vector: Matrix) -> Matrix:
+    """Return a matrix of many rows times a vector, in double precision, block by block."""
+    made = np.empty(len(matrix))
+    for rows in in_blocks(len(matrix)):
+        made[rows] = matrix[rows] @ vector
+    return made

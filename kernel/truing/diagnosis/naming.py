@@ -13,8 +13,8 @@ from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause as Competitor
 from truing.diagnosis.choice import Chosen, Rival
 from truing.diagnosis.extended import Extended, shape_added, switched_on
-from truing.diagnosis.fitted import Fit
-from truing.diagnosis.intervals import Certainty, certainty_of, ends_of, input_value, numbers_of, places_of, value_of
+from truing.diagnosis.fitted import Fit, input_value
+from truing.diagnosis.intervals import Certainty, certainty_of, ends_of, numbers_of, places_of, value_of
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.result import Alternative, Calibrated, Cause, FittedUnknown, Remainder, ShapeTerm
 from truing.diagnosis.shape_words import shape_in_words

@@ -1,26 +1,33 @@
 """What the model is like to call, before the search: how long a call takes, and how rough its answers are.
 
-A model whose answers come in steps, or scatter by themselves, has no derivatives by small differences.
+The number of calls that a search may make is stated with ``[studies.diagnose] budget``. Where it is not, a model that
+answers at once has none, and a slow one gets what takes some minutes: the time of one call to a power of ten, so that
+two machines mostly agree. A model whose answers come in steps, or scatter by themselves, has no derivatives by small
+differences.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from math import log10
+from time import perf_counter
 
 import numpy as np
 
-from truing.diagnosis.budget import budget_of
+from truing.diagnosis.arrays import Matrix
+from truing.diagnosis.causes import Cause
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.extended import Extended, Point
+from truing.diagnosis.extended import LEAST_PER_EFFECT, Budget, Extended, Point
 from truing.repeated import forget
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from truing.diagnosis.causes import Cause
-
-    Matrix = NDArray[np.float64]
-
+AT_ONCE = 0.03
+"""Seconds of a call below which a search needs no budget: it makes a few thousand calls."""
+MINUTES = 300.0
+"""Seconds that the calls of a search may take where no budget is stated."""
+CURVES = 0.25
+"""Share of the calls in which all curves are to be made."""
+FEWEST_POINTS = 6
+"""At so many points at least an effect is looked at: fewer say nothing about how it bends."""
 ASIDE = 1.23456789
 """Standard deviations, or tenths of a range, by which something is moved to see what the model is like there.
 
@@ -42,15 +49,25 @@ def probe(made: Competition) -> None:
     tried: list[Cause] = [] if machine.inputs else costly[:1]
     if not machine.inputs and not costly:
         return
-    values = [np.array([_near_low(each.low, each.high) for each in cause.numbers]) for cause in tried]
+    values = [np.array([each.low + 0.1 * ASIDE * (each.high - each.low) for each in cause.numbers]) for cause in tried]
     point = values, np.full(len(machine.inputs), ASIDE)
     extended.budget = budget_of(machine.start.diagnose.budget, len(costly), lambda: extended.at(tried, [point]))
-    extended.most_points = extended.budget.points(len(costly))
+    if extended.budget.is_dear:
+        extended.budget.points = max(FEWEST_POINTS, int(CURVES * extended.budget.calls / max(len(costly), 1)))
     extended.grain = _grain_of(extended, tried, point)
 
 
-def _near_low(low: float, high: float) -> float:
-    return low + 0.1 * ASIDE * (high - low)
+def budget_of(stated: int, effects: int, call: Callable[[], object]) -> Budget:
+    """Return the stated budget; else, by how long one ``call`` takes, none or one of some minutes."""
+    if stated:
+        return Budget(stated)
+    begin = perf_counter()
+    call()
+    seconds = perf_counter() - begin
+    if seconds < AT_ONCE:
+        return Budget()
+    takes = 10.0 ** round(log10(seconds))
+    return Budget(max(round(MINUTES / takes), LEAST_PER_EFFECT * max(effects, 1)), takes)
 
 
 def _grain_of(extended: Extended, causes: list[Cause], point: Point) -> dict[str, float]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.covariates import censored_rows, covariates_of, held_out_rows
 from truing.diagnosis.data_file import DataRows, read_data_file
 from truing.diagnosis.joining import complete_rows, join, measured_rows, rows_of, settle_conditions
@@ -20,9 +20,6 @@ from truing.gauge import one_machine, read_by_gauge
 from truing.kernel import Offer
 from truing.measurements.table import SIGMA
 from truing.setup import Setup
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 FEWEST = 3
 FEWEST_BESIDE = 6
@@ -109,26 +106,27 @@ def _demand_rows(joined: DataRows, most: int | None = None) -> None:
     raise InputError([Fault(sentence, files[0], end) if len(files) == 1 else Fault(sentence)])
 
 
-def _sigma(joined: DataRows) -> tuple[dict[str, NDArray[np.float64]], list[str]]:
+def _sigma(joined: DataRows) -> tuple[dict[str, Matrix], list[str]]:
     """Return the standard deviations that are given, by result; one of 0 is none."""
-    notes = []
-    used = [name for name in joined.named("sigma") if name.removeprefix(SIGMA) in joined.columns]
-    for name in used:
-        zero = int((joined.columns[name] == 0).sum())
-        if zero:
-            notes.append(f"'{name}' is 0 in {counted(zero)}, which no gauge is; it counts as not given there")
-    found = {name: np.where(joined.columns[name] > 0, joined.columns[name], np.nan) for name in used}
-    return {name.removeprefix(SIGMA): values for name, values in found.items()}, notes
+    found, notes = {}, []
+    for name in joined.named("sigma"):
+        result, values = name.removeprefix(SIGMA), joined.columns[name]
+        if result in joined.columns:
+            found[result] = np.where(values > 0, values, np.nan)
+            if zero := int((values == 0).sum()):
+                notes.append(f"'{name}' is 0 in {counted(zero)}, which no gauge is; it counts as not given there")
+    return found, notes
 
 
 def _demand_logarithms(joined: DataRows, setup: Setup) -> None:
     """Raise InputError where a reading that is to be compared as a logarithm has none."""
-    faults = []
-    for name in joined.named("measured"):
-        if name in setup.diagnose.lognormal:
-            for row in (joined.columns[name] <= 0).nonzero()[0].tolist():
-                sentence = f"{name} is not above 0, so it has no logarithm; its noise cannot be lognormal"
-                faults.append(Fault(sentence, joined.files[int(joined.file_of[row])], int(joined.lines[row])))
+    sentence = "{} is not above 0, so it has no logarithm; its noise cannot be lognormal"
+    faults = [
+        Fault(sentence.format(name), joined.files[joined.file_of[row]], int(joined.lines[row]))
+        for name in joined.named("measured")
+        if name in setup.diagnose.lognormal
+        for row in np.flatnonzero(joined.columns[name] <= 0)
+    ]
     if faults:
         raise InputError(faults)
 
@@ -162,30 +160,21 @@ def _answered(joined: DataRows, setup: Setup) -> DataRows:
     joined = replace(joined, answers=found.results)
     if found.failed.any():
         first, reason = next(iter(found.reasons.items()))
-        rows = counted(int(found.failed.sum()), "row is", "rows are")
-        notes.append(f"{rows} left out where the model fails; the first is {joined.place(first)}: {reason}")
-        hint = factor_that_works(joined, setup) if found.failed.mean() > MOST_FAILED else ""
-        notes += [hint] if hint else []
-        joined = _without_failed(joined, found.failed, found.reasons)
+        why = {row: f"the model fails: {each}" for row, each in found.reasons.items()}
+        failed = counted(int(found.failed.sum()), "row is", "rows are")
+        place = f"{joined.files[joined.file_of[first]]}:{joined.lines[first]}"
+        notes.append(f"{failed} left out where the model fails; the first is {place}: {reason}")
+        if found.failed.mean() > MOST_FAILED:
+            notes += factor_that_works(joined, setup)
+        joined = joined.without(found.failed, why)
     columns = dict(joined.columns)
     for name in measured:
-        lost = np.isnan(joined.answers[name]) & np.isfinite(columns[name])
-        if lost.any():
-            columns[name] = np.where(lost, np.nan, columns[name])
-            notes.append(f"'{name}' is not used in {counted(int(lost.sum()))} that its axis does not reach")
-        below = (joined.answers[name] <= 0) & np.isfinite(columns[name])
-        if name in setup.diagnose.lognormal and below.any():
-            columns[name] = np.where(below, np.nan, columns[name])
-            words = "in which the model says 0 or less, which has no logarithm"
-            notes.append(f"'{name}' is not used in {counted(int(below.sum()))} {words}")
+        unusable = {"that its axis does not reach": np.isnan(joined.answers[name])}
+        if name in setup.diagnose.lognormal:
+            unusable["in which the model says 0 or less, which has no logarithm"] = joined.answers[name] <= 0
+        for words, rows in unusable.items():
+            lost = rows & np.isfinite(columns[name])
+            if lost.any():
+                columns[name] = np.where(lost, np.nan, columns[name])
+                notes.append(f"'{name}' is not used in {counted(int(lost.sum()))} {words}")
     return replace(joined, columns=columns).noted(*notes)
-
-
-def _without_failed(joined: DataRows, failed: NDArray[np.bool_], reasons: Mapping[int, str]) -> DataRows:
-    """Leave out the rows in which the model fails, each for its own reason."""
-    lines: list[dict[str, list[int]]] = [{} for _ in joined.counts]
-    for row in failed.nonzero()[0].tolist():
-        of_file = lines[int(joined.file_of[row])]
-        of_file.setdefault(f"the model fails: {reasons[row]}", []).append(int(joined.lines[row]))
-    counts = tuple(count.without_all(taken) for count, taken in zip(joined.counts, lines, strict=True))
-    return replace(joined.taken(~failed), counts=counts)

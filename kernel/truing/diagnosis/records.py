@@ -6,21 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import pi
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
-from truing.measurements.row_count import RowCount
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from truing.diagnosis.arrays import Sides
-    from truing.measurements import RowsFile
+from truing.diagnosis.arrays import Mask, Matrix, Places, Sides
+from truing.measurements import RowCount, RowsFile
 
 Role = Literal["input", "condition", "time", "other", "order"]
-
-
 FULL_TURN = 1.5 * pi
 """An angle that covers so much of a turn goes round: waves describe it better than powers."""
 FEWEST_READINGS = 8
@@ -36,7 +30,7 @@ class Covariate:
     """
 
     name: str
-    values: NDArray[np.float64]
+    values: Matrix
     unit: str
     role: Role
     is_angle: bool = False
@@ -81,19 +75,19 @@ class Records:
 
     files: tuple[str, ...]
     rows: RowsFile
-    file_of: NDArray[np.intp]
-    run_of: NDArray[np.intp]
-    lines: NDArray[np.intp]
-    measured: Mapping[str, NDArray[np.float64]]
-    sigma: Mapping[str, NDArray[np.float64]]
+    file_of: Places
+    run_of: Places
+    lines: Places
+    measured: Mapping[str, Matrix]
+    sigma: Mapping[str, Matrix]
     covariates: Mapping[str, Covariate]
-    held_out: NDArray[np.bool_]
+    held_out: Mask
     notes: tuple[str, ...] = ()
     slips: tuple[Slip, ...] = ()
     absent: frozenset[str] = field(default_factory=frozenset)
     """Conditions of effects that no column gives: not measured."""
     sides: Mapping[str, Sides] = field(default_factory=dict)
-    """Of results with censored rows: 1 where the true value lies above what was read, -1 where it lies below."""
+    """Of results with censored rows."""
     counts: tuple[RowCount, ...] = ()
     """What became of every row of each file, in the order of ``files``."""
 
@@ -107,7 +101,7 @@ class Records:
         _, first = np.unique(rows.view(np.dtype((np.void, rows.itemsize * rows.shape[1]))), return_index=True)
         return int(np.isfinite(measured[first]).sum())
 
-    def known(self, name: str) -> NDArray[np.bool_]:
+    def known(self, name: str) -> Mask:
         """Mark the rows in which the value of a result was read: neither missing nor censored."""
         there = np.isfinite(self.measured[name])
         return np.asarray(there & (self.sides[name] == 0)) if name in self.sides else np.asarray(there)
@@ -115,9 +109,9 @@ class Records:
     def __len__(self) -> int:
         return len(self.run_of)
 
-    def part(self, places: NDArray[np.intp]) -> Records:
+    def part(self, places: Places) -> Records:
         """Return some of the rows, by their places in order."""
-        rows, lines = self.rows, np.asarray(self.rows.lines)[places].tolist()
+        rows = self.rows
         columns: dict[str, Any] = {
             name: [values[place] for place in places] if isinstance(values, list) else values[places]
             for name, values in rows.columns.items()
@@ -126,7 +120,7 @@ class Records:
             rows,
             columns=columns,
             axes={name: values[places] for name, values in rows.axes.items()},
-            lines=tuple(lines),
+            lines=tuple(np.asarray(rows.lines)[places].tolist()),
             runs=tuple(rows.runs[place] for place in places) if rows.runs else (),
         )
         return replace(

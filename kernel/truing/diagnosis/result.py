@@ -4,20 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from truing.diagnosis.alarms import warnings_of
+from truing.diagnosis.arrays import Matrix
+from truing.diagnosis.records import Records
 from truing.diagnosis.verdict import Verdict, explanations_of, verdict_of
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from truing.diagnosis.records import Records
-    from truing.setup import Setup
+from truing.setup import Setup
+from truing.units import difference_unit, from_si, same_dimension
 
 Kind = Literal["bias", "trend", "order", "step", "wave", "spread", "autocorrelation", "outlier"]
 Sight = Literal["visible", "hidden in the tolerances", "not excited", "cannot be fitted"]
+FAMILIES = (
+    ("m", "mm", "um", "nm"),
+    ("rad", "mrad", "urad"),
+    ("deg", "arcmin", "arcsec"),
+    ("kN", "N", "mN"),
+    ("kN*m", "N*m", "mN*m"),
+    ("GPa", "MPa", "kPa", "Pa"),
+    ("h", "min", "s", "ms"),
+    ("kW", "W", "mW"),
+    ("kg", "g", "mg"),
+)
+KNOWN = {unit for family in FAMILIES for unit in family}
+SMALLEST, LARGEST = 0.1, 1000.0
+"""Between these a number reads well: 2.3 um rather than 0.0023 mm."""
 
 
 @dataclass(frozen=True)
@@ -266,9 +277,9 @@ class Curves:
     """
 
     result: str
-    measured: NDArray[np.float64]
-    before: NDArray[np.float64]
-    after: NDArray[np.float64]
+    measured: Matrix
+    before: Matrix
+    after: Matrix
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -322,3 +333,19 @@ class Diagnosis:
     def unique(self) -> bool:
         """Whether one explanation is left, or nothing is to be explained."""
         return self.verdict == "none" or (self.verdict != "undecided" and len(explanations_of(self)) == 1)
+
+
+def reads_well(size: float, unit: str) -> bool:
+    """Whether a number (SI) is neither tiny nor huge in a unit."""
+    return SMALLEST <= abs(float(from_si(size, unit))) < LARGEST
+
+
+def readable_unit(unit: str, size: float) -> str:
+    """Return a unit like ``unit`` in which ``size`` (SI, a difference) reads well; ``unit`` itself where it does."""
+    own = difference_unit(unit)
+    if size == 0 or reads_well(size, own):
+        return own
+    for family in FAMILIES:
+        if own in family or (same_dimension(own, family[0]) and own not in KNOWN):
+            return next((each for each in family if reads_well(size, each)), own)
+    return own

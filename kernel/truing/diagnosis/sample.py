@@ -8,24 +8,17 @@ where they are those of Student's t, a reading far out says little, but the fart
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import exp, inf, log
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Mask, Matrix, Places, Sides
 from truing.diagnosis.machine import Machine, Predicted, gram_of
 from truing.diagnosis.noise import Setting, Spread, Tails, beyond, difference, expected, shares, whiten, worth
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from truing.diagnosis.arrays import Sides
-
-    Matrix = NDArray[np.float64]
 
 WITHOUT_MEMORY, NORMAL, CONSTANT = Setting(), Tails(inf, 4.5), Spread()
 SMALLEST_SHARE = 1e-6
@@ -64,8 +57,8 @@ class Channel:
     """
 
     name: str
-    rows: NDArray[np.intp]
-    starts: NDArray[np.bool_]
+    rows: Places
+    starts: Mask
     values: Matrix
     weights: Matrix
     scale: float
@@ -80,7 +73,7 @@ class Channel:
         return len(self.rows)
 
     @cached_property
-    def read(self) -> NDArray[np.intp] | slice:
+    def read(self) -> Places | slice:
         """Where the rows stand whose value was read: all that are not censored."""
         return slice(None) if self.sides is None else np.flatnonzero(self.sides == 0)
 
@@ -166,7 +159,7 @@ class Sample:
     noise: Mapping[str, Noise]
     channels: tuple[Channel, ...]
     directions: Matrix
-    mask: NDArray[np.bool_]
+    mask: Mask
 
     @property
     def rows(self) -> int:
@@ -211,12 +204,17 @@ class Sample:
 
     def squares(self, left: Matrix) -> list[float]:
         """Return by channel the square of the scale of what is left, in units of the noise."""
-        return [channel.square(left[part]) for part, channel in zip(self.parts, self.channels, strict=True)]
+        return [square for *_, square in self._scaled(left)]
+
+    def _scaled(self, left: Matrix) -> Iterator[tuple[Channel, slice, float]]:
+        """Give every channel, where its values stand, and the square of the scale of what is left of them."""
+        for channel, part in zip(self.channels, self.parts, strict=True):
+            yield channel, part, channel.square(left[part])
 
     def cost(self, left: Matrix, inputs: Matrix) -> float:
         """Return -2 log likelihood of what is left, noise of every result free, plus the prior of the inputs."""
         total = float(inputs @ inputs)
-        for part, channel, square in zip(self.parts, self.channels, self.squares(left), strict=True):
+        for channel, part, square in self._scaled(left):
             total += channel.known * log(square)
             if channel.freedom < inf:
                 total += float(channel.losses(left[part], square).sum())
@@ -224,13 +222,12 @@ class Sample:
 
     def losses(self, left: Matrix, judge: Matrix) -> Matrix:
         """Return by row what is left as -2 log likelihood in noise of the scale that ``judge`` leaves, (rows,)."""
-        each = zip(self.parts, self.channels, self.squares(judge), strict=True)
-        return np.concatenate([channel.losses(left[part], square) for part, channel, square in each])
+        return np.concatenate([channel.losses(left[part], square) for channel, part, square in self._scaled(judge)])
 
     def roots(self, left: Matrix) -> Matrix:
         """Return by row what makes squares of what is left count: its noise is the one that it shows, (rows,)."""
-        each = zip(self.parts, self.channels, self.squares(left), strict=True)
-        return np.concatenate([np.sqrt(channel.shares(left[part], square) / square) for part, channel, square in each])
+        each = self._scaled(left)
+        return np.concatenate([np.sqrt(channel.shares(left[part], square) / square) for channel, part, square in each])
 
     @cached_property
     def stride(self) -> float:
@@ -240,7 +237,7 @@ class Sample:
         """
         return min(((each.freedom + 3) / (each.freedom + 1) if each.freedom < inf else 1.0) for each in self.channels)
 
-    def of_rows(self, mask: NDArray[np.bool_]) -> Sample:
+    def of_rows(self, mask: Mask) -> Sample:
         """Return some of the rows, with the same noise."""
         return sample_of(self.machine, self.noise, self.mask & mask, self.directions)
 
@@ -252,9 +249,7 @@ def has_order(machine: Machine) -> bool:
     return bool(times) or bool(records.rows.series)
 
 
-def sample_of(
-    machine: Machine, noise: Mapping[str, Noise], mask: NDArray[np.bool_], directions: Matrix | None = None
-) -> Sample:
+def sample_of(machine: Machine, noise: Mapping[str, Noise], mask: Mask, directions: Matrix | None = None) -> Sample:
     """Return the rows that are marked, where the model itself has an answer; directions are looked for if not given."""
     channels = []
     for name, own in noise.items():
@@ -277,7 +272,7 @@ def sample_of(
     return Sample(machine, noise, tuple(channels), directions, mask)
 
 
-def directions_seen(machine: Machine, noise: Mapping[str, Noise], mask: NDArray[np.bool_]) -> Matrix:
+def directions_seen(machine: Machine, noise: Mapping[str, Noise], mask: Mask) -> Matrix:
     """Return the combinations of inputs that these rows can see in their noise."""
     measured = machine.records.measured
     places = {name: np.flatnonzero(mask & np.isfinite(measured[name])) for name in noise}
@@ -294,7 +289,7 @@ def compared_slopes(machine: Machine, name: str, typical: float) -> Matrix:
     return slopes * (typical / machine.base[name])[:, None] if typical else slopes
 
 
-def _least(machine: Machine, noise: Noise, name: str, rows: NDArray[np.intp]) -> float:
+def _least(machine: Machine, noise: Noise, name: str, rows: Places) -> float:
     """Return the smallest mean square, in units of the noise, that is more than rounding or the steps of the gauge."""
     values = machine.records.measured[name][rows]
     off = difference(values, machine.base[name][rows], noise.typical)
@@ -308,25 +303,19 @@ def resolution_of(values: Matrix) -> float:
     if len(distinct) < 3 or len(distinct) > len(values) / 2:
         return 0.0
     gaps = np.diff(distinct)
-    step = float(gaps.min())
-    steps = gaps / step
-    return step if step > 0 and bool(np.all(np.abs(steps - np.round(steps)) < 1e-3 * steps)) else 0.0
+    steps = gaps / gaps.min()
+    return float(gaps.min()) if np.all(np.abs(steps - np.round(steps)) < 1e-3 * steps) else 0.0
 
 
-def starts_of(run_of: NDArray[np.intp], rows: NDArray[np.intp]) -> NDArray[np.bool_]:
+def starts_of(run_of: Places, rows: Places) -> Mask:
     """Mark the first row of every run."""
-    runs = run_of[rows]
-    starts = np.ones(len(rows), dtype=bool)
-    starts[1:] = runs[1:] != runs[:-1]
-    return starts
+    return np.asarray(np.diff(run_of[rows], prepend=-1) != 0)
 
 
-def _pieces(machine: Machine, mask: NDArray[np.bool_]) -> NDArray[np.intp]:
+def _pieces(machine: Machine, mask: Mask) -> Places:
     """Number the pieces of runs that are left when only some rows are taken: a gap starts the noise anew."""
-    runs = machine.records.run_of
-    gap = np.zeros(len(mask), dtype=np.intp)
-    gap[1:] = (runs[1:] != runs[:-1]) | (mask[1:] & ~mask[:-1])
-    return np.cumsum(gap)
+    is_again = np.diff(mask.astype(np.intp), prepend=0) > 0
+    return np.cumsum(starts_of(machine.records.run_of, np.arange(len(mask))) | is_again)
 
 
 def residuals_of(machine: Machine) -> dict[str, Matrix]:
@@ -334,7 +323,7 @@ def residuals_of(machine: Machine) -> dict[str, Matrix]:
     made = {}
     for name, values in machine.records.measured.items():
         off = difference(values, machine.base[name] + machine.shifts[name], typical_of(machine, name))
-        made[name] = np.where(machine.records.known(name), off, np.nan) if name in machine.records.sides else off
+        made[name] = np.where(machine.records.known(name), off, np.nan)
     return made
 
 

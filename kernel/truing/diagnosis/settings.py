@@ -5,22 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from math import pi
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.stats import qmc
 
 from truing.declare.fields import InputField
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.records import Covariate
 from truing.diagnosis.tidying import is_angle
 from truing.measurements import RowsFile
 from truing.units import to_si
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 TRIED, FEW = 512, 32
 """So many points inside of the box are tried, and so many corners; few where calls of the model are dear."""
@@ -29,22 +24,19 @@ FEW_VALUES = 3
 
 def settings_of(machine: Machine, tried: int = TRIED) -> dict[str, Matrix]:
     """Return the settings that are tried, by input or condition, SI: so many corners of the box and points in it."""
-    boxes = {}
-    for name, item in machine.records.covariates.items():
-        box = _box(machine, name, item)
-        if box is not None and box[1] > box[0]:
-            boxes[name] = box
+    covariates = machine.records.covariates
+    known = {name: box for name, item in covariates.items() if (box := _box(machine, name, item)) is not None}
+    boxes = {name: (low, high) for name, (low, high) in known.items() if high > low}
     if not boxes:
         return {}
-    sampler = qmc.Sobol(len(boxes), scramble=False)
-    unit = sampler.random(tried)
+    unit = qmc.Sobol(len(boxes), scramble=False).random(tried)
     edges = np.random.Generator(np.random.SFC64(0)).integers(0, 3, size=(tried, len(boxes))) / 2
     every = np.concatenate([unit, edges])
     found = {}
     for column, (name, (low, high)) in enumerate(boxes.items()):
         values = low + (high - low) * every[:, column]
-        known = machine.records.covariates[name].values
-        if len(np.unique(known[np.isfinite(known)])) <= FEW_VALUES:
+        measured = covariates[name].values
+        if len(np.unique(measured[np.isfinite(measured)])) <= FEW_VALUES:
             values = np.where(every[:, column] < 0.5, low, high)
         found[name] = values
     return found
@@ -55,24 +47,23 @@ def _box(machine: Machine, name: str, item: Covariate) -> tuple[float, float] | 
     start = machine.start
     if name in start.diagnose.box:
         return start.diagnose.box[name]
-    low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
-    condition = start.model.known_conditions.get(name)
+    condition, field = start.model.known_conditions.get(name), start.model.input_fields.get(name)
     if condition is not None:
-        low = low if condition.low is None else float(to_si(condition.low, condition.unit))
-        return low, high if condition.high is None else float(to_si(condition.high, condition.unit))
-    field = start.model.input_fields.get(name)
-    return None if field is None or not field.varies else _input_box(field, low, high, is_time=item.role == "time")
+        low = np.nanmin(item.values) if condition.low is None else to_si(condition.low, condition.unit)
+        high = np.nanmax(item.values) if condition.high is None else to_si(condition.high, condition.unit)
+        return float(low), float(high)
+    return None if field is None or not field.varies else _input_box(field, item)
 
 
-def _input_box(field: InputField, low: float, high: float, *, is_time: bool) -> tuple[float, float]:
+def _input_box(field: InputField, item: Covariate) -> tuple[float, float]:
+    low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
     declared = [getattr(field.spec, key, None) for key in ("at_least", "above", "at_most", "below")]
     lows = [float(to_si(value, field.unit)) for value in declared[:2] if isinstance(value, (int, float))]
     highs = [float(to_si(value, field.unit)) for value in declared[2:] if isinstance(value, (int, float))]
     if is_angle(field.unit) and not lows and not highs:
         return min(low, -pi), max(high, pi)
     reach = (high - low) / 2
-    if is_time:
-        lows.append(min(low, 0.0))
+    lows += [min(low, 0.0)] if item.role == "time" else []
     return max([low - reach, *lows]), min([high + reach, *highs])
 
 

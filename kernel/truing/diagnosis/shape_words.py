@@ -7,8 +7,8 @@ import numpy as np
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.machine import Machine
-from truing.diagnosis.readable import readable_unit
 from truing.diagnosis.records import Covariate
+from truing.diagnosis.result import readable_unit
 from truing.numbers import format_number
 from truing.units import from_si
 

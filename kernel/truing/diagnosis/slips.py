@@ -9,12 +9,12 @@ largest tenth of them (a few wild readings decide nothing).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix, Places
 from truing.diagnosis.data_file import DataRows, declared_units
 from truing.diagnosis.joining import rows_of
 from truing.diagnosis.records import Slip
@@ -22,15 +22,11 @@ from truing.diagnosis.tidying import is_angle
 from truing.gauge import one_machine, read_by_gauge
 from truing.inputs_file.values import broken_bound
 from truing.setup import Setup
-from truing.trials import Trial, read_trials
+from truing.trials import read_trials
 from truing.units import difference_unit, from_si, same_dimension, to_si
 from truing.units.grammar import shown
 from truing.units.names import LEVELS, PURE
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-Answers = Mapping[str, "NDArray[np.float64]"]
 FACTORS = {1e-3: "0.001", 1e3: "1000", 1e-6: "1e-6", 1e6: "1e6"}
 INCHES = {25.4: "25.4 (inches, not millimetres)", 1 / 25.4: "1/25.4 (millimetres, not inches)"}
 ANGLES = {math.pi / 180: "pi/180 (degrees, not radians)", 180 / math.pi: "180/pi (radians, not degrees)"}
@@ -49,16 +45,19 @@ class _Gauge:
     """One measured result on some rows: what was measured, what the model says, how far tolerances reach (by mode)."""
 
     name: str
-    measured: NDArray[np.float64]
-    answer: NDArray[np.float64]
+    measured: Matrix
+    answer: Matrix
     reach: tuple[float, float]
 
-    def gain(self, measured: NDArray[np.float64], answer: NDArray[np.float64]) -> float:
+    def off(self, mode: int) -> float:
+        """Return how far the model is off, SI."""
+        return _size(self.measured - self.answer, mode)
+
+    def gain(self, measured: Matrix, answer: Matrix) -> float:
         """Return how many times smaller the error becomes; 0 where that says nothing about a slip."""
         best = 0.0
         for mode in (0, 1) if len(measured) >= FEWEST_ABOUT else (0,):
-            before = _size(self.measured - self.answer, mode)
-            after, signal = _size(measured - answer, mode), _size(answer, mode)
+            before, after, signal = self.off(mode), _size(measured - answer, mode), _size(answer, mode)
             if before > BETTER * max(self.reach[mode], after) and after <= LIKE * signal:
                 best = max(best, before / max(after, 1e-12 * before))
         return best
@@ -72,7 +71,8 @@ def suspected_slips(joined: DataRows, setup: Setup) -> tuple[Slip, ...]:
         return out_of_range
     few = joined.taken(_some_rows(joined))
     gauges = _gauges(few, setup)
-    beyond = [one for one in gauges if _is_far(one.measured, one.answer) and _is_beyond(one)]
+    far = [one for one in gauges if _is_far(one.measured, one.answer)]
+    beyond = [one for one in far if any(one.off(mode) > BETTER * one.reach[mode] for mode in (0, 1))]
     own = {one.name: found for one in beyond if (found := _own_slip(one, few, setup))}
     if len(beyond) > len(own) or len(own) > 1:
         shared = _input_slip(few, gauges, beyond, setup)
@@ -81,7 +81,7 @@ def suspected_slips(joined: DataRows, setup: Setup) -> tuple[Slip, ...]:
     return (*out_of_range, *own.values())
 
 
-def _size(errors: NDArray[np.float64], mode: int) -> float:
+def _size(errors: Matrix, mode: int) -> float:
     """Return the root mean square without the largest tenth; of mode 1 about the middle; infinite where most fail."""
     known = errors[np.isfinite(errors)]
     if len(known) < INLIERS * len(errors) or not len(known):
@@ -91,27 +91,18 @@ def _size(errors: NDArray[np.float64], mode: int) -> float:
     return float(np.sqrt(np.mean(kept**2)))
 
 
-def _is_far(measured: NDArray[np.float64], answer: NDArray[np.float64]) -> bool:
+def _is_far(measured: Matrix, answer: Matrix) -> bool:
     """Whether the error is a tenth of what is measured at least, as it is or about its middle."""
     here = np.isfinite(measured) & np.isfinite(answer)
     values, errors = measured[here], (measured - answer)[here]
     return len(values) > 0 and any(_size(errors, mode) > FAR * _size(values, mode) for mode in (0, 1))
 
 
-def _is_beyond(one: _Gauge) -> bool:
-    return any(_size(one.measured - one.answer, mode) > BETTER * one.reach[mode] for mode in (0, 1))
-
-
-def _some_rows(joined: DataRows) -> NDArray[np.intp]:
+def _some_rows(joined: DataRows) -> Places:
     """Return rows spread over the whole record; where series make records, the first whole ones."""
     if not joined.named("series"):
         return np.unique(np.linspace(0, len(joined) - 1, MOST_ROWS).astype(np.intp))
-    first = joined.runs == joined.runs[0]
-    return np.flatnonzero(first)
-
-
-def _answers(few: DataRows, machine: Setup, trials: Sequence[Trial]) -> list[Answers]:
-    return list(read_trials(machine, rows_of(few), trials, few.named("measured")))
+    return np.flatnonzero(joined.runs == joined.runs[0])
 
 
 def _gauges(few: DataRows, setup: Setup) -> list[_Gauge]:
@@ -119,17 +110,13 @@ def _gauges(few: DataRows, setup: Setup) -> list[_Gauge]:
     machine = one_machine(setup)
     scatter = [(name, each.sd) for by_input in setup.distributions().values() for name, each in by_input.items()]
     moved = [{name: few.columns.get(name, machine.nominal(name)) + sd} for name, sd in scatter]
-    answers, *others = _answers(few, machine, [{}, *moved])
-    reach = {name: np.zeros(2) for name in answers}
-    for other in others:
-        for result, values in answers.items():
-            sizes = np.array([_size(other[result] - values, mode) for mode in (0, 1)])
-            reach[result] += np.where(np.isfinite(sizes), sizes, 0.0) ** 2
+    answers, *others = read_trials(machine, rows_of(few), [{}, *moved], few.named("measured"))
     found = []
     for name, values in answers.items():
-        here = np.isfinite(few.columns[name])
-        raw, about = np.sqrt(reach[name]).tolist()
-        found.append(_Gauge(name, few.columns[name], np.where(here, values, np.nan), (raw, about)))
+        measured = few.columns[name]
+        sizes = np.array([_size(other[name] - values, mode) for other in others for mode in (0, 1)]).reshape(-1, 2)
+        raw, about = np.sqrt(np.sum(np.where(np.isfinite(sizes), sizes, 0.0) ** 2, axis=0)).tolist()
+        found.append(_Gauge(name, measured, np.where(np.isfinite(measured), values, np.nan), (raw, about)))
     return found
 
 
@@ -157,7 +144,8 @@ def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup
     best: tuple[float, Slip] | None = None
     trials = list(_trials(few, setup))
     scaled = [{name: few.columns[name] * factor} for name, factor, _ in trials]
-    for (name, factor, words), answers in zip(trials, _answers(few, one_machine(setup), scaled), strict=True):
+    found = read_trials(one_machine(setup), rows_of(few), scaled, few.named("measured"))
+    for (name, factor, words), answers in zip(trials, found, strict=True):
         gains = [one.gain(one.measured, answers[one.name]) for one in beyond]
         if not all(gains) or any(_is_worse(one, answers[one.name]) for one in gauges):
             continue
@@ -167,10 +155,9 @@ def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup
     return None if best is None else best[1]
 
 
-def _is_worse(one: _Gauge, answer: NDArray[np.float64]) -> bool:
+def _is_worse(one: _Gauge, answer: Matrix) -> bool:
     """Whether a result that was right is far off with another answer."""
-    before, after = _size(one.measured - one.answer, 0), _size(one.measured - answer, 0)
-    return after > LIKE * BETTER * max(before, one.reach[0])
+    return _size(one.measured - answer, 0) > LIKE * BETTER * max(one.off(0), one.reach[0])
 
 
 def _trials(few: DataRows, setup: Setup) -> Iterator[tuple[str, float, str]]:
@@ -187,14 +174,14 @@ def _trials(few: DataRows, setup: Setup) -> Iterator[tuple[str, float, str]]:
                 yield name, factor, words
 
 
-def _off(one: _Gauge, after: NDArray[np.float64], setup: Setup) -> str:
+def _off(one: _Gauge, after: Matrix, setup: Setup) -> str:
     """Say how far the model is off a result before and after, in the unit the result is printed in."""
     unit = difference_unit(setup.print_unit(one.name))
-    mode = 1 if _size(one.measured - one.answer, 0) < BETTER * _size(after, 0) else 0
-    sizes = [from_si(_size(errors, mode), unit) for errors in (one.measured - one.answer, after)]
+    mode = 1 if one.off(0) < BETTER * _size(after, 0) else 0
+    before, then = from_si(one.off(mode), unit), from_si(_size(after, mode), unit)
     scale = "" if unit in PURE else f" {unit}"
     about = " about its middle" if mode else ""
-    return f"the model is then {sizes[1]:.3g}{scale} off '{one.name}'{about} instead of {sizes[0]:.3g}{scale}"
+    return f"the model is then {then:.3g}{scale} off '{one.name}'{about} instead of {before:.3g}{scale}"
 
 
 def _slip(name: str, factor: float, joined: DataRows, why: str, words: str) -> Slip:
@@ -225,12 +212,12 @@ def _out_of_range(joined: DataRows, setup: Setup) -> Iterator[Slip]:
                 break
 
 
-def factor_that_works(joined: DataRows, setup: Setup) -> str:
+def factor_that_works(joined: DataRows, setup: Setup) -> Iterator[str]:
     """Say with which factor on a column the model would not fail, where there is one; nothing otherwise."""
     few = joined.taken(_some_rows(joined))
     machine, wanted = one_machine(setup), joined.named("measured")
     for name, factor, words in _trials(few, setup):
         scaled = replace(few, columns={**few.columns, name: few.columns[name] * factor})
         if read_by_gauge(machine, rows_of(scaled), wanted).failed.mean() <= 1 - INLIERS:
-            return f"the model works where column {_header(name, joined)} is multiplied by {words}: is its unit right?"
-    return ""
+            yield f"the model works where column {_header(name, joined)} is multiplied by {words}: is its unit right?"
+            return

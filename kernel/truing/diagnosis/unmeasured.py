@@ -7,35 +7,29 @@ is known for it, so this is the only noise.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 from math import sqrt
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from truing.declare.goals import Maximise, Minimise, Require
 from truing.declare.specs import Axis
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.design import Proposal, is_physical, name_of, rival_fits
 from truing.diagnosis.extended import switched_on
-from truing.diagnosis.fitted import Fit
-from truing.diagnosis.intervals import input_value
+from truing.diagnosis.fitted import Fit, input_value
 from truing.diagnosis.machine import Machine, machine_of, predict
-from truing.diagnosis.readable import readable_unit
-from truing.diagnosis.records import Records
-from truing.diagnosis.result import Amount, Fact, NextPoint, Tie
+from truing.diagnosis.result import Amount, Fact, NextPoint, Tie, readable_unit
 from truing.diagnosis.shape_words import in_unit
 from truing.diagnosis.verdict import APART
 from truing.setup import SwitchedOn
 from truing.units import read_quantity
 from truing.units.names import PURE
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 ROWS = 40
 """So many rows of the record are asked what the rivals differ in."""
@@ -53,7 +47,7 @@ class Explanation:
 
     name: str
     on: tuple[SwitchedOn, ...]
-    inputs: Mapping[str, float] = field(default_factory=dict)
+    inputs: Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -64,16 +58,8 @@ class _Gap:
     names: tuple[str, str]
     size: float
     scatter: float
-
-    @property
-    def clearness(self) -> float:
-        """The difference over the scatter of machines; a result that does not scatter is as clear as can be."""
-        return self.size / self.scatter if self.scatter > 0 else 1e6
-
-
-def rival_explanations(chosen: Chosen) -> list[Explanation]:
-    """Return the winner, the causes of the same curve and the rivals, each as it is fitted to this data."""
-    return [_explanation(found) for found in rival_fits(chosen)] if is_physical(chosen.best) else []
+    clearness: float
+    """The difference over the scatter of machines; a result that does not scatter is as clear as can be."""
 
 
 def _explanation(found: Fit) -> Explanation:
@@ -89,7 +75,8 @@ def with_results(chosen: Chosen, proposal: Proposal) -> tuple[list[NextPoint], l
 
     The result comes first where settings leave something open that it does not.
     """
-    machine, explanations = chosen.competition.sample.machine, rival_explanations(chosen)
+    machine = chosen.competition.sample.machine
+    explanations = [_explanation(found) for found in rival_fits(chosen)] if is_physical(chosen.best) else []
     asked, apart = result_to_measure(machine, explanations)
     tied = [pair for pair in proposal.tied if frozenset(pair) not in apart]
     ties = [_tie(machine.start, names, explanations) for names in _joined(tied)]
@@ -114,8 +101,8 @@ def _tie(start: Any, names: Sequence[str], explanations: Sequence[Explanation]) 
     """Return explanations that cannot be told apart, with what would have to be so for each of them alone."""
     tied = [each for each in explanations if each.name in names]
     facts = [fact for each in tied for fact in _facts(start, each)]
-    common = {fact.quantity for fact in facts if sum(fact.quantity == other.quantity for other in facts) == len(tied)}
-    return Tie(tuple(names), tuple(fact for fact in facts if len(tied) < 2 or fact.quantity not in common))
+    stated = Counter(fact.quantity for fact in facts)
+    return Tie(tuple(names), tuple(fact for fact in facts if len(tied) < 2 or stated[fact.quantity] < len(tied)))
 
 
 def _facts(start: Any, explanation: Explanation) -> Iterator[Fact]:
@@ -145,8 +132,10 @@ def result_to_measure(
     names = [] if machine.records.rows.series or len(explanations) < 2 else _unmeasured(machine)
     if not names:
         return None, set()
-    there = machine_of(start, _few_rows(machine.records, names))
+    few = machine.records.part(np.arange(0, len(machine.records), max(1, len(machine.records) // ROWS)))
+    there = machine_of(start, replace(few, measured={name: np.zeros(len(few)) for name in names}, sigma={}))
     found = [_changes(there, explanation) for explanation in explanations]
+    goals = {goal.result for goal in start.model.objectives if isinstance(goal, (Require, Minimise, Maximise))}
     ranked: list[tuple[tuple[Any, ...], _Gap, list[_Gap]]] = []
     for place, name in enumerate(names):
         gaps = [
@@ -157,7 +146,7 @@ def result_to_measure(
         if gaps:
             faintest = min(gaps, key=lambda gap: gap.clearness)
             parted = sum(explanations[0].name in gap.names for gap in gaps)
-            is_goal = name in _goals(start.model)
+            is_goal = name in goals
             clearness = float(f"{faintest.clearness:.2g}")
             has_gauge = is_goal or start.model.own_result_fields[name].unit not in PURE
             ranked.append(((has_gauge, parted, is_goal, len(gaps), clearness, -place), faintest, gaps))
@@ -174,24 +163,9 @@ def _unmeasured(machine: Machine) -> list[str]:
     return [name for name in own if name not in machine.records.measured and name in machine.start.model.result_fields]
 
 
-def _goals(model: Any) -> set[str]:
-    return {
-        getattr(goal, "result", getattr(goal, "name", ""))
-        for goal in model.objectives
-        if isinstance(goal, (Require, Minimise, Maximise))
-    }
-
-
-def _few_rows(records: Records, names: Sequence[str]) -> Records:
-    """Return some rows, evenly over the record, as if these results were what is measured there."""
-    few = records.part(np.arange(0, len(records), max(1, len(records) // ROWS)))
-    return replace(few, measured={name: np.zeros(len(few)) for name in names}, sigma={})
-
-
 def _changes(there: Machine, explanation: Explanation) -> Mapping[str, Matrix]:
     """Return the change of every unmeasured result by an explanation, SI, shape (n,)."""
-    setup = there.start.with_effects(explanation.on).changed(explanation.inputs)
-    changed = predict(setup, there.records)
+    changed = predict(there.start.with_effects(explanation.on).changed(explanation.inputs), there.records)
     return {name: changed[name] - there.base[name] for name in there.base}
 
 
@@ -200,21 +174,17 @@ def _gap(there: Machine, name: str, names: tuple[str, str], apart: Matrix) -> _G
     apart = np.abs(apart)
     slopes = there.slopes[name] if there.together is None else there.slopes[name] @ there.together
     scatter = np.sqrt(np.sum(slopes**2, axis=1))
-    least = LEAST_SHARE * float(np.nanmax(np.abs(there.base[name]), initial=0.0))
-    least = max(least, _resolution(there.start.model, name))
+    largest, model = float(np.nanmax(np.abs(there.base[name]), initial=0.0)), there.start.model
+    jumps = [getattr(item.spec, "halving_but", {}).get(name) for item in model.input_fields.values()]
+    resolutions = [read_quantity(most, model.own_result_fields[name].unit) for most in jumps if most]
+    least = max(LEAST_SHARE * largest, *resolutions, 0.0)  # a numerical step alone moves a result that jumps
     seen = np.isfinite(apart) & (apart > least) & (apart > CLEAR * scatter)
     if not seen.any():
         return None
     worth = np.where(seen, apart, 0.0) / np.maximum(scatter, np.where(seen, 1e-6 * apart, 1e-300))
     place = int(np.argmax(np.where(worth > NEARLY * worth.max(), apart, -1.0)))
-    return _Gap(name, names, float(apart[place]), float(scatter[place]))
-
-
-def _resolution(model: Any, name: str) -> float:
-    """Return how far a numerical step alone moves a result that jumps, SI: a smaller difference is none."""
-    said = [getattr(item.spec, "halving_but", {}).get(name) for item in model.input_fields.values()]
-    unit = model.own_result_fields[name].unit
-    return max((read_quantity(most, unit) for most in said if most), default=0.0)
+    size, alone = float(apart[place]), float(scatter[place])
+    return _Gap(name, names, size, alone, size / alone if alone > 0 else 1e6)
 
 
 def _point(start: Any, gap: _Gap) -> NextPoint:

@@ -64,16 +64,13 @@ def amount_text(amount: Amount | None, digits: int = 3) -> str:
 
 def readable(amount: Amount | None) -> Amount | None:
     """Return a size in a unit in which it reads well: 1.15 µm/h rather than 0.00115 mm/h."""
-    from truing.diagnosis.readable import FAMILIES, LARGEST, SMALLEST
-    from truing.diagnosis.result import Amount
-    from truing.units import from_si
+    from truing.diagnosis.result import FAMILIES, Amount, reads_well
 
-    if amount is None or not amount.value or SMALLEST <= abs(float(from_si(amount.value, amount.unit))) < LARGEST:
+    if amount is None or not amount.value or reads_well(amount.value, amount.unit):
         return amount
     head, bar, tail = amount.unit.partition("/")
     units = [f"{each}{bar}{tail}" for family in FAMILIES if head in family for each in family]
-    fitting = [unit for unit in units if SMALLEST <= abs(float(from_si(amount.value, unit))) < LARGEST]
-    return Amount(amount.value, fitting[0]) if fitting else amount
+    return next((Amount(amount.value, unit) for unit in units if reads_well(amount.value, unit)), amount)
 
 
 def score_text(number: float | None) -> str:
