@@ -154,8 +154,7 @@ def to_truth(case: Case, document: Document) -> float:
         return 0.0
     record = case.record
     free = [record.tolerances[:, list(SCATTER).index(name)][:, None] for name in _inputs(document)]
-    owners = [_owner(case, cause) for cause in document["causes"] if not cause["effect"].startswith("input:")]
-    names = [record.candidates[owner].name for owner in owners if owner is not None]
+    names = [candidate.name for cause in document["causes"] for candidate in _meant(case, cause)]
     if document["remainder"] is None:
         return Lens(record, np.hstack(free) if free else None).separation(case.change, names)
     depends_on = set(document["remainder"]["depends_on"])
@@ -175,11 +174,10 @@ def _inputs(document: Document) -> list[str]:
     return [name for name in named if name in SCATTER]
 
 
-def _owner(case: Case, cause: Mapping[str, Any]) -> int | None:
-    """The candidate of a cause."""
-    fits = [at for at, candidate in enumerate(case.record.candidates) if candidate.effect == cause["effect"]]
-    exact = [at for at in fits if is_named(case.record.candidates[at], cause)]
-    return next(iter([*exact, *fits]), None)
+def _meant(case: Case, cause: Mapping[str, Any]) -> list[Candidate]:
+    """The candidates of a cause: of an effect with parts every part that it has unknowns of; none for an input."""
+    fits = [candidate for candidate in case.record.candidates if candidate.effect == cause["effect"]]
+    return [candidate for candidate in fits if is_named(candidate, cause)] or fits[:1]
 
 
 def covered(case: Case, document: Document) -> dict[str, bool]:

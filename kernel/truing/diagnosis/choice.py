@@ -228,7 +228,8 @@ def _is_near(made: Competition, best: Fit, found: Fit) -> bool:
         added = [cause for cause in found.causes if cause.tag not in best.key]
         if made.sample.has_memory:
             behind = min(behind, made.own_score(found) - made.own_score(best))
-        return behind < NEARLY and len(added) == 1 and added[0].effect is not None
+        is_new = added[0].effect is not None or (added[0].shape is not None and not shapes_in(best))
+        return behind < NEARLY and len(added) == 1 and is_new
     if len(found.causes) > len(best.causes) or (found.key < best.key and behind >= CLOSE):
         return False
     if (shifts_inputs(found) and not shifts_inputs(best)) or shapes_in(found) > max(shapes_in(best), 1):
