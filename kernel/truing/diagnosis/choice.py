@@ -17,8 +17,9 @@ from truing.diagnosis.causes import Cause
 from truing.diagnosis.chance import Law
 from truing.diagnosis.competition import Competition, exchange
 from truing.diagnosis.fitted import Fit, differ
+from truing.diagnosis.folds import carries_over, folds_of
 from truing.diagnosis.intervals import certainty_of, may_be_zero, places_of
-from truing.diagnosis.steps import Decision, is_sensible, shapes_in, shifts_inputs, steps_from
+from truing.diagnosis.steps import CARRIED, Decision, is_sensible, shapes_in, shifts_inputs, steps_from
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -228,8 +229,12 @@ def _is_near(made: Competition, best: Fit, found: Fit) -> bool:
         added = [cause for cause in found.causes if cause.tag not in best.key]
         if made.sample.has_memory:
             behind = min(behind, made.own_score(found) - made.own_score(best))
-        is_new = added[0].effect is not None or (added[0].shape is not None and not shapes_in(best))
-        return behind < NEARLY and len(added) == 1 and is_new
+        if behind >= NEARLY or len(added) > 1:
+            return False
+        is_first_shape = added[0].shape is not None and not shapes_in(best)
+        return added[0].effect is not None or (
+            is_first_shape and carries_over(best, found, made.extended, folds_of(made.sample)) >= CARRIED
+        )
     if len(found.causes) > len(best.causes) or (found.key < best.key and behind >= CLOSE):
         return False
     if (shifts_inputs(found) and not shifts_inputs(best)) or shapes_in(found) > max(shapes_in(best), 1):
