@@ -19,7 +19,7 @@ from truing.diagnosis.competition import Competition, exchange
 from truing.diagnosis.fitted import Fit, differ
 from truing.diagnosis.folds import carries_over, folds_of
 from truing.diagnosis.intervals import certainty_of, may_be_zero, places_of
-from truing.diagnosis.steps import CARRIED, Decision, is_sensible, shapes_in, shifts_inputs, steps_from
+from truing.diagnosis.steps import CARRIED, Decision, draws_anything, is_sensible, shapes_in, shifts_inputs, steps_from
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,7 +39,7 @@ NEARLY = 4.0
 ALIKE = 1.0
 """Sum of squares, in units of the noise, by which two explanations differ that are one on this record."""
 TWIN = 0.98
-"""Share of a curve that a shape must draw to be a vaguer word for it."""
+"""Share of a curve that a shape must draw to be a vaguer word for it, unless it fits better by ``CLOSE``."""
 RIVALS = 24
 ROUNDS = 2
 SURELY = 30.0
@@ -245,11 +245,16 @@ def _is_near(made: Competition, best: Fit, found: Fit) -> bool:
 
 
 def _is_vaguer(made: Competition, best: Fit, found: Fit) -> bool:
-    """Whether a shape that nobody registered draws what the winner has in its place."""
+    """Whether a shape that nobody registered draws what the winner has in its place, and fits no better.
+
+    A polynomial always fits a little better: it draws anything.
+    """
     shapes = [cause for cause in found.causes if cause.shape is not None and cause.tag not in best.key]
     gone = [place for place, cause in enumerate(best.causes) if cause.tag not in found.key]
     if not shapes or all(best.causes[place].shape is not None for place in gone):
         return _says_the_same(best, found)
+    if found.cost < best.cost - CLOSE and not any(draws_anything(cause) for cause in shapes):
+        return False
     wanted = _curve_of(made, best, gone)
     columns = [column for cause in shapes for column in _columns_of(made, found, cause)]
     basis = np.linalg.qr(np.column_stack([*columns, made.sample.drawn]))[0]

@@ -96,7 +96,7 @@ def _candidates(made: Competition, at: Fit, size: int) -> Iterator[Fit]:
     shape is then what is left beside it.
     """
     best = _best(made, at, size)
-    if best is None or not any(_draws_anything(cause) and cause.tag not in at.key for cause in best.causes):
+    if best is None or not any(draws_anything(cause) and cause.tag not in at.key for cause in best.causes):
         yield from [] if best is None else [best]
         return
     null = made.null
@@ -119,7 +119,7 @@ def _is_own(found: Fit) -> bool:
     return all(cause.effect is not None and not cause.is_kernel for cause in found.causes)
 
 
-def _draws_anything(cause: Cause) -> bool:
+def draws_anything(cause: Cause) -> bool:
     """Whether a cause is a polynomial of covariates that nobody registered."""
     return cause.shape is not None and cause.shape.kind in {"trend", "product"}
 
