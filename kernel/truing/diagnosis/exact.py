@@ -32,7 +32,7 @@ ROUGHLY = 1e-2
 """A fit ends where a step promises less than so much of the score."""
 MOST_STEPS, MOST_ROUGH = 40, 12
 """So many steps are taken to an exact end, and to a rough one."""
-MOVED = 1.0
+MOVED = 0.1
 """Sum of squares, in units of the noise, that slopes of the inputs may miss before their anchor is moved."""
 MOST_ANCHORS = 3
 ASIDE = 0.05
