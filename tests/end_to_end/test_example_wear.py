@@ -25,6 +25,8 @@ needs_the_record = pytest.mark.skipif(not RECORD.is_file(), reason="the record i
 Table = list[list[str]]
 CYCLES, LOAD = 0.191, 0.649
 """Exponents of wear over cycles and load: least squares on the logarithms of all rows, apart from the project."""
+OF_SIX = (0.50, 0.71)
+"""95 % interval of the exponent over load where the six specimens of the fit are what differs: 0.602 with 0.041."""
 
 
 @pytest.fixture(scope="module")
@@ -63,12 +65,12 @@ def causes_of(document: Document) -> list[set[str]]:
     return [set(names) for names in document["explanations"]]
 
 
-def exponents(document: Document) -> dict[str, list[float]]:
-    """The intervals of a power of the cycles with a power of the load, as the diagnosis states them."""
+def exponents(document: Document) -> dict[str, dict[str, Any]]:
+    """A power of the cycles with a power of the load, as the first explanation states them that holds both."""
     every = [{cause["effect"]: cause["unknowns"] for cause in document["causes"]}]
     every += [other["unknowns"] for other in document["alternatives"]]
-    both = next(item for item in every if set(item) == {"slowing_rate", "load_sharing"})
-    return {name: unknowns["exponent"]["interval95"] for name, unknowns in both.items()}
+    both = next(unknowns for unknowns in every if {"slowing_rate", "load_sharing"} <= set(unknowns))
+    return {name: unknowns["exponent"] for name, unknowns in both.items()}
 
 
 def test_the_plugin_passes_the_kit(wear: Any) -> None:
@@ -103,13 +105,13 @@ def test_the_powers_of_the_record_are_those_that_the_page_prints() -> None:
 def test_both_powers_are_found_and_what_they_mean_is_left_open(desk: Path) -> None:
     document = diagnosed(desk, "logarithms")
     assert document["verdict"] == "one_of"
-    assert {"slowing_rate", "load_sharing"} in causes_of(document)
-    assert {"slowing_rate", "scar_geometry"} in causes_of(document)
-    assert {"smoothing"} not in causes_of(document)
-    assert {"debris"} not in causes_of(document)
-    intervals = exponents(document)
-    assert intervals["slowing_rate"][0] < 1 - CYCLES < intervals["slowing_rate"][1]
-    assert intervals["load_sharing"][0] < 1 - LOAD < intervals["load_sharing"][1]
+    assert any({"slowing_rate", "load_sharing"} <= names for names in causes_of(document))
+    assert any({"slowing_rate", "scar_geometry"} <= names for names in causes_of(document))
+    assert not any({"smoothing", "debris"} & names for names in causes_of(document))
+    powers = exponents(document)
+    low, high = powers["slowing_rate"]["interval95"]
+    assert low < 1 - CYCLES < high
+    assert OF_SIX[0] < 1 - powers["load_sharing"]["value"] < OF_SIX[1]
     held_out = document["gain"]["log_wear"]["held_out"]
     assert held_out["rmse_after"]["value"] < 0.2 * held_out["rmse_before"]["value"]
 
