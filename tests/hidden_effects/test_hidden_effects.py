@@ -175,3 +175,22 @@ def test_a_small_cause_beside_a_rough_shape_is_not_excluded() -> None:
     assert list(case.hidden) == ["slider_inertia"]
     assert (document["verdict"], document["causes"], document["shared"]) == ("one_of", [], ["unknown"])
     assert judged["in_set"]
+
+
+def test_a_wave_beside_a_cause_may_be_there_as_well() -> None:
+    """5.6 cycles over time, which noise with a memory draws as well: the cause alone is not stated."""
+    case, document, judged = answered(911029, Wish())
+    assert case.shape is not None
+    assert list(case.hidden) == ["slider_inertia"]
+    assert (document["verdict"], document["shared"]) == ("one_of", ["slider_inertia"])
+    assert judged["in_set"]
+
+
+@pytest.mark.parametrize(("seed", "named"), [(913009, "periodic_order"), (913155, "encoder_eccentricity")])
+def test_a_name_that_fits_worse_than_an_unregistered_curve_is_not_alone(seed: int, named: str) -> None:
+    """A bend and an order of 6 that nobody registered, of which a registered curve draws most with fewer numbers."""
+    case, document, judged = answered(seed, Wish())
+    assert case.shape is not None
+    assert named not in case.hidden
+    assert document["verdict"] == "one_of"
+    assert judged["in_set"]

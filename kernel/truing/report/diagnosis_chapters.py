@@ -152,7 +152,7 @@ def _significance(diagnosis: Diagnosis) -> Iterator[str]:
             f"{listed([spoken(name) for name in remainder.results])} ({p_text(remainder.p_value)})."
         )
     if diagnosis.verdict == "undecided":
-        yield f"The verdict is undecided: {listed(list(reasons(diagnosis)))}."
+        yield f"The verdict is undecided: {'; '.join([listed(list(reasons(diagnosis))), *shared_words(diagnosis)])}."
     if diagnosis.verdict == "named":
         yield "The verdict is unique: no other explanation is near."
     if diagnosis.verdict == "one_of":
