@@ -15,6 +15,7 @@ from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.arrays import Mask, Matrix, Places
 from truing.errors import UnitError
+from truing.gauge import axis_of
 from truing.inputs_file.values import broken_bound
 from truing.kernel import Offer
 from truing.measurements.csv_text import Faults
@@ -205,7 +206,7 @@ def _keep_bounds(item: InputField, values: Matrix, table: DataTable, faults: Fau
 
 
 def _unfit(table: DataTable, model: Model[Any, Any]) -> Iterator[str]:
-    """Say which columns cannot change from row to row, or cannot be measured in rows."""
+    """Say which columns cannot change from row to row, cannot be measured in rows, or need the place of their rows."""
     for name in table.columns:
         item = model.input_fields.get(name)
         result = model.own_result_fields.get(name)
@@ -213,19 +214,10 @@ def _unfit(table: DataTable, model: Model[Any, Any]) -> Iterator[str]:
             yield f"{name} cannot change from row to row; state it in the inputs file"
         elif result is not None and not isinstance(result.spec, Axis) and name not in model.measurable:
             yield f"{name} is a column of a table that the calculation makes; it cannot be compared row by row"
-        elif name in model.measurable:
-            yield from _without_axis(name, table, model)
-
-
-def _without_axis(name: str, table: DataTable, model: Model[Any, Any]) -> Iterator[str]:
-    """Say that a result along an axis needs the place of its rows."""
-    item = model.own_result_fields[name]
-    own = f"{item.along}_{item.scope}"
-    axis = own if own in model.own_result_fields else item.along
-    known = model.own_result_fields.get(axis)
-    if item.along and axis not in table.columns and known is not None:
-        like = f"{axis} [{known.unit}]" if known.unit else axis
-        yield f"{name} runs along '{axis}'; give the place of each row in a column '{like}'"
+        axis = model.own_result_fields.get(axis_of(name, model)) if name in model.measurable else None
+        if axis is not None and axis.name not in table.columns:
+            like = f"{axis.name} [{axis.unit}]" if axis.unit else axis.name
+            yield f"{name} runs along '{axis.name}'; give the place of each row in a column '{like}'"
 
 
 def _empty(columns: Mapping[str, NDArray[Any]], parts: Mapping[str, Part], faults: Faults) -> Iterator[str]:
