@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.model import Model
 from truing.diagnosis.arrays import Matrix, Places
@@ -18,9 +19,6 @@ from truing.inputs_file.values import broken_bound
 from truing.measurements.derived import derive
 from truing.units import same_dimension
 from truing.units.names import PURE
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 TIME = "time"
 """The column by which rows are sorted, whatever part it plays."""
@@ -128,7 +126,7 @@ def in_one_piece(data: DataRows, model: Model[Any, Any]) -> DataRows:
         for rows in runs:
             joined[rows], more = _joined(joined[rows])
             jumps += more
-        if jumps and _keeps_bounds(name, joined, model):
+        if jumps and keeps_bounds(name, joined, model):
             columns[name] = joined
             notes.append(f"'{name}' jumps by a turn at {counted(jumps, 'place')} of a sweep and was joined there")
     return replace(data, columns=columns).noted(*notes)
@@ -147,7 +145,8 @@ def _joined(angles: Matrix) -> tuple[Matrix, int]:
     return (whole, jumps) if small.mean() >= SWEEPING else (angles, 0)
 
 
-def _keeps_bounds(name: str, values: Matrix, model: Model[Any, Any]) -> bool:
+def keeps_bounds(name: str, values: Matrix, model: Model[Any, Any]) -> bool:
+    """Whether values (n,), SI, lie within the bounds of an input; anything else has none."""
     item = model.input_fields.get(name)
     return item is None or not any(broken_bound(item, float(end)) for end in (np.nanmin(values), np.nanmax(values)))
 
@@ -160,12 +159,11 @@ def is_angle(unit: str) -> bool:
 def with_histories(data: DataRows, model: Model[Any, Any]) -> DataRows:
     """Make the conditions that are derived from whole runs: what has been, since the first row of the file."""
     made: dict[str, NDArray[Any]] = {}
-    parts: dict[str, Part] = dict(data.parts)
     runs, _ = numbered(data.runs.tolist())
     for condition in model.known_conditions.values():
         source = data.columns.get(condition.made_from)
         is_measured = condition.name in data.columns and condition.made_from != condition.name
         if source is not None and source.dtype != object and not is_measured:
             made[condition.name] = derive(condition, data.columns, runs, _time(data))
-            parts[condition.name] = "condition"
-    return replace(data, columns={**data.columns, **made}, parts=parts)
+    parts: dict[str, Part] = dict.fromkeys(made, "condition")
+    return replace(data, columns={**data.columns, **made}, parts={**data.parts, **parts})
