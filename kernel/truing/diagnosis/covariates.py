@@ -33,13 +33,17 @@ def covariates_of(joined: DataRows, setup: Setup) -> tuple[dict[str, Covariate],
     Where no time was measured, the place in the record stands for it.
     """
     found: dict[str, Covariate] = {}
-    turning = _turning(setup)
+    effects = [effect for name, effect in setup.model.known_effects.items() if name.startswith("periodic_order")]
+    known = [effect for effect in effects if reading_of(effect) is not None and not may_stand(effect)]
+    turning = {name for effect in known for name in (*effect.reads, *(need.name for need in effect.needs))}
     for part, usual in _ROLES.items():
         for name in joined.named(part):
             is_flag = part == "other" and name in setup.diagnose.flags  # it says what came out, and is no reason for it
             if is_flag or (part == "word" and setup.model.input_fields[name].kind != "integer"):
                 continue
-            values, unit = joined.columns[name].astype(float), _unit(name, joined, setup)
+            values = joined.columns[name].astype(float)
+            unit = joined.units[name] if part == "other" else setup.print_unit(name)
+            unit = "" if part == "other" and unit in PURE else unit
             if np.isfinite(values).any():
                 is_time = name == TIME and unit not in PURE and same_dimension(unit, "s")
                 item = Covariate(name, values, unit, "time" if is_time else usual, is_angle(unit))
@@ -48,25 +52,11 @@ def covariates_of(joined: DataRows, setup: Setup) -> tuple[dict[str, Covariate],
     if not any(item.role == "time" for item in found.values()):
         name = ORDER if ORDER not in found else "row order"
         found[name] = Covariate(name, np.arange(len(joined), dtype=float), "", "order")
-    return found, [*_of_others(joined, setup, found), *_of_constants(found)]
-
-
-def _turning(setup: Setup) -> set[str]:
-    """Return the names of what turns in any record: what the model sweeps, and conditions and axes that are angles."""
-    effects = [effect for name, effect in setup.model.known_effects.items() if name.startswith("periodic_order")]
-    known = [effect for effect in effects if reading_of(effect) is not None and not may_stand(effect)]
-    return {name for effect in known for name in (*effect.reads, *(need.name for need in effect.needs))}
-
-
-def _unit(name: str, joined: DataRows, setup: Setup) -> str:
-    """Return the unit to print a covariate in."""
-    model = setup.model
-    if name in model.known_conditions:
-        return setup.units.get(name, model.known_conditions[name].unit)
-    if name in model.input_fields or name in model.own_result_fields:
-        return setup.print_unit(name)
-    unit = joined.units.get(name, "")
-    return "" if unit in PURE else unit
+    notes = _of_others(joined, setup, found)
+    if still := [shown(item.name) for item in found.values() if item.is_constant]:
+        columns = counted(len(still), "column never changes", "columns never change")
+        notes.append(f"{columns}, so nothing can be seen of what depends on it: {', '.join(still)}")
+    return found, notes
 
 
 def _of_others(joined: DataRows, setup: Setup, found: dict[str, Covariate]) -> list[str]:
@@ -86,15 +76,6 @@ def _of_others(joined: DataRows, setup: Setup, found: dict[str, Covariate]) -> l
         notes.append(f"column {shown(name)} is neither input, result nor condition; {use}.{hint}".rstrip("."))
     unused = [name for name in joined.named("sigma") if name.removeprefix(SIGMA) not in joined.columns]
     return [*notes, *(f"column {shown(name)} is of a result that is not measured and is not used" for name in unused)]
-
-
-def _of_constants(found: dict[str, Covariate]) -> list[str]:
-    """Say which covariates never changed."""
-    names = [shown(item.name) for item in found.values() if item.is_constant]
-    if not names:
-        return []
-    columns = counted(len(names), "column never changes", "columns never change")
-    return [f"{columns}, so nothing can be seen of what depends on it: {', '.join(names)}"]
 
 
 def held_out_rows(joined: DataRows, setup: Setup) -> DataRows:
