@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause, followed_by, gauged
+from truing.diagnosis.causes import Cause, gauged
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
@@ -16,7 +16,7 @@ from truing.diagnosis.naming import added_by
 from truing.diagnosis.noise import robust_sd
 from truing.diagnosis.result import Amount, Finding, Kind, Noise, Wrong
 from truing.diagnosis.sample import Channel, errors_of, residuals_of
-from truing.diagnosis.shape_words import in_unit, order_in_words, shape_in_words, step_in_words
+from truing.diagnosis.shape_words import drawn_by, in_unit, shape_in_words
 from truing.diagnosis.tidying import counted
 
 SIGNIFICANT = 0.05
@@ -117,45 +117,34 @@ def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[Finding]:
 def _label(found: Fit, name: str) -> tuple[str, ...]:
     """Return kind and covariates of a finding on one result alone; nothing for what is none."""
     (cause,) = found.causes
-    if cause.shape is not None:
-        own = cause.shape.kind if cause.shape.kind in {"order", "step", "wave", "product"} else "trend"
-        return (own, *cause.shape.depends_on) if cause.shape.results == (name,) else ()
-    if not cause.is_kernel or gauged(cause, found.sample.machine.records.measured) != name:
-        return ()
-    kind = {"periodic_order": "order", "step": "step"}.get(cause.name.partition("_of_")[0], "")
-    return (kind, followed_by(cause.effect)) if kind else ()
+    alone = cause.shape.results if cause.shape is not None else (gauged(cause, found.sample.machine.records.measured),)
+    drawn = drawn_by(cause) if alone == (name,) else ()
+    return drawn if not drawn or drawn[0] in {"order", "step", "wave", "product"} else ("trend", *drawn[1:])
 
 
 def _finding(found: Fit, extended: Extended, p_value: float, name: str, unit: str) -> Finding:
     """Describe an explanation of one cause as it was fitted."""
     (cause,), (values,) = found.causes, found.values
-    machine = found.sample.machine
+    drawn, *names = drawn_by(cause)
+    kind: Kind = "order" if drawn == "order" else "step" if drawn == "step" else "trend"
     added = added_by(found, extended)[cause.name][name]
-    label = _label(found, name)
-    kind: Kind = "order" if label[0] == "order" else "step" if label[0] == "step" else "trend"
-    if cause.shape is not None:
-        text = shape_in_words(machine, cause, values, added, unit)
-    else:
-        item, at = machine.records.covariates[label[1]], float(values[cause.shapes[0]])
-        text = (order_in_words if kind == "order" else step_in_words)(item, at, added, unit)
-    return Finding(kind, " and ".join(label[1:]), p_value, text)
+    text = shape_in_words(found.sample.machine, cause, values, added, unit)
+    return Finding(kind, " and ".join(names), p_value, text)
 
 
 def _acting(chosen: Chosen) -> dict[str, list[Cause]]:
-    """Return by result the registered effects of the explanation that show in it."""
+    """Return by result the registered effects of the explanation that add more to it than its noise would hide."""
     best = chosen.best
     added = added_by(best, chosen.competition.extended) if best.causes else {}
     registered = [cause for cause in best.causes if cause.effect is not None]
     return {
-        channel.name: [cause for cause in registered if _shows(channel, added[cause.name][channel.name])]
-        for channel in best.sample.channels
+        each.name: [
+            cause
+            for cause in registered
+            if np.sum((added[cause.name][each.name][each.rows] * each.factors) ** 2) > SHOWS**2  # all rows together
+        ]
+        for each in best.sample.channels
     }
-
-
-def _shows(channel: Channel, added: Matrix) -> bool:
-    """Whether something that is added to a result is more than its noise would hide, all rows together."""
-    size = added[channel.rows] * channel.factors
-    return float(np.mean(size**2)) * len(channel) > SHOWS**2
 
 
 def _with_named(chosen: Chosen, acting: Sequence[Cause], found: list[Finding]) -> list[Finding]:
