@@ -10,7 +10,6 @@ import numpy as np
 
 from truing.declare.sources import Effect
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause as Competitor
 from truing.diagnosis.choice import Chosen, Rival
 from truing.diagnosis.extended import Extended, shape_added, switched_on
 from truing.diagnosis.fitted import Fit, input_value
@@ -177,12 +176,14 @@ def remainder_of(chosen: Chosen, units: Mapping[str, str]) -> Remainder | None:
     words: dict[str, list[str]] = {}
     terms: dict[str, tuple[ShapeTerm, ...]] = {}
     for cause, values in zip(best.causes, best.values, strict=True):
-        if cause.shape is None:
+        shape = cause.shape
+        if shape is None:
             continue
-        added = shape_added(machine, cause, values)
-        for name, own in _terms(machine, cause, values).items():
-            text = shape_in_words(machine, cause, values, added[name], units[name])
-            words.setdefault(name, []).append(text)
+        made = shape.terms([float(values[place]) for place in cause.shapes], machine.records.covariates)
+        sizes = iter([float(values[place]) for place in cause.amplitudes])
+        for name, added in shape_added(machine, cause, values).items():
+            words.setdefault(name, []).append(shape_in_words(machine, cause, values, added, units[name]))
+            own = (ShapeTerm(term.expression, next(sizes)) for term in made)
             terms[name] = (*terms.get(name, ()), *own)
     if not words:
         return None
@@ -196,16 +197,6 @@ def _followed(found: Fit) -> tuple[str, ...]:
     """Return what the unregistered shapes of an explanation depend on."""
     shapes = [cause.shape for cause in found.causes if cause.shape is not None]
     return tuple(dict.fromkeys(name for shape in shapes for name in shape.depends_on))
-
-
-def _terms(machine: Machine, cause: Competitor, values: Matrix) -> dict[str, tuple[ShapeTerm, ...]]:
-    """Return the fitted terms of a shape by result, with coefficients in SI."""
-    shape = cause.shape
-    if shape is None:
-        return {}
-    made = shape.terms([float(values[place]) for place in cause.shapes], machine.records.covariates)
-    sizes = iter([float(values[place]) for place in cause.amplitudes])
-    return {name: tuple(ShapeTerm(term.expression, next(sizes)) for term in made) for name in shape.results}
 
 
 def alternative_of(chosen: Chosen, rival: Rival, *, with_sizes: bool = False) -> Alternative:
