@@ -9,7 +9,6 @@ from math import pi
 import numpy as np
 from scipy.stats import qmc
 
-from truing.declare.fields import InputField
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.records import Covariate
@@ -52,10 +51,8 @@ def _box(machine: Machine, name: str, item: Covariate) -> tuple[float, float] | 
         low = np.nanmin(item.values) if condition.low is None else to_si(condition.low, condition.unit)
         high = np.nanmax(item.values) if condition.high is None else to_si(condition.high, condition.unit)
         return float(low), float(high)
-    return None if field is None or not field.varies else _input_box(field, item)
-
-
-def _input_box(field: InputField, item: Covariate) -> tuple[float, float]:
+    if field is None or not field.varies:
+        return None
     low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
     declared = [getattr(field.spec, key, None) for key in ("at_least", "above", "at_most", "below")]
     lows = [float(to_si(value, field.unit)) for value in declared[:2] if isinstance(value, (int, float))]
