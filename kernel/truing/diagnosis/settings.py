@@ -24,21 +24,21 @@ FEW_VALUES = 3
 def settings_of(machine: Machine, tried: int = TRIED) -> dict[str, Matrix]:
     """Return the settings that are tried, by input or condition, SI: so many corners of the box and points in it."""
     covariates = machine.records.covariates
-    known = {name: box for name, item in covariates.items() if (box := _box(machine, name, item)) is not None}
-    boxes = {name: (low, high) for name, (low, high) in known.items() if high > low}
+    found = ((name, _box(machine, name, item)) for name, item in covariates.items())
+    boxes = {name: box for name, box in found if box is not None and box[1] > box[0]}
     if not boxes:
         return {}
     unit = qmc.Sobol(len(boxes), scramble=False).random(tried)
     edges = np.random.Generator(np.random.SFC64(0)).integers(0, 3, size=(tried, len(boxes))) / 2
     every = np.concatenate([unit, edges])
-    found = {}
+    settings = {}
     for column, (name, (low, high)) in enumerate(boxes.items()):
         values = low + (high - low) * every[:, column]
         measured = covariates[name].values
         if len(np.unique(measured[np.isfinite(measured)])) <= FEW_VALUES:
             values = np.where(every[:, column] < 0.5, low, high)
-        found[name] = values
-    return found
+        settings[name] = values
+    return settings
 
 
 def _box(machine: Machine, name: str, item: Covariate) -> tuple[float, float] | None:

@@ -185,11 +185,8 @@ def inseparable(chosen: Chosen) -> list[str]:
 def _alike(chosen: Chosen) -> Iterator[str]:
     """Say which causes without a shape of their own draw nearly the same."""
     eye, angles = _Eye(chosen), dict[tuple[str, str], float]()
-    plain = [
-        cause
-        for cause in chosen.competition.causes
-        if cause.effect is not None and len(cause.amplitudes) == 1 and not cause.shapes
-    ]
+    effects = [cause for cause in chosen.competition.causes if cause.effect is not None]
+    plain = [cause for cause in effects if len(cause.amplitudes) == 1 and not cause.shapes]
     looks = [(cause.name, _look(chosen, eye, cause, 0, needed(1))) for cause in plain]
     drawn = [(name, look.curve) for name, look in looks if look is not None and look.seen > 1e-6 * look.raw]
     for (one, first), (other, second) in combinations(drawn, 2):
