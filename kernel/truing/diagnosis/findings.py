@@ -17,7 +17,7 @@ from truing.diagnosis.noise import robust_sd
 from truing.diagnosis.result import Amount, Finding, Kind, Noise, Wrong
 from truing.diagnosis.sample import Channel, errors_of, residuals_of
 from truing.diagnosis.shape_words import drawn_by, in_unit, shape_in_words
-from truing.diagnosis.tidying import counted
+from truing.numbers import counted
 
 SIGNIFICANT = 0.05
 FAR = 4.0
@@ -44,10 +44,9 @@ def wrong_of(chosen: Chosen, units: Mapping[str, str]) -> tuple[Wrong, ...]:
 
 def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, Sequence[Cause]], unit: str) -> Wrong:
     best, name, rows = chosen.best, channel.name, channel.rows
-    machine = best.sample.machine
-    own = best.sample.noise[name]
+    machine, own, records = best.sample.machine, best.sample.noise[name], best.sample.machine.records
     before, after = (errors_of(machine, name, own, found.predicted[name])[rows] for found in (chosen.null, best))
-    floor = floor_of(best, best.sample.channels.index(channel))
+    floor = floor_of(best, channel)
     rmse = float(np.sqrt(np.mean(before**2)))
     share = max(0.0, 1 - floor**2 / rmse**2) if rmse > 0 and best.causes else 0.0
     found = [
@@ -56,11 +55,16 @@ def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, Sequence[Cause
         *_of_noise(best, channel),
         *_wave(best, channel),
     ]
-    noise = _noise(best, channel, after[channel.read], Amount(floor, unit))
-    if noise.outliers:
-        words = f"{counted(len(noise.outliers), 'suspected outlier')}, beyond four standard deviations of the noise"
+    size = after[channel.read] * channel.weights[channel.read]
+    far = np.abs(size) > FAR * max(robust_sd(size), channel.scale * channel.least**0.5)
+    places = rows[channel.read][far].tolist()
+    outliers = tuple((records.files[int(records.file_of[row])], int(records.lines[row])) for row in places)
+    memory = channel.memory
+    noise = Noise(Amount(floor, unit), memory.neighbours, own.tails.words, own.spread.words, outliers, memory.rho)
+    if outliers:
+        words = f"{counted(len(outliers), 'suspected outlier')}, beyond four standard deviations of the noise"
         found.append(Finding("outlier", "", None, words))
-    given = machine.records.sigma.get(name, np.zeros(len(machine.records)))[rows]
+    given = records.sigma.get(name, np.zeros(len(records)))[rows]
     given = given[given > 0]
     stated = Amount(float(np.sqrt(np.mean(given**2))), unit) if len(given) else None
     return Wrong(name, len(rows), Amount(rmse, unit), Amount(floor, unit), share, noise, tuple(found), stated)
@@ -74,11 +78,9 @@ def _bias(chosen: Chosen, channel: Channel, residual: Matrix, unit: str) -> Iter
     spread = float(np.sqrt(np.mean(np.sum(drawn**2, axis=1))))
     if abs(mean) <= BIASED * channel.scale / np.sqrt(len(channel)):
         return
-    is_allowed = abs(mean) <= BIASED * spread
-    if is_allowed:
+    words = "more than the tolerances allow" if spread > 0 else "and no tolerance allows for it"
+    if is_allowed := abs(mean) <= BIASED * spread:
         words = f"within what the tolerances allow ({in_unit(spread, unit)} standard deviation)"
-    else:
-        words = "more than the tolerances allow" if spread > 0 else "and no tolerance allows for it"
     yield Finding("bias", "", None, f"on average {in_unit(mean, unit)} off the nominal model, {words}", is_allowed)
 
 
@@ -89,9 +91,8 @@ def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[Finding]:
     """
     made = chosen.competition
     alone = [found for found in made.known.values() if len(found.causes) == 1]
-    measured = made.sample.machine.records.measured
     offsets = [found for found in alone if found.causes[0].name == "sensor_offset"]
-    constant = [found for found in offsets if gauged(found.causes[0], measured) == name]
+    constant = [found for found in offsets if gauged(found.causes[0], [name])]
     plain = min(made.score(found) for found in (made.null, *constant))  # what a trend must beat to be one
     best: dict[tuple[str, ...], tuple[float, Fit]] = {}
     for found in alone:
@@ -117,7 +118,7 @@ def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[Finding]:
 def _label(found: Fit, name: str) -> tuple[str, ...]:
     """Return kind and covariates of a finding on one result alone; nothing for what is none."""
     (cause,) = found.causes
-    alone = cause.shape.results if cause.shape is not None else (gauged(cause, found.sample.machine.records.measured),)
+    alone = cause.shape.results if cause.shape is not None else (gauged(cause, [name]),)
     drawn = drawn_by(cause) if alone == (name,) else ()
     return drawn if not drawn or drawn[0] in {"order", "step", "wave", "product"} else ("trend", *drawn[1:])
 
@@ -197,13 +198,3 @@ def _wave(best: Fit, channel: Channel) -> Iterator[Finding]:
     if p_value <= WAVE_LEVEL:
         words = f"{count} waves over the range of {name}, with {100 * share:.0f} % of what is left after all"
         yield Finding("wave", name, p_value, words)
-
-
-def _noise(best: Fit, channel: Channel, after: Matrix, floor: Amount) -> Noise:
-    """Describe the noise of one result, with the rows that lie beyond four standard deviations of it."""
-    noise, memory, records = best.sample.noise[channel.name], channel.memory, best.sample.machine.records
-    size = after * channel.weights[channel.read]
-    sd = max(robust_sd(size), channel.scale * channel.least**0.5)
-    far = channel.rows[channel.read][np.abs(size) > FAR * sd]
-    outliers = tuple((records.files[int(records.file_of[row])], int(records.lines[row])) for row in far)
-    return Noise(floor, memory.neighbours, noise.tails.words, noise.spread.words, outliers, memory.rho)
