@@ -55,9 +55,9 @@ class DataRows:
     def __len__(self) -> int:
         return len(self.lines)
 
-    def named(self, *parts: Part) -> list[str]:
-        """Return the names of the columns that play one of these parts."""
-        return [name for name in self.columns if self.parts[name] in parts]
+    def named(self, *parts: Part) -> dict[str, NDArray[Any]]:
+        """Return the columns that play one of these parts, by name."""
+        return {name: values for name, values in self.columns.items() if self.parts[name] in parts}
 
     def noted(self, *sentences: str) -> DataRows:
         """Return the same rows with more that was done to them."""

@@ -14,11 +14,12 @@ from truing.diagnosis.data_file import DataRows, read_data_file
 from truing.diagnosis.joining import complete_rows, join, measured_rows, rows_of, settle_conditions
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.slips import factor_that_works, suspected_slips
-from truing.diagnosis.tidying import counted, numbered, tidy
+from truing.diagnosis.tidying import numbered, tidy
 from truing.errors import Fault, InputError
 from truing.gauge import one_machine, read_by_gauge
 from truing.kernel import Offer
 from truing.measurements.table import SIGMA
+from truing.numbers import counted
 from truing.setup import Setup
 
 FEWEST = 3
@@ -53,9 +54,9 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_slip
         files=joined.files,
         rows=rows_of(joined),
         file_of=joined.file_of,
-        run_of=numbered(joined.runs.tolist())[0],
+        run_of=numbered(joined.runs),
         lines=joined.lines,
-        measured={name: joined.columns[name] for name in joined.named("measured")},
+        measured=joined.named("measured"),
         sigma=sigma,
         covariates=covariates,
         held_out=joined.held_out,
@@ -109,8 +110,8 @@ def _demand_rows(joined: DataRows, most: int | None = None) -> None:
 def _sigma(joined: DataRows) -> tuple[dict[str, Matrix], list[str]]:
     """Return the standard deviations that are given, by result; one of 0 is none."""
     found, notes = {}, []
-    for name in joined.named("sigma"):
-        result, values = name.removeprefix(SIGMA), joined.columns[name]
+    for name, values in joined.named("sigma").items():
+        result = name.removeprefix(SIGMA)
         if result in joined.columns:
             found[result] = np.where(values > 0, values, np.nan)
             if zero := int((values == 0).sum()):
@@ -123,9 +124,9 @@ def _demand_logarithms(joined: DataRows, setup: Setup) -> None:
     sentence = "{} is not above 0, so it has no logarithm; its noise cannot be lognormal"
     faults = [
         Fault(sentence.format(name), joined.files[joined.file_of[row]], int(joined.lines[row]))
-        for name in joined.named("measured")
+        for name, values in joined.named("measured").items()
         if name in setup.diagnose.lognormal
-        for row in np.flatnonzero(joined.columns[name] <= 0)
+        for row in np.flatnonzero(values <= 0)
     ]
     if faults:
         raise InputError(faults)
@@ -135,8 +136,8 @@ def _enough_values(joined: DataRows, setup: Setup) -> DataRows:
     """Leave out measured results with too few values to explain; raises InputError where none is left."""
     measured = joined.named("measured")
     _, sides, censored = censored_rows(joined, setup)
-    known = {name: np.isfinite(joined.columns[name]) & (sides.get(name, 0) == np.int8(0)) for name in measured}
-    values = {name: int(known[name][~joined.held_out].sum()) for name in measured}
+    known = {name: np.isfinite(each) & (sides.get(name, 0) == np.int8(0)) for name, each in measured.items()}
+    values = {name: int(each[~joined.held_out].sum()) for name, each in known.items()}
     fewest = FEWEST_BESIDE if max(values.values()) >= FEWEST_BESIDE else FEWEST
     few = {name: count for name, count in values.items() if count < fewest}
     if len(few) == len(measured):

@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from truing.diagnosis.arrays import Mask, Matrix, Places, Sides
+from truing.diagnosis.arrays import Mask, Matrix, Places, Sides, first_alike
 from truing.measurements import RowCount, RowsFile
 
 Role = Literal["input", "condition", "time", "other", "order"]
@@ -96,9 +96,7 @@ class Records:
         known = [np.where(self.known(name), values, np.nan) for name, values in self.measured.items()]
         measured = np.column_stack(known)[~self.held_out]
         settings = [item.values[~self.held_out] for item in self.covariates.values() if item.role != "order"]
-        rows = np.ascontiguousarray(np.column_stack([measured, *settings]), dtype=float)
-        _, first = np.unique(rows.view(np.dtype((np.void, rows.itemsize * rows.shape[1]))), return_index=True)
-        return int(np.isfinite(measured[first]).sum())
+        return int(np.isfinite(measured[np.unique(first_alike([*measured.T, *settings]))]).sum())
 
     def known(self, name: str) -> Mask:
         """Mark the rows in which the value of a result was read: neither missing nor censored."""

@@ -65,8 +65,7 @@ class _Gauge:
 def suspected_slips(joined: DataRows, setup: Setup) -> tuple[Slip, ...]:
     """Return the columns whose unit is probably wrong, by what each factor does to the error of the model."""
     out_of_range = tuple(_out_of_range(joined, setup))
-    measured = joined.named("measured")
-    if not any(_is_far(joined.columns[name], joined.answers[name]) for name in measured):
+    if not any(_is_far(values, joined.answers[name]) for name, values in joined.named("measured").items()):
         return out_of_range
     few = joined.taken(_some_rows(joined))
     gauges = _gauges(few, setup)
@@ -158,10 +157,10 @@ def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup
 def _trials(few: DataRows, setup: Setup) -> Iterator[tuple[str, float, str]]:
     """Give every column that the model sees with every factor that its bounds allow."""
     seen, units = {need.name for item in setup.effects for need in item.effect.needs}, declared_units(setup.model)
-    for name in few.named("input", "series", "condition"):
+    for name, values in few.named("input", "series", "condition").items():
         if name in setup.model.input_fields or name in seen:
             for factor, words in _factors(units[name]).items():
-                if keeps_bounds(name, few.columns[name] * factor, setup.model):
+                if keeps_bounds(name, values * factor, setup.model):
                     yield name, factor, words
 
 
@@ -186,12 +185,12 @@ def _header(name: str, joined: DataRows) -> str:
 
 def _out_of_range(joined: DataRows, setup: Setup) -> Iterator[Slip]:
     """Give conditions that lie far beyond the range in which they can be set, where one factor brings them into it."""
-    for name in joined.named("condition"):
+    for name, values in joined.named("condition").items():
         condition = setup.model.known_conditions[name]
         if condition.low is None or condition.high is None or condition.derived:
             continue
         low, high = to_si(condition.low, condition.unit), to_si(condition.high, condition.unit)
-        values, span = joined.columns[name], high - low
+        span = high - low
         if np.mean((values < low - BETTER * span) | (values > high + BETTER * span)) < 0.5:
             continue
         for factor, words in _factors(condition.unit).items():
