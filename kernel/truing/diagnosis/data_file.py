@@ -182,14 +182,11 @@ def _words(item: InputField, cells: tuple[str, ...], table: DataTable, faults: F
     known: dict[str, Any] = {"": None}
     found = np.empty(len(cells), dtype=object)
     for row, cell in enumerate(cells):
-        if cell not in known:
-            try:
-                known[cell] = read_word(item, cell, decimal_comma=True)
-            except ValueError as error:
-                is_named = str(error).startswith(item.name)
-                faults.add(str(error) if is_named else f"{item.name}: {error}", table.lines[row])
-                continue
-        found[row] = known[cell]
+        try:
+            known[cell] = found[row] = known[cell] if cell in known else read_word(item, cell, decimal_comma=True)
+        except ValueError as error:
+            is_named = str(error).startswith(item.name)
+            faults.add(str(error) if is_named else f"{item.name}: {error}", table.lines[row])
     return found
 
 
@@ -197,12 +194,11 @@ def _keep_bounds(item: InputField, values: Matrix, table: DataTable, faults: Fau
     """Say which rows break a declared bound."""
     distinct = np.unique(values[np.isfinite(values)]).tolist()
     tried = distinct if getattr(item.spec, "whole", False) else [*distinct[:1], *distinct[-1:]]
-    if not any(broken_bound(item, value) for value in tried):
-        return
-    broken = {value: broken_bound(item, value) for value in distinct}
-    for row, value in enumerate(values.tolist()):
-        if broken.get(value):
-            faults.add(broken[value], table.lines[row])
+    if any(broken_bound(item, value) for value in tried):
+        broken = {value: broken_bound(item, value) for value in distinct}
+        for line, value in zip(table.lines, values.tolist(), strict=True):
+            if said := broken.get(value):
+                faults.add(said, line)
 
 
 def _unfit(table: DataTable, model: Model[Any, Any]) -> Iterator[str]:

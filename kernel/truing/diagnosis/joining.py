@@ -37,7 +37,7 @@ def join(files: Sequence[DataRows], setup: Setup) -> DataRows:
         units={name: unit for file in reversed(files) for name, unit in file.units.items()},
         file_of=np.repeat(np.arange(len(files)), [len(file) for file in files]),
         lines=np.concatenate([file.lines for file in files]),
-        runs=np.concatenate([_runs(file, alone=len(files) == 1) for file in files]),
+        runs=np.concatenate([file.runs for file in files]),
         held_out=np.concatenate([file.held_out for file in files]),
         counts=tuple(count for file in files for count in file.counts),
         notes=tuple(note for file in files for note in file.notes),
@@ -81,13 +81,6 @@ def _cells(file: DataRows, name: str, part: Part, setup: Setup) -> NDArray[Any]:
         return objects([setup.nominal(name)] * len(file) if part == "word" else texts)
     value = setup.calibrated.get(name, setup.nominal(name)) if part == "input" else np.nan
     return np.full(len(file), float(value))
-
-
-def _runs(file: DataRows, *, alone: bool) -> NDArray[Any]:
-    """Return the runs of a file, told apart from those of other files."""
-    if alone:
-        return file.runs
-    return objects(f"{file.files[0]}: {run}" if run else file.files[0] for run in file.runs.tolist())
 
 
 def settle_conditions(joined: DataRows, files: Sequence[DataRows], setup: Setup) -> DataRows:

@@ -10,7 +10,7 @@ import numpy as np
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.covariates import censored_rows, covariates_of, held_out_rows
-from truing.diagnosis.data_file import DataRows, read_data_file
+from truing.diagnosis.data_file import DataRows, objects, read_data_file
 from truing.diagnosis.joining import complete_rows, join, measured_rows, rows_of, settle_conditions
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.slips import factor_that_works, suspected_slips
@@ -69,7 +69,7 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_slip
 
 
 def _read(paths: Sequence[Path], offer: Offer) -> list[DataRows]:
-    """Read every file and put its rows in order; raises InputError with the faults of all."""
+    """Read every file and put its rows in order, runs of several told apart; raises InputError with all faults."""
     faults: list[Fault] = []
     files: list[DataRows] = []
     once = {path.resolve(): path for path in reversed(paths)}
@@ -81,10 +81,13 @@ def _read(paths: Sequence[Path], offer: Offer) -> list[DataRows]:
             faults += error.faults
             continue
         file = tidy(file, offer.model)
-        notes = [f"{path}: {sentence}" if len(once) > 1 else sentence for sentence in file.notes]
+        if len(once) > 1:
+            runs = objects(f"{path}: {run}" if run else str(path) for run in file.runs.tolist())
+            file = replace(file, runs=runs, notes=tuple(f"{path}: {sentence}" for sentence in file.notes))
         if not files and len(once) < len(paths):
-            notes.insert(0, f"{counted(len(paths) - len(once), 'file is', 'files are')} given twice and read once")
-        files.append(replace(file, notes=tuple(notes)))
+            twice = f"{counted(len(paths) - len(once), 'file is', 'files are')} given twice and read once"
+            file = replace(file, notes=(twice, *file.notes))
+        files.append(file)
     if faults:
         raise InputError(faults)
     return files
