@@ -23,7 +23,6 @@ from truing.diagnosis.exact import fit
 from truing.diagnosis.extended import Extended, elsewhere, parts_of
 from truing.diagnosis.fitted import STEP, WIDE, Fit, moved_by
 from truing.diagnosis.intervals import numbers_of
-from truing.diagnosis.machine import Machine
 from truing.diagnosis.result import Amount, NextPoint, readable_unit
 from truing.diagnosis.sample import Sample
 from truing.diagnosis.settings import FEW, TRIED, machine_there, settings_of
@@ -291,27 +290,24 @@ def _seen(found: Fit, extended: Extended, tried: Extended) -> _Seen:
 
 
 def _why(chosen: Chosen, settings: Mapping[str, Matrix], place: int, duel: _Duel) -> str:
-    """Say what makes a setting worth measuring: how far the two then differ, and where it leaves the record."""
+    """Say what makes a setting worth measuring: how far the two then differ, and what leaves the record farthest.
+
+    Only what the effects of the two explanations follow is looked at, where they follow anything.
+    """
     sample = chosen.competition.sample
     gaps = np.abs(duel.left()[:, place])
     name, spread = list(_spreads(sample, chosen.best).items())[int(np.argmax(gaps))]
     unit = readable_unit(sample.machine.start.print_unit(name), spread)
     words = f"{duel.names[0]} and {duel.names[1]} there differ by {in_unit(float(gaps.max()) * spread, unit)} in {name}"
-    setting = {key: float(values[place]) for key, values in settings.items()}
-    return words + _beyond_record(sample.machine, setting, duel.names)
-
-
-def _beyond_record(machine: Machine, setting: Mapping[str, float], names: Sequence[str]) -> str:
-    """Say what leaves the range of the record farthest, of what the effects of two explanations follow, if any does."""
-    known = machine.start.model.known_effects
-    effects = [known[each] for name in names for each in name.split(" + ") if each in known]
+    known = sample.machine.start.model.known_effects
+    effects = [known[each] for name in duel.names for each in name.split(" + ") if each in known]
     asked = {key for effect in effects for key in (*(need.name for need in effect.needs), *effect.reads)}
-    words, reach = "", 0.05
-    for key, value in setting.items():
-        item = machine.records.covariates[key]
+    beyond, reach = "", 0.05
+    for key in [each for each in settings if not asked or each in asked]:
+        item, value = sample.machine.records.covariates[key], float(settings[key][place])
         low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
         out = max(low - value, value - high) / max(high - low, 1e-300)
-        if (not asked or key in asked) and out > reach:
+        if out > reach:
             begin = format_number(float(from_si(low, item.unit)), 3)
-            words, reach = f"; {key} was only {begin} to {in_unit(high, item.unit, 3)} so far", out
-    return words
+            beyond, reach = f"; {key} was only {begin} to {in_unit(high, item.unit, 3)} so far", out
+    return words + beyond

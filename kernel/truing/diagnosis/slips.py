@@ -128,13 +128,12 @@ def _factors(unit: str) -> Mapping[float, str]:
 
 def _own_slip(one: _Gauge, few: DataRows, setup: Setup) -> Slip | None:
     """Return the slip in the unit of a measured result, if one factor on it explains the error."""
-    unit = setup.model.own_result_fields[one.name].unit
-    gains = {factor: one.gain(one.measured * factor, one.answer) for factor in _factors(unit)}
+    factors = _factors(setup.model.own_result_fields[one.name].unit)
+    gains = {factor: one.gain(one.measured * factor, one.answer) for factor in factors}
     best = max(gains, key=gains.__getitem__, default=1.0)
     if not gains.get(best):
         return None
-    after = one.measured * best - one.answer
-    return _slip(one.name, best, few, _off(one, after, setup), _factors(unit)[best])
+    return _slip(one.name, best, few, _off(one, one.measured * best - one.answer, setup), factors[best])
 
 
 def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup: Setup) -> Slip | None:

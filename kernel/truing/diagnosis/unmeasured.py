@@ -117,9 +117,11 @@ def _result_to_measure(machine: Machine, explanations: Sequence[Fit]) -> tuple[N
     is no gauge; then the one that parts most explanations from the first, the one that a goal names, the one that
     separates most pairs, the clearest.
     """
-    start = machine.start
-    names = [] if machine.records.rows.series or len(explanations) < 2 else _unmeasured(machine)
-    if not names:
+    start, measured = machine.start, machine.records.measured
+    fields = start.model.own_result_fields
+    alone = [name for name, item in fields.items() if not item.along and not isinstance(item.spec, Axis)]
+    names = [name for name in alone if name not in measured]
+    if not names or machine.records.rows.series or len(explanations) < 2:
         return None, set()
     few = machine.records.part(np.arange(0, len(machine.records), max(1, len(machine.records) // ROWS)))
     there = machine_of(start, replace(few, measured={name: np.zeros(len(few)) for name in names}, sigma={}))
@@ -140,19 +142,12 @@ def _result_to_measure(machine: Machine, explanations: Sequence[Fit]) -> tuple[N
             parted = sum(found[0][0] in gap.names for gap in gaps)
             is_goal = name in goals
             clearness = float(f"{gaps[0].clearness:.2g}")
-            has_gauge = is_goal or start.model.own_result_fields[name].unit not in PURE
+            has_gauge = is_goal or fields[name].unit not in PURE
             ranked.append(((has_gauge, parted, is_goal, len(gaps), clearness, -place), gaps))
     if not ranked:
         return None, set()
     _, gaps = max(ranked, key=lambda each: each[0])
     return _point(start, gaps[0]), {frozenset(gap.names) for gap in gaps}
-
-
-def _unmeasured(machine: Machine) -> list[str]:
-    """Return the results that have one value per row and that no column gives."""
-    fields = machine.start.model.own_result_fields
-    own = [name for name, item in fields.items() if not item.along and not isinstance(item.spec, Axis)]
-    return [name for name in own if name not in machine.records.measured and name in machine.start.model.result_fields]
 
 
 def _gap(there: Machine, name: str, names: tuple[str, str], apart: Matrix) -> _Gap | None:
