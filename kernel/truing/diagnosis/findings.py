@@ -105,14 +105,13 @@ def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[Finding]:
         if len(label) == 2:
             singles[label[1]] = max(gain, singles.get(label[1], gain))
     least = SHADOW * (plain - made.score(made.ranked()[0]))
-    kept = 0
+    kept = []
     for label, (gain, found) in sorted(best.items(), key=lambda item: -item[1][0]):
         plainer = max((singles[each] + BETTER for each in label[1:] if each in singles), default=gain)
-        if gain < least or (len(label) == 3 and gain < plainer):
-            continue
-        kept += 1
-        if kept <= LARGEST_COUNT:
-            yield _finding(found, made.extended, chosen.law.p_of(gain), name, unit)
+        if gain >= least and (len(label) != 3 or gain >= plainer):
+            kept.append((gain, found))
+    for gain, found in kept[:LARGEST_COUNT]:
+        yield _finding(found, made.extended, chosen.law.p_of(gain), name, unit)
 
 
 def _label(found: Fit, name: str) -> tuple[str, ...]:

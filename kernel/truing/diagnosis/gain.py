@@ -187,11 +187,10 @@ def _held_out(chosen: Chosen, name: str) -> tuple[float, float] | None:
     if not rows.any():
         return None
     is_other = ~np.isin(records.run_of, np.unique(records.run_of[~records.held_out]))
-    shaped = np.zeros(len(records))
-    for cause, values in zip(best.causes, best.values, strict=True):
-        shaped = shaped + shape_added(best.sample.machine, cause, values).get(name, 0.0)
-    extended = best.predicted[name] - np.where(is_other, shaped, 0.0)
-    machine, noise, shown = best.sample.machine, best.sample.noise[name], (chosen.null.predicted[name], extended)
+    machine, noise = best.sample.machine, best.sample.noise[name]
+    added = (shape_added(machine, cause, values) for cause, values in zip(best.causes, best.values, strict=True))
+    shaped = sum((each[name] for each in added if name in each), np.zeros(len(records)))
+    shown = chosen.null.predicted[name], best.predicted[name] - np.where(is_other, shaped, 0.0)
     before, after = (float(np.sqrt(np.mean(errors_of(machine, name, noise, each)[rows] ** 2))) for each in shown)
     return before, after
 

@@ -178,8 +178,7 @@ def _one_by_one(chosen: Chosen, cause: Cause, place: int, shapes: Matrix) -> Ite
 
 def inseparable(chosen: Chosen) -> list[str]:
     """Say which causes this design cannot separate whatever their size, and which covariates are tied."""
-    machine = chosen.competition.extended.machine
-    return [*_alike(chosen), *_tied(machine), *_one_sided(machine)]
+    return [*_alike(chosen), *_moved_alike(chosen.competition.extended.machine)]
 
 
 def _alike(chosen: Chosen) -> Iterator[str]:
@@ -203,7 +202,8 @@ def _alike(chosen: Chosen) -> Iterator[str]:
             )
 
 
-def _tied(machine: Machine) -> Iterator[str]:
+def _moved_alike(machine: Machine) -> Iterator[str]:
+    """Say which covariates are tied, and which conditions that can have either sign had one sign only."""
     moved = [item for item in machine.records.covariates.values() if not item.is_constant]
     for first, second in combinations(moved, 2):
         both = np.isfinite(first.values) & np.isfinite(second.values)
@@ -212,10 +212,6 @@ def _tied(machine: Machine) -> Iterator[str]:
                 f"{first.name} and {second.name} move together in this record: what follows one cannot be told from "
                 "what follows the other"
             )
-
-
-def _one_sided(machine: Machine) -> Iterator[str]:
-    """Say which conditions that can have either sign were measured with one sign only."""
     for name, condition in machine.start.model.known_conditions.items():
         item = machine.records.covariates.get(name)
         if item is None or condition.low is None or condition.high is None or not condition.low < 0 < condition.high:
