@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.fields import Axis
+from truing.declare.model import Model
 from truing.errors import UsageError
 from truing.evaluate import Rows, effect_column, evaluate_rows
 from truing.setup import Setup
@@ -85,7 +86,7 @@ def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None
 
 def answers_many(machine: Setup, rows: RowsFile, wanted: Collection[str] | None = None) -> bool:
     """Whether one calculation answers for many rows: for a record, along an axis, or where no column is looked at."""
-    along = any(_axis_of(name, machine) for name in _readable(machine, rows, wanted))
+    along = any(axis_of(name, machine.model) for name in _readable(machine, rows, wanted))
     return bool(rows.series) or along or not seen_columns(machine, rows.columns)
 
 
@@ -116,7 +117,7 @@ def without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int, 
 
     reasons: dict[int, str] = {}
     for name, values in evaluated.results.items():
-        axis = _axis_of(name, machine)
+        axis = axis_of(name, machine.model)
         for place in np.flatnonzero(np.isnan(values)) if axis else ():
             is_empty = np.isnan(rows.axes[axis][place])
             words = f"'{axis}' is not given" if is_empty else f"it lies beyond the axis '{axis}'"
@@ -172,7 +173,7 @@ def read_each(
     """
     import numpy as np
 
-    along = {name: _axis_of(name, machine) for name in _readable(machine, rows, wanted)}
+    along = {name: axis_of(name, machine.model) for name in _readable(machine, rows, wanted)}
     asked, machine = {*along, *filter(None, along.values())}, _at_places(machine, rows)
     made = [_Answer({name: np.full(len(rows), np.nan) for name in along}) for _ in trials]
     for record in _records(rows):
@@ -275,14 +276,14 @@ def _value_at(column: Any, place: int) -> Any:
 def _readable(machine: Setup, rows: RowsFile, wanted: Collection[str] | None) -> Iterator[str]:
     """Give the wanted results that have one value per row, or are read at the row's place on their axis."""
     for name in machine.model.own_result_fields:
-        axis = _axis_of(name, machine)
+        axis = axis_of(name, machine.model)
         if (wanted is None or name in wanted) and (not axis or (axis in rows.axes and axis != name)):
             yield name
 
 
-def _axis_of(name: str, machine: Setup) -> str:
+def axis_of(name: str, model: Model[Any, Any]) -> str:
     """Return the flat name of the axis that a result runs along: its own part's where that has one."""
-    fields = machine.model.own_result_fields
+    fields = model.own_result_fields
     item = fields[name]
     own = f"{item.along}_{item.scope}"
     return own if own in fields else item.along

@@ -43,6 +43,11 @@ def format_number(value: Any, digits: int = 4) -> str:
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
+def counted(number: int, one: str = "row", many: str = "") -> str:
+    """Return "1 row", "3 rows"."""
+    return f"{number} {one if number == 1 else many or one + 's'}"
+
+
 def format_chance(value: float, digits: int = 4) -> str:
     """Write a probability in per cent, with so many digits of its distance from 0 or 100 %: 99.705, 56.6, 99.99968."""
     share = 100.0 * value

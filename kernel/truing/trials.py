@@ -84,12 +84,5 @@ def _read(
     if len(rows) <= AT_ONCE or rows.series:
         return read_by_gauge(machine, rows, wanted, repeats).results
     blocks = [slice(begin, begin + AT_ONCE) for begin in range(0, len(rows), AT_ONCE)]
-    parts = [read_by_gauge(machine, _part(rows, block), wanted).results for block in blocks]
+    parts = [read_by_gauge(machine, rows.taken(block), wanted).results for block in blocks]
     return {name: np.concatenate([part[name] for part in parts]) for name in wanted}
-
-
-def _part(rows: RowsFile, block: slice) -> RowsFile:
-    """Return some rows of a file without series."""
-    columns = {name: values[block] for name, values in rows.columns.items()}
-    axes = {name: values[block] for name, values in rows.axes.items()}
-    return replace(rows, columns=columns, axes=axes, lines=rows.lines[block], runs=rows.runs[block])

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from truing.declare.builtin import may_stand
 from truing.declare.near_miss import near_miss
@@ -13,9 +13,10 @@ from truing.diagnosis.arrays import Mask, Sides
 from truing.diagnosis.causes import reading_of
 from truing.diagnosis.data_file import DataRows, Part
 from truing.diagnosis.records import Covariate, Role
-from truing.diagnosis.tidying import TIME, counted, is_angle
+from truing.diagnosis.tidying import TIME, is_angle
 from truing.errors import Fault, InputError
 from truing.measurements.table import SIGMA
+from truing.numbers import counted
 from truing.setup import Setup, column_and_word
 from truing.units import same_dimension, to_si
 from truing.units.grammar import shown
@@ -33,13 +34,17 @@ def covariates_of(joined: DataRows, setup: Setup) -> tuple[dict[str, Covariate],
     Where no time was measured, the place in the record stands for it.
     """
     found: dict[str, Covariate] = {}
-    turning = _turning(setup)
+    effects = [effect for name, effect in setup.model.known_effects.items() if name.startswith("periodic_order")]
+    known = [effect for effect in effects if reading_of(effect) is not None and not may_stand(effect)]
+    turning = {name for effect in known for name in (*effect.reads, *(need.name for need in effect.needs))}
     for part, usual in _ROLES.items():
-        for name in joined.named(part):
+        for name, cells in joined.named(part).items():
             is_flag = part == "other" and name in setup.diagnose.flags  # it says what came out, and is no reason for it
             if is_flag or (part == "word" and setup.model.input_fields[name].kind != "integer"):
                 continue
-            values, unit = joined.columns[name].astype(float), _unit(name, joined, setup)
+            values = cells.astype(float)
+            unit = joined.units[name] if part == "other" else setup.print_unit(name)
+            unit = "" if part == "other" and unit in PURE else unit
             if np.isfinite(values).any():
                 is_time = name == TIME and unit not in PURE and same_dimension(unit, "s")
                 item = Covariate(name, values, unit, "time" if is_time else usual, is_angle(unit))
@@ -48,25 +53,11 @@ def covariates_of(joined: DataRows, setup: Setup) -> tuple[dict[str, Covariate],
     if not any(item.role == "time" for item in found.values()):
         name = ORDER if ORDER not in found else "row order"
         found[name] = Covariate(name, np.arange(len(joined), dtype=float), "", "order")
-    return found, [*_of_others(joined, setup, found), *_of_constants(found)]
-
-
-def _turning(setup: Setup) -> set[str]:
-    """Return the names of what turns in any record: what the model sweeps, and conditions and axes that are angles."""
-    effects = [effect for name, effect in setup.model.known_effects.items() if name.startswith("periodic_order")]
-    known = [effect for effect in effects if reading_of(effect) is not None and not may_stand(effect)]
-    return {name for effect in known for name in (*effect.reads, *(need.name for need in effect.needs))}
-
-
-def _unit(name: str, joined: DataRows, setup: Setup) -> str:
-    """Return the unit to print a covariate in."""
-    model = setup.model
-    if name in model.known_conditions:
-        return setup.units.get(name, model.known_conditions[name].unit)
-    if name in model.input_fields or name in model.own_result_fields:
-        return setup.print_unit(name)
-    unit = joined.units.get(name, "")
-    return "" if unit in PURE else unit
+    notes = _of_others(joined, setup, found)
+    if still := [shown(item.name) for item in found.values() if item.is_constant]:
+        columns = counted(len(still), "column never changes", "columns never change")
+        notes.append(f"{columns}, so nothing can be seen of what depends on it: {', '.join(still)}")
+    return found, notes
 
 
 def _of_others(joined: DataRows, setup: Setup, found: dict[str, Covariate]) -> list[str]:
@@ -88,15 +79,6 @@ def _of_others(joined: DataRows, setup: Setup, found: dict[str, Covariate]) -> l
     return [*notes, *(f"column {shown(name)} is of a result that is not measured and is not used" for name in unused)]
 
 
-def _of_constants(found: dict[str, Covariate]) -> list[str]:
-    """Say which covariates never changed."""
-    names = [shown(item.name) for item in found.values() if item.is_constant]
-    if not names:
-        return []
-    columns = counted(len(names), "column never changes", "columns never change")
-    return [f"{columns}, so nothing can be seen of what depends on it: {', '.join(names)}"]
-
-
 def held_out_rows(joined: DataRows, setup: Setup) -> DataRows:
     """Mark the rows that only judge, as ``[studies.diagnose] hold_out`` says. Raises InputError where it finds none."""
     column, word = setup.diagnose.held_out
@@ -108,13 +90,18 @@ def held_out_rows(joined: DataRows, setup: Setup) -> DataRows:
 
 
 def _marked(option: str, column: str, word: str, joined: DataRows, setup: Setup) -> Mask:
-    """Mark the rows that hold a word in a column. Raises InputError where there is no such column, or no such row."""
+    """Mark the rows that hold a word, or the number it is, in a column. Raises InputError where there are none."""
     place = setup.places.get(f"studies.diagnose.{option}", (setup.file, None))
     cells = joined.runs if column == "run" else joined.columns.get(column)
     if cells is None:
         near = near_miss(column[:80], list(joined.columns))
         raise InputError([Fault(f"{option}: no file has a column {shown(column)}.{near}", *place)])
-    found = _equal(cells, word, joined.units.get(column, ""))
+    unit, found = joined.units.get(column, ""), np.zeros(len(cells), dtype=bool)
+    if cells.dtype == object:
+        found = np.array([str(cell).strip() == word for cell in cells.tolist()], dtype=bool)
+    else:
+        with suppress(ValueError):  # no number is a word
+            found = np.isclose(cells, float(word) if unit in PURE else to_si(float(word), unit), rtol=1e-9, atol=0)
     if not found.any():
         raise InputError([Fault(f"{option}: no row has {shown(word)} in the column {shown(column)}", *place)])
     return found
@@ -141,14 +128,3 @@ def censored_rows(joined: DataRows, setup: Setup) -> tuple[DataRows, dict[str, S
             of = f"{int((side != 0).sum())} of {int(np.isfinite(columns[name]).sum())} readings"
             notes.append(f"{of} of '{name}' are censored: the true value lies beyond what was read")
     return replace(joined, columns=columns), sides, notes
-
-
-def _equal(cells: NDArray[np.object_], word: str, unit: str) -> Mask:
-    """Whether cells hold a word, or the number it is."""
-    if cells.dtype == object:
-        return np.array([str(cell).strip() == word for cell in cells.tolist()], dtype=bool)
-    try:
-        number = float(word) if unit in PURE else to_si(float(word), unit)
-    except ValueError:
-        return np.zeros(len(cells), dtype=bool)
-    return np.isclose(cells, number, rtol=1e-9, atol=0)

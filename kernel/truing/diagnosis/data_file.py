@@ -15,6 +15,7 @@ from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.arrays import Mask, Matrix, Places
 from truing.errors import UnitError
+from truing.gauge import axis_of
 from truing.inputs_file.values import broken_bound
 from truing.kernel import Offer
 from truing.measurements.csv_text import Faults
@@ -54,9 +55,9 @@ class DataRows:
     def __len__(self) -> int:
         return len(self.lines)
 
-    def named(self, *parts: Part) -> list[str]:
-        """Return the names of the columns that play one of these parts."""
-        return [name for name in self.columns if self.parts[name] in parts]
+    def named(self, *parts: Part) -> dict[str, NDArray[Any]]:
+        """Return the columns that play one of these parts, by name."""
+        return {name: values for name, values in self.columns.items() if self.parts[name] in parts}
 
     def noted(self, *sentences: str) -> DataRows:
         """Return the same rows with more that was done to them."""
@@ -181,14 +182,11 @@ def _words(item: InputField, cells: tuple[str, ...], table: DataTable, faults: F
     known: dict[str, Any] = {"": None}
     found = np.empty(len(cells), dtype=object)
     for row, cell in enumerate(cells):
-        if cell not in known:
-            try:
-                known[cell] = read_word(item, cell, decimal_comma=True)
-            except ValueError as error:
-                is_named = str(error).startswith(item.name)
-                faults.add(str(error) if is_named else f"{item.name}: {error}", table.lines[row])
-                continue
-        found[row] = known[cell]
+        try:
+            known[cell] = found[row] = known[cell] if cell in known else read_word(item, cell, decimal_comma=True)
+        except ValueError as error:
+            is_named = str(error).startswith(item.name)
+            faults.add(str(error) if is_named else f"{item.name}: {error}", table.lines[row])
     return found
 
 
@@ -196,16 +194,15 @@ def _keep_bounds(item: InputField, values: Matrix, table: DataTable, faults: Fau
     """Say which rows break a declared bound."""
     distinct = np.unique(values[np.isfinite(values)]).tolist()
     tried = distinct if getattr(item.spec, "whole", False) else [*distinct[:1], *distinct[-1:]]
-    if not any(broken_bound(item, value) for value in tried):
-        return
-    broken = {value: broken_bound(item, value) for value in distinct}
-    for row, value in enumerate(values.tolist()):
-        if broken.get(value):
-            faults.add(broken[value], table.lines[row])
+    if any(broken_bound(item, value) for value in tried):
+        broken = {value: broken_bound(item, value) for value in distinct}
+        for line, value in zip(table.lines, values.tolist(), strict=True):
+            if said := broken.get(value):
+                faults.add(said, line)
 
 
 def _unfit(table: DataTable, model: Model[Any, Any]) -> Iterator[str]:
-    """Say which columns cannot change from row to row, or cannot be measured in rows."""
+    """Say which columns cannot change from row to row, cannot be measured in rows, or need the place of their rows."""
     for name in table.columns:
         item = model.input_fields.get(name)
         result = model.own_result_fields.get(name)
@@ -213,19 +210,10 @@ def _unfit(table: DataTable, model: Model[Any, Any]) -> Iterator[str]:
             yield f"{name} cannot change from row to row; state it in the inputs file"
         elif result is not None and not isinstance(result.spec, Axis) and name not in model.measurable:
             yield f"{name} is a column of a table that the calculation makes; it cannot be compared row by row"
-        elif name in model.measurable:
-            yield from _without_axis(name, table, model)
-
-
-def _without_axis(name: str, table: DataTable, model: Model[Any, Any]) -> Iterator[str]:
-    """Say that a result along an axis needs the place of its rows."""
-    item = model.own_result_fields[name]
-    own = f"{item.along}_{item.scope}"
-    axis = own if own in model.own_result_fields else item.along
-    known = model.own_result_fields.get(axis)
-    if item.along and axis not in table.columns and known is not None:
-        like = f"{axis} [{known.unit}]" if known.unit else axis
-        yield f"{name} runs along '{axis}'; give the place of each row in a column '{like}'"
+        axis = model.own_result_fields.get(axis_of(name, model)) if name in model.measurable else None
+        if axis is not None and axis.name not in table.columns:
+            like = f"{axis.name} [{axis.unit}]" if axis.unit else axis.name
+            yield f"{name} runs along '{axis.name}'; give the place of each row in a column '{like}'"
 
 
 def _empty(columns: Mapping[str, NDArray[Any]], parts: Mapping[str, Part], faults: Faults) -> Iterator[str]:

@@ -15,14 +15,14 @@ import numpy as np
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.beside import look
-from truing.diagnosis.causes import Cause, Number
+from truing.diagnosis.causes import Cause
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.derivatives import slopes_at, unit_of
 from truing.diagnosis.exact import fit
 from truing.diagnosis.extended import Extended, elsewhere, parts_of
 from truing.diagnosis.fitted import STEP, WIDE, Fit, moved_by
-from truing.diagnosis.machine import Machine
+from truing.diagnosis.intervals import numbers_of
 from truing.diagnosis.result import Amount, NextPoint, readable_unit
 from truing.diagnosis.sample import Sample
 from truing.diagnosis.settings import FEW, TRIED, machine_there, settings_of
@@ -198,7 +198,7 @@ def _greedy(duels: Sequence[_Duel]) -> list[int]:
 
 def _points(chosen: Chosen, settings: Mapping[str, Matrix], live: Sequence[_Duel]) -> Iterator[NextPoint]:
     """Give the settings with what they are for, and how many like them are needed to tell all pairs apart."""
-    taken = _greedy(live)
+    taken, start = _greedy(live), chosen.competition.sample.machine.start
     needed = max((duel.needed(taken) or MOST_POINTS for duel in live), default=0)
     for count, place in enumerate(taken, start=1):
         weakest = min(live, key=lambda duel: duel.separation)
@@ -208,7 +208,8 @@ def _points(chosen: Chosen, settings: Mapping[str, Matrix], live: Sequence[_Duel
         if count == len(taken) < needed:
             why += f"; {needed} points like these would be needed to tell them apart"
         least = min(duel.separation for duel in live)
-        yield NextPoint(_amounts(chosen, settings, place), weakest.names, why, least, needed=needed)
+        amounts = {name: Amount(float(values[place]), start.print_unit(name)) for name, values in settings.items()}
+        yield NextPoint(amounts, weakest.names, why, least, needed=needed)
 
 
 @dataclass(frozen=True)
@@ -266,20 +267,7 @@ def _duel(true: _Seen, rival: _Seen, roots: Matrix, spreads: Matrix) -> _Duel:
 
 def _seen(found: Fit, extended: Extended, tried: Extended) -> _Seen:
     """Return what an explanation predicts and how it changes, on the data and at the settings that are tried."""
-    numbers = [number for cause in found.causes for number in cause.numbers]
-    free = np.array([number.is_free for number in numbers], dtype=bool)
-    own, inputs = slopes_at(found, extended)
-    there, slopes = _there(found, numbers, tried)
-    kept = np.concatenate([free, np.ones(len(found.inputs), dtype=bool)])
-    return _Seen(found, np.column_stack([own, inputs])[:, kept], there, slopes[..., kept])
-
-
-def _there(found: Fit, numbers: Sequence[Number], tried: Extended) -> tuple[Matrix, Matrix]:
-    """Return what a fit says at the settings that are tried (R, T), and its derivatives by all numbers and directions.
-
-    The derivatives have shape (R, T, numbers + K).
-    """
-    sample, k, units = found.sample, len(found.inputs), unit_of(found)
+    numbers, sample, k, units = numbers_of(found), found.sample, len(found.inputs), unit_of(found)
     flat = np.concatenate(found.values)
     wide = WIDE if tried.grain else STEP
     steps = wide * np.maximum(np.abs(flat), 1e-2 * np.abs(units))
@@ -293,43 +281,33 @@ def _there(found: Fit, numbers: Sequence[Number], tried: Extended) -> tuple[Matr
         points += [(list(found.values), moved_by(sample, found.inputs + sign * half)) for sign in (1, -1)]
     names = [channel.name for channel in sample.channels]
     base, *moved = np.array([[shown[name] for name in names] for shown in tried.at(found.causes, points)])
-    own, ups, downs = moved[: len(flat)], moved[len(flat) :: 2], moved[len(flat) + 1 :: 2]
-    slopes = [(each - base) * unit / step for each, unit, step in zip(own, units, steps, strict=True)]
+    rises, ups, downs = moved[: len(flat)], moved[len(flat) :: 2], moved[len(flat) + 1 :: 2]
+    slopes = [(each - base) * unit / step for each, unit, step in zip(rises, units, steps, strict=True)]
     slopes += [up - down for up, down in zip(ups, downs, strict=True)]
-    return base, np.stack(slopes, axis=-1)
-
-
-def _amounts(chosen: Chosen, settings: Mapping[str, Matrix], place: int) -> dict[str, Amount]:
-    start = chosen.competition.sample.machine.start
-    known = start.model.known_conditions
-    return {
-        name: Amount(float(values[place]), known[name].unit if name in known else start.print_unit(name))
-        for name, values in settings.items()
-    }
+    own = np.column_stack(slopes_at(found, extended))
+    free = np.array([*(number.is_free for number in numbers), *[True] * k])
+    return _Seen(found, own[:, free], base, np.stack(slopes, axis=-1)[..., free])
 
 
 def _why(chosen: Chosen, settings: Mapping[str, Matrix], place: int, duel: _Duel) -> str:
-    """Say what makes a setting worth measuring: how far the two then differ, and where it leaves the record."""
+    """Say what makes a setting worth measuring: how far the two then differ, and what leaves the record farthest.
+
+    Only what the effects of the two explanations follow is looked at, where they follow anything.
+    """
     sample = chosen.competition.sample
     gaps = np.abs(duel.left()[:, place])
     name, spread = list(_spreads(sample, chosen.best).items())[int(np.argmax(gaps))]
     unit = readable_unit(sample.machine.start.print_unit(name), spread)
     words = f"{duel.names[0]} and {duel.names[1]} there differ by {in_unit(float(gaps.max()) * spread, unit)} in {name}"
-    setting = {key: float(values[place]) for key, values in settings.items()}
-    return words + _beyond_record(sample.machine, setting, duel.names)
-
-
-def _beyond_record(machine: Machine, setting: Mapping[str, float], names: Sequence[str]) -> str:
-    """Say what leaves the range of the record farthest, of what the effects of two explanations follow, if any does."""
-    known = machine.start.model.known_effects
-    effects = [known[each] for name in names for each in name.split(" + ") if each in known]
+    known = sample.machine.start.model.known_effects
+    effects = [known[each] for name in duel.names for each in name.split(" + ") if each in known]
     asked = {key for effect in effects for key in (*(need.name for need in effect.needs), *effect.reads)}
-    words, reach = "", 0.05
-    for key, value in setting.items():
-        item = machine.records.covariates[key]
+    beyond, reach = "", 0.05
+    for key in [each for each in settings if not asked or each in asked]:
+        item, value = sample.machine.records.covariates[key], float(settings[key][place])
         low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
         out = max(low - value, value - high) / max(high - low, 1e-300)
-        if (not asked or key in asked) and out > reach:
+        if out > reach:
             begin = format_number(float(from_si(low, item.unit)), 3)
-            words, reach = f"; {key} was only {begin} to {in_unit(high, item.unit, 3)} so far", out
-    return words
+            beyond, reach = f"; {key} was only {begin} to {in_unit(high, item.unit, 3)} so far", out
+    return words + beyond

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause, followed_by, gauged
+from truing.diagnosis.causes import Cause, gauged
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
@@ -16,8 +16,8 @@ from truing.diagnosis.naming import added_by
 from truing.diagnosis.noise import robust_sd
 from truing.diagnosis.result import Amount, Finding, Kind, Noise, Wrong
 from truing.diagnosis.sample import Channel, errors_of, residuals_of
-from truing.diagnosis.shape_words import in_unit, order_in_words, shape_in_words, step_in_words
-from truing.diagnosis.tidying import counted
+from truing.diagnosis.shape_words import drawn_by, in_unit, shape_in_words
+from truing.numbers import counted
 
 SIGNIFICANT = 0.05
 FAR = 4.0
@@ -44,10 +44,9 @@ def wrong_of(chosen: Chosen, units: Mapping[str, str]) -> tuple[Wrong, ...]:
 
 def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, Sequence[Cause]], unit: str) -> Wrong:
     best, name, rows = chosen.best, channel.name, channel.rows
-    machine = best.sample.machine
-    own = best.sample.noise[name]
+    machine, own, records = best.sample.machine, best.sample.noise[name], best.sample.machine.records
     before, after = (errors_of(machine, name, own, found.predicted[name])[rows] for found in (chosen.null, best))
-    floor = floor_of(best, best.sample.channels.index(channel))
+    floor = floor_of(best, channel)
     rmse = float(np.sqrt(np.mean(before**2)))
     share = max(0.0, 1 - floor**2 / rmse**2) if rmse > 0 and best.causes else 0.0
     found = [
@@ -56,11 +55,16 @@ def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, Sequence[Cause
         *_of_noise(best, channel),
         *_wave(best, channel),
     ]
-    noise = _noise(best, channel, after[channel.read], Amount(floor, unit))
-    if noise.outliers:
-        words = f"{counted(len(noise.outliers), 'suspected outlier')}, beyond four standard deviations of the noise"
+    size = after[channel.read] * channel.weights[channel.read]
+    far = np.abs(size) > FAR * max(robust_sd(size), channel.scale * channel.least**0.5)
+    places = rows[channel.read][far].tolist()
+    outliers = tuple((records.files[int(records.file_of[row])], int(records.lines[row])) for row in places)
+    memory = channel.memory
+    noise = Noise(Amount(floor, unit), memory.neighbours, own.tails.words, own.spread.words, outliers, memory.rho)
+    if outliers:
+        words = f"{counted(len(outliers), 'suspected outlier')}, beyond four standard deviations of the noise"
         found.append(Finding("outlier", "", None, words))
-    given = machine.records.sigma.get(name, np.zeros(len(machine.records)))[rows]
+    given = records.sigma.get(name, np.zeros(len(records)))[rows]
     given = given[given > 0]
     stated = Amount(float(np.sqrt(np.mean(given**2))), unit) if len(given) else None
     return Wrong(name, len(rows), Amount(rmse, unit), Amount(floor, unit), share, noise, tuple(found), stated)
@@ -74,11 +78,9 @@ def _bias(chosen: Chosen, channel: Channel, residual: Matrix, unit: str) -> Iter
     spread = float(np.sqrt(np.mean(np.sum(drawn**2, axis=1))))
     if abs(mean) <= BIASED * channel.scale / np.sqrt(len(channel)):
         return
-    is_allowed = abs(mean) <= BIASED * spread
-    if is_allowed:
+    words = "more than the tolerances allow" if spread > 0 else "and no tolerance allows for it"
+    if is_allowed := abs(mean) <= BIASED * spread:
         words = f"within what the tolerances allow ({in_unit(spread, unit)} standard deviation)"
-    else:
-        words = "more than the tolerances allow" if spread > 0 else "and no tolerance allows for it"
     yield Finding("bias", "", None, f"on average {in_unit(mean, unit)} off the nominal model, {words}", is_allowed)
 
 
@@ -89,9 +91,8 @@ def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[Finding]:
     """
     made = chosen.competition
     alone = [found for found in made.known.values() if len(found.causes) == 1]
-    measured = made.sample.machine.records.measured
     offsets = [found for found in alone if found.causes[0].name == "sensor_offset"]
-    constant = [found for found in offsets if gauged(found.causes[0], measured) == name]
+    constant = [found for found in offsets if gauged(found.causes[0], [name])]
     plain = min(made.score(found) for found in (made.null, *constant))  # what a trend must beat to be one
     best: dict[tuple[str, ...], tuple[float, Fit]] = {}
     for found in alone:
@@ -104,58 +105,46 @@ def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[Finding]:
         if len(label) == 2:
             singles[label[1]] = max(gain, singles.get(label[1], gain))
     least = SHADOW * (plain - made.score(made.ranked()[0]))
-    kept = 0
+    kept = []
     for label, (gain, found) in sorted(best.items(), key=lambda item: -item[1][0]):
         plainer = max((singles[each] + BETTER for each in label[1:] if each in singles), default=gain)
-        if gain < least or (len(label) == 3 and gain < plainer):
-            continue
-        kept += 1
-        if kept <= LARGEST_COUNT:
-            yield _finding(found, made.extended, chosen.law.p_of(gain), name, unit)
+        if gain >= least and (len(label) != 3 or gain >= plainer):
+            kept.append((gain, found))
+    for gain, found in kept[:LARGEST_COUNT]:
+        yield _finding(found, made.extended, chosen.law.p_of(gain), name, unit)
 
 
 def _label(found: Fit, name: str) -> tuple[str, ...]:
     """Return kind and covariates of a finding on one result alone; nothing for what is none."""
     (cause,) = found.causes
-    if cause.shape is not None:
-        own = cause.shape.kind if cause.shape.kind in {"order", "step", "wave", "product"} else "trend"
-        return (own, *cause.shape.depends_on) if cause.shape.results == (name,) else ()
-    if not cause.is_kernel or gauged(cause, found.sample.machine.records.measured) != name:
-        return ()
-    kind = {"periodic_order": "order", "step": "step"}.get(cause.name.partition("_of_")[0], "")
-    return (kind, followed_by(cause.effect)) if kind else ()
+    alone = cause.shape.results if cause.shape is not None else (gauged(cause, [name]),)
+    drawn = drawn_by(cause) if alone == (name,) else ()
+    return drawn if not drawn or drawn[0] in {"order", "step", "wave", "product"} else ("trend", *drawn[1:])
 
 
 def _finding(found: Fit, extended: Extended, p_value: float, name: str, unit: str) -> Finding:
     """Describe an explanation of one cause as it was fitted."""
     (cause,), (values,) = found.causes, found.values
-    machine = found.sample.machine
+    drawn, *names = drawn_by(cause)
+    kind: Kind = "order" if drawn == "order" else "step" if drawn == "step" else "trend"
     added = added_by(found, extended)[cause.name][name]
-    label = _label(found, name)
-    kind: Kind = "order" if label[0] == "order" else "step" if label[0] == "step" else "trend"
-    if cause.shape is not None:
-        text = shape_in_words(machine, cause, values, added, unit)
-    else:
-        item, at = machine.records.covariates[label[1]], float(values[cause.shapes[0]])
-        text = (order_in_words if kind == "order" else step_in_words)(item, at, added, unit)
-    return Finding(kind, " and ".join(label[1:]), p_value, text)
+    text = shape_in_words(found.sample.machine, cause, values, added, unit)
+    return Finding(kind, " and ".join(names), p_value, text)
 
 
 def _acting(chosen: Chosen) -> dict[str, list[Cause]]:
-    """Return by result the registered effects of the explanation that show in it."""
+    """Return by result the registered effects of the explanation that add more to it than its noise would hide."""
     best = chosen.best
     added = added_by(best, chosen.competition.extended) if best.causes else {}
     registered = [cause for cause in best.causes if cause.effect is not None]
     return {
-        channel.name: [cause for cause in registered if _shows(channel, added[cause.name][channel.name])]
-        for channel in best.sample.channels
+        each.name: [
+            cause
+            for cause in registered
+            if np.sum((added[cause.name][each.name][each.rows] * each.factors) ** 2) > SHOWS**2  # all rows together
+        ]
+        for each in best.sample.channels
     }
-
-
-def _shows(channel: Channel, added: Matrix) -> bool:
-    """Whether something that is added to a result is more than its noise would hide, all rows together."""
-    size = added[channel.rows] * channel.factors
-    return float(np.mean(size**2)) * len(channel) > SHOWS**2
 
 
 def _with_named(chosen: Chosen, acting: Sequence[Cause], found: list[Finding]) -> list[Finding]:
@@ -208,13 +197,3 @@ def _wave(best: Fit, channel: Channel) -> Iterator[Finding]:
     if p_value <= WAVE_LEVEL:
         words = f"{count} waves over the range of {name}, with {100 * share:.0f} % of what is left after all"
         yield Finding("wave", name, p_value, words)
-
-
-def _noise(best: Fit, channel: Channel, after: Matrix, floor: Amount) -> Noise:
-    """Describe the noise of one result, with the rows that lie beyond four standard deviations of it."""
-    noise, memory, records = best.sample.noise[channel.name], channel.memory, best.sample.machine.records
-    size = after * channel.weights[channel.read]
-    sd = max(robust_sd(size), channel.scale * channel.least**0.5)
-    far = channel.rows[channel.read][np.abs(size) > FAR * sd]
-    outliers = tuple((records.files[int(records.file_of[row])], int(records.lines[row])) for row in far)
-    return Noise(floor, memory.neighbours, noise.tails.words, noise.spread.words, outliers, memory.rho)

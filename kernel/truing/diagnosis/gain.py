@@ -22,7 +22,7 @@ from truing.diagnosis.folds import Folds, folds_of, refitted
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.noise import beyond, difference
 from truing.diagnosis.result import Amount, Gain
-from truing.diagnosis.sample import Noise, errors_of
+from truing.diagnosis.sample import Channel, Noise, errors_of
 
 FLIPS = 999
 MOST_EXACT = 12
@@ -149,7 +149,7 @@ def gains_of(chosen: Chosen, judged: Nested, units: Mapping[str, str]) -> tuple[
     best, start = chosen.best, chosen.competition.sample.machine.start
     for place, channel in enumerate(best.sample.channels):
         name, unit, answers = channel.name, units[channel.name], judged.judged[channel.name]
-        floor2 = floor_of(best, place) ** 2
+        floor2 = floor_of(best, channel) ** 2
         before2, after2 = (float(np.nanmean(errors**2)) for errors in (answers.before, answers.after))
         reducible = before2 - floor2
         is_told = bool(best.causes) and reducible > LEAST_REDUCIBLE * floor2
@@ -169,9 +169,9 @@ def gains_of(chosen: Chosen, judged: Nested, units: Mapping[str, str]) -> tuple[
     return tuple(made)
 
 
-def floor_of(found: Fit, place: int) -> float:
+def floor_of(found: Fit, channel: Channel) -> float:
     """Return the root mean square that an explanation leaves of one result, SI, its numbers paid for."""
-    channel, sample = found.sample.channels[place], found.sample
+    sample = found.sample
     errors = errors_of(sample.machine, channel.name, sample.noise[channel.name], found.predicted[channel.name])
     used = (found.size + len(found.inputs)) / len(sample.channels)
     return float(np.sqrt(np.sum(errors[channel.rows] ** 2) / max(len(channel) - used, 1.0)))
@@ -187,11 +187,10 @@ def _held_out(chosen: Chosen, name: str) -> tuple[float, float] | None:
     if not rows.any():
         return None
     is_other = ~np.isin(records.run_of, np.unique(records.run_of[~records.held_out]))
-    shaped = np.zeros(len(records))
-    for cause, values in zip(best.causes, best.values, strict=True):
-        shaped = shaped + shape_added(best.sample.machine, cause, values).get(name, 0.0)
-    extended = best.predicted[name] - np.where(is_other, shaped, 0.0)
-    machine, noise, shown = best.sample.machine, best.sample.noise[name], (chosen.null.predicted[name], extended)
+    machine, noise = best.sample.machine, best.sample.noise[name]
+    added = (shape_added(machine, cause, values) for cause, values in zip(best.causes, best.values, strict=True))
+    shaped = sum((each[name] for each in added if name in each), np.zeros(len(records)))
+    shown = chosen.null.predicted[name], best.predicted[name] - np.where(is_other, shaped, 0.0)
     before, after = (float(np.sqrt(np.mean(errors_of(machine, name, noise, each)[rows] ** 2))) for each in shown)
     return before, after
 

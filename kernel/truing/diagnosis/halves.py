@@ -11,7 +11,7 @@ from math import hypot, sqrt
 
 import numpy as np
 
-from truing.diagnosis.arrays import Mask, Places
+from truing.diagnosis.arrays import Places
 from truing.diagnosis.choice import CLOSE, Chosen
 from truing.diagnosis.exact import refit
 from truing.diagnosis.fitted import Fit
@@ -39,8 +39,9 @@ def contradictions_of(chosen: Chosen) -> tuple[Contradiction, ...]:
         return ()
     extended = chosen.competition.extended
     turn = _in_turn(best.sample)
-    halves = (turn[len(turn) // 2 :], turn[: len(turn) // 2])
-    fitted = [found for rows in halves if (found := refitted(best, extended, _marked(best.sample, rows))) is not None]
+    rows = np.arange(len(best.sample.mask))
+    left_out = [np.isin(rows, half) for half in (turn[len(turn) // 2 :], turn[: len(turn) // 2])]
+    fitted = [found for test in left_out if (found := refitted(best, extended, test)) is not None]
     if len(fitted) < 2:
         return ()
     certain = [certainty_of(found, extended) for found in fitted]
@@ -104,16 +105,12 @@ def _score(chosen: Chosen, found: Fit, sample: Sample) -> float:
 
 def _thinned(sample: Sample, rows: Places) -> Sample:
     """Return every second row, with the memory that the noise still has from one of them to the next."""
-    mask = _marked(sample, rows)
+    mask = np.isin(np.arange(len(sample.mask)), rows)
     few, channels = sample.of_rows(mask), []
     for whole, own in zip(sample.channels, few.channels, strict=True):
         begun = np.cumsum(whole.starts)[mask[whole.rows]]  # so many times the noise has begun anew up to here
         channels.append(replace(own, starts=np.diff(begun, prepend=0) > 0, memory=every_second(own.memory)))
     return replace(few, channels=tuple(channels))
-
-
-def _marked(sample: Sample, rows: Places) -> Mask:
-    return np.isin(np.arange(len(sample.mask)), rows)
 
 
 def every_second(memory: Setting) -> Setting:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from truing.diagnosis.data_file import DataRows, Part, is_missing, objects
-from truing.diagnosis.tidying import counted
 from truing.errors import Fault, InputError
 from truing.measurements import RowsFile
+from truing.numbers import counted
 from truing.setup import Setup
 from truing.units import same_dimension
 from truing.units.grammar import shown
@@ -37,7 +37,7 @@ def join(files: Sequence[DataRows], setup: Setup) -> DataRows:
         units={name: unit for file in reversed(files) for name, unit in file.units.items()},
         file_of=np.repeat(np.arange(len(files)), [len(file) for file in files]),
         lines=np.concatenate([file.lines for file in files]),
-        runs=np.concatenate([_runs(file, alone=len(files) == 1) for file in files]),
+        runs=np.concatenate([file.runs for file in files]),
         held_out=np.concatenate([file.held_out for file in files]),
         counts=tuple(count for file in files for count in file.counts),
         notes=tuple(note for file in files for note in file.notes),
@@ -81,13 +81,6 @@ def _cells(file: DataRows, name: str, part: Part, setup: Setup) -> NDArray[Any]:
         return objects([setup.nominal(name)] * len(file) if part == "word" else texts)
     value = setup.calibrated.get(name, setup.nominal(name)) if part == "input" else np.nan
     return np.full(len(file), float(value))
-
-
-def _runs(file: DataRows, *, alone: bool) -> NDArray[Any]:
-    """Return the runs of a file, told apart from those of other files."""
-    if alone:
-        return file.runs
-    return objects(f"{file.files[0]}: {run}" if run else file.files[0] for run in file.runs.tolist())
 
 
 def settle_conditions(joined: DataRows, files: Sequence[DataRows], setup: Setup) -> DataRows:
@@ -136,42 +129,37 @@ def complete_rows(joined: DataRows, setup: Setup) -> DataRows:
     notes: list[str] = []
     for name in joined.named("input", "word", "series", "condition"):
         item = setup.model.input_fields.get(name)
-        missing = is_missing(joined.columns[name])
-        if missing.any() and not (item is not None and item.is_optional):
-            joined = joined.without(missing, f"'{name}' is empty")
-            notes.append(f"{counted(int(missing.sum()), 'row is', 'rows are')} left out where '{name}' is empty")
+        empty = is_missing(joined.columns[name])
+        if empty.any() and not (item is not None and item.is_optional):
+            joined = joined.without(empty, f"'{name}' is empty")
+            notes.append(f"{counted(int(empty.sum()), 'row is', 'rows are')} left out where '{name}' is empty")
     before, joined = len(joined), measured_rows(joined)
     if len(joined) < before:
         notes.append(f"{counted(before - len(joined), 'row is', 'rows are')} left out where nothing was measured")
-    for name in joined.named("measured"):
-        missing = np.isnan(joined.columns[name])
-        if missing.any():
-            notes.append(f"'{name}' is missing in {int(missing.sum())} of {len(joined)} rows")
+    for name, values in joined.named("measured").items():
+        if missing := int(np.isnan(values).sum()):
+            notes.append(f"'{name}' is missing in {missing} of {len(joined)} rows")
     return joined.noted(*notes)
 
 
 def measured_rows(joined: DataRows) -> DataRows:
     """Leave out rows in which nothing that is used was measured; the rows of a record stay."""
     nothing = np.full(len(joined), not joined.named("series"))
-    for name in joined.named("measured"):
-        nothing &= np.isnan(joined.columns[name])
+    for values in joined.named("measured").values():
+        nothing &= np.isnan(values)
     return joined.without(nothing, "nothing was measured that is used") if nothing.any() else joined
 
 
 def rows_of(joined: DataRows) -> RowsFile:
     """Return the rows as the model is evaluated with them."""
-
-    def of(*parts: Part) -> Mapping[str, NDArray[Any]]:
-        return {name: joined.columns[name] for name in joined.named(*parts)}
-
-    words = {name: values.tolist() for name, values in of("word").items()}
+    words = {name: values.tolist() for name, values in joined.named("word").items()}
     return RowsFile(
         file=", ".join(joined.files),
-        columns={**of("input", "condition"), **words},
-        series=of("series"),
+        columns={**joined.named("input", "condition"), **words},
+        series=joined.named("series"),
         cells={},
         lines=tuple(joined.lines.tolist()),
         others=tuple(joined.named("other", "label")),
-        axes=of("axis"),
+        axes=joined.named("axis"),
         runs=tuple(joined.runs.tolist()),
     )

@@ -10,12 +10,10 @@ import numpy as np
 
 from truing.declare.sources import Effect
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause as Competitor
 from truing.diagnosis.choice import Chosen, Rival
 from truing.diagnosis.extended import Extended, shape_added, switched_on
 from truing.diagnosis.fitted import Fit, input_value
 from truing.diagnosis.intervals import Certainty, certainty_of, ends_of, numbers_of, places_of, value_of
-from truing.diagnosis.machine import Machine
 from truing.diagnosis.result import Alternative, Calibrated, Cause, FittedUnknown, Remainder, ShapeTerm
 from truing.diagnosis.shape_words import shape_in_words
 from truing.diagnosis.visibility import separation
@@ -39,7 +37,7 @@ def causes_of(chosen: Chosen, found: Fit) -> tuple[Cause, ...]:
 def _input(found: Fit, known: Certainty, effect: str) -> Cause:
     """Return an input that lies outside its band, with the interval of its value, in every file that has its own."""
     machine = found.sample.machine
-    made: dict[str, Sized] = {}
+    made: dict[int, Sized] = {}
     for cause in [cause for cause in found.causes if cause.name == effect]:
         given = machine.inputs[cause.tolerated]
         own = np.zeros(len(known.covariance))
@@ -47,36 +45,31 @@ def _input(found: Fit, known: Certainty, effect: str) -> Cause:
         if len(found.inputs):
             own[-len(found.inputs) :] = found.sample.directions[cause.tolerated]
         value, reach = input_value(found, cause.tolerated), known.reach(own) * given.sd
-        made[_file_named(machine, given.file)] = value, value - reach, value + reach
-    return Cause(effect, (_of_files(given.name, made, machine.start.unit_of(given.name)),))
+        made[given.file] = value, value - reach, value + reach
+    return Cause(effect, (_of_files(found, given.name, made, machine.start.unit_of(given.name)),))
 
 
-def _file_named(machine: Machine, file: int) -> str:
-    """Return the name of a file that has a value of its own; nothing for all files."""
-    return machine.records.files[file] if file >= 0 else ""
-
-
-def _of_files(name: str, made: Mapping[str, Sized], unit: str) -> FittedUnknown:
-    """Return an unknown with its interval; of one fitted file by file, the mean and every file's own."""
-    if "" in made:
-        return FittedUnknown(name, *made[""], unit)
-    return FittedUnknown(name, sum(value for value, _, _ in made.values()) / len(made), None, None, unit, made)
+def _of_files(found: Fit, name: str, made: Mapping[int, Sized], unit: str) -> FittedUnknown:
+    """Return an unknown with its interval, -1 where it is one for all files; else their mean and every file's own."""
+    if -1 in made:
+        return FittedUnknown(name, *made[-1], unit)
+    own = {found.sample.machine.records.files[file]: sized for file, sized in made.items()}
+    return FittedUnknown(name, sum(value for value, _, _ in made.values()) / len(made), None, None, unit, own)
 
 
 def _effect(chosen: Chosen, found: Fit, known: Certainty, effect: Effect[Any, Any]) -> Cause:
     """Return an effect with all its unknowns that were fitted."""
-    machine, extended, numbers = found.sample.machine, chosen.competition.extended, numbers_of(found)
+    extended, numbers = chosen.competition.extended, numbers_of(found)
     parts = [cause for cause in found.causes if cause.effect is effect]
     places = [place for cause in parts for place in places_of(found, cause)]
     unknowns, kept = [], []
     for unknown in effect.unknowns:
         own = [place for place in places if numbers[place].name == unknown.name]
         if own:
-            sized: dict[str, Sized] = {}
-            for each in own:
-                ends = ends_of(found, extended, known, each)
-                sized[_file_named(machine, numbers[each].file)] = value_of(found, each), *ends
-            unknowns.append(_of_files(unknown.name, sized, unknown.unit))
+            sized: dict[int, Sized] = {
+                numbers[each].file: (value_of(found, each), *ends_of(found, extended, known, each)) for each in own
+            }
+            unknowns.append(_of_files(found, unknown.name, sized, unknown.unit))
             kept.append(own[0])
     is_whole = all(numbers[place].is_free and numbers[place].file < 0 for place in kept)
     covariance = known.in_si(kept) if is_whole else ()
@@ -98,12 +91,10 @@ def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
     if len(causes) < 2:
         return causes
     added, channels = added_by(chosen.best, chosen.competition.extended), chosen.best.sample.channels
-
-    def square(cause: Cause) -> float:
-        parts = ((added[cause.effect][each.name][each.rows] * each.factors / each.weights) for each in channels)
-        return float(sum(np.sum(part**2) for part in parts))
-
-    squares = np.array([square(cause) for cause in causes])
+    drawn = [
+        [added[one.effect][each.name][each.rows] * each.factors / each.weights for each in channels] for one in causes
+    ]
+    squares = np.array([sum(float(np.sum(part**2)) for part in parts) for parts in drawn])
     if not squares.sum() > 0:
         return causes
     weighed = [replace(cause, share=float(share)) for cause, share in zip(causes, squares / squares.sum(), strict=True)]
@@ -112,7 +103,11 @@ def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
 
 def added_by(found: Fit, extended: Extended) -> dict[str, dict[str, Matrix]]:
     """Return by name of a cause what all that it names adds to each result of an explanation, SI on all rows."""
-    points = [(_without(found, name), found.moved) for name in ("", *found.names)]
+    points = []
+    for name in ("", *found.names):
+        off = ([cause.name == name and number.is_amplitude for number in cause.numbers] for cause in found.causes)
+        values = [np.where(mask, 0.0, own) for mask, own in zip(off, found.values, strict=True)]
+        points.append((values, found.moved))
     whole, *without = extended.at(found.causes, points)
     return {
         name: {result: np.nan_to_num(whole[result] - values) for result, values in less.items()}
@@ -120,28 +115,16 @@ def added_by(found: Fit, extended: Extended) -> dict[str, dict[str, Matrix]]:
     }
 
 
-def _without(found: Fit, name: str) -> list[Matrix]:
-    """Return the numbers of an explanation with the amplitudes of one name at zero."""
-    made = []
-    for cause, values in zip(found.causes, found.values, strict=True):
-        made.append(values.copy())
-        if cause.name == name:
-            made[-1][cause.amplitudes] = 0.0
-    return made
-
-
 def extended_setup(chosen: Chosen, causes: Sequence[Cause]) -> Setup:
     """Return the model brought true: causes on, conditions as measured (their means), inputs calibrated."""
     machine, on = chosen.best.sample.machine, tuple(_switched_on(chosen.best, causes))
     start = machine.start
-    needed = {need.name for item in on for need in item.effect.needs}
-    conditions = dict(start.conditions)
-    for name, item in machine.records.covariates.items():
-        if name in conditions or name in needed:
-            conditions[name] = float(np.nanmean(item.values))
-    calibrated = {name: value for name, (value, _) in input_values(chosen.best).items()}
-    setup = replace(start, conditions=conditions).with_effects(on)
-    return replace(setup, inputs=machine.design.inputs, calibrated={**start.calibrated, **calibrated})
+    seen = {need.name for item in on for need in item.effect.needs} | set(start.conditions)
+    measured = {name: item for name, item in machine.records.covariates.items() if name in seen}
+    conditions = {**start.conditions, **{name: float(np.nanmean(item.values)) for name, item in measured.items()}}
+    calibrated = {**start.calibrated, **{name: value for name, (value, _) in input_values(chosen.best).items()}}
+    setup = replace(start, inputs=machine.design.inputs, conditions=conditions, calibrated=calibrated)
+    return setup.with_effects(on)
 
 
 def _switched_on(best: Fit, causes: Sequence[Cause]) -> Iterator[SwitchedOn]:
@@ -166,9 +149,8 @@ def input_values(found: Fit) -> Mapping[str, tuple[float, float]]:
 
 def calibrated_of(found: Fit) -> tuple[Calibrated, ...]:
     """Return every tolerated input as fitted to this machine."""
-    start = found.sample.machine.start
-    values = input_values(found)
-    return tuple(Calibrated(name, value, start.unit_of(name), off) for name, (value, off) in values.items())
+    start, values = found.sample.machine.start, input_values(found).items()
+    return tuple(Calibrated(name, value, start.unit_of(name), off) for name, (value, off) in values)
 
 
 def remainder_of(chosen: Chosen, units: Mapping[str, str]) -> Remainder | None:
@@ -177,12 +159,14 @@ def remainder_of(chosen: Chosen, units: Mapping[str, str]) -> Remainder | None:
     words: dict[str, list[str]] = {}
     terms: dict[str, tuple[ShapeTerm, ...]] = {}
     for cause, values in zip(best.causes, best.values, strict=True):
-        if cause.shape is None:
+        shape = cause.shape
+        if shape is None:
             continue
-        added = shape_added(machine, cause, values)
-        for name, own in _terms(machine, cause, values).items():
-            text = shape_in_words(machine, cause, values, added[name], units[name])
-            words.setdefault(name, []).append(text)
+        made = shape.terms([float(values[place]) for place in cause.shapes], machine.records.covariates)
+        sizes = iter([float(values[place]) for place in cause.amplitudes])
+        for name, added in shape_added(machine, cause, values).items():
+            words.setdefault(name, []).append(shape_in_words(machine, cause, values, added, units[name]))
+            own = (ShapeTerm(term.expression, next(sizes)) for term in made)
             terms[name] = (*terms.get(name, ()), *own)
     if not words:
         return None
@@ -196,16 +180,6 @@ def _followed(found: Fit) -> tuple[str, ...]:
     """Return what the unregistered shapes of an explanation depend on."""
     shapes = [cause.shape for cause in found.causes if cause.shape is not None]
     return tuple(dict.fromkeys(name for shape in shapes for name in shape.depends_on))
-
-
-def _terms(machine: Machine, cause: Competitor, values: Matrix) -> dict[str, tuple[ShapeTerm, ...]]:
-    """Return the fitted terms of a shape by result, with coefficients in SI."""
-    shape = cause.shape
-    if shape is None:
-        return {}
-    made = shape.terms([float(values[place]) for place in cause.shapes], machine.records.covariates)
-    sizes = iter([float(values[place]) for place in cause.amplitudes])
-    return {name: tuple(ShapeTerm(term.expression, next(sizes)) for term in made) for name in shape.results}
 
 
 def alternative_of(chosen: Chosen, rival: Rival, *, with_sizes: bool = False) -> Alternative:

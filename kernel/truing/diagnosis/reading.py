@@ -10,15 +10,16 @@ import numpy as np
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.covariates import censored_rows, covariates_of, held_out_rows
-from truing.diagnosis.data_file import DataRows, read_data_file
+from truing.diagnosis.data_file import DataRows, objects, read_data_file
 from truing.diagnosis.joining import complete_rows, join, measured_rows, rows_of, settle_conditions
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.slips import factor_that_works, suspected_slips
-from truing.diagnosis.tidying import counted, numbered, tidy
+from truing.diagnosis.tidying import numbered, tidy
 from truing.errors import Fault, InputError
 from truing.gauge import one_machine, read_by_gauge
 from truing.kernel import Offer
 from truing.measurements.table import SIGMA
+from truing.numbers import counted
 from truing.setup import Setup
 
 FEWEST = 3
@@ -53,9 +54,9 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_slip
         files=joined.files,
         rows=rows_of(joined),
         file_of=joined.file_of,
-        run_of=numbered(joined.runs.tolist())[0],
+        run_of=numbered(joined.runs),
         lines=joined.lines,
-        measured={name: joined.columns[name] for name in joined.named("measured")},
+        measured=joined.named("measured"),
         sigma=sigma,
         covariates=covariates,
         held_out=joined.held_out,
@@ -68,7 +69,7 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_slip
 
 
 def _read(paths: Sequence[Path], offer: Offer) -> list[DataRows]:
-    """Read every file and put its rows in order; raises InputError with the faults of all."""
+    """Read every file and put its rows in order, runs of several told apart; raises InputError with all faults."""
     faults: list[Fault] = []
     files: list[DataRows] = []
     once = {path.resolve(): path for path in reversed(paths)}
@@ -80,10 +81,13 @@ def _read(paths: Sequence[Path], offer: Offer) -> list[DataRows]:
             faults += error.faults
             continue
         file = tidy(file, offer.model)
-        notes = [f"{path}: {sentence}" if len(once) > 1 else sentence for sentence in file.notes]
+        if len(once) > 1:
+            runs = objects(f"{path}: {run}" if run else str(path) for run in file.runs.tolist())
+            file = replace(file, runs=runs, notes=tuple(f"{path}: {sentence}" for sentence in file.notes))
         if not files and len(once) < len(paths):
-            notes.insert(0, f"{counted(len(paths) - len(once), 'file is', 'files are')} given twice and read once")
-        files.append(replace(file, notes=tuple(notes)))
+            twice = f"{counted(len(paths) - len(once), 'file is', 'files are')} given twice and read once"
+            file = replace(file, notes=(twice, *file.notes))
+        files.append(file)
     if faults:
         raise InputError(faults)
     return files
@@ -109,8 +113,8 @@ def _demand_rows(joined: DataRows, most: int | None = None) -> None:
 def _sigma(joined: DataRows) -> tuple[dict[str, Matrix], list[str]]:
     """Return the standard deviations that are given, by result; one of 0 is none."""
     found, notes = {}, []
-    for name in joined.named("sigma"):
-        result, values = name.removeprefix(SIGMA), joined.columns[name]
+    for name, values in joined.named("sigma").items():
+        result = name.removeprefix(SIGMA)
         if result in joined.columns:
             found[result] = np.where(values > 0, values, np.nan)
             if zero := int((values == 0).sum()):
@@ -123,9 +127,9 @@ def _demand_logarithms(joined: DataRows, setup: Setup) -> None:
     sentence = "{} is not above 0, so it has no logarithm; its noise cannot be lognormal"
     faults = [
         Fault(sentence.format(name), joined.files[joined.file_of[row]], int(joined.lines[row]))
-        for name in joined.named("measured")
+        for name, values in joined.named("measured").items()
         if name in setup.diagnose.lognormal
-        for row in np.flatnonzero(joined.columns[name] <= 0)
+        for row in np.flatnonzero(values <= 0)
     ]
     if faults:
         raise InputError(faults)
@@ -135,8 +139,8 @@ def _enough_values(joined: DataRows, setup: Setup) -> DataRows:
     """Leave out measured results with too few values to explain; raises InputError where none is left."""
     measured = joined.named("measured")
     _, sides, censored = censored_rows(joined, setup)
-    known = {name: np.isfinite(joined.columns[name]) & (sides.get(name, 0) == np.int8(0)) for name in measured}
-    values = {name: int(known[name][~joined.held_out].sum()) for name in measured}
+    known = {name: np.isfinite(each) & (sides.get(name, 0) == np.int8(0)) for name, each in measured.items()}
+    values = {name: int(each[~joined.held_out].sum()) for name, each in known.items()}
     fewest = FEWEST_BESIDE if max(values.values()) >= FEWEST_BESIDE else FEWEST
     few = {name: count for name, count in values.items() if count < fewest}
     if len(few) == len(measured):

@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import pi
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from truing.diagnosis.arrays import Mask, Matrix, Places, Sides
+from truing.diagnosis.arrays import Mask, Matrix, Places, Sides, first_alike
 from truing.measurements import RowCount, RowsFile
 
 Role = Literal["input", "condition", "time", "other", "order"]
@@ -36,7 +35,7 @@ class Covariate:
     is_angle: bool = False
 
     @cached_property
-    def filled(self) -> NDArray[np.float64]:
+    def filled(self) -> Matrix:
         """The values with their mean where one is missing."""
         return np.where(np.isfinite(self.values), self.values, np.nanmean(self.values))
 
@@ -97,9 +96,7 @@ class Records:
         known = [np.where(self.known(name), values, np.nan) for name, values in self.measured.items()]
         measured = np.column_stack(known)[~self.held_out]
         settings = [item.values[~self.held_out] for item in self.covariates.values() if item.role != "order"]
-        rows = np.ascontiguousarray(np.column_stack([measured, *settings]), dtype=float)
-        _, first = np.unique(rows.view(np.dtype((np.void, rows.itemsize * rows.shape[1]))), return_index=True)
-        return int(np.isfinite(measured[first]).sum())
+        return int(np.isfinite(measured[np.unique(first_alike([*measured.T, *settings]))]).sum())
 
     def known(self, name: str) -> Mask:
         """Mark the rows in which the value of a result was read: neither missing nor censored."""
@@ -111,21 +108,9 @@ class Records:
 
     def part(self, places: Places) -> Records:
         """Return some of the rows, by their places in order."""
-        rows = self.rows
-        columns: dict[str, Any] = {
-            name: [values[place] for place in places] if isinstance(values, list) else values[places]
-            for name, values in rows.columns.items()
-        }
-        few = replace(
-            rows,
-            columns=columns,
-            axes={name: values[places] for name, values in rows.axes.items()},
-            lines=tuple(np.asarray(rows.lines)[places].tolist()),
-            runs=tuple(rows.runs[place] for place in places) if rows.runs else (),
-        )
         return replace(
             self,
-            rows=few,
+            rows=self.rows.taken(places),
             file_of=self.file_of[places],
             run_of=self.run_of[places],
             lines=self.lines[places],

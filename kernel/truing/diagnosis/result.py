@@ -345,7 +345,5 @@ def readable_unit(unit: str, size: float) -> str:
     own = difference_unit(unit)
     if size == 0 or reads_well(size, own):
         return own
-    for family in FAMILIES:
-        if own in family or (same_dimension(own, family[0]) and own not in KNOWN):
-            return next((each for each in family if reads_well(size, each)), own)
-    return own
+    families = (each for each in FAMILIES if own in each or (own not in KNOWN and same_dimension(own, each[0])))
+    return next((unit for unit in next(families, ()) if reads_well(size, unit)), own)

@@ -9,7 +9,6 @@ from math import pi
 import numpy as np
 from scipy.stats import qmc
 
-from truing.declare.fields import InputField
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.records import Covariate
@@ -25,21 +24,21 @@ FEW_VALUES = 3
 def settings_of(machine: Machine, tried: int = TRIED) -> dict[str, Matrix]:
     """Return the settings that are tried, by input or condition, SI: so many corners of the box and points in it."""
     covariates = machine.records.covariates
-    known = {name: box for name, item in covariates.items() if (box := _box(machine, name, item)) is not None}
-    boxes = {name: (low, high) for name, (low, high) in known.items() if high > low}
+    found = ((name, _box(machine, name, item)) for name, item in covariates.items())
+    boxes = {name: box for name, box in found if box is not None and box[1] > box[0]}
     if not boxes:
         return {}
     unit = qmc.Sobol(len(boxes), scramble=False).random(tried)
     edges = np.random.Generator(np.random.SFC64(0)).integers(0, 3, size=(tried, len(boxes))) / 2
     every = np.concatenate([unit, edges])
-    found = {}
+    settings = {}
     for column, (name, (low, high)) in enumerate(boxes.items()):
         values = low + (high - low) * every[:, column]
         measured = covariates[name].values
         if len(np.unique(measured[np.isfinite(measured)])) <= FEW_VALUES:
             values = np.where(every[:, column] < 0.5, low, high)
-        found[name] = values
-    return found
+        settings[name] = values
+    return settings
 
 
 def _box(machine: Machine, name: str, item: Covariate) -> tuple[float, float] | None:
@@ -52,10 +51,8 @@ def _box(machine: Machine, name: str, item: Covariate) -> tuple[float, float] | 
         low = np.nanmin(item.values) if condition.low is None else to_si(condition.low, condition.unit)
         high = np.nanmax(item.values) if condition.high is None else to_si(condition.high, condition.unit)
         return float(low), float(high)
-    return None if field is None or not field.varies else _input_box(field, item)
-
-
-def _input_box(field: InputField, item: Covariate) -> tuple[float, float]:
+    if field is None or not field.varies:
+        return None
     low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
     declared = [getattr(field.spec, key, None) for key in ("at_least", "above", "at_most", "below")]
     lows = [float(to_si(value, field.unit)) for value in declared[:2] if isinstance(value, (int, float))]

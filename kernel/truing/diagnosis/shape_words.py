@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause
+from truing.diagnosis.causes import Cause, followed_by
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.records import Covariate
 from truing.diagnosis.result import readable_unit
@@ -23,45 +23,37 @@ def in_unit(value: float, unit: str, digits: int = SHOWN_DIGITS) -> str:
     return f"{format_number(float(from_si(value, unit)), digits)} {unit}".strip()
 
 
+def drawn_by(cause: Cause) -> tuple[str, ...]:
+    """Return the kind of curve that a shape, or an effect of the kernel, draws, and the covariates that it follows."""
+    if cause.shape is not None:
+        return cause.shape.kind, *cause.shape.depends_on
+    kind = {"periodic_order": "order", "step": "step"}.get(cause.name.partition("_of_")[0], "")
+    return (kind, followed_by(cause.effect)) if kind and cause.is_kernel else ()
+
+
 def shape_in_words(machine: Machine, cause: Cause, values: Matrix, added: Matrix, unit: str) -> str:
-    """Describe a fitted shape that nobody registered by its numbers (SI) and what it adds to a result, SI, (n,)."""
-    shape = cause.shape
-    if shape is None:
-        return ""
-    items = [machine.records.covariates[name] for name in shape.depends_on]
-    item, size = items[0], in_unit(float(np.ptp(added)), unit)
+    """Describe a fitted curve by its numbers (SI) and what it adds to a result, SI, (n,): see ``drawn_by``."""
+    kind, *names = drawn_by(cause)
+    item, spanned = machine.records.covariates[names[0]], float(np.ptp(added))
+    size, amplitude = in_unit(spanned, unit), in_unit(spanned / 2, unit)
     number = float(values[cause.shapes[0]]) if cause.shapes else 0.0
-    if shape.kind == "order":
-        return order_in_words(item, number, added, unit)
-    if shape.kind == "step":
-        return step_in_words(item, number, added, unit)
-    if shape.kind == "wave":
-        return f"one wave per {_length(item, 1 / number)}, amplitude {in_unit(_amplitude(added), unit)}"
-    if shape.kind == "settling":
+    if kind == "order":
+        return f"order {number:g} of {item.name}, amplitude {amplitude}"
+    if kind == "step":
+        return f"step of {in_unit(float(added[np.argmax(np.abs(added))]), unit)} at {_place(item, number)}"
+    if kind == "wave":
+        return f"one wave per {_length(item, 1 / number)}, amplitude {amplitude}"
+    if kind == "settling":
         return f"settles with a time constant of {_length(item, number)}, by {in_unit(_change(item, added), unit)}"
-    if shape.kind == "jump":
+    if kind == "jump":
         return f"jumps by {in_unit(_change(item, added), unit)} where {item.name} changes its sign"
-    if shape.kind == "kink":
+    if kind == "kink":
         return f"has a kink where {item.name} changes its sign, range {size}"
-    if shape.kind == "dead zone":
+    if kind == "dead zone":
         return f"a dead zone of +-{_length(item, number)}, range {size}"
-    if shape.kind == "product":
-        return f"depends on {items[0].name} and {items[1].name} together, range {size}"
+    if kind == "product":
+        return f"depends on {' and '.join(names)} together, range {size}"
     return _trend(item, added, unit)
-
-
-def order_in_words(item: Covariate, order: float, added: Matrix, unit: str) -> str:
-    """Describe waves of a whole order over an angle."""
-    return f"order {order:g} of {item.name}, amplitude {in_unit(_amplitude(added), unit)}"
-
-
-def step_in_words(item: Covariate, at: float, added: Matrix, unit: str) -> str:
-    """Describe a step at a place (SI) along a covariate."""
-    return f"step of {in_unit(float(added[np.argmax(np.abs(added))]), unit)} at {_place(item, at)}"
-
-
-def _amplitude(added: Matrix) -> float:
-    return float(np.ptp(added)) / 2
 
 
 def _change(item: Covariate, added: Matrix) -> float:

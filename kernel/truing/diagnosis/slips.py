@@ -18,9 +18,8 @@ from truing.diagnosis.arrays import Matrix, Places
 from truing.diagnosis.data_file import DataRows, declared_units
 from truing.diagnosis.joining import rows_of
 from truing.diagnosis.records import Slip
-from truing.diagnosis.tidying import is_angle
+from truing.diagnosis.tidying import is_angle, keeps_bounds
 from truing.gauge import one_machine, read_by_gauge
-from truing.inputs_file.values import broken_bound
 from truing.setup import Setup
 from truing.trials import read_trials
 from truing.units import difference_unit, from_si, same_dimension, to_si
@@ -66,8 +65,7 @@ class _Gauge:
 def suspected_slips(joined: DataRows, setup: Setup) -> tuple[Slip, ...]:
     """Return the columns whose unit is probably wrong, by what each factor does to the error of the model."""
     out_of_range = tuple(_out_of_range(joined, setup))
-    measured = joined.named("measured")
-    if not any(_is_far(joined.columns[name], joined.answers[name]) for name in measured):
+    if not any(_is_far(values, joined.answers[name]) for name, values in joined.named("measured").items()):
         return out_of_range
     few = joined.taken(_some_rows(joined))
     gauges = _gauges(few, setup)
@@ -130,13 +128,12 @@ def _factors(unit: str) -> Mapping[float, str]:
 
 def _own_slip(one: _Gauge, few: DataRows, setup: Setup) -> Slip | None:
     """Return the slip in the unit of a measured result, if one factor on it explains the error."""
-    unit = setup.model.own_result_fields[one.name].unit
-    gains = {factor: one.gain(one.measured * factor, one.answer) for factor in _factors(unit)}
+    factors = _factors(setup.model.own_result_fields[one.name].unit)
+    gains = {factor: one.gain(one.measured * factor, one.answer) for factor in factors}
     best = max(gains, key=gains.__getitem__, default=1.0)
     if not gains.get(best):
         return None
-    after = one.measured * best - one.answer
-    return _slip(one.name, best, few, _off(one, after, setup), _factors(unit)[best])
+    return _slip(one.name, best, few, _off(one, one.measured * best - one.answer, setup), factors[best])
 
 
 def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup: Setup) -> Slip | None:
@@ -147,7 +144,8 @@ def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup
     found = read_trials(one_machine(setup), rows_of(few), scaled, few.named("measured"))
     for (name, factor, words), answers in zip(trials, found, strict=True):
         gains = [one.gain(one.measured, answers[one.name]) for one in beyond]
-        if not all(gains) or any(_is_worse(one, answers[one.name]) for one in gauges):
+        off = ((_size(one.measured - answers[one.name], 0), max(one.off(0), one.reach[0])) for one in gauges)
+        if not all(gains) or any(after > LIKE * BETTER * before for after, before in off):
             continue
         if best is None or min(gains) > best[0]:
             after = beyond[0].measured - answers[beyond[0].name]
@@ -155,23 +153,14 @@ def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup
     return None if best is None else best[1]
 
 
-def _is_worse(one: _Gauge, answer: Matrix) -> bool:
-    """Whether a result that was right is far off with another answer."""
-    return _size(one.measured - answer, 0) > LIKE * BETTER * max(one.off(0), one.reach[0])
-
-
 def _trials(few: DataRows, setup: Setup) -> Iterator[tuple[str, float, str]]:
     """Give every column that the model sees with every factor that its bounds allow."""
     seen, units = {need.name for item in setup.effects for need in item.effect.needs}, declared_units(setup.model)
-    for name in few.named("input", "series", "condition"):
-        item = setup.model.input_fields.get(name)
-        if item is None and name not in seen:
-            continue
-        values = few.columns[name]
-        ends = (float(np.nanmin(values)), float(np.nanmax(values)))
-        for factor, words in _factors(units[name]).items():
-            if item is None or not any(broken_bound(item, factor * end) for end in ends):
-                yield name, factor, words
+    for name, values in few.named("input", "series", "condition").items():
+        if name in setup.model.input_fields or name in seen:
+            for factor, words in _factors(units[name]).items():
+                if keeps_bounds(name, values * factor, setup.model):
+                    yield name, factor, words
 
 
 def _off(one: _Gauge, after: Matrix, setup: Setup) -> str:
@@ -185,23 +174,22 @@ def _off(one: _Gauge, after: Matrix, setup: Setup) -> str:
 
 
 def _slip(name: str, factor: float, joined: DataRows, why: str, words: str) -> Slip:
-    header = _header(name, joined)
-    return Slip(name, factor, f"the unit of column {header} is probably wrong: multiply it by {words}; {why}")
+    sentence = f"the unit of column {_header(name, joined)} is probably wrong: multiply it by {words}; {why}"
+    return Slip(name, factor, sentence)
 
 
 def _header(name: str, joined: DataRows) -> str:
-    unit = joined.units.get(name, "")
-    return shown(f"{name} [{unit or '1'}]")
+    return shown(f"{name} [{joined.units.get(name) or '1'}]")
 
 
 def _out_of_range(joined: DataRows, setup: Setup) -> Iterator[Slip]:
     """Give conditions that lie far beyond the range in which they can be set, where one factor brings them into it."""
-    for name in joined.named("condition"):
+    for name, values in joined.named("condition").items():
         condition = setup.model.known_conditions[name]
         if condition.low is None or condition.high is None or condition.derived:
             continue
         low, high = to_si(condition.low, condition.unit), to_si(condition.high, condition.unit)
-        values, span = joined.columns[name], high - low
+        span = high - low
         if np.mean((values < low - BETTER * span) | (values > high + BETTER * span)) < 0.5:
             continue
         for factor, words in _factors(condition.unit).items():

@@ -5,22 +5,20 @@ Nothing is done in silence: every function notes what it did.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.model import Model
-from truing.diagnosis.arrays import Matrix, Places
+from truing.diagnosis.arrays import Matrix, Places, first_alike
 from truing.diagnosis.data_file import DataRows, Part, declared_units
 from truing.inputs_file.values import broken_bound
 from truing.measurements.derived import derive
+from truing.numbers import counted
 from truing.units import same_dimension
 from truing.units.names import PURE
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 TIME = "time"
 """The column by which rows are sorted, whatever part it plays."""
@@ -37,16 +35,10 @@ def tidy(data: DataRows, model: Model[Any, Any]) -> DataRows:
     return with_histories(in_one_piece(in_time_order(each_block_once(data)), model), model)
 
 
-def counted(number: int, one: str = "row", many: str = "") -> str:
-    """Return "1 row", "3 rows"."""
-    return f"{number} {one}" if number == 1 else f"{number} {many or one + 's'}"
-
-
-def numbered(labels: Iterable[Any]) -> tuple[Places, list[Any]]:
-    """Number labels from 0 in the order they first appear; return the number of each row and the labels."""
+def numbered(labels: NDArray[Any]) -> Places:
+    """Return the number of each label (n,), from 0 in the order they first appear."""
     known: dict[Any, int] = {}
-    numbers = [known.setdefault(label, len(known)) for label in labels]
-    return np.array(numbers, dtype=np.intp), list(known)
+    return np.array([known.setdefault(label, len(known)) for label in labels.tolist()], dtype=np.intp)
 
 
 def each_block_once(data: DataRows) -> DataRows:
@@ -58,7 +50,9 @@ def each_block_once(data: DataRows) -> DataRows:
     time = _time(data)
     if time is None or not (np.diff(time) < 0).any():
         return data
-    like, is_again = _first_alike(data), np.zeros(len(data), dtype=bool)
+    cells = (data.runs, *data.columns.values())
+    like = first_alike([numbered(each) if each.dtype == object else each for each in cells])
+    is_again = np.zeros(len(data), dtype=bool)
     for start in np.flatnonzero((np.diff(time) < 0) & (like[1:] <= np.arange(len(time) - 1))) + 1:
         first = like[start]
         rows = min(len(data) - start, start - first)
@@ -72,29 +66,13 @@ def each_block_once(data: DataRows) -> DataRows:
     return data.without(is_again, BLOCK_AGAIN).noted(f"{again} left out: {BLOCK_AGAIN}")
 
 
-def _first_alike(data: DataRows) -> Places:
-    """Return for each row the place of the first one that is equal in every cell."""
-    cells = np.column_stack([_as_numbers(values) for values in (data.runs, *data.columns.values())])
-    whole_rows = cells.view(np.dtype((np.void, cells.itemsize * cells.shape[1])))[:, 0]
-    _, first, group = np.unique(whole_rows, return_index=True, return_inverse=True)
-    return np.asarray(first[group])
-
-
-def _as_numbers(values: NDArray[Any]) -> Matrix:
-    """Return one number per cell that is equal where the cells are: one NaN, one zero, words by their number."""
-    if values.dtype == object:
-        return numbered(values.tolist())[0].astype(float)
-    return np.where(np.isnan(values), np.nan, values + 0.0)
-
-
 def in_time_order(data: DataRows) -> DataRows:
     """Put runs one after another, by their first time, and sort rows by time inside each; without a time as given."""
-    run_of, names = numbered(data.runs.tolist())
-    time = _time(data)
+    run_of, time = numbered(data.runs), _time(data)
     by_run = np.argsort(run_of, kind="stable")
     if time is None:
         return data.taken(by_run)
-    starts = np.full(len(names), np.inf)
+    starts = np.full(run_of.max() + 1, np.inf)
     np.fmin.at(starts, run_of, time)
     late = 0  # rows that stand behind a later one of their run
     for part in np.split(time[by_run], np.cumsum(np.bincount(run_of))[:-1]):
@@ -119,8 +97,7 @@ def in_one_piece(data: DataRows, model: Model[Any, Any]) -> DataRows:
     An input whose bounds would not hold stays as it is.
     """
     columns, units, notes = dict(data.columns), declared_units(model), []
-    run_of, _ = numbered(data.runs.tolist())
-    runs = np.split(np.arange(len(data)), np.flatnonzero(np.diff(run_of)) + 1)
+    runs = np.split(np.arange(len(data)), np.flatnonzero(np.diff(numbered(data.runs))) + 1)
     for name in data.named("input", "series", "condition"):
         if not is_angle(units[name]):
             continue
@@ -128,7 +105,7 @@ def in_one_piece(data: DataRows, model: Model[Any, Any]) -> DataRows:
         for rows in runs:
             joined[rows], more = _joined(joined[rows])
             jumps += more
-        if jumps and _keeps_bounds(name, joined, model):
+        if jumps and keeps_bounds(name, joined, model):
             columns[name] = joined
             notes.append(f"'{name}' jumps by a turn at {counted(jumps, 'place')} of a sweep and was joined there")
     return replace(data, columns=columns).noted(*notes)
@@ -147,7 +124,8 @@ def _joined(angles: Matrix) -> tuple[Matrix, int]:
     return (whole, jumps) if small.mean() >= SWEEPING else (angles, 0)
 
 
-def _keeps_bounds(name: str, values: Matrix, model: Model[Any, Any]) -> bool:
+def keeps_bounds(name: str, values: Matrix, model: Model[Any, Any]) -> bool:
+    """Whether values (n,), SI, lie within the bounds of an input; anything else has none."""
     item = model.input_fields.get(name)
     return item is None or not any(broken_bound(item, float(end)) for end in (np.nanmin(values), np.nanmax(values)))
 
@@ -160,12 +138,11 @@ def is_angle(unit: str) -> bool:
 def with_histories(data: DataRows, model: Model[Any, Any]) -> DataRows:
     """Make the conditions that are derived from whole runs: what has been, since the first row of the file."""
     made: dict[str, NDArray[Any]] = {}
-    parts: dict[str, Part] = dict(data.parts)
-    runs, _ = numbered(data.runs.tolist())
+    runs = numbered(data.runs)
     for condition in model.known_conditions.values():
         source = data.columns.get(condition.made_from)
         is_measured = condition.name in data.columns and condition.made_from != condition.name
         if source is not None and source.dtype != object and not is_measured:
             made[condition.name] = derive(condition, data.columns, runs, _time(data))
-            parts[condition.name] = "condition"
-    return replace(data, columns={**data.columns, **made}, parts=parts)
+    parts: dict[str, Part] = dict.fromkeys(made, "condition")
+    return replace(data, columns={**data.columns, **made}, parts={**data.parts, **parts})

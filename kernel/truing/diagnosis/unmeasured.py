@@ -8,7 +8,7 @@ is known for it, so this is the only noise.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from math import sqrt
@@ -23,11 +23,10 @@ from truing.diagnosis.choice import Chosen
 from truing.diagnosis.design import Proposal, is_physical, name_of, rival_fits
 from truing.diagnosis.extended import switched_on
 from truing.diagnosis.fitted import Fit, input_value
-from truing.diagnosis.machine import Machine, machine_of, predict
+from truing.diagnosis.machine import Machine, Predicted, machine_of, predict
 from truing.diagnosis.result import Amount, Fact, NextPoint, Tie, readable_unit
 from truing.diagnosis.shape_words import in_unit
 from truing.diagnosis.verdict import APART
-from truing.setup import SwitchedOn
 from truing.units import read_quantity
 from truing.units.names import PURE
 
@@ -42,15 +41,6 @@ LEAST_SHARE = 1e-3
 
 
 @dataclass(frozen=True)
-class Explanation:
-    """A rival as it is fitted: its name, its effects, on, and its inputs that lie outside of their band, SI."""
-
-    name: str
-    on: tuple[SwitchedOn, ...]
-    inputs: Mapping[str, float]
-
-
-@dataclass(frozen=True)
 class _Gap:
     """What two explanations differ in a result that was not measured: where it is clearest, by one value, SI."""
 
@@ -62,24 +52,16 @@ class _Gap:
     """The difference over the scatter of machines; a result that does not scatter is as clear as can be."""
 
 
-def _explanation(found: Fit) -> Explanation:
-    machine, inputs = found.sample.machine, dict[str, float]()
-    for cause in found.causes:
-        if cause.tolerated >= 0:
-            inputs.setdefault(machine.inputs[cause.tolerated].name, input_value(found, cause.tolerated))
-    return Explanation(name_of(found), tuple(switched_on(found.causes, found.values, machine)), inputs)
-
-
 def with_results(chosen: Chosen, proposal: Proposal) -> tuple[list[NextPoint], list[Tie]]:
     """Return the next points with the result that separates the rivals, and what neither of them tells apart.
 
     The result comes first where settings leave something open that it does not.
     """
     machine = chosen.competition.sample.machine
-    explanations = [_explanation(found) for found in rival_fits(chosen)] if is_physical(chosen.best) else []
-    asked, apart = result_to_measure(machine, explanations)
+    explanations = rival_fits(chosen) if is_physical(chosen.best) else []
+    asked, apart = _result_to_measure(machine, explanations)
     tied = [pair for pair in proposal.tied if frozenset(pair) not in apart]
-    ties = [_tie(machine.start, names, explanations) for names in _joined(tied)]
+    ties = [_tie(names, explanations) for names in _joined(tied)]
     points = list(proposal.points)
     if asked is not None:
         suffices = points and points[-1].needed <= len(points) and not proposal.tied
@@ -97,76 +79,75 @@ def _joined(pairs: Sequence[tuple[str, str]]) -> list[tuple[str, ...]]:
     return groups
 
 
-def _tie(start: Any, names: Sequence[str], explanations: Sequence[Explanation]) -> Tie:
+def _tie(names: Sequence[str], explanations: Sequence[Fit]) -> Tie:
     """Return explanations that cannot be told apart, with what would have to be so for each of them alone."""
-    tied = [each for each in explanations if each.name in names]
-    facts = [fact for each in tied for fact in _facts(start, each)]
+    tied = [each for each in explanations if name_of(each) in names]
+    facts = [fact for each in tied for fact in _facts(each)]
     stated = Counter(fact.quantity for fact in facts)
     return Tie(tuple(names), tuple(fact for fact in facts if len(tied) < 2 or stated[fact.quantity] < len(tied)))
 
 
-def _facts(start: Any, explanation: Explanation) -> Iterator[Fact]:
+def _facts(found: Fit) -> Iterator[Fact]:
     """Give the quantities that an explanation states: unknowns that are not zero, and inputs outside of their band."""
-    for on in explanation.on:
+    start = found.sample.machine.start
+    for on in switched_on(found.causes, found.values, found.sample.machine):
         for unknown in on.effect.unknowns:
-            value = on.values.get(unknown.name, 0.0)
-            if value:
+            if value := on.values.get(unknown.name, 0.0):
                 quantity = f"{on.effect.name}.{unknown.name}"
-                yield Fact(explanation.name, quantity, Amount(float(value), unknown.unit), unknown.note)
-    for name, value in explanation.inputs.items():
+                yield Fact(name_of(found), quantity, Amount(float(value), unknown.unit), unknown.note)
+    for name, value in _shifted(found).items():
         declared, known = start.model.input_fields.get(name), start.model.known_conditions
         note = known[name].note if declared is None else declared.spec.note
-        yield Fact(explanation.name, f"input:{name}", Amount(value, start.unit_of(name)), note)
+        yield Fact(name_of(found), f"input:{name}", Amount(value, start.unit_of(name)), note)
 
 
-def result_to_measure(
-    machine: Machine, explanations: Sequence[Explanation]
-) -> tuple[NextPoint | None, set[frozenset[str]]]:
+def _shifted(found: Fit) -> dict[str, float]:
+    """Return the inputs that an explanation has outside of their band, SI; of files the first one's."""
+    made: dict[str, float] = {}
+    for cause in found.causes:
+        if cause.tolerated >= 0:
+            made.setdefault(found.sample.machine.inputs[cause.tolerated].name, input_value(found, cause.tolerated))
+    return made
+
+
+def _result_to_measure(machine: Machine, explanations: Sequence[Fit]) -> tuple[NextPoint | None, set[frozenset[str]]]:
     """Return the result that separates most explanations from the first one, and the pairs that it tells apart.
 
     None where no result tells any two apart. A result with a unit or a goal comes before a pure number, for which there
     is no gauge; then the one that parts most explanations from the first, the one that a goal names, the one that
     separates most pairs, the clearest.
     """
-    start = machine.start
-    names = [] if machine.records.rows.series or len(explanations) < 2 else _unmeasured(machine)
-    if not names:
+    start, measured = machine.start, machine.records.measured
+    fields = start.model.own_result_fields
+    alone = [name for name, item in fields.items() if not item.along and not isinstance(item.spec, Axis)]
+    names = [name for name in alone if name not in measured]
+    if not names or machine.records.rows.series or len(explanations) < 2:
         return None, set()
     few = machine.records.part(np.arange(0, len(machine.records), max(1, len(machine.records) // ROWS)))
     there = machine_of(start, replace(few, measured={name: np.zeros(len(few)) for name in names}, sigma={}))
-    found = [_changes(there, explanation) for explanation in explanations]
+    found: list[tuple[str, Predicted]] = []
+    for each in explanations:
+        setup = start.with_effects(switched_on(each.causes, each.values, machine)).changed(_shifted(each))
+        found.append((name_of(each), predict(setup, there.records)))
     goals = {goal.result for goal in start.model.objectives if isinstance(goal, (Require, Minimise, Maximise))}
-    ranked: list[tuple[tuple[Any, ...], _Gap, list[_Gap]]] = []
+    ranked: list[tuple[tuple[Any, ...], list[_Gap]]] = []
     for place, name in enumerate(names):
         gaps = [
             gap
-            for (a, one), (b, other) in combinations(zip(explanations, found, strict=True), 2)
-            if (gap := _gap(there, name, (a.name, b.name), one[name] - other[name])) is not None
+            for (a, one), (b, other) in combinations(found, 2)
+            if (gap := _gap(there, name, (a, b), one[name] - other[name])) is not None
         ]
         if gaps:
-            faintest = min(gaps, key=lambda gap: gap.clearness)
-            parted = sum(explanations[0].name in gap.names for gap in gaps)
+            gaps.sort(key=lambda gap: gap.clearness)
+            parted = sum(found[0][0] in gap.names for gap in gaps)
             is_goal = name in goals
-            clearness = float(f"{faintest.clearness:.2g}")
-            has_gauge = is_goal or start.model.own_result_fields[name].unit not in PURE
-            ranked.append(((has_gauge, parted, is_goal, len(gaps), clearness, -place), faintest, gaps))
+            clearness = float(f"{gaps[0].clearness:.2g}")
+            has_gauge = is_goal or fields[name].unit not in PURE
+            ranked.append(((has_gauge, parted, is_goal, len(gaps), clearness, -place), gaps))
     if not ranked:
         return None, set()
-    _, faintest, gaps = max(ranked, key=lambda each: each[0])
-    return _point(start, faintest), {frozenset(gap.names) for gap in gaps}
-
-
-def _unmeasured(machine: Machine) -> list[str]:
-    """Return the results that have one value per row and that no column gives."""
-    fields = machine.start.model.own_result_fields
-    own = [name for name, item in fields.items() if not item.along and not isinstance(item.spec, Axis)]
-    return [name for name in own if name not in machine.records.measured and name in machine.start.model.result_fields]
-
-
-def _changes(there: Machine, explanation: Explanation) -> Mapping[str, Matrix]:
-    """Return the change of every unmeasured result by an explanation, SI, shape (n,)."""
-    changed = predict(there.start.with_effects(explanation.on).changed(explanation.inputs), there.records)
-    return {name: changed[name] - there.base[name] for name in there.base}
+    _, gaps = max(ranked, key=lambda each: each[0])
+    return _point(start, gaps[0]), {frozenset(gap.names) for gap in gaps}
 
 
 def _gap(there: Machine, name: str, names: tuple[str, str], apart: Matrix) -> _Gap | None:
@@ -178,7 +159,7 @@ def _gap(there: Machine, name: str, names: tuple[str, str], apart: Matrix) -> _G
     jumps = [getattr(item.spec, "halving_but", {}).get(name) for item in model.input_fields.values()]
     resolutions = [read_quantity(most, model.own_result_fields[name].unit) for most in jumps if most]
     least = max(LEAST_SHARE * largest, *resolutions, 0.0)  # a numerical step alone moves a result that jumps
-    seen = np.isfinite(apart) & (apart > least) & (apart > CLEAR * scatter)
+    seen = np.isfinite(apart + there.base[name]) & (apart > least) & (apart > CLEAR * scatter)
     if not seen.any():
         return None
     worth = np.where(seen, apart, 0.0) / np.maximum(scatter, np.where(seen, 1e-6 * apart, 1e-300))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import combinations
 from math import asin, comb, degrees, inf, log, sqrt
@@ -16,8 +16,8 @@ from truing.diagnosis.causes import Cause, Number, failure_of, idle_of
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.derivatives import slopes_at, unit_of
 from truing.diagnosis.extended import Extended
-from truing.diagnosis.fitted import Fit
-from truing.diagnosis.intervals import Certainty, certainty_of, places_of, value_of
+from truing.diagnosis.fitted import Fit, inward
+from truing.diagnosis.intervals import Certainty, certainty_of, numbers_of, places_of, value_of
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.points import LEVELS
 from truing.diagnosis.result import Amount, Seen, Sight, Trade
@@ -92,7 +92,9 @@ def smallest_visible(chosen: Chosen) -> list[Seen]:
     """Return for every effect how small it may be, whether the tolerances hide it, whether it was excited."""
     machine, eye = chosen.competition.extended.machine, _Eye(chosen)
     effects = [cause for cause in chosen.competition.causes if cause.effect is not None]
-    failing = _failing(chosen, effects)
+    unfitted = [cause for cause in effects if frozenset({cause.tag}) not in chosen.competition.known]
+    reasons = {cause.name: failure_of(machine, cause) for cause in unfitted}
+    failing = {name: why for name, why in reasons.items() if why}
     skipped = {*failing, *chosen.competition.extended.budget.unseen}
     limit = needed(len(effects) + comb(len(effects), 2))
     names = [cause.name for cause in effects]
@@ -107,14 +109,6 @@ def smallest_visible(chosen: Chosen) -> list[Seen]:
     smallest = [min(each, key=lambda seen: seen.smallest.value if seen.smallest else inf) for each in found.values()]
     still = [Seen(name, None, "not excited") for name in idle_of(machine) if name not in failing]
     return [*smallest, *still, *(Seen(name, None, "cannot be fitted", why) for name, why in failing.items())]
-
-
-def _failing(chosen: Chosen, effects: Sequence[Cause]) -> dict[str, str]:
-    """Return the reason by name of effects with which the model fails; what could be fitted does not."""
-    made = chosen.competition
-    unknown = [cause for cause in effects if frozenset({cause.tag}) not in made.known]
-    reasons = {cause.name: failure_of(made.extended.machine, cause) for cause in unknown}
-    return {name: why for name, why in reasons.items() if why}
 
 
 def _seen(name: str, cause: Cause, number: Number, look: _Look | None) -> Seen:
@@ -184,18 +178,14 @@ def _one_by_one(chosen: Chosen, cause: Cause, place: int, shapes: Matrix) -> Ite
 
 def inseparable(chosen: Chosen) -> list[str]:
     """Say which causes this design cannot separate whatever their size, and which covariates are tied."""
-    machine = chosen.competition.extended.machine
-    return [*_alike(chosen), *_tied(machine), *_one_sided(machine)]
+    return [*_alike(chosen), *_moved_alike(chosen.competition.extended.machine)]
 
 
 def _alike(chosen: Chosen) -> Iterator[str]:
     """Say which causes without a shape of their own draw nearly the same."""
     eye, angles = _Eye(chosen), dict[tuple[str, str], float]()
-    plain = [
-        cause
-        for cause in chosen.competition.causes
-        if cause.effect is not None and len(cause.amplitudes) == 1 and not cause.shapes
-    ]
+    effects = [cause for cause in chosen.competition.causes if cause.effect is not None]
+    plain = [cause for cause in effects if len(cause.amplitudes) == 1 and not cause.shapes]
     looks = [(cause.name, _look(chosen, eye, cause, 0, needed(1))) for cause in plain]
     drawn = [(name, look.curve) for name, look in looks if look is not None and look.seen > 1e-6 * look.raw]
     for (one, first), (other, second) in combinations(drawn, 2):
@@ -212,7 +202,8 @@ def _alike(chosen: Chosen) -> Iterator[str]:
             )
 
 
-def _tied(machine: Machine) -> Iterator[str]:
+def _moved_alike(machine: Machine) -> Iterator[str]:
+    """Say which covariates are tied, and which conditions that can have either sign had one sign only."""
     moved = [item for item in machine.records.covariates.values() if not item.is_constant]
     for first, second in combinations(moved, 2):
         both = np.isfinite(first.values) & np.isfinite(second.values)
@@ -221,10 +212,6 @@ def _tied(machine: Machine) -> Iterator[str]:
                 f"{first.name} and {second.name} move together in this record: what follows one cannot be told from "
                 "what follows the other"
             )
-
-
-def _one_sided(machine: Machine) -> Iterator[str]:
-    """Say which conditions that can have either sign were measured with one sign only."""
     for name, condition in machine.start.model.known_conditions.items():
         item = machine.records.covariates.get(name)
         if item is None or condition.low is None or condition.high is None or not condition.low < 0 < condition.high:
@@ -241,24 +228,24 @@ def trades_of(chosen: Chosen) -> tuple[Trade, ...]:
     A cause that is far from zero even with every input free is separated all the same: only what ``APART`` calls
     separable at most weakly is returned.
     """
-    named = [cause for cause in chosen.best.causes if cause.effect is not None]
-    return tuple(_trades(chosen, named)) if named and len(chosen.best.inputs) else ()
-
-
-def _trades(chosen: Chosen, named: Sequence[Cause]) -> Iterator[Trade]:
-    best, inputs = chosen.best, chosen.best.sample.machine.inputs
+    best, inputs, made = chosen.best, chosen.best.sample.machine.inputs, list[Trade]()
+    named = [cause for cause in best.causes if cause.effect is not None]
+    if not named or not len(best.inputs):
+        return ()
     certainty = certainty_of(best, chosen.competition.extended)
     alike = _correlations(best, certainty)
-    shifted = [cause.tolerated for cause in best.causes if cause.tolerated >= 0]
-    alike[:, shifted] = 0.0
+    alike[:, [cause.tolerated for cause in best.causes if cause.tolerated >= 0]] = 0.0
     for cause in named:
         places = [places_of(best, cause)[place] for place in cause.amplitudes]
         number, item = np.unravel_index(int(np.argmax(np.abs(alike[places]))), (len(places), len(inputs)))
         correlation = float(alike[places[number], item])
-        separation = _separation(best, certainty, places)
+        values = np.array([value_of(best, place) for place in places]) / certainty.units[places]
+        inverse = np.linalg.pinv(certainty.covariance[np.ix_(places, places)], hermitian=True)
+        separation = float(values @ inverse @ values)  # the squares that are lost without the cause, all else free
         if abs(correlation) > TRADED and separation < APART:
             unknown = cause.numbers[cause.amplitudes[number]].name
-            yield Trade(cause.name, unknown, inputs[item].name, correlation, separation)
+            made.append(Trade(cause.name, unknown, inputs[item].name, correlation, separation))
+    return tuple(made)
 
 
 def _correlations(best: Fit, certainty: Certainty) -> Matrix:
@@ -272,13 +259,6 @@ def _correlations(best: Fit, certainty: Certainty) -> Matrix:
     variance = seen + np.maximum(1 - np.sum(directions**2, axis=1), 0.0)
     own = np.outer(np.diag(covariance)[:size], variance)
     return np.asarray(covariance[:size, size:] @ directions.T / np.sqrt(np.maximum(own, 1e-300)))
-
-
-def _separation(best: Fit, certainty: Certainty, places: list[int]) -> float:
-    """Return how far the amplitudes of a cause are from zero, all else free: the squares that are lost, lambda."""
-    values = np.array([value_of(best, place) for place in places]) / certainty.units[places]
-    inverse = np.linalg.pinv(certainty.covariance[np.ix_(places, places)], hermitian=True)
-    return float(values @ inverse @ values)
 
 
 def separation(true: Fit, rival: Fit, extended: Extended) -> float:
@@ -295,7 +275,9 @@ def separation(true: Fit, rival: Fit, extended: Extended) -> float:
     slopes = np.column_stack(slopes_at(moved, extended)) * roots[:, None]
     columns = np.concatenate([slopes, np.eye(k, moved.size + k, moved.size)])
     ends = np.full((2, columns.shape[1]), [[-inf], [inf]])
-    ends[:, : moved.size] = _room(moved)
+    for place, (number, unit) in enumerate(zip(numbers_of(moved), unit_of(moved).tolist(), strict=True)):
+        low, high = np.subtract(inward(number, unit), log(unit) if number.is_log else value_of(moved, place) / unit)
+        ends[:, place] = min(low, -1e-12), max(high, 1e-12)
     size = np.linalg.norm(columns, axis=0)
     used = size > 0
     target = np.concatenate([apart, np.zeros(k)])
@@ -303,14 +285,3 @@ def separation(true: Fit, rival: Fit, extended: Extended) -> float:
         return float(target @ target)
     low, high = ends[:, used] * size[used]
     return float(2 * lsq_linear(columns[:, used] / size[used], target, (low, high), method="bvls").cost)
-
-
-def _room(found: Fit) -> Matrix:
-    """Return how far every number may still go down and up, in units of the number as the fit sees it, (2, numbers)."""
-    numbers = [number for cause in found.causes for number in cause.numbers]
-    flat = np.concatenate(found.values).tolist() if found.causes else []
-    room = np.zeros((2, len(numbers)))
-    for place, (number, value, unit) in enumerate(zip(numbers, flat, unit_of(found).tolist(), strict=True)):
-        ends = [log(end / value) if number.is_log else (end - value) / unit for end in (number.low, number.high)]
-        room[:, place] = min(ends[0], -1e-12), max(ends[1], 1e-12)
-    return room

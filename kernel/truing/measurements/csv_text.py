@@ -19,6 +19,7 @@ from truing.errors import Fault, InputError
 from truing.inputs_file.files import refuse_file
 from truing.measurements.cell_text import EITHER, MARK, all_unguarded
 from truing.measurements.row_count import LeftOut, RowCount
+from truing.numbers import counted
 from truing.units.grammar import shown
 
 LARGEST_TABLE = 512_000_000
@@ -193,8 +194,7 @@ class CsvFile:
             return True
         hint = "; with decimal commas, put semicolons between the cells" if len(row) > width else ""
         hint = "" if self.decimal_comma else hint
-        cells = "1 cell" if len(row) == 1 else f"{len(row)} cells"
-        self.faults.add(f"this row has {cells}, expected {width} as in the header{hint}", line)
+        self.faults.add(f"this row has {counted(len(row), 'cell')}, expected {width} as in the header{hint}", line)
         return False
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -85,6 +85,25 @@ class RowsFile:
 
         kinds: tuple[Mapping[str, Any], ...] = (self.columns, self.axes, self.series)
         return next((np.asarray(kind[name], dtype=float) for kind in kinds if name in kind), None)
+
+    def taken(self, places: NDArray[np.intp] | slice) -> RowsFile:
+        """Return some of the rows, in this order."""
+        import numpy as np
+
+        def of(column: Any) -> Any:
+            if isinstance(places, slice) or isinstance(column, np.ndarray):
+                return column[places]
+            return [column[place] for place in places.tolist()]
+
+        return replace(
+            self,
+            columns={name: of(column) for name, column in self.columns.items()},
+            series={name: of(column) for name, column in self.series.items()},
+            cells={name: tuple(of(column)) for name, column in self.cells.items()},
+            lines=tuple(of(self.lines)),
+            axes={name: of(column) for name, column in self.axes.items()},
+            runs=tuple(of(self.runs)) if self.runs else (),
+        )
 
 
 @dataclass

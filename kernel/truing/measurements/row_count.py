@@ -9,6 +9,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from truing.numbers import counted
+
 MOST_LINES = 8
 """How many lines are named for one reason where people read; files of data hold all."""
 MOST_REASONS = 12
@@ -59,7 +61,7 @@ class RowCount:
 
     def sentence(self) -> str:
         """Say how many rows there are, and what became of those that are left out: "5 rows, 4 used; left out: ..."."""
-        rows = "1 row" if self.in_file == 1 else f"{self.in_file} rows"
+        rows = counted(self.in_file)
         if not self.left_out:
             return f"{rows}, all used"
         named = [f"{_where(item.lines)} ({item.reason})" for item in self.left_out[:MOST_REASONS]]

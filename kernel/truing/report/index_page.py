@@ -13,7 +13,7 @@ from urllib.parse import quote
 
 from truing.atomic import write_files
 from truing.errors import OutputError
-from truing.numbers import ABSENT, format_number, pretty, with_unit
+from truing.numbers import ABSENT, counted, format_number, pretty, with_unit
 from truing.report.context import Head
 from truing.report.render import page
 from truing.report.templates import template_folder
@@ -76,16 +76,12 @@ def summary_of(listing: Listing) -> str:
     runs = [entry for entry in listing.entries if entry.kind == "run"]
     words = {"fails": ("fails", "fail"), "undecided": ("undecided",) * 2, "proposed": ("not as stated",) * 2}
     counts = {state: sum(entry.state == state for entry in runs) for state in words}
-    told = ", ".join(_counted(count, *words[state]) for state, count in counts.items() if count)
-    parts = [_counted(len(runs), "run", "runs") + (f" ({told})" if told else "")]
-    parts.append(_counted(len(listing.entries) - len(runs), "diagnosis", "diagnoses"))
+    told = ", ".join(counted(count, *words[state]) for state, count in counts.items() if count)
+    parts = [counted(len(runs), "run", "runs") + (f" ({told})" if told else "")]
+    parts.append(counted(len(listing.entries) - len(runs), "diagnosis", "diagnoses"))
     if listing.others:
-        parts.append(_counted(len(listing.others), "other folder", "other folders"))
+        parts.append(counted(len(listing.others), "other folder", "other folders"))
     return ", ".join(parts)
-
-
-def _counted(count: int, one: str, many: str) -> str:
-    return f"{count} {one if count == 1 else many}"
 
 
 def _row(entry: Entry, folder: Path, place: Path) -> Row:
