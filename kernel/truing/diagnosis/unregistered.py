@@ -8,23 +8,16 @@ a frequency, a place, a width or a time constant is looked for like a shape of a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from itertools import combinations
 from math import inf, pi
-from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from truing.diagnosis.causes import UNKNOWN, Cause, Number
+from truing.diagnosis.arrays import Matrix
+from truing.diagnosis.causes import UNKNOWN, Cause, Kind, Number, Shape, Term
 from truing.diagnosis.records import Covariate, Records
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
-
-Kind = Literal["trend", "product", "order", "wave", "step", "jump", "kink", "dead zone", "settling"]
 DEGREES = (2, 4)
 HIGHEST_ORDER = 16
 FEWEST_VALUES = 12
@@ -35,36 +28,9 @@ EITHER_SIDE = 0.1
 ENDS = 0.02
 SHORTEST_SETTLING, LONGEST_SETTLING = 0.02, 1.0
 """Time constants that are looked for, in lengths of the record."""
-
-
-Axis = tuple[str, "Matrix"]
+Axis = tuple[str, Matrix]
 """The name of a covariate, and its values, (n,), SI, with their mean where one is missing."""
-Family = tuple[Kind, tuple[str, ...], int, tuple[Number, ...], Callable[..., "list[Term]"]]
-
-
-@dataclass(frozen=True)
-class Term:
-    """One term of a shape: Python over covariates in SI, and its values on all rows of some records, (n,)."""
-
-    expression: str
-    values: Matrix
-
-
-@dataclass(frozen=True)
-class Shape:
-    """How a shape is calculated: ``made`` returns its terms from its covariates and its shape numbers (SI).
-
-    Its amplitudes are those of its terms, result after result.
-    """
-
-    kind: Kind
-    depends_on: tuple[str, ...]
-    results: tuple[str, ...]
-    made: Callable[..., list[Term]]
-
-    def terms(self, numbers: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
-        """Return the terms on the rows of some covariates."""
-        return self.made(*((name, covariates[name].filled) for name in self.depends_on), *numbers)
+Family = tuple[Kind, tuple[str, ...], int, tuple[Number, ...], Callable[..., list[Term]]]
 
 
 def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_steps: bool) -> list[Cause]:
