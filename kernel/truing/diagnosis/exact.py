@@ -11,21 +11,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import least_squares
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import Fit, inward, moved_by, size_of, steps_of
 from truing.diagnosis.sample import Sample
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 EXACTLY = 1e-5
 ROUGHLY = 1e-2
@@ -200,15 +195,12 @@ class Fitting:
         """Return where a damped step leads within the bounds, and by how much the cost is to fall."""
         roots = self.sample.roots(self.left)
         slope, slopes = self.slope * roots[:, None], self.slopes * roots[:, None]
-        right, k = -(roots * self.left), len(self.b)
-        eliminated = slopes.T @ slopes + np.eye(k)
-        factor = cho_factor(eliminated) if k else None
-        g0 = slopes.T @ right + self.b if k else np.zeros(0)
-        cross = slopes.T @ slope
+        right = -(roots * self.left)
         normal, gradient = slope.T @ slope, slope.T @ right
-        if factor is not None:
+        if len(self.b):
+            factor, cross = cho_factor(slopes.T @ slopes + np.eye(len(self.b))), slopes.T @ slope
             normal = normal - cross.T @ cho_solve(factor, cross)
-            gradient = gradient - cross.T @ cho_solve(factor, g0)
+            gradient = gradient - cross.T @ cho_solve(factor, slopes.T @ right + self.b)
         moved = np.zeros(len(self.u))
         active = self.free & (np.diag(normal) > 0)
         for _ in range(len(self.u) + 1):
