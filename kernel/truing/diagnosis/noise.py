@@ -46,11 +46,6 @@ class Setting:
         return (1 + self.theta**2 - 2 * self.rho * self.theta) / (1 - self.rho**2)
 
     @property
-    def independent_share(self) -> float:
-        """Independent rows per row, for the mean of a long record: 75 of 300 rows at rho = 0.6."""
-        return min(1.0, self.variance_ratio * (1 - self.rho) ** 2 / (1 - self.theta) ** 2)
-
-    @property
     def size(self) -> int:
         """Number of its parameters: they are paid for like any other, else a slow effect is a wander at no cost."""
         return int(self.rho > 0) + int(self.theta > 0)
@@ -99,8 +94,6 @@ def colour(white: Matrix, starts: Mask, setting: Setting) -> Matrix:
     """Undo ``whiten``: make noise of this filter from independent innovations."""
     ratio = setting.variance_ratio
     driven = np.array(white, dtype=float)
-    if setting.rho == 0 and setting.theta == 0:
-        return driven
     driven[1:] -= setting.theta * white[:-1]
     begin = white * np.sqrt(ratio)
     second = np.flatnonzero(starts[:-1] & ~starts[1:]) + 1
