@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -31,11 +30,8 @@ from truing.diagnosis.unregistered import shapes_of
 from truing.diagnosis.visibility import inseparable, smallest_visible, trades_of
 from truing.errors import UsageError
 from truing.setup import Setup
-from truing.studies.bench import FINE, Done, part_of, unheard
+from truing.studies.bench import FINE, Done, Progress, part_of, silent
 from truing.studies.threads import one_thread
-
-if TYPE_CHECKING:
-    from truing.studies.bench import Progress
 
 ROUGH = 6**0.5
 """A step so many times what is left of the readings is half of it: its mean square is a twelfth of its own."""
@@ -52,7 +48,7 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
     The same records, setup and seed give the same answer. Raises UsageError where an option names what is not there.
     """
     _check_options(setup)
-    step = _Steps(progress)
+    step = _Steps(progress or silent)
     is_short = records.readings < FEWEST_READINGS  # what is calculated of them is not used
     with one_thread(), np.errstate(all="ignore" if is_short else None):
         machine = machine_of(setup, records)
@@ -84,21 +80,18 @@ def laid_out(machine: Machine) -> Competition:
 
 
 class _Steps:
-    """Says how far a diagnosis has come, where anybody listens."""
+    """Says how far a diagnosis has come."""
 
-    def __init__(self, progress: Progress | None) -> None:
+    def __init__(self, progress: Progress) -> None:
         self.progress, self.count = progress, 0
 
     def done(self, what: str) -> None:
         """Count one stage."""
         self.count += 1
-        if self.progress is not None:
-            self.progress(what, round(FINE * SHARES[self.count]), FINE)
+        self.progress(what, round(FINE * SHARES[self.count]), FINE)
 
     def within(self) -> Done:
         """Return what reports the steps of the present stage."""
-        if self.progress is None:
-            return unheard
         return part_of(self.progress, "diagnosis", SHARES[self.count], SHARES[self.count + 1])
 
 
