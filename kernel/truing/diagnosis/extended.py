@@ -18,6 +18,7 @@ from truing.errors import PluginError
 from truing.evaluate import effect_column
 from truing.repeated import REMEMBERED as REPEATED
 from truing.setup import Setup, SwitchedOn
+from truing.trials import Trial
 
 REMEMBERED = 64
 """So many setups with moved inputs are kept, and what the model showed at so many points."""
@@ -113,10 +114,14 @@ class Extended:
         shown = {**self._shown, **dict(zip(new, self._called(bare_causes, list(new.values())), strict=True))}
         kept = min(REMEMBERED, max(1, LARGEST // max(len(self.machine.records), 1)))  # a fit goes on from the last
         self._shown = dict(list({**self._shown, **{key: shown[key] for key in keys}}.items())[-kept:])
-        return [
-            _with_shapes(shown[key], self.machine, causes, values)
-            for key, (values, _) in zip(keys, points, strict=True)
-        ]
+        return [self._with_shapes(shown[key], causes, values) for key, (values, _) in zip(keys, points, strict=True)]
+
+    def _with_shapes(
+        self, shown: Mapping[str, Matrix], causes: Sequence[Cause], values: Sequence[Matrix]
+    ) -> dict[str, Matrix]:
+        """Return what is shown with what unregistered shapes add to it, SI, (n,)."""
+        added = [shape_added(self.machine, cause, own) for cause, own in zip(causes, values, strict=True)]
+        return {name: base + sum(each[name] for each in added if name in each) for name, base in shown.items()}
 
     def _called(self, causes: Sequence[Cause], points: Sequence[Point]) -> list[Mapping[str, Matrix]]:
         """Call the model at several points, as one batch where it can be."""
@@ -129,18 +134,17 @@ class Extended:
         if not is_one:
             trials = [{**own, **self._inputs(causes, *point)} for own, point in zip(trials, points, strict=True)]
         self._count(causes, points)
-        try:
-            return list(predict_each(setup, self.machine.records, trials))
-        except PluginError:  # the model's own code breaks at some of them
-            return [self._survived(setup, trial) for trial in trials]
+        return self._survived(setup, trials)
 
-    def _survived(self, setup: Setup, trial: Mapping[str, Any]) -> Mapping[str, Matrix]:
-        """Return what the gauges show in one trial; NaN where the model's own code breaks."""
+    def _survived(self, setup: Setup, trials: Sequence[Trial]) -> list[Mapping[str, Matrix]]:
+        """Return what the gauges show in some trials; NaN in those in which the model's own code breaks."""
+        records = self.machine.records
         try:
-            (shown,) = predict_each(setup, self.machine.records, [trial])
+            return list(predict_each(setup, records, trials))
         except PluginError:
-            return {name: np.full(len(self.machine.records), np.nan) for name in self.machine.records.measured}
-        return shown
+            if len(trials) > 1:
+                return [self._survived(setup, [trial])[0] for trial in trials]
+            return [{name: np.full(len(records), np.nan) for name in records.measured}]
 
     def _count(self, causes: Sequence[Cause], points: Sequence[Point]) -> None:
         """Count the calls that some points cost; records along an axis are calculated anew for every one."""
@@ -228,14 +232,6 @@ def _columns(settings: Iterable[tuple[str, int, float]], files: Places) -> dict[
         everywhere = np.broadcast_to(value, (len(files),))
         made[name] = everywhere if file < 0 else np.where(files == file, value, made.get(name, 0.0))
     return made
-
-
-def _with_shapes(
-    shown: Mapping[str, Matrix], machine: Machine, causes: Sequence[Cause], values: Sequence[Matrix]
-) -> dict[str, Matrix]:
-    """Return what is shown with what unregistered shapes add to it, SI, (n,)."""
-    added = [shape_added(machine, cause, own) for cause, own in zip(causes, values, strict=True)]
-    return {name: base + sum(each[name] for each in added if name in each) for name, base in shown.items()}
 
 
 def shape_added(machine: Machine, cause: Cause, values: Matrix) -> dict[str, Matrix]:
