@@ -145,16 +145,14 @@ class Competition:
         self.fresh.add(found.key)
         return self.known[found.key]
 
-    def fitted(
-        self, causes: Sequence[Cause], values: Sequence[Matrix], near: Fit | None, until: float = ROUGHLY
-    ) -> Fit | None:
+    def fitted(self, causes: Sequence[Cause], values: Sequence[Matrix], near: Fit | None) -> Fit | None:
         """Fit an explanation from a start and keep it."""
         if is_too_large(self.sample, causes) or are_exclusive(causes):
             return None
         if not self.extended.allows(self.stage):
             return self.known.get(frozenset(cause.tag for cause in causes))
         self.fits += 1
-        return self.keep(fit(self.sample, self.extended, causes, values, near, until=until))
+        return self.keep(fit(self.sample, self.extended, causes, values, near, until=ROUGHLY))
 
     def joined(self, at: Fit, cause: Cause, starts: Iterable[tuple[float, Matrix]]) -> Fit | None:
         """Fit an explanation with one more cause, from each of its starts."""

@@ -32,7 +32,7 @@ class Folds:
         return np.asarray((self.block_of >= 0) & (self.block_of % self.count == fold))
 
 
-def folds_of(sample: Sample, *, seed: int = 1) -> Folds:
+def folds_of(sample: Sample) -> Folds:
     """Number blocks of consecutive rows inside each run: a twentieth of the rows, six, or three correlation times.
 
     A record of fewer than 48 rows has blocks of an eighth of it. Where something is fitted file by file, a run has two
@@ -42,8 +42,7 @@ def folds_of(sample: Sample, *, seed: int = 1) -> Folds:
     usable = np.flatnonzero(sample.mask)
     block_of = np.full(len(records), -1, dtype=np.intp)
     if not has_order(sample.machine):
-        shuffled = np.random.Generator(np.random.SFC64(seed)).permutation(len(usable))
-        block_of[usable] = shuffled
+        block_of[usable] = np.random.Generator(np.random.SFC64(1)).permutation(len(usable))
         return Folds(block_of, min(FOLDS, max(len(usable), 1)))
     runs = records.run_of[usable]
     first = np.flatnonzero(np.append(True, runs[1:] != runs[:-1]))

@@ -63,8 +63,8 @@ SETTINGS = (
 )  # fmt: skip
 
 
-def carried_over(driven: Matrix, starts: Mask, share: float, *, backwards: bool = False) -> Matrix:
-    """Return x_i = driven_i + share * x_{i-1} (backwards: x_{i+1}) inside every run, shape (n,) or (n, c).
+def carried_over(driven: Matrix, starts: Mask, share: float) -> Matrix:
+    """Return x_i = driven_i + share * x_{i-1} inside every run, shape (n,) or (n, c).
 
     ``starts`` marks the first row of each run.
     """
@@ -72,7 +72,7 @@ def carried_over(driven: Matrix, starts: Mask, share: float, *, backwards: bool 
         return np.array(driven)
     band = np.ones((2, len(starts)))
     band[1, :-1] = -share * ~starts[1:]
-    solved, _ = dtbtrs(band, driven.reshape(len(starts), -1), uplo="L", trans="T" if backwards else "N", diag="U")
+    solved, _ = dtbtrs(band, driven.reshape(len(starts), -1), uplo="L", diag="U")
     return np.asarray(solved.reshape(driven.shape))
 
 
@@ -189,8 +189,7 @@ def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> Spread:
     (J. Capon, Ann. Math. Statist. 32, 1961, 88).
     """
     u = innovations / (robust_sd(innovations) or 1.0)
-    tried = {name: standardised(values) for name, values in drivers.items()}
-    tried = {name: z for name, z in tried.items() if np.ptp(z) > 0}
+    tried = {name: z for name, values in drivers.items() if np.ptp(z := standardised(values)) > 0}
     if not tried or len(u) < 20:
         return Spread()
     sizes = ndtri(0.5 + 0.5 * rankdata(np.abs(u)) / (len(u) + 1))
