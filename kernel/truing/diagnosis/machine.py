@@ -179,9 +179,10 @@ def directions_of(gram: Matrix, rows: int) -> Matrix:
     return np.ascontiguousarray(vectors * np.where(upright == 0, 1.0, upright))
 
 
-def in_blocks(rows: int) -> Iterator[slice]:
-    """Give the rows in blocks, one after another."""
-    return (slice(begin, begin + BLOCK) for begin in range(0, rows, BLOCK))
+def in_blocks(rows: int, size: int = 0) -> Iterator[slice]:
+    """Give the rows in blocks, one after another, of one size where it is given."""
+    size = size or BLOCK
+    return (slice(begin, begin + size) for begin in range(0, rows, size))
 
 
 def times(matrix: Matrix, vector: Matrix) -> Matrix:
