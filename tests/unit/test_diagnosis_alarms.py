@@ -35,6 +35,7 @@ from truing.diagnosis.result import Amount, Contradiction, Diagnosis, Thinned, T
 from truing.diagnosis.visibility import TRADED, trades_of
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.setup import DiagnoseOptions
+from truing.studies.bench import silent
 
 ROWS = 160
 BENCH = wide(ROWS, seed=51)
@@ -64,7 +65,7 @@ def taken(folder: Path, one: Asked, columns: Mapping[str, Array], name: str, *ot
 
 def answered(chosen: Chosen) -> Diagnosis:
     """What a diagnosis answers with this choice."""
-    return _answer(chosen, chosen.competition.sample.machine.design, _Steps(None))
+    return _answer(chosen, chosen.competition.sample.machine.design, _Steps(silent))
 
 
 def is_told(found: Diagnosis, words: str) -> bool:
