@@ -151,14 +151,6 @@ def without_taken(passes: tuple[Pass, ...]) -> tuple[Matrix, Matrix, Matrix]:
 def units_of(normal: Matrix) -> Matrix:
     """Return what makes columns with these squares (M, q, q) orthonormal, row by row; 0 for what depends on others."""
     size = np.sqrt(np.maximum(np.einsum("mqq->mq", normal), 1e-300))
-    scaled = normal / (size[:, :, None] * size[:, None, :])
-    units = np.zeros_like(normal)
-    for column in range(normal.shape[1]):
-        unit = np.zeros(normal.shape[:2])
-        unit[:, column] = 1.0
-        for _ in range(2):
-            inner = np.einsum("mpq,mqr,mr->mp", units, scaled, unit)
-            unit = unit - np.einsum("mp,mpq->mq", inner, units)
-        left = np.sqrt(np.maximum(np.einsum("mq,mqr,mr->m", unit, scaled, unit), 0.0))
-        units[:, column] = unit * np.where(left > DEPENDS, 1 / np.maximum(left, 1e-300), 0.0)[:, None]
-    return np.asarray(units / size[:, None, :])
+    squares, axes = np.linalg.eigh(np.nan_to_num(normal / (size[:, :, None] * size[:, None, :])))
+    lengths = np.where(squares > DEPENDS**2, np.sqrt(np.maximum(squares, DEPENDS**2)), np.inf)
+    return np.asarray(axes.swapaxes(1, 2) / lengths[:, :, None] / size[:, None])
