@@ -54,17 +54,6 @@ class Budget:
         """Whether calls are counted at all."""
         return self.calls < inf
 
-    def lasts(self, spent: int) -> bool:
-        """Whether the present stage may go on after so many calls."""
-        return spent < self.share * self.calls
-
-    def allows(self, spent: int, what: str) -> bool:
-        """Whether one thing more may be tried; what may not is counted."""
-        if self.lasts(spent):
-            return True
-        self.left_out[what] = self.left_out.get(what, 0) + 1
-        return False
-
     def of_rows(self, ratio: float) -> Budget:
         """Return what the same time allows on so many times as many rows; what it leaves out is told with the rest."""
         return replace(self, calls=max(self.calls / ratio, LEAST_PER_EFFECT), share=1.0, points=None)
@@ -127,11 +116,10 @@ class Extended:
         """Call the model at several points, as one batch where it can be."""
         if not points:
             return []
-        setup, is_one = self._with(causes), self._share_inputs(causes, points)
-        if is_one:
+        setup, trials = self._with(causes), [_unknowns(self.machine, causes, values) for values, _ in points]
+        if self._share_inputs(causes, points):
             setup = self._moved(setup, frozenset(cause.tag for cause in causes), points[0][1])
-        trials = [_unknowns(self.machine, causes, values) for values, _ in points]
-        if not is_one:
+        else:
             trials = [{**own, **self._inputs(causes, *point)} for own, point in zip(trials, points, strict=True)]
         self._count(causes, points)
         return self._survived(setup, trials)
@@ -166,22 +154,21 @@ class Extended:
     @property
     def lasts(self) -> bool:
         """Whether the budget of calls lasts in this stage of the search."""
-        return self.budget.lasts(self.calls)
+        return self.calls < self.budget.share * self.budget.calls
 
     def allows(self, what: str) -> bool:
         """Whether the budget lasts for one thing more; what it does not last for is counted."""
-        return self.budget.allows(self.calls, what)
+        if not self.lasts:
+            self.budget.left_out[what] = self.budget.left_out.get(what, 0) + 1
+        return self.lasts
 
     def _with(self, causes: Sequence[Cause]) -> Setup:
         """Return the setup with the effects of these causes on; parts of one effect are on together."""
         tags = frozenset(cause.tag for cause in causes if cause.effect is not None)
         if tags not in self._setups:
-            on: dict[str, SwitchedOn] = {}
-            for cause in causes:
-                if cause.effect is not None:
-                    parts = on[cause.name].values if cause.name in on else {}
-                    on[cause.name] = SwitchedOn(cause.effect, {**parts, **at_rest(cause, self.machine)})
-            self._setups[tags] = self.machine.start.with_effects(tuple(on.values())) if on else self.machine.start
+            resting = ((cause.effect, at_rest(cause, self.machine)) for cause in causes)
+            on = [SwitchedOn(effect, rest) for effect, rest in resting if effect is not None]
+            self._setups[tags] = self.machine.start.with_effects(on) if on else self.machine.start
         return self._setups[tags]
 
     def _share_inputs(self, causes: Sequence[Cause], points: Sequence[Point]) -> bool:
