@@ -136,7 +136,7 @@ class Fitting:
             (shown,) = self.shown([tried], self.anchor)
             bare = self.bare(shown)
             if np.isfinite(bare).all():
-                self.u, self.predicted, self.r0 = tried, shown, bare
+                self.u, self.predicted = tried, shown
                 self.b = self.anchor
                 self.b, self.left, self.cost = self.calibrated(bare)
                 return True
@@ -222,10 +222,7 @@ class Fitting:
     def settle(self, until: float) -> None:
         """Step down until little is promised; then move the anchor of the inputs, where slopes miss what they do."""
         if until <= EXACTLY and len(self.b):  # with the causes on, and where the inputs begin
-            self.slopes = self.slopes_of_inputs()
-            (shown,) = self.shown([self.u], self.anchor)
-            self.r0 = self.bare(shown)
-            self.b, self.left, self.cost = self.calibrated(self.r0)
+            self._draw_inputs()
         bends = False
         for _ in range(MOST_ANCHORS):
             self._descend(until)
@@ -308,7 +305,7 @@ class Fitting:
         if gained > 0:
             way = tried - self.u
             before = self.predicted
-            self.u, self.predicted, self.r0, self.b, self.left, self.cost = tried, shown, bare, b, left, cost
+            self.u, self.predicted, self.b, self.left, self.cost = tried, shown, b, left, cost
             self._draw({name: _corrected(own, shown[name] - before[name], way) for name, own in self.drawn.items()})
             self.is_fresh = False
         return gained
@@ -316,7 +313,7 @@ class Fitting:
     def _anchored(self) -> bool:
         """Move the anchor to the inputs, or as far as leads down; whether the slopes missed enough to go on."""
         start, wanted = self.anchor, self.b
-        before = self.sample.cost(self.r0 - self.slopes @ start, start)
+        before = self.sample.cost(self.sample.left(self.predicted), start)
         for share in SHARES:
             tried = start + share * (wanted - start)
             (shown,) = self.shown([self.u], tried)
@@ -330,11 +327,13 @@ class Fitting:
         is_off = bool(missed @ missed > MOVED)
         self.anchor, self.b, self.predicted, self.left, self.cost = tried, tried, shown, exact, cost
         if is_off:
-            self.slopes = self.slopes_of_inputs()
-        self.r0 = exact + self.slopes @ self.anchor
-        if is_off:
-            self.b, self.left, self.cost = self.calibrated(self.r0)
+            self._draw_inputs()
         return is_off
+
+    def _draw_inputs(self) -> None:
+        """Take the slopes of the inputs about the anchor, and the inputs that go best with them."""
+        self.slopes = self.slopes_of_inputs()
+        self.b, self.left, self.cost = self.calibrated(self.bare(self.predicted))
 
     def slopes_of_inputs(self) -> Matrix:
         """Return what the directions of the inputs draw about the anchor, (rows, K), in one call of the model."""
