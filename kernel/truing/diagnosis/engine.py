@@ -133,7 +133,10 @@ def _answer(chosen: Chosen, setup: Setup, step: _Steps) -> Diagnosis:
         contradictions=contradictions_of(chosen),
         thinned=thinned_of(chosen),
         trades=trades_of(chosen),
-        curves=tuple(_curves(chosen)),
+        curves=tuple(
+            Curves(name, values, chosen.null.predicted[name], best.predicted[name])
+            for name, values in machine.records.measured.items()
+        ),
         p_any=chosen.p_any,
         p_second=chosen.p_second,
         ranking=_ranking(chosen),
@@ -189,16 +192,6 @@ def _too_rough(answer: Diagnosis, chosen: Chosen) -> list[str]:
 
 def _not_measured(machine: Machine) -> Mapping[str, tuple[str, ...]]:
     absent = machine.records.absent
-    needs = {
-        name: tuple(need.name for need in effect.needs if need.name in absent)
-        for name, effect in machine.start.model.known_effects.items()
-    }
+    effects = machine.start.model.known_effects.items()
+    needs = {name: tuple(need.name for need in effect.needs if need.name in absent) for name, effect in effects}
     return {name: missing for name, missing in needs.items() if missing}
-
-
-def _curves(chosen: Chosen) -> list[Curves]:
-    measured = chosen.best.sample.machine.records.measured
-    return [
-        Curves(name, values, chosen.null.predicted[name], chosen.best.predicted[name])
-        for name, values in measured.items()
-    ]
