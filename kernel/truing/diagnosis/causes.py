@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from math import inf
 from pathlib import PurePath
 from typing import Any, Literal
@@ -82,7 +83,8 @@ class Shape:
 
     def terms(self, numbers: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
         """Return the terms on the rows of some covariates."""
-        return self.made(*((name, covariates[name].filled) for name in self.depends_on), *numbers)
+        axes = ((name, covariates[name].filled) for name in self.depends_on)  # missing values are at their mean
+        return self.made(*chain.from_iterable(axes), *numbers)
 
 
 @dataclass(frozen=True, eq=False)
