@@ -28,7 +28,7 @@ from diagnosis_samples import named
 from numpy.testing import assert_allclose
 
 from truing.diagnosis.choice import Chosen
-from truing.diagnosis.engine import _answer, _Steps
+from truing.diagnosis.engine import _answer
 from truing.diagnosis.halves import every_second, thinned_of
 from truing.diagnosis.noise import SETTINGS, Setting
 from truing.diagnosis.result import Amount, Contradiction, Diagnosis, Thinned, Trade
@@ -65,7 +65,7 @@ def taken(folder: Path, one: Asked, columns: Mapping[str, Array], name: str, *ot
 
 def answered(chosen: Chosen) -> Diagnosis:
     """What a diagnosis answers with this choice."""
-    return _answer(chosen, chosen.competition.sample.machine.design, _Steps(silent))
+    return _answer(chosen, chosen.competition.sample.machine.design, silent)
 
 
 def is_told(found: Diagnosis, words: str) -> bool:
