@@ -20,6 +20,7 @@ from truing.diagnosis.noise import (
     difference,
     likelihood_of,
     robust_sd,
+    rounding,
     scale_of,
     spread_of,
     standardised,
@@ -27,16 +28,7 @@ from truing.diagnosis.noise import (
     weights_of,
     whiten,
 )
-from truing.diagnosis.sample import (
-    SMALLEST_SHARE,
-    Channel,
-    Noise,
-    Sample,
-    compared_slopes,
-    has_order,
-    residuals_of,
-    typical_of,
-)
+from truing.diagnosis.sample import Channel, Noise, Sample, compared_slopes, has_order, residuals_of, typical_of
 
 FEWEST_OF_MEMORY = 20
 """Rows from which on their memory is learnt."""
@@ -57,8 +49,7 @@ def first_noise(machine: Machine) -> dict[str, Noise]:
             powers = [driver[rows] ** power for driver in drivers for power in (1, 2)]
             columns = np.column_stack([slopes[rows], np.ones(len(rows)), *powers, values[rows]])
             triangle = np.asarray(np.linalg.qr(np.concatenate([triangle, columns]), mode="r"))
-        floor = SMALLEST_SHARE * float(np.sqrt(np.mean(values[here] ** 2))) if len(here) else 0.0
-        scale = max(_unexplained(triangle, len(here)), floor, 1e-300)
+        scale = max(_unexplained(triangle, len(here)), rounding(values[here]), 1e-300)
         given = _stated(machine, name, typical)
         at = machine.base[name] if typical or name in machine.records.sides else None
         made[name] = Noise(scale, given, given, typical=typical, at=at)

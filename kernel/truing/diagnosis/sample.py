@@ -18,11 +18,9 @@ import numpy as np
 
 from truing.diagnosis.arrays import Mask, Matrix, Places, Sides
 from truing.diagnosis.machine import Machine, Predicted, gram_of
-from truing.diagnosis.noise import Setting, Spread, Tails, beyond, difference, expected, shares, whiten, worth
+from truing.diagnosis.noise import Setting, Spread, Tails, beyond, difference, expected, rounding, shares, whiten, worth
 
 WITHOUT_MEMORY, NORMAL, CONSTANT = Setting(), Tails(inf, 4.5), Spread()
-SMALLEST_SHARE = 1e-6
-"""Of the readings: noise is no smaller, or it is rounding."""
 ROUNDS, SETTLED = 50, 1e-6
 
 
@@ -294,8 +292,7 @@ def _least(machine: Machine, noise: Noise, name: str, rows: Places) -> float:
     """Return the smallest mean square, in units of the noise, that is more than rounding or the steps of the gauge."""
     values = machine.records.measured[name][rows]
     off = difference(values, machine.base[name][rows], noise.typical)
-    rounding = SMALLEST_SHARE * float(np.sqrt(np.mean(off**2))) if len(rows) else 0.0
-    return max(rounding**2, resolution_of(values) ** 2 / 12, 1e-300) / noise.scale**2
+    return max(rounding(off) ** 2, resolution_of(values) ** 2 / 12, 1e-300) / noise.scale**2
 
 
 def resolution_of(values: Matrix) -> float:
