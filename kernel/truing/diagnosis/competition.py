@@ -19,7 +19,7 @@ from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.beside import Looked, look
 from truing.diagnosis.causes import Cause, are_exclusive
 from truing.diagnosis.curves import Curves
-from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit, is_too_large, nothing, refit
+from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit, nothing, refit
 from truing.diagnosis.extended import Extended, shape_added
 from truing.diagnosis.fitted import Fit, differ, signs_of_wrong
 from truing.diagnosis.learning import as_noise, learnt
@@ -50,6 +50,8 @@ FINER = 0.5
 """Directions of the inputs are looked for anew when the noise turns out so much finer."""
 SETTLED = 0.02
 ROUNDS = 4
+ROWS_PER_NUMBER = 4
+"""Fewer rows for every number are followed by any curve, noise or not."""
 AGAIN, TO_THE_END = "fits in the noise that was learnt", "fits to the end"
 
 
@@ -147,7 +149,8 @@ class Competition:
 
     def fitted(self, causes: Sequence[Cause], values: Sequence[Matrix], near: Fit | None) -> Fit | None:
         """Fit an explanation from a start and keep it."""
-        if is_too_large(self.sample, causes) or are_exclusive(causes):
+        size = sum(cause.size for cause in causes)
+        if size * ROWS_PER_NUMBER > self.sample.known or are_exclusive(causes):
             return None
         if not self.extended.allows(self.stage):
             return self.known.get(frozenset(cause.tag for cause in causes))

@@ -44,13 +44,6 @@ FIRST_DAMPING = 1e-3
 LARGEST_DAMPING = 1e8
 GOOD = 0.25
 """Share of what a step promised from which on its corrected derivatives are good enough for the next one."""
-ROWS_PER_NUMBER = 4
-"""Fewer rows for every number are followed by any curve, noise or not."""
-
-
-def is_too_large(sample: Sample, causes: Sequence[Cause]) -> bool:
-    """Whether an explanation has too many numbers for so few rows."""
-    return sum(cause.size for cause in causes) * ROWS_PER_NUMBER > sample.known
 
 
 def fit(
