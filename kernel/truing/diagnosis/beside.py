@@ -136,7 +136,8 @@ def compared(bundles: list[Bundle], beside: Beside) -> Iterator[tuple[str, Looke
         if len(own):
             gains, values = _starts(bundle, bundle.points[own - begin], right[own], normal[own])
             drawn = Spanned(basis[own] if len(own) < len(basis) else basis)
-            tries = independent(basis[own[is_own[own]]], is_sweep=bundle.is_sweep)
+            is_sweep = bundle.is_straight and len(bundle.cause.shapes) <= 1  # neighbouring points draw alike
+            tries = independent(basis[own[is_own[own]]], is_sweep=is_sweep)
             yield bundle.cause.tag, Looked(_best(gains, values, drawn, beside.sample.known), tries, drawn)
         begin = end
 

@@ -13,24 +13,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.stats import qmc
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Shape
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.points import (
-    FINEST,
-    LEVELS,
-    SPREAD,
-    first_places,
-    is_known,
-    middle,
-    placed,
-    refined,
-    spread,
-    thinned,
-)
+from truing.diagnosis.points import FINEST, LEVELS, SPREAD, is_known, middle, placed, places_over, refined, spread
 from truing.diagnosis.sweeps import Table
 
 STRAIGHT = 1e-4
@@ -58,11 +46,6 @@ class Bundle:
     is_straight: bool
     lost: int = 0
     table: Table | None = None
-
-    @property
-    def is_sweep(self) -> bool:
-        """Whether neighbouring points draw neighbouring curves."""
-        return self.is_straight and len(self.cause.shapes) <= 1
 
 
 class Curves:
@@ -111,7 +94,8 @@ class Curves:
         if cause.shape is not None:
             return self._of_shape(cause, cause.shape, place)
         if cause.tolerated >= 0:
-            return place.of_input(cause)
+            slopes = [each[:, cause.tolerated] for each in self.extended.machine.slopes.values()]
+            return Bundle(cause, np.zeros((1, 1)), np.concatenate(slopes)[None, None, :], is_straight=True)
         if cause.tag not in self._straight:
             self._straight[cause.tag] = place.is_straight(cause)
         if self._straight[cause.tag]:
@@ -122,7 +106,7 @@ class Curves:
         """Return the curves of a shape; of one with many, on a long record, a table that all results share."""
         records = self.extended.machine.records
         shapes = [cause.numbers[number] for number in cause.shapes]
-        u = first_places(shapes[0]) if len(shapes) == 1 and is_known(shapes[0]) else np.zeros(0)
+        u = places_over(shapes) if len(shapes) == 1 and is_known(shapes[0]) else np.zeros((0, 1))
 
         def terms(values: Matrix) -> list[list[Matrix]]:
             return [[term.values for term in shape.terms(each.tolist(), records.covariates)] for each in values]
@@ -132,7 +116,7 @@ class Curves:
             several = len(cause.amplitudes), place.readings
             return _swept(cause, lambda v: np.einsum("rs,mtn->mrtsn", acts, terms(v)).reshape(-1, *several))
         family = shape.kind, *shape.depends_on
-        values = placed(shapes, u[:, None])
+        values = placed(shapes, u)
         if family not in self._tables:
             self._tables[family] = Table(np.array(terms(values), dtype=np.float32))
         curves = np.zeros((0, len(cause.amplitudes), place.readings))
@@ -214,13 +198,8 @@ class _Place:
 
     def bent(self, cause: Cause) -> Bundle:
         """Return the curves of a cause that bends, at amplitudes of many sizes and at shapes all over."""
-        points = thinned(spread(cause, SPREAD if self.causes else 4 * SPREAD), self.most(cause))
+        points = spread(cause, SPREAD if self.causes else 4 * SPREAD, self.most(cause))
         return _bundle(cause, points, self.changes(cause, points)[:, None, :], is_straight=False)
-
-    def of_input(self, cause: Cause) -> Bundle:
-        """Return the slope of an input, per standard deviation."""
-        slopes = [self.machine.slopes[name][:, cause.tolerated] for name in self.machine.records.measured]
-        return Bundle(cause, np.zeros((1, 1)), np.concatenate(slopes)[None, None, :], is_straight=True)
 
 
 def _largest(cause: Cause) -> Matrix:
@@ -250,13 +229,7 @@ def _bundle(cause: Cause, points: Matrix, made: Matrix, *, is_straight: bool) ->
 def _swept(cause: Cause, make: Callable[[Matrix], Matrix], most: int = FINEST) -> Bundle:
     """Return curves over all shapes of a cause; along one number as finely as they change."""
     shapes = [cause.numbers[place] for place in cause.shapes]
-    if not shapes:
-        u = np.zeros((1, 0))
-    elif len(shapes) == 1:
-        u = first_places(shapes[0])[:, None]
-    else:
-        u = qmc.Sobol(len(shapes), seed=1).random(SPREAD)
-    u = thinned(u, most)
+    u = places_over(shapes, most)
     values = placed(shapes, u)
     made = make(values)
     if len(shapes) == 1 and not is_known(shapes[0]):
