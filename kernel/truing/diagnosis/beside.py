@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from truing.diagnosis.arrays import Mask, Matrix
+from truing.diagnosis.arrays import Mask, Matrix, Places
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.curves import LARGEST, Bundle, Curves
 from truing.diagnosis.derivatives import slopes_left
@@ -96,10 +96,9 @@ def _swept(bundle: Bundle, table: Table, beside: Beside, passes: dict[tuple[Tabl
     if not len(points):
         return None
     right, span = np.concatenate([each.right for each in own], axis=1), Swept(own, units_of(normal), points)
-    gains, values = _starts(bundle, bundle.points[points], right[points], normal[points])
     inner = span.units[1:] @ following @ span.units[:-1].swapaxes(1, 2)
     tries = 1.0 + _turned(inner[is_own[1:] & is_own[:-1]], normal.shape[1])
-    return Looked(_best(gains, values, span, beside.sample.known), tries, span)
+    return Looked(_best(*_starts(bundle, points, right, normal), span, beside.sample.known), tries, span)
 
 
 def _draws(size: Matrix, raw: Matrix) -> Mask:
@@ -134,11 +133,11 @@ def compared(bundles: list[Bundle], beside: Beside) -> Iterator[tuple[str, Looke
         end = begin + len(bundle.points)
         own = begin + np.flatnonzero(kept[begin:end])
         if len(own):
-            gains, values = _starts(bundle, bundle.points[own - begin], right[own], normal[own])
+            starts = _starts(bundle, own - begin, right[begin:end], normal[begin:end])
             drawn = Spanned(basis[own] if len(own) < len(basis) else basis)
             is_sweep = bundle.is_straight and len(bundle.cause.shapes) <= 1  # neighbouring points draw alike
             tries = independent(basis[own[is_own[own]]], is_sweep=is_sweep)
-            yield bundle.cause.tag, Looked(_best(gains, values, drawn, beside.sample.known), tries, drawn)
+            yield bundle.cause.tag, Looked(_best(*starts, drawn, beside.sample.known), tries, drawn)
         begin = end
 
 
@@ -178,10 +177,10 @@ def _is_same(one: Matrix, other: Matrix) -> bool:
     return bool(np.linalg.norm(one @ other.T) ** 2 > 0.98 * min(len(one), len(other)))
 
 
-def _starts(bundle: Bundle, points: Matrix, right: Matrix, normal: Matrix) -> tuple[Matrix, Matrix]:
+def _starts(bundle: Bundle, places: Places, right: Matrix, normal: Matrix) -> tuple[Matrix, Matrix]:
     """Return what each point lowers the sum of squares by within the bounds of the cause, and the numbers there."""
-    diagonal = np.einsum("mqq->mq", normal)
-    scale = np.sqrt(np.maximum(diagonal, 1e-300))
+    points, right, normal = bundle.points[places], right[places], normal[places]
+    scale = np.sqrt(np.maximum(np.einsum("mqq->mq", normal), 1e-300))
     scaled = normal / (scale[:, :, None] * scale[:, None, :]) + 1e-9 * np.eye(normal.shape[1])
     solved = np.linalg.solve(scaled, (right / scale)[..., None])[..., 0] / scale
     values, own = np.array(points), bundle.cause.amplitudes
@@ -201,7 +200,7 @@ def independent(basis: Matrix, *, is_sweep: bool) -> float:
     """Return how many independent curves a set of points draws: the way along a sweep, else the rank that counts."""
     if len(basis) < 2:
         return 1.0
-    q = max(int((np.linalg.norm(basis, axis=-1) > 0.5).sum(axis=1).max()), 1)
+    q = max(round(float(np.einsum("mqn,mqn->m", basis, basis).max())), 1)
     if is_sweep:
         return 1.0 + _turned(basis[1:] @ basis[:-1].swapaxes(1, 2), q)
     flat = basis.reshape(-1, basis.shape[-1])

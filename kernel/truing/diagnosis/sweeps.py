@@ -119,10 +119,9 @@ class Swept:
     def vectors(self, place: int) -> Matrix:
         """Return the orthonormal curves at one of the points, (q, rows + K)."""
         beside, at = self.passes[0].beside, int(self.points[place])
-        terms = [each.rows(slice(at, at + 1))[0] for each in self.passes]
-        rows = np.zeros((len(terms), len(terms[0]), beside.sample.rows))
-        for each, own, kept in zip(self.passes, terms, rows, strict=True):
-            kept[:, each.part] = own
+        rows = np.zeros((len(self.passes), self.units.shape[1] // len(self.passes), beside.sample.rows))
+        for each, kept in zip(self.passes, rows, strict=True):
+            kept[:, each.part] = each.rows(slice(at, at + 1))[0]
         return np.asarray(self.units[at] @ beside.beyond(rows.reshape(-1, beside.sample.rows)))
 
 
@@ -149,8 +148,11 @@ def without_taken(passes: tuple[Pass, ...]) -> tuple[Matrix, Matrix, Matrix]:
 
 
 def units_of(normal: Matrix) -> Matrix:
-    """Return what makes columns with these squares (M, q, q) orthonormal, row by row; 0 for what depends on others."""
+    """Return what makes columns with these squares (M, q, q) orthonormal, turned as little as can be.
+
+    Those that depend on one another share what they draw (P.-O. Löwdin, J. Chem. Phys. 18, 1950, 365).
+    """
     size = np.sqrt(np.maximum(np.einsum("mqq->mq", normal), 1e-300))
     squares, axes = np.linalg.eigh(np.nan_to_num(normal / (size[:, :, None] * size[:, None, :])))
     lengths = np.where(squares > DEPENDS**2, np.sqrt(np.maximum(squares, DEPENDS**2)), np.inf)
-    return np.asarray(axes.swapaxes(1, 2) / lengths[:, :, None] / size[:, None])
+    return np.asarray((axes / lengths[:, None]) @ axes.swapaxes(1, 2) / size[:, None])
