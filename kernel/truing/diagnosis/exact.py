@@ -61,10 +61,8 @@ def fit(
     Numbers in ``held`` keep their start. ``near`` is a fit to begin with: its inputs, what they draw, and what its
     numbers draw where it is of the same causes. None where the model fails however small the causes are.
     """
-    is_alike = near is not None and len(near.inputs) == sample.directions.shape[1]
-    moves = near.moves if near is not None and near.sample.directions is sample.directions else {}
-    state = Fitting(sample, extended, tuple(causes), held=held, moves=moves or sample.moves)
-    if not state.begin(np.concatenate(values) if causes else np.zeros(0), near.inputs if is_alike and near else None):
+    state = Fitting(sample, extended, tuple(causes), near, held)
+    if not state.begin(np.concatenate(values) if causes else np.zeros(0)):
         return None
     if near is not None and near.slopes and near.causes == state.causes and not extended.grain:
         state.carry(near.slopes)
@@ -81,13 +79,7 @@ class Fitting:
     """One fit on its way: the numbers as the fit sees them, what is left, and its derivatives."""
 
     def __init__(
-        self,
-        sample: Sample,
-        extended: Extended,
-        causes: tuple[Cause, ...],
-        *,
-        held: Sequence[Number],
-        moves: dict[str, Matrix],
+        self, sample: Sample, extended: Extended, causes: tuple[Cause, ...], near: Fit | None, held: Sequence[Number]
     ) -> None:
         self.sample, self.extended, self.causes = sample, extended, causes
         self.numbers = [number for cause in causes for number in cause.numbers]
@@ -97,9 +89,11 @@ class Fitting:
         self.low, self.high = (np.array([end[side] for end in ends]) for side in (0, 1))
         self.free = np.array([n.is_free and not any(n is each for each in held) for n in self.numbers], dtype=bool)
         self.log = np.array([number.is_log for number in self.numbers], dtype=bool)
-        self.moves = moves
-        self.slopes = sample.drawn if moves is sample.moves else sample.curve(moves)
-        self.anchor = np.zeros(self.slopes.shape[1])
+        moves = near.moves if near is not None and near.sample.directions is sample.directions else {}
+        self.moves = moves or sample.moves
+        self.slopes = sample.drawn if self.moves is sample.moves else sample.curve(self.moves)
+        is_alike = near is not None and len(near.inputs) == self.slopes.shape[1]
+        self.anchor = np.array(near.inputs) if near is not None and is_alike else np.zeros(self.slopes.shape[1])
         self.damping = FIRST_DAMPING
         self.drawn: dict[str, Matrix] = {}
         self.is_fresh = False
@@ -117,20 +111,17 @@ class Fitting:
         """Return what is left if the inputs were at their means, as far as their slopes tell."""
         return self.sample.left(shown) + self.slopes @ self.anchor
 
-    def begin(self, values: Matrix, inputs: Matrix | None) -> bool:
+    def begin(self, values: Matrix) -> bool:
         """Take a start, or so much nearer to no cause that the model does not fail; False where it always does."""
         u = np.where(self.log, np.log(np.where(self.log, values, 1.0)), values / self.sizes)
         u = np.clip(u, self.low, self.high)
         amplitudes = np.array([number.is_amplitude for number in self.numbers], dtype=bool)
-        if inputs is not None:
-            self.anchor = np.array(inputs)
         for halving in range(NEARER):
             tried = np.where(amplitudes, u / 2**halving, u)
             (shown,) = self.shown([tried], self.anchor)
             bare = self.bare(shown)
             if np.isfinite(bare).all():
-                self.u, self.predicted = tried, shown
-                self.b = self.anchor
+                self.u, self.predicted, self.b = tried, shown, self.anchor
                 self.b, self.left, self.cost = self.calibrated(bare)
                 return True
         return False
@@ -219,9 +210,8 @@ class Fitting:
         bends = False
         for _ in range(MOST_ANCHORS):
             self._descend(until)
-            if not len(self.b) or (until > EXACTLY and float(np.abs(self.b - self.anchor).max()) < 1.0):
-                break
-            if not self._anchored():
+            is_near = until > EXACTLY and float(np.abs(self.b - self.anchor).max(initial=0.0)) < 1.0
+            if not len(self.b) or is_near or not self._anchored():
                 break
             bends = True
         if bends and until <= EXACTLY and not self.extended.grain:
@@ -342,10 +332,8 @@ class Fitting:
 
     def answer(self) -> Fit:
         """Return the fit, its predictions with the inputs where they are."""
-        predicted = self.predicted
-        if len(self.b) and np.any(self.b != self.anchor):
-            moved = self.b - self.anchor
-            predicted = {name: shown + self.moves[name] @ moved for name, shown in predicted.items()}
+        moved = self.b - self.anchor
+        predicted = {name: shown + self.moves[name] @ moved for name, shown in self.predicted.items()}
         values = tuple(parts_of(self.causes, self.outward(self.u)))
         slopes = {name: each / np.where(self.log, 1.0, self.sizes) for name, each in self.drawn.items()}
         return Fit(self.causes, values, self.b, predicted, self.left, self.cost, self.sample, slopes, self.moves)
