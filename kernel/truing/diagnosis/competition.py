@@ -65,7 +65,6 @@ class Competition:
     curves: Curves
     known: dict[frozenset[str], Fit] = field(default_factory=dict)
     tries: dict[str, float] = field(default_factory=dict)
-    fits: int = 0
     stage: str = "causes alone"
     owned: dict[Fit, float] = field(default_factory=dict)
     paid: dict[Fit, float] = field(default_factory=dict)
@@ -149,12 +148,10 @@ class Competition:
 
     def fitted(self, causes: Sequence[Cause], values: Sequence[Matrix], near: Fit | None) -> Fit | None:
         """Fit an explanation from a start and keep it."""
-        size = sum(cause.size for cause in causes)
-        if size * ROWS_PER_NUMBER > self.sample.known or are_exclusive(causes):
+        if sum(cause.size for cause in causes) * ROWS_PER_NUMBER > self.sample.known or are_exclusive(causes):
             return None
         if not self.extended.allows(self.stage):
             return self.known.get(frozenset(cause.tag for cause in causes))
-        self.fits += 1
         return self.keep(fit(self.sample, self.extended, causes, values, near, until=ROUGHLY))
 
     def joined(self, at: Fit, cause: Cause, starts: Iterable[tuple[float, Matrix]]) -> Fit | None:
@@ -242,7 +239,6 @@ class Competition:
                 self._again(found, until)
 
     def _again(self, found: Fit, until: float) -> None:
-        self.fits += 1
         made = refit(found, self.sample, self.extended, until=until)
         self.fresh.discard(found.key)
         self.keep(made)

@@ -117,7 +117,8 @@ class Extended:
         if not points:
             return []
         setup, trials = self._with(causes), [_unknowns(self.machine, causes, values) for values, _ in points]
-        if self._share_inputs(causes, points):
+        is_plain = all(cause.tolerated < 0 for cause in causes) and all(item.file < 0 for item in self.machine.inputs)
+        if is_plain and all(np.array_equal(moved, points[0][1]) for _, moved in points):  # the inputs of all rows
             setup = self._moved(setup, frozenset(cause.tag for cause in causes), points[0][1])
         else:
             trials = [{**own, **self._inputs(causes, *point)} for own, point in zip(trials, points, strict=True)]
@@ -170,11 +171,6 @@ class Extended:
             on = [SwitchedOn(effect, rest) for effect, rest in resting if effect is not None]
             self._setups[tags] = self.machine.start.with_effects(on) if on else self.machine.start
         return self._setups[tags]
-
-    def _share_inputs(self, causes: Sequence[Cause], points: Sequence[Point]) -> bool:
-        """Whether all points have the same inputs, each one value for all rows: then they are the machine's."""
-        is_plain = all(cause.tolerated < 0 for cause in causes) and all(item.file < 0 for item in self.machine.inputs)
-        return is_plain and all(np.array_equal(moved, points[0][1]) for _, moved in points)
 
     def _moved(self, setup: Setup, tags: frozenset[str], moved: Matrix) -> Setup:
         """Return a setup with its tolerated inputs moved."""

@@ -100,10 +100,9 @@ def carries_over(at: Fit, more: Fit, extended: Extended, folds: Folds) -> float:
     What the inputs no longer have to move counts as well: an explanation that fits by moving them far predicts as well
     as the true one, and is unlikely all the same.
     """
-    before, after = (errors_left_out(each, extended, folds) for each in (at, more))
-    before, after = (more.sample.losses(each, more.left) for each in (before, after))
-    fallen = before - after
-    fallen = fallen[np.isfinite(fallen)]
+    errors = (errors_left_out(each, extended, folds) for each in (at, more))
+    before, after = (more.sample.losses(each, more.left) for each in errors)
+    fallen = (before - after)[np.isfinite(before - after)]
     if len(fallen) < 2:
         return 0.0
     inputs = float(at.inputs @ at.inputs) - float(more.inputs @ more.inputs)

@@ -197,10 +197,8 @@ def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> Spread:
     """
     u = innovations / (robust_sd(innovations) or 1.0)
     tried = {name: z for name, values in drivers.items() if np.ptp(z := standardised(values)) > 0}
-    if not tried or len(u) < 20:
-        return Spread()
     sizes = ndtri(0.5 + 0.5 * rankdata(np.abs(u)) / (len(u) + 1))
-    if not np.ptp(sizes) > 0:
+    if not tried or len(u) < 20 or not np.ptp(sizes) > 0:
         return Spread()
     p_values = {name: float(linregress(z, sizes).pvalue) for name, z in tried.items()}
     name = min(p_values, key=p_values.__getitem__)

@@ -106,11 +106,9 @@ def spread(cause: Cause, count: int, most: int = FINEST) -> Matrix:
     shapes = [cause.numbers[place] for place in cause.shapes]
     points = []
     if len(cause.amplitudes) == 1 and len(shapes) <= 1:
-        (place,) = cause.amplitudes
-        ends = [end for end in (cause.numbers[place].low, cause.numbers[place].high) if end]
-        places = places_over(shapes)
-        few = placed(shapes, places[:: max(1, len(places) // FIRST)])
-        for end, level, values in product(ends, LEVELS, few):
+        (place,), places = cause.amplitudes, places_over(shapes)
+        ends = filter(None, (cause.numbers[place].low, cause.numbers[place].high))
+        for end, level, values in product(ends, LEVELS, placed(shapes, places[:: max(1, len(places) // FIRST)])):
             point = np.zeros(cause.size)
             point[cause.shapes], point[place] = values, level * end
             points.append(point)

@@ -72,11 +72,11 @@ def _families(
     """Give every family of shapes: kind, covariates, terms a result, shape numbers, and how its terms are made."""
     for item in moved:
         distinct = len(np.unique(np.round(item.values[np.isfinite(item.values)], 12)))
+        is_round = item.goes_round and item.is_angle
+        if is_round:
+            yield "trend", (item.name,), 3, (), _harmonics
         for degree in DEGREES:
-            if item.goes_round and item.is_angle:
-                if degree == DEGREES[0]:
-                    yield "trend", (item.name,), 3, (), _harmonics
-            elif distinct > degree:
+            if distinct > degree and not is_round:
                 yield "trend", (item.name,), degree + 1, (), partial(_powers, degree)
         yield from _at_zero(item)
         if distinct >= FEWEST_VALUES:
