@@ -61,7 +61,7 @@ def fit(
     Numbers in ``held`` keep their start. ``near`` is a fit to begin with: its inputs, what they draw, and what its
     numbers draw where it is of the same causes. None where the model fails however small the causes are.
     """
-    state = Fitting(sample, extended, tuple(causes), near, held)
+    state = Fitting(sample, extended, tuple(causes), near, held=held)
     if not state.begin(np.concatenate(values) if causes else np.zeros(0)):
         return None
     if near is not None and near.slopes and near.causes == state.causes and not extended.grain:
@@ -79,7 +79,7 @@ class Fitting:
     """One fit on its way: the numbers as the fit sees them, what is left, and its derivatives."""
 
     def __init__(
-        self, sample: Sample, extended: Extended, causes: tuple[Cause, ...], near: Fit | None, held: Sequence[Number]
+        self, sample: Sample, extended: Extended, causes: tuple[Cause, ...], near: Fit | None, *, held: Sequence[Number]
     ) -> None:
         self.sample, self.extended, self.causes = sample, extended, causes
         self.numbers = [number for cause in causes for number in cause.numbers]
