@@ -28,13 +28,14 @@ from diagnosis_samples import named
 from numpy.testing import assert_allclose
 
 from truing.diagnosis.choice import Chosen
-from truing.diagnosis.engine import _answer, _Steps
+from truing.diagnosis.engine import _answer
 from truing.diagnosis.halves import every_second, thinned_of
 from truing.diagnosis.noise import SETTINGS, Setting
 from truing.diagnosis.result import Amount, Contradiction, Diagnosis, Thinned, Trade
 from truing.diagnosis.visibility import TRADED, trades_of
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.setup import DiagnoseOptions
+from truing.studies.bench import silent
 
 ROWS = 160
 BENCH = wide(ROWS, seed=51)
@@ -64,7 +65,7 @@ def taken(folder: Path, one: Asked, columns: Mapping[str, Array], name: str, *ot
 
 def answered(chosen: Chosen) -> Diagnosis:
     """What a diagnosis answers with this choice."""
-    return _answer(chosen, chosen.competition.sample.machine.design, _Steps(None))
+    return _answer(chosen, chosen.competition.sample.machine.design, silent)
 
 
 def is_told(found: Diagnosis, words: str) -> bool:

@@ -27,12 +27,13 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Unknown
-from truing.diagnosis.beside import KEPT, Beside, Looked, beside_of, compared, independent
+from truing.diagnosis.beside import KEPT, Looked, beside_of, compared, independent
 from truing.diagnosis.causes import Number
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.curves import Bundle
 from truing.diagnosis.points import ALIKE, FINEST, LEVELS, SPREAD, WAVES_PER_POINT, first_places, placed, spread
 from truing.diagnosis.sample import Sample
+from truing.diagnosis.sweeps import Beside
 
 
 def rubbing(screw: Drive, base: Deflection, *, drag: Float) -> Deflection:

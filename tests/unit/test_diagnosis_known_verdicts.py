@@ -25,8 +25,8 @@ from diagnosis_models import (
 from diagnosis_nothing import nothing_wrong
 from numpy.testing import assert_allclose
 
+from truing.diagnosis.noise import SMALLEST_SHARE
 from truing.diagnosis.result import Diagnosis
-from truing.diagnosis.sample import SMALLEST_SHARE
 
 ZERO = {**TOLERANCES, "zero": "5 um"}
 PROPER = Asked(drive_model())

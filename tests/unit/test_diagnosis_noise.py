@@ -118,22 +118,12 @@ def test_a_slow_wander_plus_white_noise_is_one_of_these_filters() -> None:
     assert any(abs(item.rho - rho) < 0.05 and abs(item.theta - theta) < 0.1 for item in SETTINGS if item.theta)
 
 
-def test_independent_rows_of_a_wander_by_the_long_run_variance() -> None:
-    setting = Setting(0.9, 0.5)
-    dense = covariance(0.9, 0.5, 5000)
-    mean = dense.sum() / 5000**2
-    assert_allclose(setting.independent_share, dense[0, 0] / mean / 5000, rtol=0.01)
-    assert Setting().independent_share == 1
-
-
 @pytest.mark.parametrize("columns", [(), (0,), (1,), (3,)])
 def test_what_carries_over_is_a_recursive_filter_of_each_run(columns: tuple[int, ...]) -> None:
     driven = np.random.default_rng(3).normal(size=(sum(RUNS), *columns))
     runs = np.split(driven, np.cumsum(RUNS)[:-1])
     forwards = np.concatenate([lfilter([1.0], [1.0, -0.7], run, axis=0) for run in runs])
-    backwards = np.concatenate([lfilter([1.0], [1.0, -0.7], run[::-1], axis=0)[::-1] for run in runs])
     assert_allclose(carried_over(driven, starts_of(RUNS), 0.7), forwards, rtol=0, atol=ROUNDING)
-    assert_allclose(carried_over(driven, starts_of(RUNS), 0.7, backwards=True), backwards, rtol=0, atol=ROUNDING)
 
 
 def innovations(freedom: float, seed: int, n: int = 2000) -> Array:

@@ -15,7 +15,6 @@ from scipy.linalg import block_diag, solve_triangular, toeplitz
 from scipy.optimize import approx_fprime, minimize_scalar
 from scipy.stats import multivariate_normal, norm, t
 
-from truing.diagnosis.beside import Beside
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.curves import Curves
 from truing.diagnosis.exact import nothing
@@ -24,6 +23,7 @@ from truing.diagnosis.learning import FEWEST_OF_MEMORY, learnt, memory_cost, mem
 from truing.diagnosis.machine import Machine, directions_of, machine_of
 from truing.diagnosis.noise import SETTINGS, Setting, Tails, robust_sd
 from truing.diagnosis.sample import Noise, Sample, has_order, resolution_of, sample_of, starts_of
+from truing.diagnosis.sweeps import Beside
 
 TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
 BENCH = wide(150, seed=31)

@@ -7,20 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import log
 from typing import Any
 
 import numpy as np
 
-from truing.diagnosis.arrays import Mask, Matrix
+from truing.diagnosis.arrays import Mask, Matrix, Places
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.curves import LARGEST, Bundle, Curves
 from truing.diagnosis.derivatives import slopes_left
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.machine import Predicted
-from truing.diagnosis.sample import Sample
-from truing.diagnosis.sweeps import Pass, Swept, Table, units_of, without_taken
+from truing.diagnosis.sweeps import BLOCK, Beside, Pass, Swept, Table, blocks_of, units_of, without_taken
 
 KEPT = 3
 """So many points of a cause begin exact fits."""
@@ -30,8 +27,6 @@ all that are smaller."""
 FAINT = 1e-9
 OWN = 0.03
 """Share of a curve that must be left beside an explanation for it to count as one more that was tried."""
-TOGETHER = 500_000
-"""Curves with so many values at most are compared at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,33 +57,6 @@ class Looked:
     span: Spanned | Swept
 
 
-@dataclass(frozen=True)
-class Beside:
-    """What an explanation leaves, weighted (rows + K,), once its numbers and the inputs have taken their part.
-
-    ``taken`` (rows + K, t) is an orthonormal basis of what they can draw; ``roots`` weigh the rows of the sample, and
-    ``at`` is what the explanation predicts.
-    """
-
-    sample: Sample
-    roots: Matrix
-    left: Matrix
-    taken: Matrix
-    at: Predicted
-
-    def drawn(self, curves: Matrix) -> Matrix:
-        """Return curves (M, q, readings), SI, as weighted rows of the sample, (M, q, rows)."""
-        by_result = np.split(curves.T, len(self.sample.machine.records.measured))
-        added = dict(zip(self.sample.machine.records.measured, by_result, strict=True))
-        return self.sample.curve(added, self.at).T * self.roots
-
-    def beyond(self, rows: Matrix) -> Matrix:
-        """Return what only these curves (M, q, rows) can draw, (M, q, rows + K)."""
-        made = -(rows @ self.taken[: rows.shape[-1]]) @ self.taken.T
-        made[..., : rows.shape[-1]] += rows
-        return np.asarray(made)
-
-
 def beside_of(found: Fit, extended: Extended) -> Beside:
     """Return an explanation as other causes see it."""
     sample, k = found.sample, len(found.inputs)
@@ -105,11 +73,10 @@ def beside_of(found: Fit, extended: Extended) -> Beside:
 def look(curves: Curves, at: Fit, causes: Sequence[Cause]) -> Mapping[str, Looked]:
     """Compare all causes with what an explanation leaves, by their tag."""
     beside = beside_of(at, curves.extended)
-    wanted = [cause for cause in causes if cause.tag not in at.key]
-    bundles = (curves.of(cause, at) for cause in wanted)  # one after another: those of effects may be large
+    bundles = (curves.of(cause, at) for cause in causes)  # one after another: those of effects may be large
     made = {tag: each for group in _grouped(bundles) for tag, each in compared(group, beside)}
     passes: dict[tuple[Table, int], Pass] = {}
-    for bundle in (curves.of(cause, at) for cause in wanted if cause.shape is not None):
+    for bundle in (curves.of(cause, at) for cause in causes if cause.shape is not None):
         if bundle.table is not None and (each := _swept(bundle, bundle.table, beside, passes)) is not None:
             made[bundle.cause.tag] = each
     return made
@@ -129,10 +96,9 @@ def _swept(bundle: Bundle, table: Table, beside: Beside, passes: dict[tuple[Tabl
     if not len(points):
         return None
     right, span = np.concatenate([each.right for each in own], axis=1), Swept(own, units_of(normal), points)
-    gains, values = _starts(bundle, bundle.points[points], right[points], normal[points])
     inner = span.units[1:] @ following @ span.units[:-1].swapaxes(1, 2)
     tries = 1.0 + _turned(inner[is_own[1:] & is_own[:-1]], normal.shape[1])
-    return Looked(_best(gains, values, span, beside.sample.known), tries, span)
+    return Looked(_best(*_starts(bundle, points, right, normal), span, beside.sample.known), tries, span)
 
 
 def _draws(size: Matrix, raw: Matrix) -> Mask:
@@ -151,7 +117,7 @@ def _grouped(bundles: Iterable[Bundle]) -> Iterator[list[Bundle]]:
     waiting: dict[int, list[Bundle]] = {}
     for bundle in (each for each in bundles if each.table is None):
         several = waiting.setdefault(bundle.curves.shape[1], [])
-        if several and sum(each.curves.size for each in several) + bundle.curves.size > TOGETHER:
+        if several and sum(each.curves.size for each in several) + bundle.curves.size > BLOCK:
             yield waiting.pop(bundle.curves.shape[1])
             waiting[bundle.curves.shape[1]] = several = []
         several.append(bundle)
@@ -167,10 +133,11 @@ def compared(bundles: list[Bundle], beside: Beside) -> Iterator[tuple[str, Looke
         end = begin + len(bundle.points)
         own = begin + np.flatnonzero(kept[begin:end])
         if len(own):
-            gains, values = _starts(bundle, bundle.points[own - begin], right[own], normal[own])
+            starts = _starts(bundle, own - begin, right[begin:end], normal[begin:end])
             drawn = Spanned(basis[own] if len(own) < len(basis) else basis)
-            tries = independent(basis[own[is_own[own]]], is_sweep=bundle.is_sweep)
-            yield bundle.cause.tag, Looked(_best(gains, values, drawn, beside.sample.known), tries, drawn)
+            is_sweep = bundle.is_straight and len(bundle.cause.shapes) <= 1  # neighbouring points draw alike
+            tries = independent(basis[own[is_own[own]]], is_sweep=is_sweep)
+            yield bundle.cause.tag, Looked(_best(*starts, drawn, beside.sample.known), tries, drawn)
         begin = end
 
 
@@ -182,13 +149,12 @@ def _weighed(curves: Matrix, beside: Beside) -> tuple[Any, Any, Matrix, Matrix, 
     kind = np.float32 if curves.size > LARGEST else np.float64
     basis = np.empty((*curves.shape[:2], len(beside.left)), dtype=kind)
     parts = []
-    step = max(1, TOGETHER // max(curves[0].size, 1)) if len(curves) else 1
-    for begin in range(0, max(len(curves), 1), step):
-        rows = beside.drawn(curves[begin : begin + step])
+    for block in blocks_of(curves):
+        rows = beside.drawn(curves[block])
         weighed = beside.beyond(rows)
         raw, size = np.linalg.norm(rows, axis=-1), np.linalg.norm(weighed, axis=-1)
         normal = weighed @ weighed.swapaxes(1, 2)
-        basis[begin : begin + step] = units_of(normal) @ weighed
+        basis[block] = units_of(normal) @ weighed
         parts.append((_draws(size, raw), (size > OWN * raw).any(axis=1), weighed @ beside.left, normal))
     kept, is_own, right, normal = (np.concatenate(each) for each in zip(*parts, strict=True))
     return kept, is_own, basis, right, normal
@@ -202,12 +168,8 @@ def _best(gains: Matrix, values: Matrix, span: Spanned | Swept, known: float) ->
             chosen.append(place)
         if len(chosen) == KEPT:
             break
-    return tuple((_score(float(gains[place]), known), values[place]) for place in chosen)
-
-
-def _score(gain: float, known: float) -> float:
-    """Return what a fall of the sum of squares is worth where the noise is the one that is left."""
-    return -known * log(max(1 - gain / max(known, 1.0), 1e-9))
+    rest = np.maximum(1 - gains[chosen] / max(known, 1.0), 1e-9)  # of the sum of squares; the noise is what is left
+    return tuple(zip((-known * np.log(rest)).tolist(), values[chosen], strict=True))
 
 
 def _is_same(one: Matrix, other: Matrix) -> bool:
@@ -215,10 +177,10 @@ def _is_same(one: Matrix, other: Matrix) -> bool:
     return bool(np.linalg.norm(one @ other.T) ** 2 > 0.98 * min(len(one), len(other)))
 
 
-def _starts(bundle: Bundle, points: Matrix, right: Matrix, normal: Matrix) -> tuple[Matrix, Matrix]:
+def _starts(bundle: Bundle, places: Places, right: Matrix, normal: Matrix) -> tuple[Matrix, Matrix]:
     """Return what each point lowers the sum of squares by within the bounds of the cause, and the numbers there."""
-    diagonal = np.einsum("mqq->mq", normal)
-    scale = np.sqrt(np.maximum(diagonal, 1e-300))
+    points, right, normal = bundle.points[places], right[places], normal[places]
+    scale = np.sqrt(np.maximum(np.einsum("mqq->mq", normal), 1e-300))
     scaled = normal / (scale[:, :, None] * scale[:, None, :]) + 1e-9 * np.eye(normal.shape[1])
     solved = np.linalg.solve(scaled, (right / scale)[..., None])[..., 0] / scale
     values, own = np.array(points), bundle.cause.amplitudes
@@ -238,7 +200,7 @@ def independent(basis: Matrix, *, is_sweep: bool) -> float:
     """Return how many independent curves a set of points draws: the way along a sweep, else the rank that counts."""
     if len(basis) < 2:
         return 1.0
-    q = max(int((np.linalg.norm(basis, axis=-1) > 0.5).sum(axis=1).max()), 1)
+    q = max(round(float(np.einsum("mqn,mqn->m", basis, basis).max())), 1)
     if is_sweep:
         return 1.0 + _turned(basis[1:] @ basis[:-1].swapaxes(1, 2), q)
     flat = basis.reshape(-1, basis.shape[-1])

@@ -6,26 +6,27 @@ registered are causes too: see ``unregistered``.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from math import inf
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Any
+from typing import Any, Literal
 
 import numpy as np
 
 from truing.declare.builtin import Reading, may_stand
 from truing.declare.sources import Effect, Unknown
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.machine import Machine
+from truing.diagnosis.records import Covariate
 from truing.diagnosis.tidying import is_angle
 from truing.errors import PluginError
 from truing.gauge import read_by_gauge
 from truing.setup import SwitchedOn
 from truing.units import to_si
 
-if TYPE_CHECKING:
-    from truing.diagnosis.unregistered import Shape
-
+Kind = Literal["trend", "product", "order", "wave", "step", "jump", "kink", "dead zone", "settling"]
 INPUT = "input:"
 UNKNOWN = "unknown"
 ENDS = 0.02
@@ -58,6 +59,32 @@ class Number:
     def is_log(self) -> bool:
         """Whether it is looked for by its logarithm: a shape of one sign."""
         return not self.is_amplitude and not self.whole and self.low > 0
+
+
+@dataclass(frozen=True)
+class Term:
+    """One term of a shape: Python over covariates in SI, and its values on all rows of some records, (n,)."""
+
+    expression: str
+    values: Matrix
+
+
+@dataclass(frozen=True)
+class Shape:
+    """How a shape that nobody registered is calculated: ``made`` gives its terms from covariates and shape numbers, SI.
+
+    Its amplitudes are those of its terms, result after result.
+    """
+
+    kind: Kind
+    depends_on: tuple[str, ...]
+    results: tuple[str, ...]
+    made: Callable[..., list[Term]]
+
+    def terms(self, numbers: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
+        """Return the terms on the rows of some covariates."""
+        axes = ((name, covariates[name].filled) for name in self.depends_on)  # missing values are at their mean
+        return self.made(*chain.from_iterable(axes), *numbers)
 
 
 @dataclass(frozen=True, eq=False)

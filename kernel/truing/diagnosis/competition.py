@@ -8,27 +8,23 @@ others held where they are and refitted: one of the two alone may end in another
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations, islice
+from itertools import combinations
 from math import lgamma, log, log1p
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.beside import Looked, look
 from truing.diagnosis.causes import Cause, are_exclusive
 from truing.diagnosis.curves import Curves
-from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit, is_too_large, nothing, refit
+from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit, nothing, refit
 from truing.diagnosis.extended import Extended, shape_added
 from truing.diagnosis.fitted import Fit, differ, signs_of_wrong
 from truing.diagnosis.learning import as_noise, learnt
 from truing.diagnosis.sample import Sample, sample_of
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
+from truing.studies.bench import Done, unheard
 
 MOST_CAUSES = 5
 SINGLES = 12
@@ -54,9 +50,9 @@ FINER = 0.5
 """Directions of the inputs are looked for anew when the noise turns out so much finer."""
 SETTLED = 0.02
 ROUNDS = 4
+ROWS_PER_NUMBER = 4
+"""Fewer rows for every number are followed by any curve, noise or not."""
 AGAIN, TO_THE_END = "fits in the noise that was learnt", "fits to the end"
-
-Unheard = Callable[[int, int], None]
 
 
 @dataclass
@@ -69,7 +65,6 @@ class Competition:
     curves: Curves
     known: dict[frozenset[str], Fit] = field(default_factory=dict)
     tries: dict[str, float] = field(default_factory=dict)
-    fits: int = 0
     stage: str = "causes alone"
     owned: dict[Fit, float] = field(default_factory=dict)
     paid: dict[Fit, float] = field(default_factory=dict)
@@ -101,13 +96,12 @@ class Competition:
         """
         sample, total, roots = found.sample, 0.0, found.sample.roots(found.left)
         for cause, values in zip(found.causes, found.values, strict=True):
-            if cause.shape is not None:
-                added = shape_added(sample.machine, cause, values)
-                drawn = np.zeros(sample.rows)
-                for name, curve in added.items():
-                    one, other = (roots * sample.curve(_on(found, name, each)) for each in (curve, np.ones_like(curve)))
-                    drawn += one - other * float(other @ one) / max(float(other @ other), 1e-300)
-                total += len(cause.amplitudes) * log1p(float(np.mean(drawn**2)))
+            added, square = shape_added(sample.machine, cause, values), 0.0
+            for channel, part in zip(sample.channels, sample.parts, strict=True):
+                if (curve := added.get(channel.name)) is not None:
+                    one, other = (roots[part] * channel.curve(each) for each in (curve, np.ones_like(curve)))
+                    square += float(np.sum((one - other * float(other @ one) / max(float(other @ other), 1e-300)) ** 2))
+            total += len(cause.amplitudes) * log1p(square / sample.rows)
         return total
 
     def score(self, found: Fit) -> float:
@@ -152,16 +146,13 @@ class Competition:
         self.fresh.add(found.key)
         return self.known[found.key]
 
-    def fitted(
-        self, causes: Sequence[Cause], values: Sequence[Matrix], near: Fit | None, until: float = ROUGHLY
-    ) -> Fit | None:
+    def fitted(self, causes: Sequence[Cause], values: Sequence[Matrix], near: Fit | None) -> Fit | None:
         """Fit an explanation from a start and keep it."""
-        if is_too_large(self.sample, causes) or are_exclusive(causes):
+        if sum(cause.size for cause in causes) * ROWS_PER_NUMBER > self.sample.known or are_exclusive(causes):
             return None
         if not self.extended.allows(self.stage):
             return self.known.get(frozenset(cause.tag for cause in causes))
-        self.fits += 1
-        return self.keep(fit(self.sample, self.extended, causes, values, near, until=until))
+        return self.keep(fit(self.sample, self.extended, causes, values, near, until=ROUGHLY))
 
     def joined(self, at: Fit, cause: Cause, starts: Iterable[tuple[float, Matrix]]) -> Fit | None:
         """Fit an explanation with one more cause, from each of its starts."""
@@ -189,18 +180,18 @@ class Competition:
         if len(at.causes) >= MOST_CAUSES or not self.extended.allows(self.stage):
             return
         seen = self.look(at, [cause for cause in self.causes if accept(cause)])
-        for cause in islice(self.promising(seen), count if len(at.causes) < 2 else count // 2):
+        for cause in self.promising(seen)[: count if len(at.causes) < 2 else count // 2]:
             if at.key | {cause.tag} not in self.fresh:
                 self.joined(at, cause, seen[cause.tag].starts)
 
-    def promising(self, seen: Mapping[str, Looked]) -> Iterator[Cause]:
-        """Give causes by what their curves promise once they are paid for, of those of one curve the weakest."""
+    def promising(self, seen: Mapping[str, Looked]) -> list[Cause]:
+        """Return causes by what their curves promise once they are paid for, of those of one curve the weakest."""
         worth = {
             cause: seen[cause.tag].starts[0][0] - self.price_of(cause)
             for cause in self.causes
             if cause.tag in seen and seen[cause.tag].starts and seen[cause.tag].starts[0][0] > LEAST_PROMISE
         }
-        yield from sorted(worth, key=lambda cause: (-worth[cause], cause.weakest_first))
+        return sorted(worth, key=lambda cause: (-worth[cause], cause.weakest_first))
 
     def without(self, found: Fit, place: int) -> Fit | None:
         """Fit an explanation without one of its causes."""
@@ -248,7 +239,6 @@ class Competition:
                 self._again(found, until)
 
     def _again(self, found: Fit, until: float) -> None:
-        self.fits += 1
         made = refit(found, self.sample, self.extended, until=until)
         self.fresh.discard(found.key)
         self.keep(made)
@@ -267,7 +257,7 @@ def competition_of(extended: Extended, causes: Sequence[Cause], sample: Sample) 
     return made
 
 
-def search(made: Competition, done: Unheard = lambda count, of: None) -> None:
+def search(made: Competition, done: Done = unheard) -> None:
     """Fit everything that may explain the record; ``done`` hears of the stages."""
     stages = (
         (_singles, 0.6, "causes alone"),
@@ -289,7 +279,7 @@ def search(made: Competition, done: Unheard = lambda count, of: None) -> None:
 
 def _singles(made: Competition) -> None:
     seen = made.look(made.null)
-    order = list(made.promising(seen))
+    order = made.promising(seen)
     chosen = [*order[:SINGLES], *(cause for cause in order[SINGLES:] if cause.is_registered)]
     for cause in chosen:
         made.joined(made.null, cause, seen[cause.tag].starts)
@@ -298,8 +288,7 @@ def _singles(made: Competition) -> None:
 def _distinct(made: Competition, size: int, count: int, accept: Callable[[Fit], bool] = lambda _: True) -> list[Fit]:
     """Return the best accepted explanations of one size that do not draw the same."""
     kept: list[Fit] = []
-    sized = [found for found in made.known.values() if len(found.causes) == size and accept(found)]
-    for found in sorted(sized, key=made.score):
+    for found in made.ranked(lambda each: len(each.causes) == size and accept(each)):
         if all(differ(found, other) > 1.0 for other in kept):
             kept.append(found)
         if len(kept) == count:
@@ -310,13 +299,8 @@ def _distinct(made: Competition, size: int, count: int, accept: Callable[[Fit], 
 def _pairs(made: Competition) -> None:
     several = {found.key: found for found in (*_distinct(made, 1, BEAM), *_registered(made, BEAM))}
     for one, other in sorted(combinations(several.values(), 2), key=lambda pair: sum(map(made.score, pair))):
-        if _is_pair_of_note(one, other):
+        if one.causes[0].is_registered or other.causes[0].is_registered:  # two shapes: no second name is needed
             made.fitted(one.causes + other.causes, one.values + other.values, one)
-
-
-def _is_pair_of_note(one: Fit, other: Fit) -> bool:
-    """Whether a pair is fitted: of two shapes none is, since what is unregistered needs no second name."""
-    return any(cause.is_registered for cause in (*one.causes, *other.causes))
 
 
 def _registered(made: Competition, count: int) -> list[Fit]:
@@ -364,20 +348,16 @@ def exchange(made: Competition, now: Fit, place: int) -> None:
         return
     made.exchanged.add((now.key, now.causes[place].tag))
     rest = made.without(now, place)
-    others = {cause.tag for cause in now.causes}
     if rest is not None:
-        made.forward(rest, JOINED, lambda cause: _is_quick(cause) and cause.tag not in others)
+        made.forward(rest, JOINED, lambda cause: _is_quick(cause) and cause.tag not in now.key)
     if len(now.causes) > 1:
-        causes, values = _less(now.causes, place), _less(now.values, place)
+        causes = now.causes[:place] + now.causes[place + 1 :]
+        values = now.values[:place] + now.values[place + 1 :]
         (predicted,) = made.extended.at(causes, [(values, now.moved)])
         left = made.sample.left(predicted)
         if np.isfinite(left).all():
             held = Fit(causes, values, now.inputs, predicted, left, made.sample.cost(left, now.inputs), made.sample)
-            made.forward(held, JOINED, lambda cause: _is_quick(cause) and cause.tag not in others)
-
-
-def _less(several: tuple[Any, ...], place: int) -> tuple[Any, ...]:
-    return several[:place] + several[place + 1 :]
+            made.forward(held, JOINED, lambda cause: _is_quick(cause) and cause.tag not in now.key)
 
 
 def _exactly(made: Competition) -> None:
@@ -386,8 +366,3 @@ def _exactly(made: Competition) -> None:
     near = [found for found in made.ranked()[:RENEWED] if made.score(found) < top + 4 * MARGIN]
     sized = [best for size in range(1, MOST_CAUSES) if (best := made.best(size)) is not None]
     made.again([made.null, *near, *sized, *_registered(made, BEAM)], EXACTLY)
-
-
-def _on(found: Fit, result: str, curve: Matrix) -> dict[str, Matrix]:
-    """Return what is added to one result alone, by result."""
-    return {name: curve if name == result else np.zeros_like(curve) for name in found.predicted}

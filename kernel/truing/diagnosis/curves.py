@@ -10,37 +10,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import cached_property
 
 import numpy as np
-from scipy.stats import qmc
 
-from truing.diagnosis.causes import Cause
+from truing.diagnosis.arrays import Matrix
+from truing.diagnosis.causes import Cause, Shape
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.points import (
-    FINEST,
-    LEVELS,
-    SPREAD,
-    first_places,
-    is_known,
-    middle,
-    placed,
-    refined,
-    spread,
-    thinned,
-)
+from truing.diagnosis.points import FINEST, LEVELS, SPREAD, is_known, middle, placed, places_over, refined, spread
 from truing.diagnosis.sweeps import Table
-from truing.diagnosis.unregistered import Shape
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 STRAIGHT = 1e-4
 """Share of its size by which chords of a cause may differ while it counts as proportional."""
-
 LARGEST = 8_000_000
 """Bundles of more values are made anew each time, and compared in single precision."""
 LARGE = 1_000_000
@@ -65,11 +47,6 @@ class Bundle:
     lost: int = 0
     table: Table | None = None
 
-    @property
-    def is_sweep(self) -> bool:
-        """Whether neighbouring points draw neighbouring curves."""
-        return self.is_straight and len(self.cause.shapes) <= 1
-
 
 class Curves:
     """The curves of all causes of a machine, asked for once beside nothing and anew where causes act on the inputs."""
@@ -87,19 +64,19 @@ class Curves:
 
         So they are too where the budget of calls has ended.
         """
-        if cause.shape is not None or cause.tolerated >= 0 or not self._matters(cause, beside):
-            if cause.tag in self._alone:
-                return self._alone[cause.tag]
-            made = self._first(cause, _Place(self.extended, beside, ()))
-            if made.curves.size <= LARGEST:
-                self._alone[cause.tag] = made
-            return made
-        return self._made(cause, _Place(self.extended, beside, beside.causes))
+        if self._matters(cause, beside):
+            return self._made(cause, _Place(self.extended, beside, beside.causes))
+        if cause.tag in self._alone:
+            return self._alone[cause.tag]
+        made = self._first(cause, _Place(self.extended, beside, ()))
+        if made.curves.size <= LARGEST:
+            self._alone[cause.tag] = made
+        return made
 
     def _matters(self, cause: Cause, beside: Fit) -> bool:
-        """Whether a cause may draw something else beside an explanation than alone."""
+        """Whether an effect may draw something else beside an explanation than alone."""
         on = [each for each in beside.causes if each.effect is not None]
-        acts = bool(on) and (cause.acts_on_inputs or any(each.acts_on_inputs for each in on))
+        acts = cause.effect is not None and bool(on) and any(each.acts_on_inputs for each in (cause, *on))
         return acts and self.extended.lasts
 
     def _first(self, cause: Cause, place: _Place) -> Bundle:
@@ -117,30 +94,33 @@ class Curves:
         if cause.shape is not None:
             return self._of_shape(cause, cause.shape, place)
         if cause.tolerated >= 0:
-            return place.of_input(cause)
+            slopes = [each[:, cause.tolerated] for each in self.extended.machine.slopes.values()]
+            return Bundle(cause, np.zeros((1, 1)), np.concatenate(slopes)[None, None, :], is_straight=True)
         if cause.tag not in self._straight:
             self._straight[cause.tag] = place.is_straight(cause)
         if self._straight[cause.tag]:
-            most = place.most(cause)
-            return _swept(cause, lambda values: place.slopes(cause, values), is_straight=True, most=most)
+            return _swept(cause, lambda values: place.slopes(cause, values), most=place.most(cause))
         return place.bent(cause)
 
     def _of_shape(self, cause: Cause, shape: Shape, place: _Place) -> Bundle:
         """Return the curves of a shape; of one with many, on a long record, a table that all results share."""
         records = self.extended.machine.records
         shapes = [cause.numbers[number] for number in cause.shapes]
-        u = first_places(shapes[0]) if len(shapes) == 1 and is_known(shapes[0]) else np.zeros(0)
+        u = places_over(shapes) if len(shapes) == 1 and is_known(shapes[0]) else np.zeros((0, 1))
+
+        def terms(values: Matrix) -> list[list[Matrix]]:
+            return [[term.values for term in shape.terms(each.tolist(), records.covariates)] for each in values]
+
         if len(u) * len(cause.amplitudes) * place.readings <= LARGE:
-            return _swept(cause, lambda values: place.of_shape(cause, values), is_straight=True)
+            acts = np.array([[float(each == name) for each in records.measured] for name in shape.results])
+            several = len(cause.amplitudes), place.readings
+            return _swept(cause, lambda v: np.einsum("rs,mtn->mrtsn", acts, terms(v)).reshape(-1, *several))
         family = shape.kind, *shape.depends_on
-        values = placed(shapes, u[:, None])
+        values = placed(shapes, u)
         if family not in self._tables:
-            terms = [[term.values for term in shape.terms(each.tolist(), records.covariates)] for each in values]
-            self._tables[family] = Table(np.array(terms, dtype=np.float32))
-        points = np.zeros((len(values), cause.size))
-        points[:, cause.shapes] = values
+            self._tables[family] = Table(np.array(terms(values), dtype=np.float32))
         curves = np.zeros((0, len(cause.amplitudes), place.readings))
-        return Bundle(cause, points, curves, is_straight=True, table=self._tables[family])
+        return Bundle(cause, _points(cause, values), curves, is_straight=True, table=self._tables[family])
 
 
 class _Place:
@@ -150,22 +130,21 @@ class _Place:
         self.extended, self.causes, self.machine = extended, causes, extended.machine
         self.values = [beside.of(cause) for cause in causes]
         self.moved = beside.moved if causes else np.zeros_like(beside.moved)
-        self.base = self._stacked([])[0] if causes else None
 
-    def _stacked(self, added: Sequence[tuple[Cause, Matrix]]) -> Matrix:
-        """Return what the gauges show with each of some causes on beside the others, (points, readings), SI."""
-        if not added:
-            made = self.extended.at(self.causes, [(self.values, self.moved)])
-        else:
-            own = (*self.causes, added[0][0])
-            made = self.extended.at(own, [([*self.values, values], self.moved) for _, values in added])
+    def _stacked(self, causes: tuple[Cause, ...], points: Sequence[Sequence[Matrix]]) -> Matrix:
+        """Return what the gauges show with some causes on at several points, (points, readings), SI."""
+        made = self.extended.at(causes, [(values, self.moved) for values in points])
         return np.array([np.concatenate([each[name] for name in self.machine.records.measured]) for each in made])
+
+    @cached_property
+    def _base(self) -> Matrix:
+        """What the gauges show with the explanation alone, (1, readings), SI."""
+        return self._stacked(self.causes, [self.values])
 
     def changes(self, cause: Cause, points: Matrix) -> Matrix:
         """Return what a cause changes at some points (M, numbers), (M, readings)."""
-        if self.base is None:
-            self.base = self._stacked([])[0]
-        return np.asarray(self._stacked([(cause, point) for point in points]) - self.base)
+        base = self._base  # asked for first: what was shown last is where a fit goes on
+        return np.asarray(self._stacked((*self.causes, cause), [[*self.values, point] for point in points]) - base)
 
     @property
     def readings(self) -> int:
@@ -181,20 +160,19 @@ class _Place:
     def is_straight(self, cause: Cause) -> bool:
         """Whether a cause is proportional to its amplitudes, and several of them do no more than their sum."""
         still = np.array([middle(number) for number in cause.numbers])
-        ends = list(cause.amplitudes)
-        points, shares = [], (1.0, 0.1, LEVELS[-1])
-        for place in ends:
-            for side in (cause.numbers[place].low, cause.numbers[place].high):
-                for share in shares if side else ():
-                    point = still.copy()
-                    point[place] = side * share
-                    points.append(point)
-        together = still.copy()
-        together[ends] = [0.5 * max((n.low, n.high), key=abs) for n in (cause.numbers[place] for place in ends)]
+        ends, together = cause.amplitudes, still.copy()
+        together[ends] = 0.5 * _largest(cause)
+        points = [
+            np.where(np.arange(cause.size) == place, side * share, still)
+            for place in ends
+            for side in filter(None, (cause.numbers[place].low, cause.numbers[place].high))
+            for share in (1.0, 0.1, LEVELS[-1])
+        ]
         made = self.changes(cause, np.array([*points, together]))
-        if not np.isfinite(_known(made)).all():
+        if not (np.isfinite(made) | np.isnan(made).all(axis=0)).all():
             return False
-        made, grain = np.nan_to_num(made), self._grain()
+        rows, made = len(self.machine.records), np.nan_to_num(made)
+        grain = np.repeat([4 * self.extended.grain.get(name, 0.0) for name in self.machine.records.measured], rows)
         slopes = {place: np.zeros(made.shape[1]) for place in ends}
         for point, curve in zip(points, made, strict=False):
             (place,) = (each for each in ends if point[each])
@@ -210,83 +188,51 @@ class _Place:
         few = STRAIGHT * max(float(np.abs(summed).max()), 1e-300) * len(ends)
         return bool(np.all(np.abs(made[-1] - summed) <= few + 2 * len(ends) * grain))
 
-    def _grain(self) -> Matrix:
-        """Return by how much two readings of the model may differ by themselves, (readings,), SI."""
-        grain, rows = self.extended.grain, len(self.machine.records)
-        return np.repeat([4 * grain.get(name, 0.0) for name in self.machine.records.measured], rows)
-
     def slopes(self, cause: Cause, shapes: Matrix) -> Matrix:
         """Return the change per unit of every amplitude at some shapes (M, shape numbers), (M, q, readings)."""
-        sizes = [max((n.low, n.high), key=abs) for n in (cause.numbers[place] for place in cause.amplitudes)]
-        points = np.zeros((len(shapes), len(sizes), cause.size))
-        points[:, :, cause.shapes] = shapes[:, None]
-        for column, (place, size) in enumerate(zip(cause.amplitudes, sizes, strict=True)):
-            points[:, column, place] = size
+        sizes = _largest(cause)
+        points = np.repeat(_points(cause, shapes)[:, None], len(sizes), axis=1)
+        points[:, range(len(sizes)), cause.amplitudes] = sizes
         made = self.changes(cause, points.reshape(-1, cause.size)).reshape(len(shapes), len(sizes), -1)
-        return np.asarray(made / np.array(sizes)[None, :, None])
+        return np.asarray(made / sizes[:, None])
 
     def bent(self, cause: Cause) -> Bundle:
         """Return the curves of a cause that bends, at amplitudes of many sizes and at shapes all over."""
-        points = thinned(spread(cause, SPREAD if self.causes else 4 * SPREAD), self.most(cause))
-        made = self.changes(cause, points)
-        works = _works(made)
-        curves = _kept(made, works)[:, None, :]
-        return Bundle(cause, points[works], curves, is_straight=False, lost=int((~works).sum()))
-
-    def of_shape(self, cause: Cause, shapes: Matrix) -> Matrix:
-        """Return the terms of a shape that nobody registered, result after result, (M, q, readings)."""
-        measured, rows = list(self.machine.records.measured), len(self.machine.records)
-        made = np.zeros((len(shapes), len(cause.amplitudes), len(measured) * rows))
-        shape = cause.shape
-        for point, values in enumerate(shapes if shape is not None else ()):
-            terms = shape.terms(values.tolist(), self.machine.records.covariates) if shape is not None else []
-            column = 0
-            for name in shape.results if shape is not None else ():
-                begin = measured.index(name) * rows
-                for term in terms:
-                    made[point, column, begin : begin + rows] = term.values
-                    column += 1
-        return made
-
-    def of_input(self, cause: Cause) -> Bundle:
-        """Return the slope of an input, per standard deviation."""
-        slopes = [self.machine.slopes[name][:, cause.tolerated] for name in self.machine.records.measured]
-        return Bundle(cause, np.zeros((1, 1)), np.concatenate(slopes)[None, None, :], is_straight=True)
+        points = spread(cause, SPREAD if self.causes else 4 * SPREAD, self.most(cause))
+        return _bundle(cause, points, self.changes(cause, points)[:, None, :], is_straight=False)
 
 
-def _known(made: Matrix) -> Matrix:
-    """Return changes with those readings as 0 in which the model fails whatever the point."""
-    return np.where(np.isnan(made).all(axis=0), 0.0, made)
+def _largest(cause: Cause) -> Matrix:
+    """Return the bound of every amplitude that is farther from zero, SI."""
+    return np.array([max((cause.numbers[place].low, cause.numbers[place].high), key=abs) for place in cause.amplitudes])
 
 
-def _works(made: Matrix) -> NDArray[np.bool_]:
-    """Mark the points at which the model shows every reading that it shows at any, (M,)."""
-    if np.isfinite(made).all():
-        return np.ones(len(made), dtype=bool)
-    return np.asarray(np.isfinite(_known(made)).all(axis=1) & np.isfinite(made).any(axis=1))
+def _points(cause: Cause, values: Matrix) -> Matrix:
+    """Return points (M, numbers) with shape numbers of these values and no amplitude."""
+    points = np.zeros((len(values), cause.size))
+    points[:, cause.shapes] = values
+    return points
 
 
-def _kept(made: Matrix, works: NDArray[np.bool_]) -> Matrix:
-    """Return the changes at points that work, 0 where the model fails whatever the point; no copy without need."""
-    return np.nan_to_num(made if works.all() else made[works], copy=False)
+def _bundle(cause: Cause, points: Matrix, made: Matrix, *, is_straight: bool) -> Bundle:
+    """Return curves (M, q, readings) at the points at which the model shows every reading that it shows at any.
+
+    Where it fails whatever the point they are 0; there is no copy without need.
+    """
+    flat = made.reshape(len(made), -1)
+    finite = np.isfinite(flat)
+    works = (finite | np.isnan(flat).all(axis=0)).all(axis=1) & finite.any(axis=1)
+    kept = np.nan_to_num(made if works.all() else made[works], copy=False)
+    return Bundle(cause, points[works], kept, is_straight, int((~works).sum()))
 
 
-def _swept(cause: Cause, make: Callable[[Matrix], Matrix], *, is_straight: bool, most: int = FINEST) -> Bundle:
+def _swept(cause: Cause, make: Callable[[Matrix], Matrix], most: int = FINEST) -> Bundle:
     """Return curves over all shapes of a cause; along one number as finely as they change."""
     shapes = [cause.numbers[place] for place in cause.shapes]
-    if not shapes:
-        u = np.zeros((1, 0))
-    elif len(shapes) == 1:
-        u = first_places(shapes[0])[:, None]
-    else:
-        u = qmc.Sobol(len(shapes), seed=1).random(SPREAD)
-    u = thinned(u, most)
+    u = places_over(shapes, most)
     values = placed(shapes, u)
     made = make(values)
     if len(shapes) == 1 and not is_known(shapes[0]):
         u, made = refined(shapes, u, made, make, most)
         values = placed(shapes, u)
-    works = _works(made.reshape(len(made), -1))
-    points = np.zeros((len(values), cause.size))
-    points[:, cause.shapes] = values
-    return Bundle(cause, points[works], _kept(made, works), is_straight, int((~works).sum()))
+    return _bundle(cause, _points(cause, values), made, is_straight=True)

@@ -16,8 +16,8 @@ def slopes_at(found: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
     Shapes (rows, numbers) per unit of the number as the fit sees it, 0 for what keeps its start, and (rows, K); those
     of the inputs are taken where the fit has put them.
     """
-    state = Fitting(found.sample, extended, found.causes, held=(), moves=found.moves or found.sample.moves)
-    state.begin(np.concatenate(found.values) if found.causes else np.zeros(0), found.inputs)
+    state = Fitting(found.sample, extended, found.causes, found, held=())
+    state.begin(np.concatenate(found.values) if found.causes else np.zeros(0))
     state.derivatives()
     return -state.slope, state.slopes_of_inputs()
 

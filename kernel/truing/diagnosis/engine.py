@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -31,18 +30,15 @@ from truing.diagnosis.unregistered import shapes_of
 from truing.diagnosis.visibility import inseparable, smallest_visible, trades_of
 from truing.errors import UsageError
 from truing.setup import Setup
-from truing.studies.bench import FINE, Done, part_of, unheard
+from truing.studies.bench import FINE, Progress, part_of, silent
 from truing.studies.threads import one_thread
-
-if TYPE_CHECKING:
-    from truing.studies.bench import Progress
 
 ROUGH = 6**0.5
 """A step so many times what is left of the readings is half of it: its mean square is a twelfth of its own."""
 RANKED = 8
 SIZED = 4
 """Of so many alternatives it is told what their own fit says."""
-SHARES = (0.0, 0.05, 0.75, 0.85, 1.0)
+SHARES = {"columns": 0.05, "search": 0.75, "significance": 0.85, "gain": 1.0}
 """What share of the time has passed when each stage ends, for whoever waits."""
 
 
@@ -52,18 +48,18 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
     The same records, setup and seed give the same answer. Raises UsageError where an option names what is not there.
     """
     _check_options(setup)
-    step = _Steps(progress)
+    told = progress or silent
     is_short = records.readings < FEWEST_READINGS  # what is calculated of them is not used
     with one_thread(), np.errstate(all="ignore" if is_short else None):
         machine = machine_of(setup, records)
-        step.done("columns")
+        told("columns", round(FINE * SHARES["columns"]), FINE)
         competition = laid_out(machine_for_search(machine, seed=setup.seed))
         probe(competition)
-        search(competition, step.within())
-        step.done("search")
+        search(competition, part_of(told, "diagnosis", SHARES["columns"], SHARES["search"]))
+        told("search", round(FINE * SHARES["search"]), FINE)
         chosen = on_all_rows(choose(competition, seed=setup.seed), machine)
-        step.done("significance")
-        answer = _answer(chosen, setup, step)
+        told("significance", round(FINE * SHARES["significance"]), FINE)
+        answer = _answer(chosen, setup, told)
         return replace(answer, hindrances=(*competition.extended.budget.told(), *_too_rough(answer, chosen)))
 
 
@@ -83,25 +79,6 @@ def laid_out(machine: Machine) -> Competition:
     return competition_of(Extended(machine), causes, sample)
 
 
-class _Steps:
-    """Says how far a diagnosis has come, where anybody listens."""
-
-    def __init__(self, progress: Progress | None) -> None:
-        self.progress, self.count = progress, 0
-
-    def done(self, what: str) -> None:
-        """Count one stage."""
-        self.count += 1
-        if self.progress is not None:
-            self.progress(what, round(FINE * SHARES[self.count]), FINE)
-
-    def within(self) -> Done:
-        """Return what reports the steps of the present stage."""
-        if self.progress is None:
-            return unheard
-        return part_of(self.progress, "diagnosis", SHARES[self.count], SHARES[self.count + 1])
-
-
 def _check_options(setup: Setup) -> None:
     known = {*setup.model.known_effects, *setup.model.input_fields}
     known |= {f"{name}.{one.name}" for name, item in setup.model.known_effects.items() for one in item.unknowns}
@@ -111,14 +88,14 @@ def _check_options(setup: Setup) -> None:
             raise UsageError(f"[studies.diagnose] per_file: '{name}' is no effect, unknown or input.{near}")
 
 
-def _answer(chosen: Chosen, setup: Setup, step: _Steps) -> Diagnosis:
+def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> Diagnosis:
     best = chosen.best
     machine = best.sample.machine
     units = units_of(chosen)
     causes = by_share(chosen, causes_of(chosen, best))
-    judged = nested(chosen, step.within())
+    judged = nested(chosen, part_of(progress, "diagnosis", SHARES["significance"], SHARES["gain"]))
     points, ties = with_results(chosen, next_points(chosen))
-    step.done("gain")
+    progress("gain", FINE, FINE)
     return Diagnosis(
         setup=setup,
         records=replace(machine.records, notes=(*machine.records.notes, *_hard(chosen, units))),
@@ -140,7 +117,10 @@ def _answer(chosen: Chosen, setup: Setup, step: _Steps) -> Diagnosis:
         contradictions=contradictions_of(chosen),
         thinned=thinned_of(chosen),
         trades=trades_of(chosen),
-        curves=tuple(_curves(chosen)),
+        curves=tuple(
+            Curves(name, values, chosen.null.predicted[name], best.predicted[name])
+            for name, values in machine.records.measured.items()
+        ),
         p_any=chosen.p_any,
         p_second=chosen.p_second,
         ranking=_ranking(chosen),
@@ -196,16 +176,6 @@ def _too_rough(answer: Diagnosis, chosen: Chosen) -> list[str]:
 
 def _not_measured(machine: Machine) -> Mapping[str, tuple[str, ...]]:
     absent = machine.records.absent
-    needs = {
-        name: tuple(need.name for need in effect.needs if need.name in absent)
-        for name, effect in machine.start.model.known_effects.items()
-    }
+    effects = machine.start.model.known_effects.items()
+    needs = {name: tuple(need.name for need in effect.needs if need.name in absent) for name, effect in effects}
     return {name: missing for name, missing in needs.items() if missing}
-
-
-def _curves(chosen: Chosen) -> list[Curves]:
-    measured = chosen.best.sample.machine.records.measured
-    return [
-        Curves(name, values, chosen.null.predicted[name], chosen.best.predicted[name])
-        for name, values in measured.items()
-    ]

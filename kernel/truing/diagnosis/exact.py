@@ -11,21 +11,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import least_squares
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import Fit, inward, moved_by, size_of, steps_of
 from truing.diagnosis.sample import Sample
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 EXACTLY = 1e-5
 ROUGHLY = 1e-2
@@ -49,13 +44,6 @@ FIRST_DAMPING = 1e-3
 LARGEST_DAMPING = 1e8
 GOOD = 0.25
 """Share of what a step promised from which on its corrected derivatives are good enough for the next one."""
-ROWS_PER_NUMBER = 4
-"""Fewer rows for every number are followed by any curve, noise or not."""
-
-
-def is_too_large(sample: Sample, causes: Sequence[Cause]) -> bool:
-    """Whether an explanation has too many numbers for so few rows."""
-    return sum(cause.size for cause in causes) * ROWS_PER_NUMBER > sample.known
 
 
 def fit(
@@ -73,10 +61,8 @@ def fit(
     Numbers in ``held`` keep their start. ``near`` is a fit to begin with: its inputs, what they draw, and what its
     numbers draw where it is of the same causes. None where the model fails however small the causes are.
     """
-    is_alike = near is not None and len(near.inputs) == sample.directions.shape[1]
-    moves = near.moves if near is not None and near.sample.directions is sample.directions else {}
-    state = Fitting(sample, extended, tuple(causes), held=held, moves=moves or sample.moves)
-    if not state.begin(np.concatenate(values) if causes else np.zeros(0), near.inputs if is_alike and near else None):
+    state = Fitting(sample, extended, tuple(causes), near, held=held)
+    if not state.begin(np.concatenate(values) if causes else np.zeros(0)):
         return None
     if near is not None and near.slopes and near.causes == state.causes and not extended.grain:
         state.carry(near.slopes)
@@ -93,13 +79,7 @@ class Fitting:
     """One fit on its way: the numbers as the fit sees them, what is left, and its derivatives."""
 
     def __init__(
-        self,
-        sample: Sample,
-        extended: Extended,
-        causes: tuple[Cause, ...],
-        *,
-        held: Sequence[Number],
-        moves: dict[str, Matrix],
+        self, sample: Sample, extended: Extended, causes: tuple[Cause, ...], near: Fit | None, *, held: Sequence[Number]
     ) -> None:
         self.sample, self.extended, self.causes = sample, extended, causes
         self.numbers = [number for cause in causes for number in cause.numbers]
@@ -109,9 +89,11 @@ class Fitting:
         self.low, self.high = (np.array([end[side] for end in ends]) for side in (0, 1))
         self.free = np.array([n.is_free and not any(n is each for each in held) for n in self.numbers], dtype=bool)
         self.log = np.array([number.is_log for number in self.numbers], dtype=bool)
-        self.moves = moves
-        self.slopes = sample.drawn if moves is sample.moves else sample.curve(moves)
-        self.anchor = np.zeros(self.slopes.shape[1])
+        moves = near.moves if near is not None and near.sample.directions is sample.directions else {}
+        self.moves = moves or sample.moves
+        self.slopes = sample.drawn if self.moves is sample.moves else sample.curve(self.moves)
+        is_alike = near is not None and len(near.inputs) == self.slopes.shape[1]
+        self.anchor = np.array(near.inputs) if near is not None and is_alike else np.zeros(self.slopes.shape[1])
         self.damping = FIRST_DAMPING
         self.drawn: dict[str, Matrix] = {}
         self.is_fresh = False
@@ -129,20 +111,17 @@ class Fitting:
         """Return what is left if the inputs were at their means, as far as their slopes tell."""
         return self.sample.left(shown) + self.slopes @ self.anchor
 
-    def begin(self, values: Matrix, inputs: Matrix | None) -> bool:
+    def begin(self, values: Matrix) -> bool:
         """Take a start, or so much nearer to no cause that the model does not fail; False where it always does."""
         u = np.where(self.log, np.log(np.where(self.log, values, 1.0)), values / self.sizes)
         u = np.clip(u, self.low, self.high)
         amplitudes = np.array([number.is_amplitude for number in self.numbers], dtype=bool)
-        if inputs is not None:
-            self.anchor = np.array(inputs)
         for halving in range(NEARER):
             tried = np.where(amplitudes, u / 2**halving, u)
             (shown,) = self.shown([tried], self.anchor)
             bare = self.bare(shown)
             if np.isfinite(bare).all():
-                self.u, self.predicted, self.r0 = tried, shown, bare
-                self.b = self.anchor
+                self.u, self.predicted, self.b = tried, shown, self.anchor
                 self.b, self.left, self.cost = self.calibrated(bare)
                 return True
         return False
@@ -200,15 +179,12 @@ class Fitting:
         """Return where a damped step leads within the bounds, and by how much the cost is to fall."""
         roots = self.sample.roots(self.left)
         slope, slopes = self.slope * roots[:, None], self.slopes * roots[:, None]
-        right, k = -(roots * self.left), len(self.b)
-        eliminated = slopes.T @ slopes + np.eye(k)
-        factor = cho_factor(eliminated) if k else None
-        g0 = slopes.T @ right + self.b if k else np.zeros(0)
-        cross = slopes.T @ slope
+        right = -(roots * self.left)
         normal, gradient = slope.T @ slope, slope.T @ right
-        if factor is not None:
+        if len(self.b):
+            factor, cross = cho_factor(slopes.T @ slopes + np.eye(len(self.b))), slopes.T @ slope
             normal = normal - cross.T @ cho_solve(factor, cross)
-            gradient = gradient - cross.T @ cho_solve(factor, g0)
+            gradient = gradient - cross.T @ cho_solve(factor, slopes.T @ right + self.b)
         moved = np.zeros(len(self.u))
         active = self.free & (np.diag(normal) > 0)
         for _ in range(len(self.u) + 1):
@@ -230,16 +206,12 @@ class Fitting:
     def settle(self, until: float) -> None:
         """Step down until little is promised; then move the anchor of the inputs, where slopes miss what they do."""
         if until <= EXACTLY and len(self.b):  # with the causes on, and where the inputs begin
-            self.slopes = self.slopes_of_inputs()
-            (shown,) = self.shown([self.u], self.anchor)
-            self.r0 = self.bare(shown)
-            self.b, self.left, self.cost = self.calibrated(self.r0)
+            self._draw_inputs()
         bends = False
         for _ in range(MOST_ANCHORS):
             self._descend(until)
-            if not len(self.b) or (until > EXACTLY and float(np.abs(self.b - self.anchor).max()) < 1.0):
-                break
-            if not self._anchored():
+            is_near = until > EXACTLY and float(np.abs(self.b - self.anchor).max(initial=0.0)) < 1.0
+            if not len(self.b) or is_near or not self._anchored():
                 break
             bends = True
         if bends and until <= EXACTLY and not self.extended.grain:
@@ -316,7 +288,7 @@ class Fitting:
         if gained > 0:
             way = tried - self.u
             before = self.predicted
-            self.u, self.predicted, self.r0, self.b, self.left, self.cost = tried, shown, bare, b, left, cost
+            self.u, self.predicted, self.b, self.left, self.cost = tried, shown, b, left, cost
             self._draw({name: _corrected(own, shown[name] - before[name], way) for name, own in self.drawn.items()})
             self.is_fresh = False
         return gained
@@ -324,7 +296,7 @@ class Fitting:
     def _anchored(self) -> bool:
         """Move the anchor to the inputs, or as far as leads down; whether the slopes missed enough to go on."""
         start, wanted = self.anchor, self.b
-        before = self.sample.cost(self.r0 - self.slopes @ start, start)
+        before = self.sample.cost(self.sample.left(self.predicted), start)
         for share in SHARES:
             tried = start + share * (wanted - start)
             (shown,) = self.shown([self.u], tried)
@@ -338,11 +310,13 @@ class Fitting:
         is_off = bool(missed @ missed > MOVED)
         self.anchor, self.b, self.predicted, self.left, self.cost = tried, tried, shown, exact, cost
         if is_off:
-            self.slopes = self.slopes_of_inputs()
-        self.r0 = exact + self.slopes @ self.anchor
-        if is_off:
-            self.b, self.left, self.cost = self.calibrated(self.r0)
+            self._draw_inputs()
         return is_off
+
+    def _draw_inputs(self) -> None:
+        """Take the slopes of the inputs about the anchor, and the inputs that go best with them."""
+        self.slopes = self.slopes_of_inputs()
+        self.b, self.left, self.cost = self.calibrated(self.bare(self.predicted))
 
     def slopes_of_inputs(self) -> Matrix:
         """Return what the directions of the inputs draw about the anchor, (rows, K), in one call of the model."""
@@ -358,10 +332,8 @@ class Fitting:
 
     def answer(self) -> Fit:
         """Return the fit, its predictions with the inputs where they are."""
-        predicted = self.predicted
-        if len(self.b) and np.any(self.b != self.anchor):
-            moved = self.b - self.anchor
-            predicted = {name: shown + self.moves[name] @ moved for name, shown in predicted.items()}
+        moved = self.b - self.anchor
+        predicted = {name: shown + self.moves[name] @ moved for name, shown in self.predicted.items()}
         values = tuple(parts_of(self.causes, self.outward(self.u)))
         slopes = {name: each / np.where(self.log, 1.0, self.sizes) for name, each in self.drawn.items()}
         return Fit(self.causes, values, self.b, predicted, self.left, self.cost, self.sample, slopes, self.moves)

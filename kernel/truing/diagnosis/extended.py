@@ -18,6 +18,7 @@ from truing.errors import PluginError
 from truing.evaluate import effect_column
 from truing.repeated import REMEMBERED as REPEATED
 from truing.setup import Setup, SwitchedOn
+from truing.trials import Trial
 
 REMEMBERED = 64
 """So many setups with moved inputs are kept, and what the model showed at so many points."""
@@ -52,17 +53,6 @@ class Budget:
     def is_dear(self) -> bool:
         """Whether calls are counted at all."""
         return self.calls < inf
-
-    def lasts(self, spent: int) -> bool:
-        """Whether the present stage may go on after so many calls."""
-        return spent < self.share * self.calls
-
-    def allows(self, spent: int, what: str) -> bool:
-        """Whether one thing more may be tried; what may not is counted."""
-        if self.lasts(spent):
-            return True
-        self.left_out[what] = self.left_out.get(what, 0) + 1
-        return False
 
     def of_rows(self, ratio: float) -> Budget:
         """Return what the same time allows on so many times as many rows; what it leaves out is told with the rest."""
@@ -113,34 +103,37 @@ class Extended:
         shown = {**self._shown, **dict(zip(new, self._called(bare_causes, list(new.values())), strict=True))}
         kept = min(REMEMBERED, max(1, LARGEST // max(len(self.machine.records), 1)))  # a fit goes on from the last
         self._shown = dict(list({**self._shown, **{key: shown[key] for key in keys}}.items())[-kept:])
-        return [
-            _with_shapes(shown[key], self.machine, causes, values)
-            for key, (values, _) in zip(keys, points, strict=True)
-        ]
+        return [self._with_shapes(shown[key], causes, values) for key, (values, _) in zip(keys, points, strict=True)]
+
+    def _with_shapes(
+        self, shown: Mapping[str, Matrix], causes: Sequence[Cause], values: Sequence[Matrix]
+    ) -> dict[str, Matrix]:
+        """Return what is shown with what unregistered shapes add to it, SI, (n,)."""
+        added = [shape_added(self.machine, cause, own) for cause, own in zip(causes, values, strict=True)]
+        return {name: base + sum(each[name] for each in added if name in each) for name, base in shown.items()}
 
     def _called(self, causes: Sequence[Cause], points: Sequence[Point]) -> list[Mapping[str, Matrix]]:
         """Call the model at several points, as one batch where it can be."""
         if not points:
             return []
-        setup, is_one = self._with(causes), self._share_inputs(causes, points)
-        if is_one:
+        setup, trials = self._with(causes), [_unknowns(self.machine, causes, values) for values, _ in points]
+        is_plain = all(cause.tolerated < 0 for cause in causes) and all(item.file < 0 for item in self.machine.inputs)
+        if is_plain and all(np.array_equal(moved, points[0][1]) for _, moved in points):  # the inputs of all rows
             setup = self._moved(setup, frozenset(cause.tag for cause in causes), points[0][1])
-        trials = [_unknowns(self.machine, causes, values) for values, _ in points]
-        if not is_one:
+        else:
             trials = [{**own, **self._inputs(causes, *point)} for own, point in zip(trials, points, strict=True)]
         self._count(causes, points)
-        try:
-            return list(predict_each(setup, self.machine.records, trials))
-        except PluginError:  # the model's own code breaks at some of them
-            return [self._survived(setup, trial) for trial in trials]
+        return self._survived(setup, trials)
 
-    def _survived(self, setup: Setup, trial: Mapping[str, Any]) -> Mapping[str, Matrix]:
-        """Return what the gauges show in one trial; NaN where the model's own code breaks."""
+    def _survived(self, setup: Setup, trials: Sequence[Trial]) -> list[Mapping[str, Matrix]]:
+        """Return what the gauges show in some trials; NaN in those in which the model's own code breaks."""
+        records = self.machine.records
         try:
-            (shown,) = predict_each(setup, self.machine.records, [trial])
+            return list(predict_each(setup, records, trials))
         except PluginError:
-            return {name: np.full(len(self.machine.records), np.nan) for name in self.machine.records.measured}
-        return shown
+            if len(trials) > 1:
+                return [self._survived(setup, [trial])[0] for trial in trials]
+            return [{name: np.full(len(records), np.nan) for name in records.measured}]
 
     def _count(self, causes: Sequence[Cause], points: Sequence[Point]) -> None:
         """Count the calls that some points cost; records along an axis are calculated anew for every one."""
@@ -162,28 +155,22 @@ class Extended:
     @property
     def lasts(self) -> bool:
         """Whether the budget of calls lasts in this stage of the search."""
-        return self.budget.lasts(self.calls)
+        return self.calls < self.budget.share * self.budget.calls
 
     def allows(self, what: str) -> bool:
         """Whether the budget lasts for one thing more; what it does not last for is counted."""
-        return self.budget.allows(self.calls, what)
+        if not self.lasts:
+            self.budget.left_out[what] = self.budget.left_out.get(what, 0) + 1
+        return self.lasts
 
     def _with(self, causes: Sequence[Cause]) -> Setup:
         """Return the setup with the effects of these causes on; parts of one effect are on together."""
         tags = frozenset(cause.tag for cause in causes if cause.effect is not None)
         if tags not in self._setups:
-            on: dict[str, SwitchedOn] = {}
-            for cause in causes:
-                if cause.effect is not None:
-                    parts = on[cause.name].values if cause.name in on else {}
-                    on[cause.name] = SwitchedOn(cause.effect, {**parts, **at_rest(cause, self.machine)})
-            self._setups[tags] = self.machine.start.with_effects(tuple(on.values())) if on else self.machine.start
+            resting = ((cause.effect, at_rest(cause, self.machine)) for cause in causes)
+            on = [SwitchedOn(effect, rest) for effect, rest in resting if effect is not None]
+            self._setups[tags] = self.machine.start.with_effects(on) if on else self.machine.start
         return self._setups[tags]
-
-    def _share_inputs(self, causes: Sequence[Cause], points: Sequence[Point]) -> bool:
-        """Whether all points have the same inputs, each one value for all rows: then they are the machine's."""
-        is_plain = all(cause.tolerated < 0 for cause in causes) and all(item.file < 0 for item in self.machine.inputs)
-        return is_plain and all(np.array_equal(moved, points[0][1]) for _, moved in points)
 
     def _moved(self, setup: Setup, tags: frozenset[str], moved: Matrix) -> Setup:
         """Return a setup with its tolerated inputs moved."""
@@ -228,14 +215,6 @@ def _columns(settings: Iterable[tuple[str, int, float]], files: Places) -> dict[
         everywhere = np.broadcast_to(value, (len(files),))
         made[name] = everywhere if file < 0 else np.where(files == file, value, made.get(name, 0.0))
     return made
-
-
-def _with_shapes(
-    shown: Mapping[str, Matrix], machine: Machine, causes: Sequence[Cause], values: Sequence[Matrix]
-) -> dict[str, Matrix]:
-    """Return what is shown with what unregistered shapes add to it, SI, (n,)."""
-    added = [shape_added(machine, cause, own) for cause, own in zip(causes, values, strict=True)]
-    return {name: base + sum(each[name] for each in added if name in each) for name, base in shown.items()}
 
 
 def shape_added(machine: Machine, cause: Cause, values: Matrix) -> dict[str, Matrix]:

@@ -32,7 +32,7 @@ class Folds:
         return np.asarray((self.block_of >= 0) & (self.block_of % self.count == fold))
 
 
-def folds_of(sample: Sample, *, seed: int = 1) -> Folds:
+def folds_of(sample: Sample) -> Folds:
     """Number blocks of consecutive rows inside each run: a twentieth of the rows, six, or three correlation times.
 
     A record of fewer than 48 rows has blocks of an eighth of it. Where something is fitted file by file, a run has two
@@ -42,8 +42,7 @@ def folds_of(sample: Sample, *, seed: int = 1) -> Folds:
     usable = np.flatnonzero(sample.mask)
     block_of = np.full(len(records), -1, dtype=np.intp)
     if not has_order(sample.machine):
-        shuffled = np.random.Generator(np.random.SFC64(seed)).permutation(len(usable))
-        block_of[usable] = shuffled
+        block_of[usable] = np.random.Generator(np.random.SFC64(1)).permutation(len(usable))
         return Folds(block_of, min(FOLDS, max(len(usable), 1)))
     runs = records.run_of[usable]
     first = np.flatnonzero(np.append(True, runs[1:] != runs[:-1]))
@@ -101,10 +100,9 @@ def carries_over(at: Fit, more: Fit, extended: Extended, folds: Folds) -> float:
     What the inputs no longer have to move counts as well: an explanation that fits by moving them far predicts as well
     as the true one, and is unlikely all the same.
     """
-    before, after = (errors_left_out(each, extended, folds) for each in (at, more))
-    before, after = (more.sample.losses(each, more.left) for each in (before, after))
-    fallen = before - after
-    fallen = fallen[np.isfinite(fallen)]
+    errors = (errors_left_out(each, extended, folds) for each in (at, more))
+    before, after = (more.sample.losses(each, more.left) for each in errors)
+    fallen = (before - after)[np.isfinite(before - after)]
     if len(fallen) < 2:
         return 0.0
     inputs = float(at.inputs @ at.inputs) - float(more.inputs @ more.inputs)

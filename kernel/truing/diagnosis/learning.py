@@ -20,6 +20,7 @@ from truing.diagnosis.noise import (
     difference,
     likelihood_of,
     robust_sd,
+    rounding,
     scale_of,
     spread_of,
     standardised,
@@ -27,16 +28,7 @@ from truing.diagnosis.noise import (
     weights_of,
     whiten,
 )
-from truing.diagnosis.sample import (
-    SMALLEST_SHARE,
-    Channel,
-    Noise,
-    Sample,
-    compared_slopes,
-    has_order,
-    residuals_of,
-    typical_of,
-)
+from truing.diagnosis.sample import Channel, Noise, Sample, compared_slopes, has_order, residuals_of, typical_of
 
 FEWEST_OF_MEMORY = 20
 """Rows from which on their memory is learnt."""
@@ -57,8 +49,7 @@ def first_noise(machine: Machine) -> dict[str, Noise]:
             powers = [driver[rows] ** power for driver in drivers for power in (1, 2)]
             columns = np.column_stack([slopes[rows], np.ones(len(rows)), *powers, values[rows]])
             triangle = np.asarray(np.linalg.qr(np.concatenate([triangle, columns]), mode="r"))
-        floor = SMALLEST_SHARE * float(np.sqrt(np.mean(values[here] ** 2))) if len(here) else 0.0
-        scale = max(_unexplained(triangle, len(here)), floor, 1e-300)
+        scale = max(_unexplained(triangle, len(here)), rounding(values[here]), 1e-300)
         given = _stated(machine, name, typical)
         at = machine.base[name] if typical or name in machine.records.sides else None
         made[name] = Noise(scale, given, given, typical=typical, at=at)
@@ -141,13 +132,10 @@ def _drivers(machine: Machine) -> dict[str, Matrix]:
     return made
 
 
-def memory_of(left: Matrix, starts: Mask) -> Setting:
-    """Return the filter that makes what is left likeliest, its parameters paid for."""
-    return _likeliest(left, starts) if len(left) >= FEWEST_OF_MEMORY else Setting()
-
-
-def _likeliest(left: Matrix, starts: Mask) -> Setting:
-    return min(SETTINGS, key=lambda setting: memory_cost(left, starts, setting))
+def memory_of(left: Matrix, starts: Mask, fewest: int = FEWEST_OF_MEMORY) -> Setting:
+    """Return the filter that makes what is left likeliest, its parameters paid for; of fewer rows none."""
+    settings = SETTINGS if len(left) >= fewest else [Setting()]
+    return min(settings, key=lambda setting: memory_cost(left, starts, setting))
 
 
 def memory_cost(left: Matrix, starts: Mask, setting: Setting) -> float:
@@ -168,13 +156,10 @@ def as_noise(sample: Sample, predicted: Predicted) -> float:
     """
     total = 0.0
     for channel in sample.channels:
-        rows, starts = channel.rows[channel.read], channel.starts[channel.read]
-        measured = sample.machine.records.measured[channel.name][rows]
-        left = difference(measured, predicted[channel.name][rows], channel.typical)
-        left = left * (channel.weights[channel.read] / channel.scale)
+        left, starts = channel.off(predicted[channel.name])[channel.read], channel.starts[channel.read]
         if not np.ptp(left) > 0:
             continue
-        memory = _likeliest(left, starts) if has_order(sample.machine) else Setting()
+        memory = memory_of(left, starts, 0) if has_order(sample.machine) else Setting()
         total += _paid(starts, memory) - 2 * likelihood_of(whiten(left, starts, memory))
         short = _short(channel, predicted[channel.name], channel.weights / channel.scale)
         size = max(scale_of(left, short, 0.0), 1e-300)

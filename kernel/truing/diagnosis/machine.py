@@ -89,9 +89,8 @@ class Machine:
 
     def directions(self, gram: Matrix, rows: int) -> Matrix:
         """Return the combinations of inputs that the data can see, as they are drawn: see ``directions_of``."""
-        if self.together is None:
-            return directions_of(gram, rows)
-        return self.together @ directions_of(self.together.T @ gram @ self.together, rows)
+        root = self.together
+        return directions_of(gram, rows) if root is None else root @ directions_of(root.T @ gram @ root, rows)
 
 
 def predict(setup: Setup, records: Records) -> Predicted:
@@ -154,11 +153,11 @@ def _slopes(start: Setup, records: Records, inputs: Sequence[Tolerated]) -> Iter
         yield name, {result: np.where(np.isfinite(slope), slope, 0.0) for result, slope in slopes.items()}
 
 
-def gram_of(slopes: Matrix, rows: Places | None = None) -> Matrix:
+def gram_of(slopes: Matrix, rows: Places) -> Matrix:
     """Return the inner products of columns over some rows, block by block in double precision."""
     total = np.zeros((slopes.shape[1], slopes.shape[1]))
-    for block in in_blocks(len(slopes) if rows is None else len(rows)):
-        part = slopes[block if rows is None else rows[block]].astype(float)
+    for block in in_blocks(len(rows)):
+        part = slopes[rows[block]].astype(float)
         total += part.T @ part
     return total
 
@@ -179,9 +178,10 @@ def directions_of(gram: Matrix, rows: int) -> Matrix:
     return np.ascontiguousarray(vectors * np.where(upright == 0, 1.0, upright))
 
 
-def in_blocks(rows: int) -> Iterator[slice]:
-    """Give the rows in blocks, one after another."""
-    return (slice(begin, begin + BLOCK) for begin in range(0, rows, BLOCK))
+def in_blocks(rows: int, size: int = 0) -> Iterator[slice]:
+    """Give the rows in blocks, one after another, of one size where it is given."""
+    size = size or BLOCK
+    return (slice(begin, begin + size) for begin in range(0, rows, size))
 
 
 def times(matrix: Matrix, vector: Matrix) -> Matrix:

@@ -61,6 +61,13 @@ def first_places(number: Number) -> Matrix:
     return np.linspace(0, 1, FIRST)
 
 
+def places_over(shapes: Sequence[Number], most: int = FINEST) -> Matrix:
+    """Return where curves over some shape numbers are asked for first, (M, numbers), from 0 to 1 in their ranges."""
+    if len(shapes) > 1:
+        return thinned(qmc.Sobol(len(shapes), seed=1).random(SPREAD), most)
+    return thinned(first_places(shapes[0])[:, None], most) if shapes else np.zeros((1, 0))
+
+
 def is_known(number: Number) -> bool:
     """Whether a sweep begins as finely as its curves change."""
     return number.whole or bool(number.along) or number.name == "frequency"
@@ -91,18 +98,21 @@ def refined(
     return u, made
 
 
-def spread(cause: Cause, count: int) -> Matrix:
-    """Return points over amplitudes of many sizes, to both sides, and over all shapes; so many over several numbers."""
+def spread(cause: Cause, count: int, most: int = FINEST) -> Matrix:
+    """Return points over amplitudes of many sizes, to both sides, and over all shapes; so many over several numbers.
+
+    There are at most so many, evenly from all.
+    """
     shapes = [cause.numbers[place] for place in cause.shapes]
     points = []
     if len(cause.amplitudes) == 1 and len(shapes) <= 1:
-        (place,) = cause.amplitudes
-        ends = [end for end in (cause.numbers[place].low, cause.numbers[place].high) if end]
-        for end, level, values in product(ends, LEVELS, _few_places(shapes)):
+        (place,), places = cause.amplitudes, places_over(shapes)
+        ends = filter(None, (cause.numbers[place].low, cause.numbers[place].high))
+        for end, level, values in product(ends, LEVELS, placed(shapes, places[:: max(1, len(places) // FIRST)])):
             point = np.zeros(cause.size)
             point[cause.shapes], point[place] = values, level * end
             points.append(point)
-        return np.array(points)
+        return thinned(np.array(points), most)
     for u in qmc.Sobol(cause.size + 1, seed=1).random(count):
         point = np.zeros(cause.size)
         point[cause.shapes] = placed(shapes, u[None, : len(shapes)])[0]
@@ -113,12 +123,4 @@ def spread(cause: Cause, count: int) -> Matrix:
             share = abs(2 * v - 1) if number.low and number.high else v
             point[place] = level * side * (0.05 + 0.95 * share)
         points.append(point)
-    return np.array(points)
-
-
-def _few_places(shapes: Sequence[Number]) -> Matrix:
-    """Return a few values over the range of one shape number, (M, 1); of none one point without numbers."""
-    if not shapes:
-        return np.zeros((1, 0))
-    places = first_places(shapes[0])
-    return placed(shapes, places[:: max(1, len(places) // FIRST)][:, None])
+    return thinned(np.array(points), most)

@@ -18,11 +18,9 @@ import numpy as np
 
 from truing.diagnosis.arrays import Mask, Matrix, Places, Sides
 from truing.diagnosis.machine import Machine, Predicted, gram_of
-from truing.diagnosis.noise import Setting, Spread, Tails, beyond, difference, expected, shares, whiten, worth
+from truing.diagnosis.noise import Setting, Spread, Tails, beyond, difference, expected, rounding, shares, whiten, worth
 
 WITHOUT_MEMORY, NORMAL, CONSTANT = Setting(), Tails(inf, 4.5), Spread()
-SMALLEST_SHARE = 1e-6
-"""Of the readings: noise is no smaller, or it is rounding."""
 ROUNDS, SETTLED = 50, 1e-6
 
 
@@ -245,17 +243,18 @@ class Sample:
 def has_order(machine: Machine) -> bool:
     """Whether rows follow one another in a way that means something: a time that goes on, or an axis of the model."""
     records = machine.records
-    times = [item for item in records.covariates.values() if item.role == "time" and not item.is_constant]
-    return bool(times) or bool(records.rows.series)
+    has_time = any(item.role == "time" and not item.is_constant for item in records.covariates.values())
+    return has_time or bool(records.rows.series)
 
 
 def sample_of(machine: Machine, noise: Mapping[str, Noise], mask: Mask, directions: Matrix | None = None) -> Sample:
     """Return the rows that are marked, where the model itself has an answer; directions are looked for if not given."""
-    channels = []
+    channels, is_again = [], np.diff(mask.astype(np.intp), prepend=0) > 0  # after a gap the noise starts anew
+    pieces: Places = np.cumsum(starts_of(machine.records.run_of, np.arange(len(mask))) | is_again)
     for name, own in noise.items():
         values = machine.records.measured[name]
         rows = np.flatnonzero(mask & np.isfinite(values) & np.isfinite(machine.base[name]))
-        starts = starts_of(_pieces(machine, mask), rows)
+        starts = starts_of(pieces, rows)
         sides = machine.records.sides[name][rows] if name in machine.records.sides else None
         if sides is not None:  # what a censored row leaves says nothing of its neighbours
             starts |= sides != 0
@@ -293,8 +292,7 @@ def _least(machine: Machine, noise: Noise, name: str, rows: Places) -> float:
     """Return the smallest mean square, in units of the noise, that is more than rounding or the steps of the gauge."""
     values = machine.records.measured[name][rows]
     off = difference(values, machine.base[name][rows], noise.typical)
-    rounding = SMALLEST_SHARE * float(np.sqrt(np.mean(off**2))) if len(rows) else 0.0
-    return max(rounding**2, resolution_of(values) ** 2 / 12, 1e-300) / noise.scale**2
+    return max(rounding(off) ** 2, resolution_of(values) ** 2 / 12, 1e-300) / noise.scale**2
 
 
 def resolution_of(values: Matrix) -> float:
@@ -310,12 +308,6 @@ def resolution_of(values: Matrix) -> float:
 def starts_of(run_of: Places, rows: Places) -> Mask:
     """Mark the first row of every run."""
     return np.asarray(np.diff(run_of[rows], prepend=-1) != 0)
-
-
-def _pieces(machine: Machine, mask: Mask) -> Places:
-    """Number the pieces of runs that are left when only some rows are taken: a gap starts the noise anew."""
-    is_again = np.diff(mask.astype(np.intp), prepend=0) > 0
-    return np.cumsum(starts_of(machine.records.run_of, np.arange(len(mask))) | is_again)
 
 
 def residuals_of(machine: Machine) -> dict[str, Matrix]:

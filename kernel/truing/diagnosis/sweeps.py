@@ -9,17 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from math import prod
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from truing.diagnosis.arrays import Matrix, Places
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from truing.diagnosis.beside import Beside
-
+from truing.diagnosis.machine import Predicted, in_blocks
+from truing.diagnosis.sample import Sample
 
 BLOCK = 500_000
 """So many values are passed through at once."""
@@ -27,17 +25,38 @@ DEPENDS = 1e-6
 """Share of a column that is left beside others when it depends on them."""
 
 
+@dataclass(frozen=True)
+class Beside:
+    """What an explanation leaves, weighted (rows + K,), once its numbers and the inputs have taken their part.
+
+    ``taken`` (rows + K, t) is an orthonormal basis of what they can draw; ``roots`` weigh the rows of the sample, and
+    ``at`` is what the explanation predicts.
+    """
+
+    sample: Sample
+    roots: Matrix
+    left: Matrix
+    taken: Matrix
+    at: Predicted
+
+    def drawn(self, curves: Matrix) -> Matrix:
+        """Return curves (M, q, readings), SI, as weighted rows of the sample, (M, q, rows)."""
+        by_result = np.split(curves.T, len(self.sample.machine.records.measured))
+        added = dict(zip(self.sample.machine.records.measured, by_result, strict=True))
+        return self.sample.curve(added, self.at).T * self.roots
+
+    def beyond(self, rows: Matrix) -> Matrix:
+        """Return what only these curves (M, q, rows) can draw, (M, q, rows + K)."""
+        made = -(rows @ self.taken[: rows.shape[-1]]) @ self.taken.T
+        made[..., : rows.shape[-1]] += rows
+        return np.asarray(made)
+
+
 @dataclass(frozen=True, eq=False)
 class Table:
     """Terms of a shape at many points, on all rows of the records, (M, c, n)."""
 
     terms: NDArray[np.float32]
-
-    def blocks(self) -> Iterator[slice]:
-        """Give the points, so many at once as memory has room for."""
-        step = max(1, BLOCK // max(self.terms[0].size, 1))
-        for begin in range(0, len(self.terms), step):
-            yield slice(begin, min(begin + step, len(self.terms)))
 
 
 class Pass:
@@ -54,7 +73,7 @@ class Pass:
         against = np.column_stack([beside.left[self.part], beside.taken[self.part]])
         shared, normal, following = [], [], []
         last = np.zeros((0, table.terms.shape[1], len(self.channel)))
-        for block in table.blocks():
+        for block in blocks_of(table.terms):
             rows = self.rows(block)
             shared.append(rows @ against)
             normal.append(rows @ rows.swapaxes(1, 2))
@@ -74,7 +93,7 @@ class Pass:
     def inner(self, drawn: Matrix) -> Matrix:
         """Return what the terms share with draws (rows + K, draws), (M, c, draws)."""
         own, (count, c, _) = drawn[self.part].astype(np.float32), self.table.terms.shape
-        rows = (self.rows(block).astype(np.float32).reshape(-1, len(own)) for block in self.table.blocks())
+        rows = (self.rows(block).astype(np.float32).reshape(-1, len(own)) for block in blocks_of(self.table.terms))
         return np.concatenate([each @ own for each in rows]).reshape(count, c, -1)
 
 
@@ -100,11 +119,15 @@ class Swept:
     def vectors(self, place: int) -> Matrix:
         """Return the orthonormal curves at one of the points, (q, rows + K)."""
         beside, at = self.passes[0].beside, int(self.points[place])
-        terms = [each.rows(slice(at, at + 1))[0] for each in self.passes]
-        rows = np.zeros((len(terms), len(terms[0]), beside.sample.rows))
-        for each, own, kept in zip(self.passes, terms, rows, strict=True):
-            kept[:, each.part] = own
+        rows = np.zeros((len(self.passes), self.units.shape[1] // len(self.passes), beside.sample.rows))
+        for each, kept in zip(self.passes, rows, strict=True):
+            kept[:, each.part] = each.rows(slice(at, at + 1))[0]
         return np.asarray(self.units[at] @ beside.beyond(rows.reshape(-1, beside.sample.rows)))
+
+
+def blocks_of(several: NDArray[Any]) -> Iterator[slice]:
+    """Give the points of some curves (M, c, n), so many at once as memory has room for; at least one block."""
+    return in_blocks(max(len(several), 1), max(1, BLOCK // max(prod(several.shape[1:]), 1)))
 
 
 def side_by_side(blocks: list[Matrix]) -> Matrix:
@@ -125,16 +148,11 @@ def without_taken(passes: tuple[Pass, ...]) -> tuple[Matrix, Matrix, Matrix]:
 
 
 def units_of(normal: Matrix) -> Matrix:
-    """Return what makes columns with these squares (M, q, q) orthonormal, row by row; 0 for what depends on others."""
+    """Return what makes columns with these squares (M, q, q) orthonormal, turned as little as can be.
+
+    Those that depend on one another share what they draw (P.-O. Löwdin, J. Chem. Phys. 18, 1950, 365).
+    """
     size = np.sqrt(np.maximum(np.einsum("mqq->mq", normal), 1e-300))
-    scaled = normal / (size[:, :, None] * size[:, None, :])
-    units = np.zeros_like(normal)
-    for column in range(normal.shape[1]):
-        unit = np.zeros(normal.shape[:2])
-        unit[:, column] = 1.0
-        for _ in range(2):
-            inner = np.einsum("mpq,mqr,mr->mp", units, scaled, unit)
-            unit = unit - np.einsum("mp,mpq->mq", inner, units)
-        left = np.sqrt(np.maximum(np.einsum("mq,mqr,mr->m", unit, scaled, unit), 0.0))
-        units[:, column] = unit * np.where(left > DEPENDS, 1 / np.maximum(left, 1e-300), 0.0)[:, None]
-    return np.asarray(units / size[:, None, :])
+    squares, axes = np.linalg.eigh(np.nan_to_num(normal / (size[:, :, None] * size[:, None, :])))
+    lengths = np.where(squares > DEPENDS**2, np.sqrt(np.maximum(squares, DEPENDS**2)), np.inf)
+    return np.asarray((axes / lengths[:, None]) @ axes.swapaxes(1, 2) / size[:, None])

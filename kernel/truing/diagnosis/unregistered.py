@@ -8,23 +8,16 @@ a frequency, a place, a width or a time constant is looked for like a shape of a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from itertools import combinations
 from math import inf, pi
-from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from truing.diagnosis.causes import UNKNOWN, Cause, Number
+from truing.diagnosis.arrays import Matrix
+from truing.diagnosis.causes import ENDS, UNKNOWN, Cause, Kind, Number, Shape, Term
 from truing.diagnosis.records import Covariate, Records
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
-
-Kind = Literal["trend", "product", "order", "wave", "step", "jump", "kink", "dead zone", "settling"]
 DEGREES = (2, 4)
 HIGHEST_ORDER = 16
 FEWEST_VALUES = 12
@@ -32,39 +25,9 @@ FEWEST_VALUES = 12
 MOST_WAVES = 3000
 EITHER_SIDE = 0.1
 """Share of the rows on each side of zero from which on something may happen where a covariate changes its sign."""
-ENDS = 0.02
 SHORTEST_SETTLING, LONGEST_SETTLING = 0.02, 1.0
 """Time constants that are looked for, in lengths of the record."""
-
-
-Axis = tuple[str, "Matrix"]
-"""The name of a covariate, and its values, (n,), SI, with their mean where one is missing."""
-Family = tuple[Kind, tuple[str, ...], int, tuple[Number, ...], Callable[..., "list[Term]"]]
-
-
-@dataclass(frozen=True)
-class Term:
-    """One term of a shape: Python over covariates in SI, and its values on all rows of some records, (n,)."""
-
-    expression: str
-    values: Matrix
-
-
-@dataclass(frozen=True)
-class Shape:
-    """How a shape is calculated: ``made`` returns its terms from its covariates and its shape numbers (SI).
-
-    Its amplitudes are those of its terms, result after result.
-    """
-
-    kind: Kind
-    depends_on: tuple[str, ...]
-    results: tuple[str, ...]
-    made: Callable[..., list[Term]]
-
-    def terms(self, numbers: Sequence[float], covariates: Mapping[str, Covariate]) -> list[Term]:
-        """Return the terms on the rows of some covariates."""
-        return self.made(*((name, covariates[name].filled) for name in self.depends_on), *numbers)
+Family = tuple[Kind, tuple[str, ...], int, tuple[Number, ...], Callable[..., list[Term]]]
 
 
 def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_steps: bool) -> list[Cause]:
@@ -109,11 +72,11 @@ def _families(
     """Give every family of shapes: kind, covariates, terms a result, shape numbers, and how its terms are made."""
     for item in moved:
         distinct = len(np.unique(np.round(item.values[np.isfinite(item.values)], 12)))
+        is_round = item.goes_round and item.is_angle
+        if is_round:
+            yield "trend", (item.name,), 3, (), _harmonics
         for degree in DEGREES:
-            if item.goes_round and item.is_angle:
-                if degree == DEGREES[0]:
-                    yield "trend", (item.name,), 3, (), _harmonics
-            elif distinct > degree:
+            if distinct > degree and not is_round:
                 yield "trend", (item.name,), degree + 1, (), partial(_powers, degree)
         yield from _at_zero(item)
         if distinct >= FEWEST_VALUES:
@@ -172,20 +135,19 @@ def highest_order(angle: Matrix) -> int:
     return int(np.ceil(pi / float(inner.mean()) - 1e-6)) - 1  # places are rounded to 1e-9
 
 
-def _scaled(axis: Axis) -> tuple[str, Matrix]:
+def _scaled(name: str, values: Matrix) -> tuple[str, Matrix]:
     """Return a covariate from -1 to 1 over the record, as Python and its values."""
-    name, values = axis
     middle, half = float(values.max() + values.min()) / 2, float(np.ptp(values)) / 2 or 1.0
     return f"(({name} - {middle!r}) / {half!r})", (values - middle) / half
 
 
-def _powers(degree: int, axis: Axis) -> list[Term]:
-    text, z = _scaled(axis)
+def _powers(degree: int, name: str, values: Matrix) -> list[Term]:
+    text, z = _scaled(name, values)
     return [Term("1" if not power else f"{text}**{power}", z**power) for power in range(degree + 1)]
 
 
-def _harmonics(axis: Axis) -> list[Term]:
-    return [Term("1", np.ones(len(axis[1]))), *_waves(1.0, axis, 1.0)]
+def _harmonics(name: str, values: Matrix) -> list[Term]:
+    return [Term("1", np.ones(len(values))), *_waves(1.0, name, values, 1.0)]
 
 
 def _exponents(degree: int) -> list[tuple[int, int]]:
@@ -193,41 +155,36 @@ def _exponents(degree: int) -> list[tuple[int, int]]:
     return [(0, 0), (1, 0), (0, 1), (1, 1), *([(2, 0), (0, 2), (2, 1), (1, 2)] if degree > 1 else [])]
 
 
-def _products(degree: int, first: Axis, second: Axis) -> list[Term]:
-    (one, a), (other, b) = _scaled(first), _scaled(second)
+def _products(degree: int, first: str, of_first: Matrix, second: str, of_second: Matrix) -> list[Term]:
+    (one, a), (other, b) = _scaled(first, of_first), _scaled(second, of_second)
     return [Term(f"{one}**{i} * {other}**{j}", a**i * b**j) for i, j in _exponents(degree)]
 
 
-def _waves(turn: float, axis: Axis, number: float) -> list[Term]:
-    (name, values), angle = axis, turn * number
+def _waves(turn: float, name: str, values: Matrix, number: float) -> list[Term]:
+    angle = turn * number
     return [Term(f"np.{word}({angle!r} * {name})", getattr(np, word)(angle * values)) for word in ("sin", "cos")]
 
 
-def _step(axis: Axis, place: float) -> list[Term]:
-    name, values = axis
+def _step(name: str, values: Matrix, place: float) -> list[Term]:
     return [Term(f"({name} >= {place!r})", (values >= place).astype(float))]
 
 
-def _settling(axis: Axis, constant: float) -> list[Term]:
-    name, values = axis
+def _settling(name: str, values: Matrix, constant: float) -> list[Term]:
     start = float(values.min())
     text = f"np.exp(-({name} - {start!r}) / {constant!r})"
     return [Term("1", np.ones(len(values))), Term(text, np.exp(-(values - start) / constant))]
 
 
-def _jump(axis: Axis) -> list[Term]:
-    name, values = axis
+def _jump(name: str, values: Matrix) -> list[Term]:
     return [Term(f"np.sign({name})", np.sign(values))]
 
 
-def _kink(axis: Axis) -> list[Term]:
-    name, values = axis
+def _kink(name: str, values: Matrix) -> list[Term]:
     largest = float(np.abs(values).max())
     return [Term(f"np.abs({name}) / {largest!r}", np.abs(values) / largest)]
 
 
-def _dead_zone(axis: Axis, width: float) -> list[Term]:
-    name, values = axis
+def _dead_zone(name: str, values: Matrix, width: float) -> list[Term]:
     largest = float(np.abs(values).max())
     text = f"np.sign({name}) * np.maximum(np.abs({name}) - {width!r}, 0) / {largest!r}"
     return [Term(text, np.sign(values) * np.maximum(np.abs(values) - width, 0) / largest)]
