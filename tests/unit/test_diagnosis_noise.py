@@ -224,5 +224,11 @@ def test_weights_undo_the_spread_they_were_learnt_from() -> None:
     assert_array_equal(weights_of(Spread("load", 0.7, 1e-6), None, learnt, 7), np.ones(7))
 
 
+def test_weights_scale_a_driver_with_gaps_as_its_spread_was_learnt() -> None:
+    driver = np.array([0.0, 1.0, np.nan, 3.0, np.nan, 4.0])
+    weights = weights_of(Spread("load", 0.7, 1e-6), driver, np.arange(6), 6)
+    assert_allclose(weights, np.exp(-0.7 * standardised(driver)))
+
+
 def test_normal_tails_are_called_normal() -> None:
     assert Tails(inf, 1).words == "normal"

@@ -222,9 +222,9 @@ def weights_of(spread: Spread, driver: Matrix | None, learnt: Places, rows: int)
     """
     if driver is None or not spread.driver:
         return np.ones(rows)
-    here = driver[learnt]
-    middle, sd = np.nanmean(here), np.nanstd(here)
-    z = (np.where(np.isfinite(driver), driver, middle) - middle) / sd
+    middle = np.nanmean(driver[learnt])
+    filled = np.where(np.isfinite(driver), driver, middle)  # as in ``standardised``
+    z = (filled - middle) / np.std(filled[learnt])
     exponent = np.clip(spread.slope * z, -LARGEST_EXPONENT, LARGEST_EXPONENT)
     return np.asarray(np.exp(-exponent))
 
