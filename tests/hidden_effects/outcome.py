@@ -11,7 +11,7 @@ from hidden_effects.cases import Case
 from hidden_effects.information import Lens, beside_groups, over_results
 from hidden_effects.oracle import calibrated, judged, oracle, rms, scale
 from hidden_effects.press_machine import SCATTER, Array, shown
-from hidden_effects.shapes import groups
+from hidden_effects.shapes import family_of, groups
 
 Document = Mapping[str, Any]
 FIRST = 4
@@ -159,6 +159,8 @@ def to_truth(case: Case, document: Document) -> float:
         return Lens(record, np.hstack(free) if free else None).separation(case.change, names)
     depends_on = set(document["remainder"]["depends_on"])
     families = [(covariates, family) for covariates, family in groups(record.rows) if covariates <= depends_on]
+    if case.shape is not None and set(case.shape.depends_on) <= depends_on:
+        families.append((frozenset(case.shape.depends_on), family_of(case.shape, record.rows)))
     if not names and not free:
         return beside_groups(case.lens, case.change, families).separation
     least = case.lambda_det

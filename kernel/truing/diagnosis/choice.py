@@ -36,6 +36,8 @@ the rows contradict one another, because something else is wrong, the standard e
 """
 NEARLY = 4.0
 """An addition to the winner that is less far behind in score may well be a further cause."""
+NEARLY_SHAPED = 2.0
+"""The same of a shape that nobody registered: there are so many that one is always nearly as good."""
 ALIKE = 1.0
 """Sum of squares, in units of the noise, by which two explanations differ that are one on this record."""
 TWIN = 0.98
@@ -92,7 +94,7 @@ def choose(made: Competition, *, seed: int) -> Chosen:
         if again.at.key == decision.at.key:
             break
         decision = again
-    best = _certain(made, decision.at)
+    best = _certain(made, made.backward(decision.at))
     if best.causes:
         best = _named_weakest(made, _registered(made, best))
     best = made.exact(best)
@@ -229,12 +231,10 @@ def _is_near(made: Competition, best: Fit, found: Fit) -> bool:
         added = [cause for cause in found.causes if cause.tag not in best.key]
         if made.sample.has_memory:
             behind = min(behind, made.own_score(found) - made.own_score(best))
-        if behind >= NEARLY or len(added) > 1:
-            return False
-        is_first_shape = added[0].shape is not None and not shapes_in(best)
-        return added[0].effect is not None or (
-            is_first_shape and carries_over(best, found, made.extended, folds_of(made.sample)) >= CARRIED
-        )
+        if len(added) > 1 or added[0].shape is None:
+            return behind < NEARLY and len(added) == 1 and added[0].effect is not None
+        is_first = behind < NEARLY_SHAPED and not shapes_in(best)
+        return is_first and carries_over(best, found, made.extended, folds_of(made.sample)) >= CARRIED
     if len(found.causes) > len(best.causes) or (found.key < best.key and behind >= CLOSE):
         return False
     if (shifts_inputs(found) and not shifts_inputs(best)) or shapes_in(found) > max(shapes_in(best), 1):

@@ -181,8 +181,11 @@ class Competition:
             return
         seen = self.look(at, [cause for cause in self.causes if accept(cause)])
         for cause in self.promising(seen)[: count if len(at.causes) < 2 else count // 2]:
-            if at.key | {cause.tag} not in self.fresh:
-                self.joined(at, cause, seen[cause.tag].starts)
+            starts, found = seen[cause.tag].starts, self.known.get(at.key | {cause.tag})
+            if found is None or found.key not in self.fresh:
+                self.joined(at, cause, starts)
+            elif _is_elsewhere(cause, starts[0][1], found):
+                self.joined(at, cause, starts[:1])
 
     def promising(self, seen: Mapping[str, Looked]) -> list[Cause]:
         """Return causes by what their curves promise once they are paid for, of those of one curve the weakest."""
@@ -248,6 +251,12 @@ class Competition:
         top = self.score(self.ranked()[0])
         near = [found for found in self.ranked()[:RENEWED] if self.score(found) < top + WITHIN]
         self.again([self.null, *near])
+
+
+def _is_elsewhere(cause: Cause, start: Matrix, found: Fit) -> bool:
+    """Whether a start has other places or whole numbers than a fit, which keeps those that it began with."""
+    kept = [place for place, number in enumerate(cause.numbers) if not number.is_free]
+    return bool(np.any(start[kept] != found.of(cause)[kept]))
 
 
 def competition_of(extended: Extended, causes: Sequence[Cause], sample: Sample) -> Competition:
