@@ -244,6 +244,8 @@ class Competition:
     def _again(self, found: Fit, until: float) -> None:
         made = refit(found, self.sample, self.extended, until=until)
         self.fresh.discard(found.key)
+        if made is not None and until < ROUGHLY:  # what was rough may have promised what the model does not show
+            del self.known[found.key]
         self.keep(made)
 
     def refresh(self) -> None:
