@@ -53,7 +53,7 @@ def columns_of(bench: Bench) -> dict[str, Array]:
 
 def competing(folder: Path, error: Array, names: Sequence[str] = NAMES, *, tolerated: bool = False) -> Competition:
     """These causes alone on a record of BENCH with an error (um) and noise of 1 um, in white noise."""
-    own = [name for name in names if not name.startswith(("sensor", "input", "unknown"))]
+    own = [name for name in names if not name.startswith(("sensor", "input", "unknown", "step"))]
     one = Asked(drive_model(own, {"contact": "3 %", "shaft": "3 %"} if tolerated else {}))
     records = one.records(folder, BENCH.columns(gauge(BENCH.load, BENCH.travel) + error + NOISE))
     made = plain_competition(one, records, UM)
@@ -100,6 +100,27 @@ def test_what_is_no_longer_needed_goes(tmp_path: Path) -> None:
     made = competing(tmp_path, 0.02 * BENCH.travel)
     several = fit_of(made, "sensor_offset", "sensor_drift", "lead_error")
     assert [cause.name for cause in made.backward(several).causes] == ["lead_error"]
+
+
+def test_the_end_of_a_fit_is_what_the_model_shows_not_what_a_rough_fit_promised(tmp_path: Path) -> None:
+    """Where inputs bend, slopes of them may promise a cost that the model does not reach: here 50 less."""
+    made = competing(tmp_path, 0.02 * BENCH.travel, tolerated=True)
+    true = made.exact(fit_of(made, "lead_error"))
+    made.known[true.key] = promised = replace(true, cost=true.cost - 50)
+    assert_allclose(made.exact(promised).cost, true.cost, atol=1e-4)
+
+
+def test_a_step_is_looked_for_anew_beside_a_large_offset(tmp_path: Path) -> None:
+    """Alone the step stands at the first row, where it draws the offset; beside the offset its place is another."""
+    late = (np.arange(ROWS) >= 100).astype(float)
+    made = competing(tmp_path, 300 - 4 * late, ["sensor_offset", "step"])
+    search(made)
+    found = made.ranked()[0]
+    assert {cause.name for cause in found.causes} == {"sensor_offset", "step"}
+    (step,) = (cause for cause in found.causes if cause.name == "step")
+    after = [value for number, value in zip(step.numbers, found.of(step), strict=True) if not number.is_free]
+    hours = BENCH.time[[99, 100]] * 3600
+    assert hours[0] < after[0] <= hours[1]
 
 
 def test_two_explanations_differ_by_what_they_draw_apart(tmp_path: Path) -> None:
