@@ -130,9 +130,9 @@ def _squares(judge: Fit, found: Fit) -> float:
 
 
 def _best(made: Competition, at: Fit, size: int) -> Fit | None:
-    """Return the best explanation of so many causes, with one new shape at most, no input named without need."""
+    """Return the best explanation of so many causes, with one shape at most, no input named without need."""
     sized = made.ranked(
-        lambda found: len(found.causes) == size and is_sensible(found) and shapes_in(found) <= shapes_in(at) + 1
+        lambda found: len(found.causes) == size and is_sensible(found) and shapes_in(found) <= max(shapes_in(at), 1)
     )
     if not sized:
         return None
