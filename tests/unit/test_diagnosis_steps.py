@@ -125,6 +125,16 @@ def test_one_new_shape_at_most_comes_in_a_step(tmp_path: Path) -> None:
     assert further.key == both.key
 
 
+def test_beside_a_cause_with_a_name_there_is_one_shape_at_most(tmp_path: Path) -> None:
+    """A second shape fits the bend, and would take from what the clearance draws."""
+    made = competing(tmp_path, 9 * LINE**2 + 8 * np.sin(WAVE))
+    beside = shape(made, "wave:time", at=fit_of(made, "clearance"))
+    second = shape(made, "trend.3:travel", at=beside)
+    assert made.score(second) < made.score(beside)
+    best = _best(made, beside, 3)
+    assert best is None or best.key != second.key
+
+
 # What a step must be better by
 
 

@@ -130,10 +130,16 @@ def _squares(judge: Fit, found: Fit) -> float:
 
 
 def _best(made: Competition, at: Fit, size: int) -> Fit | None:
-    """Return the best explanation of so many causes, with one shape at most, no input named without need."""
-    sized = made.ranked(
-        lambda found: len(found.causes) == size and is_sensible(found) and shapes_in(found) <= max(shapes_in(at), 1)
-    )
+    """Return the best explanation of so many causes, with one new shape at most, no input named without need.
+
+    Beside a cause with a name there is one shape in all: a second one takes from what the cause draws.
+    """
+
+    def allows(found: Fit) -> bool:
+        many = shapes_in(found)
+        return many <= (max(shapes_in(at), 1) if many < size else shapes_in(at) + 1)
+
+    sized = made.ranked(lambda found: len(found.causes) == size and is_sensible(found) and allows(found))
     if not sized:
         return None
     named = next((found for found in sized if not shifts_inputs(found)), None)
