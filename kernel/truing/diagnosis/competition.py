@@ -244,7 +244,7 @@ class Competition:
     def _again(self, found: Fit, until: float) -> None:
         made = refit(found, self.sample, self.extended, until=until)
         self.fresh.discard(found.key)
-        if made is not None and until < ROUGHLY:  # what was rough may have promised what the model does not show
+        if made is not None and until < ROUGHLY and not self.extended.grain:  # a rough end may have promised too much
             del self.known[found.key]
         self.keep(made)
 

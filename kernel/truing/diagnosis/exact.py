@@ -214,11 +214,8 @@ class Fitting:
             if not len(self.b) or is_near or not self._anchored():
                 break
             bends = True
-        if bends and until <= EXACTLY:  # what the model shows there, not what slopes say of it
-            self.b, self.left = self.anchor, self.sample.left(self.predicted)
-            self.cost = self.sample.cost(self.left, self.b)
-            if not self.extended.grain:
-                self._together()
+        if bends and until <= EXACTLY and not self.extended.grain:
+            self._together()
 
     def _together(self) -> None:
         """Fit numbers and inputs at once, all with the model itself: where slopes of the inputs mislead."""
