@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.chance import Law
 from truing.diagnosis.competition import Competition, exchange
@@ -20,11 +20,6 @@ from truing.diagnosis.fitted import Fit, differ
 from truing.diagnosis.folds import carries_over, folds_of
 from truing.diagnosis.intervals import certainty_of, may_be_zero, places_of
 from truing.diagnosis.steps import CARRIED, Decision, draws_anything, is_sensible, shapes_in, shifts_inputs, steps_from
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 CLOSE = 6.0
 """Explanations less far behind in score are not excluded (a Bayes factor of about 20)."""
@@ -231,8 +226,10 @@ def _is_near(made: Competition, best: Fit, found: Fit) -> bool:
         added = [cause for cause in found.causes if cause.tag not in best.key]
         if made.sample.has_memory:
             behind = min(behind, made.own_score(found) - made.own_score(best))
-        if len(added) > 1 or added[0].shape is None:
-            return behind < NEARLY and len(added) == 1 and added[0].effect is not None
+        if len(added) > 1 or added[0].tolerated >= 0:
+            return False
+        if added[0].effect is not None:
+            return behind < NEARLY
         is_first = behind < NEARLY_SHAPED and not shapes_in(best)
         return is_first and carries_over(best, found, made.extended, folds_of(made.sample)) >= CARRIED
     if len(found.causes) > len(best.causes) or (found.key < best.key and behind >= CLOSE):

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,11 +18,6 @@ from truing.diagnosis.competition import MARGIN, MOST_CAUSES, Competition
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import Folds, carries_over, ends_of, folds_of
 from truing.diagnosis.records import FEWEST_READINGS
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Matrix = NDArray[np.float64]
 
 ANY_LEVEL = 0.015
 FURTHER_LEVEL = 0.01
