@@ -6,13 +6,22 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+from truing.diagnosis.result import (
+    FAMILIES,
+    Alternative,
+    Amount,
+    Cause,
+    Diagnosis,
+    Fact,
+    FittedUnknown,
+    Gain,
+    NextPoint,
+    Tie,
+    reads_well,
+)
 from truing.diagnosis.verdict import UNKNOWN, doubts, explanations_of, further_of, shared_of
 from truing.numbers import ABSENT, format_number, format_value, pretty, with_unit
-
-if TYPE_CHECKING:
-    from truing.diagnosis.result import Alternative, Amount, Cause, Diagnosis, Fact, FittedUnknown, Gain, NextPoint, Tie
 
 CERTAIN, LIKELY = 0.005, 0.05
 MUCH, FEW_BLOCKS = 0.5, 0.25
@@ -64,8 +73,6 @@ def amount_text(amount: Amount | None, digits: int = 3) -> str:
 
 def readable(amount: Amount | None) -> Amount | None:
     """Return a size in a unit in which it reads well: 1.15 µm/h rather than 0.00115 mm/h."""
-    from truing.diagnosis.result import FAMILIES, Amount, reads_well
-
     if amount is None or not amount.value or reads_well(amount.value, amount.unit):
         return amount
     head, bar, tail = amount.unit.partition("/")
