@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import chain
+from math import sqrt
 from typing import TYPE_CHECKING
 
 from truing.numbers import format_number, with_unit
@@ -21,6 +22,8 @@ OUTSIDE = 3.0
 """An input is off its band beyond this many standard deviations of its tolerance."""
 RANDOM_WALK = 0.92
 """From this AR coefficient on noise is nearly a random walk, which draws any slow curve (the largest that is tried)."""
+LIKE_A_WALK = 0.95
+"""So is one within two standard errors of this coefficient: few rows do not tell it from a random walk."""
 OVERFITTED = 0.5
 """Of the noise that is stated: what is left is below it by chance 1 in 100 with ten rows, 1 in 3000 with twenty."""
 STABLE = 0.5
@@ -140,11 +143,12 @@ def _overfitted(diagnosis: Diagnosis) -> Iterator[str]:
 def wandering(diagnosis: Diagnosis) -> Iterator[str]:
     """Give the results whose noise was taken as nearly a random walk."""
     for wrong in diagnosis.wrong:
-        if wrong.noise.ar_coefficient >= RANDOM_WALK:
+        rho = wrong.noise.ar_coefficient
+        if rho >= RANDOM_WALK or (rho > 0 and rho + 2 * sqrt((1 - rho**2) / wrong.rows) >= LIKE_A_WALK):
             yield (
-                f"the noise of {wrong.result} was taken as nearly a random walk (AR coefficient "
-                f"{wrong.noise.ar_coefficient:.2g}), which draws any slow effect: something that wanders over time is "
-                "unexplained; measure again, in a changed order"
+                f"the noise of {wrong.result} was taken as nearly a random walk (AR coefficient {rho:.2g}), which "
+                "draws any slow effect: something that wanders over time is unexplained; measure again, in a changed "
+                "order"
             )
 
 

@@ -29,10 +29,8 @@ SURE = sqrt(CLOSE) / 2
 Where what is left is noise, a difference d has the standard error 2 sqrt(d), so that this is ``CLOSE`` once more. Where
 the rows contradict one another, because something else is wrong, the standard error is larger and more stays open.
 """
-NEARLY = 4.0
-"""An addition to the winner that is less far behind in score may well be a further cause."""
-NEARLY_SHAPED = 2.0
-"""The same of a shape that nobody registered: there are so many that one is always nearly as good."""
+NEARLY = 9.0
+"""One more registered cause that is less far behind the winner in score, and carries over, may be there as well."""
 ALIKE = 1.0
 """Sum of squares, in units of the noise, by which two explanations differ that are one on this record."""
 TWIN = 0.98
@@ -228,10 +226,10 @@ def _is_near(made: Competition, best: Fit, found: Fit) -> bool:
             behind = min(behind, made.own_score(found) - made.own_score(best))
         if len(added) > 1 or added[0].tolerated >= 0:
             return False
-        if added[0].effect is not None:
-            return behind < NEARLY
-        is_first = behind < NEARLY_SHAPED and not shapes_in(best)
-        return is_first and carries_over(best, found, made.extended, folds_of(made.sample)) >= CARRIED
+        if added[0].shape is not None and shapes_in(best):
+            return False
+        is_close = behind < (CLOSE if added[0].shape is not None else NEARLY)
+        return is_close and carries_over(best, found, made.extended, folds_of(made.sample)) >= CARRIED / 2
     if len(found.causes) > len(best.causes) or (found.key < best.key and behind >= CLOSE):
         return False
     if (shifts_inputs(found) and not shifts_inputs(best)) or shapes_in(found) > max(shapes_in(best), 1):

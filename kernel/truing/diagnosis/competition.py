@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
-from math import lgamma, log, log1p
+from math import exp, lgamma, log, log1p
 
 import numpy as np
 
@@ -184,7 +184,7 @@ class Competition:
             starts, found = seen[cause.tag].starts, self.known.get(at.key | {cause.tag})
             if found is None or found.key not in self.fresh:
                 self.joined(at, cause, starts)
-            elif _is_elsewhere(cause, starts[0][1], found):
+            elif _promised(at, starts[0][0]) < found.cost - MARGIN:
                 self.joined(at, cause, starts[:1])
 
     def promising(self, seen: Mapping[str, Looked]) -> list[Cause]:
@@ -255,10 +255,10 @@ class Competition:
         self.again([self.null, *near])
 
 
-def _is_elsewhere(cause: Cause, start: Matrix, found: Fit) -> bool:
-    """Whether a start has other places or whole numbers than a fit, which keeps those that it began with."""
-    kept = [place for place, number in enumerate(cause.numbers) if not number.is_free]
-    return bool(np.any(start[kept] != found.of(cause)[kept]))
+def _promised(at: Fit, gain: float) -> float:
+    """Return the cost that is left where a cause beside an explanation gains so much in score."""
+    known = at.sample.known
+    return at.cost - known * (1 - exp(-gain / known))
 
 
 def competition_of(extended: Extended, causes: Sequence[Cause], sample: Sample) -> Competition:

@@ -172,10 +172,15 @@ def _step(made: Competition, at: Fit, more: Fit, folds: Folds, *, seed: int) -> 
         and gain >= (0.0 if at.key < more.key else LEAST_IN_PLACE)
         and made.own_score(at) - made.own_score(more) >= (WANDER if at.causes else 0.0)
         and not _mends(made, at, more, gain)
-        and carries_over(at, more, made.extended, folds) >= CARRIED * (len(more.causes) - len(at.causes))
+        and carries_over(at, more, made.extended, folds) >= CARRIED * _added(at, more)
         and not _beats(made, at, more)
     )
     return _Step(more, law, is_believed)
+
+
+def _added(at: Fit, more: Fit) -> int:
+    """Return how many causes a step adds; none where it puts others in their place that have no more numbers."""
+    return len(more.causes) - len(at.causes) if at.key < more.key or more.size > at.size else 0
 
 
 def _beats(made: Competition, at: Fit, more: Fit) -> bool:
