@@ -98,7 +98,7 @@ def _swept(bundle: Bundle, table: Table, beside: Beside, passes: dict[tuple[Tabl
     right, span = np.concatenate([each.right for each in own], axis=1), Swept(own, units_of(normal), points)
     inner = span.units[1:] @ following @ span.units[:-1].swapaxes(1, 2)
     tries = 1.0 + _turned(inner[is_own[1:] & is_own[:-1]], normal.shape[1])
-    return Looked(_best(*_starts(bundle, points, right, normal), span, beside.sample.known), tries, span)
+    return Looked(_best(*_starts(bundle, points, right, normal), span, beside), tries, span)
 
 
 def _draws(size: Matrix, raw: Matrix) -> Mask:
@@ -137,7 +137,7 @@ def compared(bundles: list[Bundle], beside: Beside) -> Iterator[tuple[str, Looke
             drawn = Spanned(basis[own] if len(own) < len(basis) else basis)
             is_sweep = bundle.is_straight and len(bundle.cause.shapes) <= 1  # neighbouring points draw alike
             tries = independent(basis[own[is_own[own]]], is_sweep=is_sweep)
-            yield bundle.cause.tag, Looked(_best(*starts, drawn, beside.sample.known), tries, drawn)
+            yield bundle.cause.tag, Looked(_best(*starts, drawn, beside), tries, drawn)
         begin = end
 
 
@@ -160,7 +160,7 @@ def _weighed(curves: Matrix, beside: Beside) -> tuple[Any, Any, Matrix, Matrix, 
     return kept, is_own, basis, right, normal
 
 
-def _best(gains: Matrix, values: Matrix, span: Spanned | Swept, known: float) -> tuple[tuple[float, Matrix], ...]:
+def _best(gains: Matrix, values: Matrix, span: Spanned | Swept, beside: Beside) -> tuple[tuple[float, Matrix], ...]:
     """Return the best points that do not draw the same, with what each is worth in score."""
     chosen: list[int] = []
     for place in np.argsort(-gains, kind="stable")[:200].tolist():
@@ -168,7 +168,8 @@ def _best(gains: Matrix, values: Matrix, span: Spanned | Swept, known: float) ->
             chosen.append(place)
         if len(chosen) == KEPT:
             break
-    rest = np.maximum(1 - gains[chosen] / max(known, 1.0), 1e-9)  # of the sum of squares; the noise is what is left
+    known, whole = beside.sample.known, float(beside.left @ beside.left)
+    rest = np.maximum(1 - gains[chosen] / max(whole, known, 1.0), 1e-9)  # of the squares; the noise is what is left
     return tuple(zip((-known * np.log(rest)).tolist(), values[chosen], strict=True))
 
 

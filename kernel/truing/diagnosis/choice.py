@@ -89,7 +89,8 @@ def choose(made: Competition, *, seed: int) -> Chosen:
         decision = again
     best = _certain(made, made.backward(decision.at))
     if best.causes:
-        best = _named_weakest(made, _registered(made, best))
+        named = _registered(made, best)
+        best = _named_weakest(made, best if named.key == best.key else _exchanged(made, named))
     best = made.exact(best)
     near = [Rival(made.exact(rival.fit), rival.behind) for rival in _rivals(made, best)]
     near = [rival for rival in near if not _adds_nothing(made, best, rival.fit)]
@@ -230,7 +231,7 @@ def _is_near(made: Competition, best: Fit, found: Fit) -> bool:
             return False
         is_close = behind < (CLOSE if added[0].shape is not None else NEARLY)
         return is_close and carries_over(best, found, made.extended, folds_of(made.sample)) >= CARRIED / 2
-    if len(found.causes) > len(best.causes) or (found.key < best.key and behind >= CLOSE):
+    if (len(found.causes) > len(best.causes) and behind >= 0) or (found.key < best.key and behind >= CLOSE):
         return False
     if (shifts_inputs(found) and not shifts_inputs(best)) or shapes_in(found) > max(shapes_in(best), 1):
         return False

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
-from math import exp, lgamma, log, log1p
+from math import lgamma, log, log1p
 
 import numpy as np
 
@@ -72,6 +72,8 @@ class Competition:
     exchanged: set[tuple[frozenset[str], str]] = field(default_factory=set)
     fresh: set[frozenset[str]] = field(default_factory=set)
     """What was fitted in the present noise."""
+    begun: set[tuple[frozenset[str], tuple[float, ...]]] = field(default_factory=set)
+    """What was fitted in any noise, with the whole numbers and places that it kept."""
 
     # ---- scores
 
@@ -152,6 +154,7 @@ class Competition:
             return None
         if not self.extended.allows(self.stage):
             return self.known.get(frozenset(cause.tag for cause in causes))
+        self.begun.add(_begins(causes, values))
         return self.keep(fit(self.sample, self.extended, causes, values, near, until=ROUGHLY))
 
     def joined(self, at: Fit, cause: Cause, starts: Iterable[tuple[float, Matrix]]) -> Fit | None:
@@ -184,7 +187,7 @@ class Competition:
             starts, found = seen[cause.tag].starts, self.known.get(at.key | {cause.tag})
             if found is None or found.key not in self.fresh:
                 self.joined(at, cause, starts)
-            elif _promised(at, starts[0][0]) < found.cost - MARGIN:
+            elif at.cost - starts[0][0] < found.cost - MARGIN:  # it begins elsewhere
                 self.joined(at, cause, starts[:1])
 
     def promising(self, seen: Mapping[str, Looked]) -> list[Cause]:
@@ -198,11 +201,14 @@ class Competition:
 
     def without(self, found: Fit, place: int) -> Fit | None:
         """Fit an explanation without one of its causes."""
-        rest = [number for number in range(len(found.causes)) if number != place]
-        key = frozenset(found.causes[number].tag for number in rest)
-        if key in self.fresh:
-            return self.known[key]
-        return self.fitted([found.causes[n] for n in rest], [found.values[n] for n in rest], found)
+        causes, values = (
+            found.causes[:place] + found.causes[place + 1 :],
+            found.values[:place] + found.values[place + 1 :],
+        )
+        begin = _begins(causes, values)
+        if begin[0] in self.fresh and (not begin[1] or begin in self.begun):
+            return self.known[begin[0]]
+        return self.fitted(causes, values, found)
 
     def backward(self, found: Fit) -> Fit:
         """Leave out what is no longer needed."""
@@ -255,10 +261,15 @@ class Competition:
         self.again([self.null, *near])
 
 
-def _promised(at: Fit, gain: float) -> float:
-    """Return the cost that is left where a cause beside an explanation gains so much in score."""
-    known = at.sample.known
-    return at.cost - known * (1 - exp(-gain / known))
+def _begins(causes: Sequence[Cause], values: Sequence[Matrix]) -> tuple[frozenset[str], tuple[float, ...]]:
+    """Return the tags of causes, and their whole numbers and places, which a fit leaves where they begin."""
+    kept = {
+        (cause.tag, place): float(each[place])
+        for cause, each in zip(causes, values, strict=True)
+        for place, number in enumerate(cause.numbers)
+        if not number.is_free
+    }
+    return frozenset(cause.tag for cause in causes), tuple(kept[name] for name in sorted(kept))
 
 
 def competition_of(extended: Extended, causes: Sequence[Cause], sample: Sample) -> Competition:
@@ -309,9 +320,17 @@ def _distinct(made: Competition, size: int, count: int, accept: Callable[[Fit], 
 
 def _pairs(made: Competition) -> None:
     several = {found.key: found for found in (*_distinct(made, 1, BEAM), *_registered(made, BEAM))}
+    placed = {cause for found in several.values() for cause in found.causes if _keeps_its_place(cause)}
+    for at in several.values():
+        made.forward(at, JOINED, placed.__contains__)
     for one, other in sorted(combinations(several.values(), 2), key=lambda pair: sum(map(made.score, pair))):
         if one.causes[0].is_registered or other.causes[0].is_registered:  # two shapes: no second name is needed
             made.fitted(one.causes + other.causes, one.values + other.values, one)
+
+
+def _keeps_its_place(cause: Cause) -> bool:
+    """Whether a cause has whole numbers or places that a fit leaves where they begin."""
+    return any(not number.is_free for number in cause.numbers)
 
 
 def _registered(made: Competition, count: int) -> list[Fit]:

@@ -21,8 +21,8 @@ from truing.diagnosis.records import FEWEST_READINGS
 
 ANY_LEVEL = 0.015
 FURTHER_LEVEL = 0.01
-LEAST_IN_PLACE = 12.0
-"""What a step must be better by that puts other causes in the place of some: twice what counts as near."""
+LEAST_IN_PLACE = 6.0
+"""What a step must be better by that puts other causes in the place of some: what counts as near."""
 WANDER = 6.0
 """What a cause must be better by, in score, than noise with a memory of its own."""
 CERTAIN = 60.0
