@@ -23,7 +23,7 @@ OUTSIDE = 3.0
 RANDOM_WALK = 0.92
 """From this AR coefficient on noise is nearly a random walk, which draws any slow curve (the largest that is tried)."""
 LIKE_A_WALK = 0.95
-"""So is one within two standard errors of this coefficient: few rows do not tell it from a random walk."""
+"""So is one within two standard errors of this coefficient beside a cause: few rows do not tell them apart."""
 OVERFITTED = 0.5
 """Of the noise that is stated: what is left is below it by chance 1 in 100 with ten rows, 1 in 3000 with twenty."""
 STABLE = 0.5
@@ -144,7 +144,8 @@ def wandering(diagnosis: Diagnosis) -> Iterator[str]:
     """Give the results whose noise was taken as nearly a random walk."""
     for wrong in diagnosis.wrong:
         rho = wrong.noise.ar_coefficient
-        if rho >= RANDOM_WALK or (rho > 0 and rho + 2 * sqrt((1 - rho**2) / wrong.rows) >= LIKE_A_WALK):
+        most = rho + 2 * sqrt((1 - rho**2) / wrong.rows) if rho > 0 and diagnosis.causes else rho
+        if rho >= RANDOM_WALK or most >= LIKE_A_WALK:
             yield (
                 f"the noise of {wrong.result} was taken as nearly a random walk (AR coefficient {rho:.2g}), which "
                 "draws any slow effect: something that wanders over time is unexplained; measure again, in a changed "

@@ -203,7 +203,11 @@ def unsure(one: Fit, other: Fit) -> float:
 
 
 def _rivals(made: Competition, best: Fit) -> list[Rival]:
-    """Return what lies near the winner, is no larger, and is neither another name for it nor a vaguer word."""
+    """Return what lies near the winner and is neither another name for it nor a vaguer word.
+
+    What may be there as well is not told where it, in the place of a cause of the winner, explains as much; a shape
+    not beside a registered one.
+    """
     if not best.causes:
         return []
     alike = {found.key for found in _like(made, best)}
@@ -215,7 +219,11 @@ def _rivals(made: Competition, best: Fit) -> list[Rival]:
         if found.key in alike or not _is_near(made, best, found):
             continue
         near.append(Rival(found, max(0.0, made.score(found) - top)))
-    return near
+    others = [rival.fit for rival in near if not best.key < rival.fit.key]
+    added = [rival.fit for rival in near if best.key < rival.fit.key]
+    named = [found for found in added if shapes_in(found) == shapes_in(best)] or added
+    told = {found.key for found in (*others, *named) if not any(best.key < found.key > each.key for each in others)}
+    return [rival for rival in near if rival.fit.key in told]
 
 
 def _is_near(made: Competition, best: Fit, found: Fit) -> bool:

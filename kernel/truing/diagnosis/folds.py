@@ -42,7 +42,9 @@ def folds_of(sample: Sample) -> Folds:
     usable = np.flatnonzero(sample.mask)
     block_of = np.full(len(records), -1, dtype=np.intp)
     if not has_order(sample.machine):
-        block_of[usable] = np.random.Generator(np.random.SFC64(1)).permutation(len(usable))
+        covariates = (each.values for each in records.covariates.values() if each.role != "order")
+        order = np.lexsort([values[usable] for values in (*covariates, *records.measured.values())])  # not of the file
+        block_of[usable[order]] = np.random.Generator(np.random.SFC64(1)).permutation(len(usable))
         return Folds(block_of, min(FOLDS, max(len(usable), 1)))
     runs = records.run_of[usable]
     first = np.flatnonzero(np.append(True, runs[1:] != runs[:-1]))
