@@ -253,7 +253,7 @@ def test_what_is_left_is_least_squares_with_rows_for_the_prior_of_the_inputs(tmp
 
 @pytest.mark.parametrize("name", ["lead_error", "warm_up"])
 def test_a_promise_is_what_least_squares_with_the_inputs_free_give(tmp_path: Path, name: str) -> None:
-    """-N log(1 - drop / N), drop that of the weighted sum of squares by joint least squares."""
+    """-N log(1 - drop / S), drop that of the weighted sum of squares S of rows and inputs by joint least squares."""
     bench = wide(90)
     error = {"lead_error": 0.02 * bench.travel, "warm_up": 8 * (1 - np.exp(-bench.time / 2.5))}[name]
     made = made_of(tmp_path, ["lead_error", "warm_up"], bench=bench, error=error, tolerances=TOLERANCES)
@@ -270,7 +270,7 @@ def test_a_promise_is_what_least_squares_with_the_inputs_free_give(tmp_path: Pat
     for columns in (rows, both):
         solved = np.linalg.lstsq(columns, target)[0]
         drops.append(float(np.sum((target - columns @ solved) ** 2)))
-    assert_allclose(promised, -90 * np.log(1 - (drops[0] - drops[1]) / 90), rtol=1e-4)
+    assert_allclose(promised, -90 * np.log(drops[1] / drops[0]), rtol=1e-4)
     assert_allclose(values[0], solved[0], rtol=1e-4)
 
 

@@ -21,7 +21,6 @@ from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import ends_of, folds_of
 from truing.diagnosis.steps import (
     FURTHER_LEVEL,
-    LEAST_IN_PLACE,
     MANY_CURVES,
     _beats,
     _best,
@@ -166,12 +165,12 @@ def of_causes(made: Competition, *names: str) -> Fit:
     ("before", "after", "least"),
     [
         (["lead_error"], ["lead_error", "wear"], steps.WANDER),
-        (["lead_error"], ["clearance", "wear"], LEAST_IN_PLACE),
+        (["lead_error"], ["clearance", "wear"], steps.WANDER),
         ([], ["wear"], 0.0),
     ],
     ids=["one more", "in its place", "the first"],
 )
-def test_what_takes_the_place_of_a_cause_must_be_better_by_twice_what_is_near(
+def test_what_comes_beside_a_cause_or_takes_its_place_must_be_better_than_noise_with_a_memory(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: list[str], after: list[str], least: float
 ) -> None:
     made = competing(tmp_path, 0.0 * LINE)
@@ -182,7 +181,6 @@ def test_what_takes_the_place_of_a_cause_must_be_better_by_twice_what_is_near(
     for gain, is_believed in ((least - 0.1, False), (least + 0.1, True)):
         stated: Any = Stated({at.key: gain, more.key: 0.0})
         assert _step(stated, at, more, folds, seed=1).is_believed is is_believed
-    assert LEAST_IN_PLACE > steps.WANDER  # or the case above says nothing
 
 
 @pytest.mark.parametrize(

@@ -30,7 +30,7 @@ from truing.cli.diagnosis_printed import report
 from truing.declare.blocks import Words
 from truing.diagnosis.noise import SETTINGS
 from truing.diagnosis.result import Alternative, Amount, Cause, Contradiction, Diagnosis, Finding, Thinned, Trade
-from truing.diagnosis.verdict import shared_of
+from truing.diagnosis.verdict import doubts, shared_of
 from truing.report.chapters import Figures
 from truing.report.context import TableView
 from truing.report.diagnosis_chapters import diagnosis_chapters
@@ -146,8 +146,9 @@ def is_doubtful(made: Diagnosis) -> bool:
 def is_alarming(made: Diagnosis) -> bool:
     """Whether something speaks against the one explanation: by the figures alone."""
     (first, _) = made.wrong
+    rho = first.noise.ar_coefficient
     return (
-        first.noise.ar_coefficient >= 0.92
+        rho + 2 * bool(rho and made.causes) * ((1 - rho**2) / first.rows) ** 0.5 >= 0.92
         or abs(made.calibrated[0].of_its_sd) > 3
         or made.stability < 0.5
         or bool(made.contradictions)
@@ -332,13 +333,24 @@ def test_an_alarm_takes_the_name_and_is_said_everywhere(words: str) -> None:
     assert _of_diagnosis(document, "x").verdict.endswith("rod_heating in doubt")
 
 
-def test_the_largest_memory_that_is_tried_is_nearly_a_random_walk_and_no_smaller_one() -> None:
-    """Else the alarm is never raised, or raised by what the noise has by its nature."""
-    tried = sorted({setting.rho for setting in SETTINGS})
-    for rho, is_alarm in ((tried[-1], True), (tried[-2], False)):
-        made = replace(named(), wrong=(replace(FIRST, noise=replace(FIRST.noise, ar_coefficient=rho)), OTHER))
-        assert bool(made.warnings) is is_alarm
-        assert made.verdict == ("undecided" if is_alarm else "named")
+@pytest.mark.parametrize(
+    ("place", "rows", "is_alarm"),
+    [(-1, 10_000, True), (-2, 10_000, False), (-2, 160, True), (-4, 160, False)],
+    ids=["largest", "smaller", "few rows", "far off"],
+)
+def test_the_largest_memory_that_is_tried_is_nearly_a_random_walk(place: int, rows: int, is_alarm: bool) -> None:
+    """And so is what so few rows do not tell from it, by two standard errors sqrt((1 - rho^2) / n)."""
+    rho = sorted({setting.rho for setting in SETTINGS})[place]
+    noise = replace(FIRST.noise, ar_coefficient=rho)
+    made = replace(named(), wrong=(replace(FIRST, rows=rows, noise=noise), OTHER))
+    assert bool(made.warnings) is is_alarm
+    assert made.verdict == ("undecided" if is_alarm else "named")
+
+
+def test_where_nothing_is_named_a_memory_below_the_largest_is_noise() -> None:
+    noise = replace(FIRST.noise, ar_coefficient=0.87)
+    made = replace(named(), causes=(), wrong=(replace(FIRST, rows=80, noise=noise), OTHER))
+    assert not any("random walk" in doubt for doubt in doubts(made))
 
 
 def test_a_wave_that_is_left_is_said_and_takes_no_name() -> None:

@@ -21,9 +21,10 @@ AT_BOUND = 5e-3
 OUTSIDE = 3.0
 """An input is off its band beyond this many standard deviations of its tolerance."""
 RANDOM_WALK = 0.92
-"""From this AR coefficient on noise is nearly a random walk, which draws any slow curve (the largest that is tried)."""
-LIKE_A_WALK = 0.95
-"""So is one within two standard errors of this coefficient beside a cause: few rows do not tell them apart."""
+"""From this AR coefficient on noise is nearly a random walk, which draws any slow curve (the largest that is tried).
+
+Beside a cause one within two standard errors of it is: few rows do not tell them apart.
+"""
 OVERFITTED = 0.5
 """Of the noise that is stated: what is left is below it by chance 1 in 100 with ten rows, 1 in 3000 with twenty."""
 STABLE = 0.5
@@ -145,7 +146,7 @@ def wandering(diagnosis: Diagnosis) -> Iterator[str]:
     for wrong in diagnosis.wrong:
         rho = wrong.noise.ar_coefficient
         most = rho + 2 * sqrt((1 - rho**2) / wrong.rows) if rho > 0 and diagnosis.causes else rho
-        if rho >= RANDOM_WALK or most >= LIKE_A_WALK:
+        if most >= RANDOM_WALK:
             yield (
                 f"the noise of {wrong.result} was taken as nearly a random walk (AR coefficient {rho:.2g}), which "
                 "draws any slow effect: something that wanders over time is unexplained; measure again, in a changed "

@@ -14,7 +14,7 @@ import numpy as np
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause
-from truing.diagnosis.chance import Law
+from truing.diagnosis.chance import Law, law_of
 from truing.diagnosis.competition import Competition, exchange
 from truing.diagnosis.fitted import Fit, differ
 from truing.diagnosis.folds import carries_over, folds_of
@@ -29,8 +29,8 @@ SURE = sqrt(CLOSE) / 2
 Where what is left is noise, a difference d has the standard error 2 sqrt(d), so that this is ``CLOSE`` once more. Where
 the rows contradict one another, because something else is wrong, the standard error is larger and more stays open.
 """
-NEARLY = 9.0
-"""One more registered cause that is less far behind the winner in score, and carries over, may be there as well."""
+MAYBE = 0.2
+"""Chance that noise alone gives the search as much, up to which one more cause may be there as well."""
 ALIKE = 1.0
 """Sum of squares, in units of the noise, by which two explanations differ that are one on this record."""
 TWIN = 0.98
@@ -92,7 +92,7 @@ def choose(made: Competition, *, seed: int) -> Chosen:
         named = _registered(made, best)
         best = _named_weakest(made, best if named.key == best.key else _exchanged(made, named))
     best = made.exact(best)
-    near = [Rival(made.exact(rival.fit), rival.behind) for rival in _rivals(made, best)]
+    near = [Rival(made.exact(rival.fit), rival.behind) for rival in _rivals(made, best, seed)]
     near = [rival for rival in near if not _adds_nothing(made, best, rival.fit)]
     return Chosen(made, best, tuple(near), _same(made, best), decision.law, decision.p_further)
 
@@ -202,7 +202,7 @@ def unsure(one: Fit, other: Fit) -> float:
     return sqrt(one.sample.rows) * float(np.std(losses[0] - losses[1]))
 
 
-def _rivals(made: Competition, best: Fit) -> list[Rival]:
+def _rivals(made: Competition, best: Fit, seed: int) -> list[Rival]:
     """Return what lies near the winner and is neither another name for it nor a vaguer word.
 
     What may be there as well is not told where it, in the place of a cause of the winner, explains as much; a shape
@@ -212,33 +212,48 @@ def _rivals(made: Competition, best: Fit) -> list[Rival]:
         return []
     alike = {found.key for found in _like(made, best)}
     top = made.score(best)
-    near: list[Rival] = []
-    for found in made.ranked(lambda each: bool(each.causes) and each.key != best.key and is_sensible(each)):
+    near: list[Fit] = []
+    for found in made.ranked(lambda each: bool(each.causes) and not best.key <= each.key and is_sensible(each)):
         if made.score(found) - top > 10 * CLOSE or len(near) >= RIVALS:
             break
-        if found.key in alike or not _is_near(made, best, found):
-            continue
-        near.append(Rival(found, max(0.0, made.score(found) - top)))
-    others = [rival.fit for rival in near if not best.key < rival.fit.key]
-    added = [rival.fit for rival in near if best.key < rival.fit.key]
-    named = [found for found in added if shapes_in(found) == shapes_in(best)] or added
-    told = {found.key for found in (*others, *named) if not any(best.key < found.key > each.key for each in others)}
-    return [rival for rival in near if rival.fit.key in told]
+        if found.key not in alike and _is_near(made, best, found):
+            near.append(found)
+    more = [found for found in _with_more(made, best, seed) if not any(found.key > each.key for each in near)]
+    return sorted(
+        (Rival(found, max(0.0, made.score(found) - top)) for found in (*near, *more)), key=lambda rival: rival.behind
+    )
+
+
+def _with_more(made: Competition, best: Fit, seed: int) -> list[Fit]:
+    """Return the winner with one cause more that may be there as well; with a shape where it is with no effect."""
+    found = [
+        each
+        for each in made.ranked(lambda each: best.key < each.key and len(each.causes) == len(best.causes) + 1)
+        if all(cause.tolerated < 0 or cause.tag in best.key for cause in each.causes)
+    ]
+    if not found:
+        return []
+    law = law_of(made, best, found[0], seed=seed)
+    folds = folds_of(made.sample)
+    near = [
+        each
+        for each in found
+        if law.p_of(_gained(made, best, each)) <= MAYBE
+        and carries_over(best, each, made.extended, folds) >= CARRIED / 2
+    ]
+    named = [each for each in near if shapes_in(each) == shapes_in(best)]
+    return named or ([] if shapes_in(best) else near)
+
+
+def _gained(made: Competition, best: Fit, found: Fit) -> float:
+    """Return by how much the winner is better with one cause more, in noise with a memory in its own noise as well."""
+    gain = made.score(best) - made.score(found)
+    return max(gain, made.own_score(best) - made.own_score(found)) if made.sample.has_memory else gain
 
 
 def _is_near(made: Competition, best: Fit, found: Fit) -> bool:
     """Whether an explanation is a rival of the winner."""
     behind = made.score(found) - made.score(best)
-    if best.key < found.key:
-        added = [cause for cause in found.causes if cause.tag not in best.key]
-        if made.sample.has_memory:
-            behind = min(behind, made.own_score(found) - made.own_score(best))
-        if len(added) > 1 or added[0].tolerated >= 0:
-            return False
-        if added[0].shape is not None and shapes_in(best):
-            return False
-        is_close = behind < (CLOSE if added[0].shape is not None else NEARLY)
-        return is_close and carries_over(best, found, made.extended, folds_of(made.sample)) >= CARRIED / 2
     if (len(found.causes) > len(best.causes) and behind >= 0) or (found.key < best.key and behind >= CLOSE):
         return False
     if (shifts_inputs(found) and not shifts_inputs(best)) or shapes_in(found) > max(shapes_in(best), 1):

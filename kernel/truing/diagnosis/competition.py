@@ -337,7 +337,7 @@ def _distinct(made: Competition, size: int, count: int, accept: Callable[[Fit], 
 def _pairs(made: Competition) -> None:
     several = {found.key: found for found in (*_distinct(made, 1, BEAM), *_registered(made, BEAM))}
     placed = {cause for found in several.values() for cause in found.causes if _keeps_its_place(cause)}
-    for at in several.values():
+    for at in list(several.values())[:BEAM]:
         made.forward(at, JOINED, placed.__contains__)
     for one, other in sorted(combinations(several.values(), 2), key=lambda pair: sum(map(made.score, pair))):
         if one.causes[0].is_registered or other.causes[0].is_registered:  # two shapes: no second name is needed
