@@ -17,7 +17,7 @@ from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, g
 from truing.diagnosis.causes import Cause, si_bounds
 from truing.diagnosis.chance import Law
 from truing.diagnosis.choice import Chosen, Rival, choose
-from truing.diagnosis.competition import Competition, search
+from truing.diagnosis.competition import Competition
 from truing.diagnosis.curves import Curves
 from truing.diagnosis.engine import diagnose, laid_out
 from truing.diagnosis.exact import EXACTLY, nothing
@@ -29,6 +29,7 @@ from truing.diagnosis.reading import read_records
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Diagnosis
 from truing.diagnosis.sample import Noise, sample_of
+from truing.diagnosis.search import search
 from truing.kernel import Offer, Origin
 from truing.setup import DiagnoseOptions, Setup, default_setup
 

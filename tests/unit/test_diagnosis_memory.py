@@ -28,7 +28,7 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Model, Tolerance, Unknown, normal, trials
-from truing.diagnosis import competition, long_records, machine
+from truing.diagnosis import long_records, machine, search
 from truing.diagnosis.choice import choose
 from truing.diagnosis.engine import diagnose, laid_out
 from truing.diagnosis.learning import first_noise
@@ -121,7 +121,7 @@ def test_a_decision_on_some_rows_is_kept_and_its_rivals_are_fitted_to_all(
     records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
     whole = machine.machine_of(asked.setup, records)
     few = laid_out(long_records.machine_for_search(whole, seed=1))
-    competition.search(few)
+    search.search(few)
     chosen = choose(few, seed=1)
     assert few.sample.rows == 100
     found = long_records.on_all_rows(chosen, whole)
@@ -196,7 +196,7 @@ def test_effects_on_results_cost_no_call_of_a_slow_model_however_many_pairs_ther
     calls = [calls_of(tmp_path, extra, {}) for extra in (0, 5, 10)]
     assert calls[0] == 1
     assert all(count <= 1 + 2 * extra for count, extra in zip(calls, (0, 5, 10), strict=True))
-    monkeypatch.setattr(competition, "_pairs", lambda made: None)
+    monkeypatch.setattr(search, "_pairs", lambda made: None)
     assert [calls_of(tmp_path, extra, {}) for extra in (0, 10)] == [calls[0], calls[2]]
 
 

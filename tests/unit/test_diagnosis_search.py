@@ -27,10 +27,11 @@ from numpy.testing import assert_allclose
 from truing.diagnosis.beside import Looked, beside_of
 from truing.diagnosis.causes import Number, are_exclusive
 from truing.diagnosis.chance import DRAWS, FIRST_DRAWS, HOPELESS, LARGEST_RHO, _drawn, _largest, carried, law_of
-from truing.diagnosis.competition import Competition, differ, search
-from truing.diagnosis.fitted import far_inputs, is_at_bound
+from truing.diagnosis.competition import Competition
+from truing.diagnosis.fitted import differ, far_inputs, is_at_bound
 from truing.diagnosis.noise import Setting
 from truing.diagnosis.sample import sample_of
+from truing.diagnosis.search import search
 
 ROWS = 150
 NAMES = ("lead_error", "clearance", "wear", "thermal_growth", "sensor_offset", "sensor_gain", "sensor_drift")

@@ -15,10 +15,11 @@ import numpy as np
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.chance import Law, law_of
-from truing.diagnosis.competition import Competition, exchange
+from truing.diagnosis.competition import Competition
 from truing.diagnosis.fitted import Fit, differ
 from truing.diagnosis.folds import carries_over, folds_of
 from truing.diagnosis.intervals import certainty_of, may_be_zero, places_of
+from truing.diagnosis.search import exchange
 from truing.diagnosis.steps import CARRIED, Decision, draws_anything, is_sensible, shapes_in, shifts_inputs, steps_from
 
 CLOSE = 6.0

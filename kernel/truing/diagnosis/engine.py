@@ -10,7 +10,7 @@ import numpy as np
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.causes import effects_of, followed_by, inputs_of
 from truing.diagnosis.choice import Chosen, Rival, choose
-from truing.diagnosis.competition import Competition, competition_of, search
+from truing.diagnosis.competition import Competition, competition_of
 from truing.diagnosis.design import next_points
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.findings import wrong_of
@@ -24,6 +24,7 @@ from truing.diagnosis.probing import probe
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.result import Alternative, Curves, Diagnosis, readable_unit
 from truing.diagnosis.sample import sample_of
+from truing.diagnosis.search import search
 from truing.diagnosis.shape_words import in_unit
 from truing.diagnosis.unmeasured import with_results
 from truing.diagnosis.unregistered import shapes_of
