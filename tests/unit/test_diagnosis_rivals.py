@@ -12,6 +12,7 @@ from diagnosis_models import UM, Array, Asked, decided, drive_model, fit_of, gau
 from numpy.testing import assert_allclose
 
 from truing.diagnosis import choice
+from truing.diagnosis.chance import Law
 from truing.diagnosis.choice import (
     CLOSE,
     SURE,
@@ -54,7 +55,7 @@ def causes_in(several: list[Fit]) -> set[str]:
 
 
 def near(made: Competition, best: Fit) -> list[Fit]:
-    return [rival.fit for rival in _rivals(made, best)]
+    return [rival.fit for rival in _rivals(made, best, 1)]
 
 
 @pytest.mark.parametrize(("name", "curve"), [("lead_error", "travel"), ("clearance", "sign")])
@@ -120,15 +121,15 @@ def test_a_rival_stays_open_where_the_rows_contradict_one_another(
     behind = sorted(made.score(found) - made.score(best) for found in made.ranked(lambda each: len(each.causes) == 1))
     assert behind[0] == 0
     assert CLOSE < behind[1] < 60
-    assert _rivals(made, best) == []
+    assert _rivals(made, best, 1) == []
     monkeypatch.setattr(choice, "unsure", lambda one, other: 1.01 * behind[1] / SURE)
-    (open_one,) = _rivals(made, best)
+    (open_one,) = _rivals(made, best, 1)
     assert open_one.behind == pytest.approx(behind[1])
 
 
 def test_nothing_has_no_rivals(tmp_path: Path) -> None:
     made = searched(tmp_path, np.zeros(ROWS))
-    assert _rivals(made, made.null) == []
+    assert _rivals(made, made.null, 1) == []
 
 
 def test_the_unsureness_of_a_fit_and_itself_is_nothing(tmp_path: Path) -> None:
@@ -261,3 +262,51 @@ def test_shapes_over_the_same_covariates_say_the_same(tmp_path: Path) -> None:
     beside = replace(low, causes=(*low.causes, *jump.causes), values=(*low.values, *jump.values))
     assert not _says_the_same(low, beside)
     assert _says_the_same(beside, replace(beside, causes=(*high.causes, *jump.causes)))
+
+
+# What may be there as well
+
+
+@pytest.mark.parametrize(
+    ("above", "carried", "is_told"),
+    [(0.1, 0.6, True), (0.3, 0.6, False), (0.1, 0.4, False)],
+    ids=["told", "chance", "predicts nothing"],
+)
+def test_one_more_cause_may_be_there_where_chance_seldom_gives_as_much(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, above: float, carried: float, is_told: bool
+) -> None:
+    """``above`` is the share of simulated searches that gain more from noise."""
+    bench = wide(ROWS, seed=21)
+    made = searched(tmp_path, 0.012 * bench.travel)
+    best, more = fit_of(made, "lead_error"), fit_of(made, "lead_error", "wear")
+    gain = made.score(best) - made.score(more)
+    simulated = gain + np.where(np.arange(100) < 100 * above, 1.0, -1.0)
+    monkeypatch.setattr(choice, "law_of", lambda *_, seed: Law(simulated, above))
+    monkeypatch.setattr(choice, "carries_over", lambda *_: carried)
+    told = [found.key for found in near(made, best) if best.key < found.key]
+    assert told == ([more.key] if is_told else [])
+
+
+def test_what_explains_as_much_in_the_place_of_the_winner_is_not_told_beside_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(choice, "law_of", lambda *_, seed: Law(np.full(100, -1e9), 0.01))
+    monkeypatch.setattr(choice, "carries_over", lambda *_: 9.0)
+    bench = wide(ROWS, seed=21)
+    made = searched(tmp_path, 0.012 * bench.travel + 1.6 * np.sign(bench.load))
+    best, _, both = (fit_of(made, *names) for names in (["lead_error"], ["clearance"], ["lead_error", "clearance"]))
+    assert both.key in {found.key for found in near(made, best)}
+    monkeypatch.setattr(choice, "CLOSE", 1e6)
+    monkeypatch.setattr(choice, "_is_near", lambda made, best, found: found.key == frozenset(["clearance"]))
+    assert {found.key for found in near(made, best)} == {frozenset(["clearance"])}
+
+
+def test_a_larger_explanation_is_told_where_it_is_better(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = wide(ROWS, seed=21)
+    made = searched(tmp_path, 0.01 * bench.travel + 1.6 * np.sign(bench.load))
+    best, larger = fit_of(made, "wear"), fit_of(made, "lead_error", "clearance")
+    monkeypatch.setattr(choice, "unsure", lambda one, other: 0.0)
+    assert made.score(larger) < made.score(best)
+    assert larger.key in {found.key for found in near(made, best)}
+    monkeypatch.setattr(Competition, "score", lambda self, found: 5.0 if found.key == larger.key else 0.0)
+    assert larger.key not in {found.key for found in near(made, best)}

@@ -199,6 +199,30 @@ def test_a_further_cause_must_pass_chance_and_carry_over(
     assert _step(stated, at, more, folds, seed=1).is_believed is is_believed
 
 
+@pytest.mark.parametrize(
+    ("before", "after", "carried", "is_believed"),
+    [
+        (["clearance"], ["lead_error"], 0.1, True),
+        (["clearance"], ["lead_error"], -0.1, False),
+        (["lead_error"], ["clearance", "wear"], 0.9, False),
+        (["lead_error"], ["clearance", "wear"], 1.1, True),
+    ],
+    ids=["exchanged", "exchanged, and worse", "more numbers", "more numbers that predict"],
+)
+def test_only_what_adds_numbers_must_predict_better(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: list[str], after: list[str], carried: float,
+    is_believed: bool,
+) -> None:  # fmt: skip
+    """What is exchanged for no more numbers is judged by its score, and may not predict worse."""
+    made = competing(tmp_path, 0.0 * LINE)
+    at, more = of_causes(made, *before), of_causes(made, *after)
+    monkeypatch.setattr(steps, "law_of", lambda *_, seed: Law(np.zeros(299), 1 / 300))
+    monkeypatch.setattr(steps, "carries_over", lambda *_: carried)
+    stated: Any = Stated({at.key: 30.0, more.key: 0.0})
+    folds: Any = None
+    assert _step(stated, at, more, folds, seed=1).is_believed is is_believed
+
+
 # Waves that beat
 
 
@@ -288,3 +312,20 @@ def test_folds_and_ends_leave_rows_out_that_judge_only(tmp_path: Path) -> None:
     for folds in (folds_of(few), ends_of(few)):
         assert (folds.block_of[100:] == -1).all()
         assert (folds.block_of[:100] >= 0).any()
+
+
+def test_the_order_of_a_file_without_an_order_leaves_the_folds_as_they_are(tmp_path: Path) -> None:
+    """The rows that are left out together are the same in a shuffled file."""
+    order = np.random.default_rng(9).permutation(ROWS)
+    marked = []
+    for place, rows in enumerate((np.arange(ROWS), order)):
+        columns = BENCH.columns(gauge(BENCH.load, BENCH.travel) + NOISE)
+        columns = {name: values[rows] for name, values in columns.items() if name != "time"}
+        folder = tmp_path / str(place)
+        folder.mkdir()
+        one = Asked(drive_model(tolerances={}))
+        made = plain_competition(one, one.records(folder, columns), UM)
+        folds = folds_of(made.sample)
+        marked.append({float(columns["travel"][row]): int(folds.block_of[row]) % folds.count for row in range(ROWS)})
+    assert marked[0] == marked[1]
+    assert set(marked[0].values()) == set(range(5))
