@@ -269,7 +269,7 @@ def test_shapes_over_the_same_covariates_say_the_same(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("above", "carried", "is_told"),
-    [(0.1, 0.6, True), (0.3, 0.6, False), (0.1, 0.4, False)],
+    [(0.05, 1.1, True), (0.2, 1.1, False), (0.05, 0.9, False)],
     ids=["told", "chance", "predicts nothing"],
 )
 def test_one_more_cause_may_be_there_where_chance_seldom_gives_as_much(

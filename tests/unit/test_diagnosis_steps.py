@@ -165,10 +165,11 @@ def of_causes(made: Competition, *names: str) -> Fit:
     ("before", "after", "least"),
     [
         (["lead_error"], ["lead_error", "wear"], steps.WANDER),
-        (["lead_error"], ["clearance", "wear"], steps.WANDER),
+        (["lead_error"], ["clearance", "wear"], steps.LEAST_IN_PLACE),
+        (["lead_error"], ["wear"], steps.WANDER),
         ([], ["wear"], 0.0),
     ],
-    ids=["one more", "in its place", "the first"],
+    ids=["one more", "more in its place", "another in its place", "the first"],
 )
 def test_what_comes_beside_a_cause_or_takes_its_place_must_be_better_than_noise_with_a_memory(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: list[str], after: list[str], least: float

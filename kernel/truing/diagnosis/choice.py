@@ -30,7 +30,7 @@ SURE = sqrt(CLOSE) / 2
 Where what is left is noise, a difference d has the standard error 2 sqrt(d), so that this is ``CLOSE`` once more. Where
 the rows contradict one another, because something else is wrong, the standard error is larger and more stays open.
 """
-MAYBE = 0.2
+MAYBE = 0.1
 """Chance that noise alone gives the search as much, up to which one more cause may be there as well."""
 ALIKE = 1.0
 """Sum of squares, in units of the noise, by which two explanations differ that are one on this record."""
@@ -240,7 +240,7 @@ def _with_more(made: Competition, best: Fit, seed: int) -> list[Fit]:
         each
         for each in found
         if law.p_of(_gained(made, best, each)) <= MAYBE
-        and carries_over(best, each, made.extended, folds) >= CARRIED / 2
+        and carries_over(best, each, made.extended, folds) >= CARRIED
     ]
     named = [each for each in near if shapes_in(each) == shapes_in(best)]
     return named or ([] if shapes_in(best) else near)

@@ -21,6 +21,8 @@ from truing.diagnosis.records import FEWEST_READINGS
 
 ANY_LEVEL = 0.015
 FURTHER_LEVEL = 0.01
+LEAST_IN_PLACE = 12.0
+"""What a step must be better by that puts more numbers in the place of others: twice what counts as near."""
 WANDER = 6.0
 """What a cause must be better by, in score, than noise with a memory of its own."""
 CERTAIN = 60.0
@@ -167,6 +169,7 @@ def _step(made: Competition, at: Fit, more: Fit, folds: Folds, *, seed: int) -> 
     level = FURTHER_LEVEL if at.causes else ANY_LEVEL
     is_believed = (
         law.p_value <= level
+        and gain >= (0.0 if at.key < more.key or more.size <= at.size else LEAST_IN_PLACE)
         and made.own_score(at) - made.own_score(more) >= (WANDER if at.causes else 0.0)
         and not _mends(made, at, more, gain)
         and carries_over(at, more, made.extended, folds) >= CARRIED * _added(at, more)
