@@ -289,18 +289,3 @@ def test_a_memory_is_learnt_with_the_rows_in_order(tmp_path: Path) -> None:
     error = wander(np.random.default_rng(12), 150, 0.75)
     found = learn(machine(tmp_path, error))
     assert found.memory.rho > 0.4
-
-
-def test_what_leaves_the_likelier_noise_is_fairer_its_spread_among_it(tmp_path: Path) -> None:
-    """-2 log likelihood of normal noise, every row with its own standard deviation; nothing is paid."""
-    size = np.exp(0.7 * (np.abs(BENCH.load) - np.abs(BENCH.load).mean()) / np.abs(BENCH.load).std())
-    there = machine(tmp_path, noise() * size, tolerances={})
-    extended = Extended(there)
-    made = Competition(extended, (), sample(there), Curves(extended))
-    made.keep(nothing(made.sample, extended))
-    learnt_of_it = made.learnt_from(made.null)["deflection"]
-    sizes = learnt_of_it.scale / learnt_of_it.weights
-    left = made.sample.left(made.null.predicted) * UM
-    least = minimize_scalar(lambda factor: -2 * norm(0, factor * sizes).logpdf(left).sum(), bounds=(0.5, 2)).fun
-    assert_allclose(made._score_in_its_noise(made.null), least, atol=0.2)  # the scale is looked for on a grid
-    assert least < 150 * (1 + log(2 * np.pi * np.mean(left**2))) - 20  # what it is with one standard deviation for all

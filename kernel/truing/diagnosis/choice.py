@@ -239,8 +239,7 @@ def _with_more(made: Competition, best: Fit, seed: int) -> list[Fit]:
     near = [
         each
         for each in found
-        if law.p_of(_gained(made, best, each)) <= MAYBE
-        and carries_over(best, each, made.extended, folds) >= CARRIED
+        if law.p_of(_gained(made, best, each)) <= MAYBE and carries_over(best, each, made.extended, folds) >= CARRIED
     ]
     named = [each for each in near if shapes_in(each) == shapes_in(best)]
     return named or ([] if shapes_in(best) else near)

@@ -16,7 +16,7 @@ from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit, nothing, refit
 from truing.diagnosis.extended import Extended, shape_added
 from truing.diagnosis.fitted import Fit, signs_of_wrong
 from truing.diagnosis.learning import as_noise, learnt
-from truing.diagnosis.sample import Noise, Sample, sample_of
+from truing.diagnosis.sample import Sample, sample_of
 
 MOST_CAUSES = 5
 MARGIN = 6.0
@@ -28,8 +28,6 @@ LEAST_PROMISE = 4.0
 WITHIN = 60.0
 """Explanations within so much of the best are fitted again when the noise was learnt anew, and so many at most."""
 RENEWED = 40
-FAIR = 4
-"""So many explanations are compared in the noise that each leaves."""
 FINER = 0.5
 """Directions of the inputs are looked for anew when the noise turns out so much finer."""
 SETTLED = 0.02
@@ -116,23 +114,8 @@ class Competition:
 
     @property
     def fairest(self) -> Fit:
-        """What is best where every explanation has the noise that it leaves: the noise is learnt from it.
-
-        What lies near by its memory and tails is told apart by its spread as well.
-        """
-        ordered = sorted(self.known.values(), key=self.own_score)[:FAIR]
-        near = [found for found in ordered if self.own_score(found) < self.own_score(ordered[0]) + MARGIN]
-        return min(near, key=self._score_in_its_noise) if len(near) > 1 else near[0]
-
-    def _score_in_its_noise(self, found: Fit) -> float:
-        """Return the score of an explanation in the noise that is learnt from it, its spread among it."""
-        sample = sample_of(self.sample.machine, self.learnt_from(found), self.sample.mask, self.sample.directions)
-        sizes = sum(float(np.sum(np.log(each.weights[each.read] / each.scale))) for each in sample.channels)
-        return as_noise(sample, found.predicted) - 2 * sizes + float(found.inputs @ found.inputs) + self.price(found)
-
-    def learnt_from(self, found: Fit) -> dict[str, Noise]:
-        """Return the noise that an explanation leaves."""
-        return learnt(self.sample, found.predicted, found.size + len(found.inputs) ** 0.5)
+        """What is best where every explanation has the noise that it leaves: the noise is learnt from it."""
+        return min(self.known.values(), key=self.own_score)
 
     # ---- fits
 
@@ -220,7 +203,8 @@ class Competition:
     def renew(self) -> None:
         """Learn the noise from the fairest explanation, and judge everything in it."""
         for _ in range(ROUNDS):
-            noise = self.learnt_from(self.fairest)
+            fair = self.fairest
+            noise = learnt(self.sample, fair.predicted, fair.size + len(fair.inputs) ** 0.5)
             finer = any(noise[name].scale < FINER * own.scale for name, own in self.sample.noise.items())
             directions = None if finer else self.sample.directions
             sample = sample_of(self.sample.machine, noise, self.sample.mask, directions)
