@@ -299,14 +299,3 @@ def test_what_explains_as_much_in_the_place_of_the_winner_is_not_told_beside_it(
     monkeypatch.setattr(choice, "CLOSE", 1e6)
     monkeypatch.setattr(choice, "_is_near", lambda made, best, found: found.key == frozenset(["clearance"]))
     assert {found.key for found in near(made, best)} == {frozenset(["clearance"])}
-
-
-def test_a_larger_explanation_is_told_where_it_is_better(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    bench = wide(ROWS, seed=21)
-    made = searched(tmp_path, 0.01 * bench.travel + 1.6 * np.sign(bench.load))
-    best, larger = fit_of(made, "wear"), fit_of(made, "lead_error", "clearance")
-    monkeypatch.setattr(choice, "unsure", lambda one, other: 0.0)
-    assert made.score(larger) < made.score(best)
-    assert larger.key in {found.key for found in near(made, best)}
-    monkeypatch.setattr(Competition, "score", lambda self, found: 5.0 if found.key == larger.key else 0.0)
-    assert larger.key not in {found.key for found in near(made, best)}

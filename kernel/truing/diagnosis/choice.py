@@ -254,7 +254,7 @@ def _gained(made: Competition, best: Fit, found: Fit) -> float:
 def _is_near(made: Competition, best: Fit, found: Fit) -> bool:
     """Whether an explanation is a rival of the winner."""
     behind = made.score(found) - made.score(best)
-    if (len(found.causes) > len(best.causes) and behind >= 0) or (found.key < best.key and behind >= CLOSE):
+    if len(found.causes) > len(best.causes) or (found.key < best.key and behind >= CLOSE):
         return False
     if (shifts_inputs(found) and not shifts_inputs(best)) or shapes_in(found) > max(shapes_in(best), 1):
         return False
