@@ -299,3 +299,24 @@ def test_what_explains_as_much_in_the_place_of_the_winner_is_not_told_beside_it(
     monkeypatch.setattr(choice, "CLOSE", 1e6)
     monkeypatch.setattr(choice, "_is_near", lambda made, best, found: found.key == frozenset(["clearance"]))
     assert {found.key for found in near(made, best)} == {frozenset(["clearance"])}
+
+
+def test_of_shapes_that_say_the_same_the_one_stands_that_leaves_a_name_most(tmp_path: Path) -> None:
+    """A parabola over the travel takes a lead, a wave over it does not; both draw what was hidden beside it."""
+    bench = wide(ROWS, seed=21)
+    made = searched(tmp_path, 0.02 * bench.travel + 3 * np.sin(bench.travel / 40))
+    lead = fit_of(made, "lead_error")
+    both = {}
+    for cause in made.causes:
+        if cause.tag in {"unknown:trend.3:travel:deflection", "unknown:wave:travel:deflection"}:
+            joined = made.joined(lead, cause, made.look(lead, [cause])[cause.tag].starts)
+            assert joined is not None
+            assert cause.shape is not None
+            both[cause.shape.kind] = joined
+    assert choice._worth_of_names(made, both["wave"]) > choice._worth_of_names(made, both["trend"])
+    near = {found.key: 0.0 for found in both.values()}
+    score = made.score
+    made.score = lambda found: near.get(found.key, score(found))  # type: ignore[method-assign]
+    assert choice._taking_least(made, both["trend"]).key == both["wave"].key
+    near[both["wave"].key] = CLOSE + 1
+    assert choice._taking_least(made, both["trend"]).key == both["trend"].key

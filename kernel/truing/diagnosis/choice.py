@@ -91,7 +91,7 @@ def choose(made: Competition, *, seed: int) -> Chosen:
     best = _certain(made, made.backward(decision.at))
     if best.causes:
         named = _registered(made, best)
-        best = _named_weakest(made, best if named.key == best.key else _exchanged(made, named))
+        best = _taking_least(made, _named_weakest(made, best if named.key == best.key else _exchanged(made, named)))
     best = made.exact(best)
     near = [Rival(made.exact(rival.fit), rival.behind) for rival in _rivals(made, best, seed)]
     near = [rival for rival in near if not _adds_nothing(made, best, rival.fit)]
@@ -158,6 +158,22 @@ def _registered(made: Competition, best: Fit) -> Fit:
         )
     )
     return min(near, key=lambda found: (len(found.causes), made.score(found)), default=best)
+
+
+def _taking_least(made: Competition, best: Fit) -> Fit:
+    """Return, of shapes over the same covariates that are about as good beside names, the one that leaves them most."""
+    if shapes_in(best) in (0, len(best.causes)):
+        return best
+    near = [found for found in made.known.values() if made.score(found) < made.score(best) + CLOSE]
+    alike = [found for found in near if len(found.causes) == len(best.causes) and _says_the_same(best, found)]
+    return max(alike, key=lambda found: _worth_of_names(made, found))
+
+
+def _worth_of_names(made: Competition, found: Fit) -> float:
+    """Return what the score loses at least without one of the causes that have a name."""
+    named = (place for place, cause in enumerate(found.causes) if cause.shape is None)
+    less = (made.without(found, place) for place in named)
+    return min((made.score(each) - made.score(found) for each in less if each is not None), default=0.0)
 
 
 def _named_weakest(made: Competition, best: Fit) -> Fit:
