@@ -24,6 +24,12 @@ KNOWN_WRONG = {
     "test_rows_held_out_are_predicted_as_well_as_can_be[relief_error-rig-growing-root_stress_sun+contact_stress]": (
         "0.88 of a gain of 2 % is removed, at p 0.031, where 0.9 is asked for"
     ),
+    "test_the_cause_is_named[joint_wear-wide-heavy-1]": (
+        "the wear is named, and whether a drift is there as well is left open: chance gives as much in one of ten"
+    ),
+    "test_what_nobody_registered_is_called_unknown[feed_marks-surface]": (
+        "marks every 9 um draw waves of 9, 3, ... um; one of them is called waviness, the other one is unregistered"
+    ),
 }
 """By the end of a test's name: answers of the diagnosis that are known to be wrong, each with what is wrong."""
 

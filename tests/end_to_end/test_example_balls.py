@@ -284,10 +284,10 @@ def test_one_drop_of_a_basketball_excludes_the_coefficient_of_textbooks_only(tmp
 def test_the_page_shows_drag_the_control_and_a_ball_never_fitted() -> None:
     """The page is run elsewhere; what it prints is compared with what is known."""
     said = re.findall(r"air drag, drag coefficient ([\d.]+) \(95 %: ([\d.]+) … ([\d.]+)\)(.)", PAGE)
-    (named, doubted) = [(value, low, high) for value, low, high, end in said if end in ".;"]
-    assert 0.45 < float(named[0]) < 0.69
-    assert all(float(low) < 0.5 <= float(high) for _, low, high in (named, doubted))
-    assert PAGE.count("that this is the cause is in doubt") == 1
+    (first, second) = [(value, low, high) for value, low, high, end in said if end in ".;"]
+    assert 0.45 < float(first[0]) < 0.69
+    assert all(float(low) < 0.5 <= float(high) for _, low, high in (first, second))
+    assert PAGE.count("Cause named, a remainder left") == 2
     assert PAGE.count("Nothing found. Within its tolerances") == 1  # the control
     held_out = re.findall(r"On the rows held out the error of height falls from ([\d.]+) mm to ([\d.]+) mm", PAGE)
     (before, after), (before_other, after_other) = [map(float, pair) for pair in held_out]
