@@ -301,7 +301,9 @@ def test_what_explains_as_much_in_the_place_of_the_winner_is_not_told_beside_it(
     assert {found.key for found in near(made, best)} == {frozenset(["clearance"])}
 
 
-def test_of_shapes_that_say_the_same_the_one_stands_that_leaves_a_name_most(tmp_path: Path) -> None:
+def test_of_shapes_that_say_the_same_the_one_stands_that_leaves_a_name_most(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A parabola over the travel takes a lead, a wave over it does not; both draw what was hidden beside it."""
     bench = wide(ROWS, seed=21)
     made = searched(tmp_path, 0.02 * bench.travel + 3 * np.sin(bench.travel / 40))
@@ -316,7 +318,7 @@ def test_of_shapes_that_say_the_same_the_one_stands_that_leaves_a_name_most(tmp_
     assert choice._worth_of_names(made, both["wave"]) > choice._worth_of_names(made, both["trend"])
     near = {found.key: 0.0 for found in both.values()}
     score = made.score
-    made.score = lambda found: near.get(found.key, score(found))  # type: ignore[method-assign]
+    monkeypatch.setattr(made, "score", lambda found: near.get(found.key, score(found)))
     assert choice._taking_least(made, both["trend"]).key == both["wave"].key
     near[both["wave"].key] = CLOSE + 1
     assert choice._taking_least(made, both["trend"]).key == both["trend"].key

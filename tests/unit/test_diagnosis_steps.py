@@ -21,6 +21,7 @@ from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import ends_of, folds_of
 from truing.diagnosis.steps import (
     FURTHER_LEVEL,
+    LEAST_IN_PLACE,
     MANY_CURVES,
     _beats,
     _best,
@@ -165,7 +166,7 @@ def of_causes(made: Competition, *names: str) -> Fit:
     ("before", "after", "least"),
     [
         (["lead_error"], ["lead_error", "wear"], steps.WANDER),
-        (["lead_error"], ["clearance", "wear"], steps.LEAST_IN_PLACE),
+        (["lead_error"], ["clearance", "wear"], LEAST_IN_PLACE),
         (["lead_error"], ["wear"], steps.WANDER),
         ([], ["wear"], 0.0),
     ],
@@ -182,6 +183,7 @@ def test_what_comes_beside_a_cause_or_takes_its_place_must_be_better_than_noise_
     for gain, is_believed in ((least - 0.1, False), (least + 0.1, True)):
         stated: Any = Stated({at.key: gain, more.key: 0.0})
         assert _step(stated, at, more, folds, seed=1).is_believed is is_believed
+    assert LEAST_IN_PLACE > steps.WANDER  # or the case above says nothing
 
 
 @pytest.mark.parametrize(

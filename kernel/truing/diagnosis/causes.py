@@ -120,6 +120,11 @@ class Cause:
         return [place for place, number in enumerate(self.numbers) if not number.is_amplitude]
 
     @property
+    def kept(self) -> list[int]:
+        """Places of the whole numbers and of what lies along a covariate: a fit leaves them where they begin."""
+        return [place for place, number in enumerate(self.numbers) if not number.is_free]
+
+    @property
     def acts_on_inputs(self) -> bool:
         """Whether the model runs again with it, so that it may change what other causes do."""
         return self.tolerated >= 0 or (self.effect is not None and self.effect.place == "inputs")

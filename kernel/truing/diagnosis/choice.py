@@ -236,9 +236,7 @@ def _rivals(made: Competition, best: Fit, seed: int) -> list[Rival]:
         if found.key not in alike and _is_near(made, best, found):
             near.append(found)
     more = [found for found in _with_more(made, best, seed) if not any(found.key > each.key for each in near)]
-    return sorted(
-        (Rival(found, max(0.0, made.score(found) - top)) for found in (*near, *more)), key=lambda rival: rival.behind
-    )
+    return [Rival(found, max(0.0, made.score(found) - top)) for found in sorted((*near, *more), key=made.score)]
 
 
 def _with_more(made: Competition, best: Fit, seed: int) -> list[Fit]:
@@ -250,15 +248,15 @@ def _with_more(made: Competition, best: Fit, seed: int) -> list[Fit]:
     ]
     if not found:
         return []
-    law = law_of(made, best, found[0], seed=seed)
-    folds = folds_of(made.sample)
+    law, folds = law_of(made, best, found[0], seed=seed), folds_of(made.sample)
     near = [
         each
         for each in found
-        if law.p_of(_gained(made, best, each)) <= MAYBE and carries_over(best, each, made.extended, folds) >= CARRIED
+        if (not shapes_in(best) or shapes_in(each) == shapes_in(best))
+        and law.p_of(_gained(made, best, each)) <= MAYBE
+        and carries_over(best, each, made.extended, folds) >= CARRIED
     ]
-    named = [each for each in near if shapes_in(each) == shapes_in(best)]
-    return named or ([] if shapes_in(best) else near)
+    return [each for each in near if shapes_in(each) == shapes_in(best)] or near
 
 
 def _gained(made: Competition, best: Fit, found: Fit) -> float:

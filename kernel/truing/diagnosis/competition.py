@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from math import lgamma, log, log1p
 
 import numpy as np
@@ -245,13 +246,8 @@ class Competition:
 
 def _begins(causes: Sequence[Cause], values: Sequence[Matrix]) -> tuple[frozenset[str], tuple[float, ...]]:
     """Return the tags of causes, and their whole numbers and places, which a fit leaves where they begin."""
-    kept = {
-        (cause.tag, place): float(each[place])
-        for cause, each in zip(causes, values, strict=True)
-        for place, number in enumerate(cause.numbers)
-        if not number.is_free
-    }
-    return frozenset(cause.tag for cause in causes), tuple(kept[name] for name in sorted(kept))
+    kept = sorted((cause.tag, each[cause.kept].tolist()) for cause, each in zip(causes, values, strict=True))
+    return frozenset(tag for tag, _ in kept), tuple(chain.from_iterable(each for _, each in kept))
 
 
 def competition_of(extended: Extended, causes: Sequence[Cause], sample: Sample) -> Competition:

@@ -72,17 +72,12 @@ def _distinct(made: Competition, size: int, count: int, accept: Callable[[Fit], 
 
 def _pairs(made: Competition) -> None:
     several = {found.key: found for found in (*_distinct(made, 1, BEAM), *_registered(made, BEAM))}
-    placed = {cause for found in several.values() for cause in found.causes if _keeps_its_place(cause)}
+    placed = {cause for found in several.values() for cause in found.causes if cause.kept}
     for at in list(several.values())[:BEAM]:
         made.forward(at, JOINED, placed.__contains__)
     for one, other in sorted(combinations(several.values(), 2), key=lambda pair: sum(map(made.score, pair))):
         if one.causes[0].is_registered or other.causes[0].is_registered:  # two shapes: no second name is needed
             made.fitted(one.causes + other.causes, one.values + other.values, one)
-
-
-def _keeps_its_place(cause: Cause) -> bool:
-    """Whether a cause has whole numbers or places that a fit leaves where they begin."""
-    return any(not number.is_free for number in cause.numbers)
 
 
 def _registered(made: Competition, count: int) -> list[Fit]:
