@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from truing.gauge import answers_many, read_by_gauge, read_each
+from truing.gauge import answers_many, read_by_gauge, read_each, seen_columns
 from truing.setup import Setup
 
 if TYPE_CHECKING:
@@ -56,25 +56,30 @@ def _changed(machine: Setup, rows: RowsFile, trial: Trial) -> tuple[Setup, RowsF
 
 
 def _stacked(machine: Setup, rows: RowsFile, trials: Sequence[Trial]) -> RowsFile:
-    """Return the rows as each trial has them, one trial behind another."""
-
-    def behind(name: str) -> Any:
-        values = rows.columns.get(name)
-        if isinstance(values, list):
-            return values * len(trials)
-        if values is None and not all(name in trial for trial in trials):
-            values = machine.nominal(name)
-        return np.concatenate([np.broadcast_to(trial.get(name, values), (len(rows),)) for trial in trials])
-
+    """Return the rows as each trial has them, one trial behind another; of the columns what somebody looks at."""
+    names = seen_columns(machine, dict.fromkeys([*rows.columns, *(name for one in trials for name in one)]))
     return replace(
         rows,
-        columns={
-            name: behind(name) for name in dict.fromkeys([*rows.columns, *(name for one in trials for name in one)])
-        },
+        columns={name: _behind(name, machine, rows, trials) for name in names},
         axes={name: np.tile(values, len(trials)) for name, values in rows.axes.items()},
         lines=rows.lines * len(trials),
         runs=rows.runs * len(trials),
     )
+
+
+def _behind(name: str, machine: Setup, rows: RowsFile, trials: Sequence[Trial]) -> Any:
+    """Return a column as each trial has it, one behind another."""
+    values = rows.columns.get(name)
+    if isinstance(values, list):
+        return values * len(trials)
+    if values is None and not all(name in trial for trial in trials):
+        values = machine.nominal(name)
+    if not any(name in trial for trial in trials):
+        return np.tile(np.broadcast_to(values, (len(rows),)), len(trials))
+    column = np.empty((len(trials), len(rows)))
+    for place, trial in enumerate(trials):
+        column[place] = trial.get(name, values)
+    return column.ravel()
 
 
 def _read(

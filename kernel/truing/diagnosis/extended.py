@@ -84,7 +84,7 @@ class Extended:
         self.calls, self.budget = 0, Budget()
         self.grain: dict[str, float] = {}
         """By result: by how much the answers of the model jump or scatter by themselves, SI."""
-        self._asked: deque[str] = deque(maxlen=REPEATED)
+        self._asked: deque[tuple[tuple[str, ...], bytes, bytes]] = deque(maxlen=REPEATED)
         self._setups: dict[frozenset[str], Setup] = {}
         self._shown: dict[Key, Mapping[str, Matrix]] = {}
         self._machines: dict[Key, Setup] = {}
@@ -141,9 +141,9 @@ class Extended:
             self.calls += len(points)
             return
         for values, moved in points:
-            own = zip(causes, values, strict=True)
-            before = [f"{each.tag}={value.tolist()}" for each, value in own if each.acts_on_inputs]
-            key = repr((before, moved.tolist()))
+            own = [(each.tag, value) for each, value in zip(causes, values, strict=True) if each.acts_on_inputs]
+            sizes = b"".join(np.asarray(value).tobytes() for _, value in own)
+            key = tuple(tag for tag, _ in own), sizes, moved.tobytes()
             if key not in self._asked:
                 self.calls += 1
                 self._asked.append(key)
@@ -212,8 +212,7 @@ def _columns(settings: Iterable[tuple[str, int, float]], files: Places) -> dict[
     """Return columns (n,) that have each value in the rows of its file, or in all where the file is -1."""
     made: dict[str, Any] = {}
     for name, file, value in settings:
-        everywhere = np.broadcast_to(value, (len(files),))
-        made[name] = everywhere if file < 0 else np.where(files == file, value, made.get(name, 0.0))
+        made[name] = np.full(len(files), value) if file < 0 else np.where(files == file, value, made.get(name, 0.0))
     return made
 
 
