@@ -11,7 +11,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from truing.declare.batch import FailedRows, watching
-from truing.declare.fields import read, with_values
+from truing.declare.fields import with_values
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Unknown
 from truing.errors import InfeasibleError, PluginError, TruingError, UsageError
@@ -303,18 +303,10 @@ def _apply(setup: Setup, columns: Mapping[str, Any], calculate: Callable[[Any], 
 
 
 def _inputs(setup: Setup, columns: Mapping[str, Any]) -> Any:
-    """Make the inputs of a call; numbers are numpy's, so that 1/0 is infinite alone as it is in a batch."""
-    import numpy as np
-
-    changed: dict[tuple[str, ...], Any] = {}
-    for name, item in setup.model.input_fields.items():
-        value = columns.get(name)
-        if value is None and item.varies:
-            value = read(setup.inputs, item.path)
-            value = value if isinstance(value, np.ndarray) else np.float64(value)
-        if value is not None:
-            changed[item.path] = value
-    return with_values(setup.inputs, changed)
+    """Make the inputs of a call: those of the setup, and columns in place of some of them."""
+    fields = setup.model.input_fields
+    given = {fields[name].path: value for name, value in columns.items() if name in fields and value is not None}
+    return with_values(setup.numpy_inputs, given) if given else setup.numpy_inputs
 
 
 def acting_inputs(setup: Setup) -> Any:

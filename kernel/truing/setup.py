@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import isnan
 from typing import Any
 
@@ -120,6 +121,16 @@ class Setup:
                 raise UsageError(f"the effect '{name}' is switched on twice")
         ordered = sorted(self.effects, key=lambda item: order.index(item.effect.name))
         object.__setattr__(self, "effects", tuple(ordered))
+
+    @cached_property
+    def numpy_inputs(self) -> Any:
+        """The inputs with numpy's numbers, so that 1/0 is infinite in a call of one value as it is in a batch."""
+        import numpy as np
+
+        varying = (item for item in self.model.input_fields.values() if item.varies)
+        values = ((item.path, read(self.inputs, item.path)) for item in varying)
+        numbers = {path: value if isinstance(value, np.ndarray) else np.float64(value) for path, value in values}
+        return with_values(self.inputs, numbers)
 
     def changed(self, values: Mapping[str, Any]) -> Setup:
         """Return the setup with these inputs and conditions, by name and in SI, in place of its own."""

@@ -69,7 +69,7 @@ def _stacked(machine: Setup, rows: RowsFile, trials: Sequence[Trial]) -> RowsFil
 
 def _behind(name: str, machine: Setup, rows: RowsFile, trials: Sequence[Trial]) -> Any:
     """Return a column as each trial has it, one behind another."""
-    values = rows.columns.get(name)
+    values: Any = rows.columns.get(name)
     if isinstance(values, list):
         return values * len(trials)
     if values is None and not all(name in trial for trial in trials):

@@ -155,6 +155,8 @@ def to_truth(case: Case, document: Document) -> float:
     record = case.record
     free = [record.tolerances[:, list(SCATTER).index(name)][:, None] for name in _inputs(document)]
     names = [candidate.name for cause in document["causes"] for candidate in _meant(case, cause)]
+    if case.shape is not None and case.shape.also in {cause["effect"] for cause in document["causes"]}:
+        free.append(over_results(family_of(case.shape, record.rows), record))  # the name may draw all of the family
     if document["remainder"] is None:
         return Lens(record, np.hstack(free) if free else None).separation(case.change, names)
     depends_on = set(document["remainder"]["depends_on"])

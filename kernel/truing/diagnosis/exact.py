@@ -19,7 +19,7 @@ from scipy.optimize import least_squares
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.extended import Extended, parts_of
-from truing.diagnosis.fitted import Fit, inward, moved_by, size_of, steps_of
+from truing.diagnosis.fitted import STEP, Fit, inward, moved_by, size_of, steps_of
 from truing.diagnosis.sample import Sample
 
 EXACTLY = 1e-5
@@ -219,31 +219,44 @@ class Fitting:
 
     def _together(self) -> None:
         """Fit numbers and inputs at once, all with the model itself: where slopes of the inputs mislead."""
-        places, size = np.flatnonzero(self.free), int(self.free.sum())
+        places = np.flatnonzero(self.free)
         low = np.append(self.low[places], np.full(len(self.b), -np.inf))
         high = np.append(self.high[places], np.full(len(self.b), np.inf))
-
-        def left_at(x: Matrix) -> tuple[Matrix, Matrix, dict[str, Matrix]]:
-            u = self.u.copy()
-            u[places] = x[:size]
-            (shown,) = self.shown([u], x[size:])
-            return u, self.sample.left(shown), shown
-
         for _ in range(ROUNDS):
             roots = self.sample.roots(self.left)
 
             def weighted(x: Matrix, roots: Matrix = roots) -> Matrix:
-                left = np.append(roots * left_at(x)[1], x[size:])
-                return np.where(np.isfinite(left), left, FAR)
+                return np.asarray(self._weighted([x], roots)[0])
+
+            def sloped(x: Matrix, roots: Matrix = roots) -> Matrix:
+                steps = STEP * np.maximum(np.abs(x), 1.0)
+                steps = np.where(x + steps > high, -steps, steps)
+                here, *there = self._weighted([x, *(x + np.diag(steps))], roots)
+                return np.asarray((np.column_stack(there) - here[:, None]) / steps)
 
             start = np.clip(np.append(self.u[places], self.b), low, high)
-            found = least_squares(weighted, start, bounds=(low, high), x_scale="jac", max_nfev=MOST_STEPS).x
-            u, left, shown = left_at(found)
-            cost = self.sample.cost(left, found[size:]) if np.isfinite(left).all() else inf
+            found = least_squares(weighted, start, sloped, bounds=(low, high), x_scale="jac", max_nfev=MOST_STEPS).x
+            u, b = self._parted(found)
+            (shown,) = self.shown([u], b)
+            left = self.sample.left(shown)
+            cost = self.sample.cost(left, b) if np.isfinite(left).all() else inf
             if cost > self.cost - EXACTLY:
                 return
-            self.u, self.b, self.anchor, self.predicted, self.left = u, found[size:], found[size:], shown, left
-            self.cost = cost
+            self.u, self.b, self.anchor, self.predicted, self.left, self.cost = u, b, b, shown, left, cost
+
+    def _parted(self, x: Matrix) -> tuple[Matrix, Matrix]:
+        """Return the numbers and the inputs of a point at which free numbers and inputs stand one behind another."""
+        u, size = self.u.copy(), int(self.free.sum())
+        u[self.free] = x[:size]
+        return u, x[size:]
+
+    def _weighted(self, points: Sequence[Matrix], roots: Matrix) -> Matrix:
+        """Return what is left at several points and how far the inputs are off there, (points, rows + K)."""
+        parted = [self._parted(x) for x in points]
+        settings = [(parts_of(self.causes, self.outward(u)), moved_by(self.sample, b)) for u, b in parted]
+        made = self.extended.at(self.causes, settings)
+        left = [np.append(roots * self.sample.left(each), b) for each, (_, b) in zip(made, parted, strict=True)]
+        return np.where(np.isfinite(left), left, FAR)
 
     def _descend(self, until: float) -> None:
         if not self.free.any():

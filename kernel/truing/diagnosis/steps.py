@@ -89,6 +89,8 @@ def _candidates(made: Competition, at: Fit, size: int) -> Iterator[Fit]:
     A polynomial draws anything. What the model itself declares and draws nearly all of it is the better word, and a
     shape is then what is left beside it.
     """
+    if at.causes and made.best(len(at.causes)) is not at:  # the search went on from another one
+        made.forward(at, FURTHER)
     best = _best(made, at, size)
     if best is None or not any(draws_anything(cause) and cause.tag not in at.key for cause in best.causes):
         yield from [] if best is None else [best]
