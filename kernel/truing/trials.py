@@ -51,7 +51,8 @@ def _changed(machine: Setup, rows: RowsFile, trial: Trial) -> tuple[Setup, RowsF
     """Return machine and rows of a trial: one value for all rows is the machine's, others are columns."""
     columns = {name: value for name, value in trial.items() if np.ndim(value) > 0}
     series = {name: columns.pop(name, values) for name, values in rows.series.items()}
-    moved = machine.changed({name: value for name, value in trial.items() if np.ndim(value) == 0})
+    values = {name: value for name, value in trial.items() if np.ndim(value) == 0}
+    moved = machine.changed(values) if values else machine
     return moved, replace(rows, columns={**rows.columns, **columns}, series=series)
 
 

@@ -227,7 +227,7 @@ class Competition:
         """Fit explanations again from where they are, in the present noise."""
         for found in several:
             is_due = found.key not in self.fresh or until < ROUGHLY
-            if is_due and (not found.causes or self.extended.allows(AGAIN if until > EXACTLY else TO_THE_END)):
+            if is_due and (not found.causes or self.extended.allows(AGAIN if until >= ROUGHLY else TO_THE_END)):
                 self._again(found, until)
 
     def _again(self, found: Fit, until: float) -> None:

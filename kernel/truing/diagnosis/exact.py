@@ -22,8 +22,7 @@ from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import STEP, Fit, inward, moved_by, size_of, steps_of
 from truing.diagnosis.sample import Sample
 
-EXACTLY = 1e-5
-ROUGHLY = 1e-2
+EXACTLY, CLOSELY, ROUGHLY = 1e-5, 1e-3, 1e-2
 """A fit ends where a step promises less than so much of the score."""
 MOST_STEPS, MOST_ROUGH = 40, 12
 """So many steps are taken to an exact end, and to a rough one."""
@@ -134,7 +133,7 @@ class Fitting:
             roots = self.sample.roots(left)
             weighted = self.slopes * roots[:, None]
             downward = weighted.T @ (roots * left) - b
-            moved = cho_solve(cho_factor(weighted.T @ weighted + np.eye(len(b))), downward)
+            moved = np.linalg.solve(weighted.T @ weighted + np.eye(len(b)), downward)
             b = b + self.sample.stride * moved
             left = bare - self.slopes @ b
             if moved @ downward < SETTLED:
@@ -205,19 +204,19 @@ class Fitting:
 
     def settle(self, until: float) -> None:
         """Step down until little is promised; then move the anchor of the inputs, where slopes miss what they do."""
-        if until <= EXACTLY and len(self.b):  # with the causes on, and where the inputs begin
+        if until < ROUGHLY and len(self.b):  # with the causes on, and where the inputs begin
             self._draw_inputs()
         bends = False
         for _ in range(MOST_ANCHORS):
             self._descend(until)
-            is_near = until > EXACTLY and float(np.abs(self.b - self.anchor).max(initial=0.0)) < 1.0
+            is_near = until >= ROUGHLY and float(np.abs(self.b - self.anchor).max(initial=0.0)) < 1.0
             if not len(self.b) or is_near or not self._anchored():
                 break
             bends = True
-        if bends and until <= EXACTLY and not self.extended.grain:
-            self._together()
+        if bends and until < ROUGHLY and not self.extended.grain:
+            self._together(until)
 
-    def _together(self) -> None:
+    def _together(self, until: float) -> None:
         """Fit numbers and inputs at once, all with the model itself: where slopes of the inputs mislead."""
         places = np.flatnonzero(self.free)
         low = np.append(self.low[places], np.full(len(self.b), -np.inf))
@@ -235,12 +234,14 @@ class Fitting:
                 return np.asarray((np.column_stack(there) - here[:, None]) / steps)
 
             start = np.clip(np.append(self.u[places], self.b), low, high)
-            found = least_squares(weighted, start, sloped, bounds=(low, high), x_scale="jac", max_nfev=MOST_STEPS).x
-            u, b = self._parted(found)
+            found = least_squares(
+                weighted, start, sloped, (low, high), ftol=until / len(roots), x_scale="jac", max_nfev=MOST_STEPS
+            )
+            u, b = self._parted(found.x)
             (shown,) = self.shown([u], b)
             left = self.sample.left(shown)
             cost = self.sample.cost(left, b) if np.isfinite(left).all() else inf
-            if cost > self.cost - EXACTLY:
+            if cost > self.cost - until:
                 return
             self.u, self.b, self.anchor, self.predicted, self.left, self.cost = u, b, b, shown, left, cost
 
@@ -264,11 +265,11 @@ class Fitting:
         self.damping = FIRST_DAMPING
         if not self.drawn:
             self.derivatives()
-        is_enough = until > EXACTLY and not self.extended.grain  # derivatives that were corrected, of a smooth model
-        for _ in range(MOST_STEPS if until <= EXACTLY else MOST_ROUGH):
+        is_enough = until >= ROUGHLY and not self.extended.grain  # derivatives that were corrected, of a smooth model
+        for _ in range(MOST_STEPS if until < ROUGHLY else MOST_ROUGH):
             moved, promised = self.step()
             if promised < until and (self.is_fresh or is_enough or promised < 1e-3 * until):
-                if until <= EXACTLY and promised > 0:
+                if until < ROUGHLY and promised > 0:
                     self._taken(moved)
                 return
             if promised < until:

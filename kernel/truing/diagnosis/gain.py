@@ -8,11 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import sqrt
+from math import log, pi, sqrt
 
 import numpy as np
-from scipy.stats import norm
-from scipy.stats import t as student
+from scipy.special import gammaln
 
 from truing.diagnosis.arrays import Mask, Matrix, Places
 from truing.diagnosis.choice import CLOSE, Chosen
@@ -139,8 +138,10 @@ def _log_chance(machine: Machine, name: str, noise: Noise, found: Fit) -> Matrix
 
 def _log_density(z: Matrix, freedom: float) -> Matrix:
     """Return the log density of Student's t with unit variance, the normal law for many degrees of freedom."""
-    law = norm() if freedom >= 30 else student(freedom, scale=sqrt((freedom - 2) / freedom))
-    return np.asarray(law.logpdf(z))
+    if freedom >= 30:
+        return np.asarray(-0.5 * (z**2 + log(2 * pi)))
+    height = gammaln((freedom + 1) / 2) - gammaln(freedom / 2) - 0.5 * log(pi * (freedom - 2))
+    return np.asarray(height - (freedom + 1) / 2 * np.log1p(z**2 / (freedom - 2)))
 
 
 def gains_of(chosen: Chosen, judged: Nested, units: Mapping[str, str]) -> tuple[Gain, ...]:

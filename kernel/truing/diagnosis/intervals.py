@@ -17,7 +17,7 @@ from scipy.special import stdtrit
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
 from truing.diagnosis.derivatives import slopes_at, unit_of
-from truing.diagnosis.exact import fit
+from truing.diagnosis.exact import CLOSELY, fit
 from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import Fit, inward
 from truing.diagnosis.machine import in_blocks
@@ -196,7 +196,7 @@ def _kept_at(near: Fit, extended: Extended, place: int, value: float) -> Fit | N
     flat = np.concatenate(near.values)
     flat[place] = value
     held = [numbers_of(near)[place]]
-    return fit(near.sample, extended, near.causes, parts_of(near.causes, flat), near, held=held)
+    return fit(near.sample, extended, near.causes, parts_of(near.causes, flat), near, until=CLOSELY, held=held)
 
 
 def place_interval(found: Fit, extended: Extended, place: int) -> tuple[float, float]:

@@ -11,13 +11,12 @@ the noise the prediction lies beyond the end: its square is what the likelihood 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
+from math import inf, sqrt
 
 import numpy as np
 from scipy.linalg.lapack import dtbtrs
 from scipy.optimize import minimize_scalar
-from scipy.special import erfcx, gammaln, log_ndtr, ndtri
-from scipy.stats import linregress, rankdata
+from scipy.special import erfcx, gammaln, log_ndtr, ndtri, stdtr
 
 from truing.diagnosis.arrays import Mask, Matrix, Places, Sides
 
@@ -189,6 +188,12 @@ def standardised(values: Matrix) -> Matrix:
     return (filled - filled.mean()) / sd if sd > 0 else np.zeros_like(filled)
 
 
+def _chance_of(correlation: float, count: int) -> float:
+    """Return how likely normal values without a correlation show one as large, to either side."""
+    slope = abs(correlation) * sqrt((count - 2) / max(1 - correlation**2, 1e-300))
+    return float(2 * stdtr(count - 2, -slope))
+
+
 def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> Spread:
     """Find what the spread of the innovations depends on, if on anything (Bonferroni over the drivers).
 
@@ -197,10 +202,12 @@ def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> Spread:
     """
     u = innovations / (robust_sd(innovations) or 1.0)
     tried = {name: z for name, values in drivers.items() if np.ptp(z := standardised(values)) > 0}
-    sizes = ndtri(0.5 + 0.5 * rankdata(np.abs(u)) / (len(u) + 1))
+    ordered = np.sort(np.abs(u))
+    ranks = sum(np.searchsorted(ordered, np.abs(u), side) for side in ("left", "right")) + 1
+    sizes = ndtri(0.5 + 0.25 * ranks / (len(u) + 1))
     if not tried or len(u) < 20 or not np.ptp(sizes) > 0:
         return Spread()
-    p_values = {name: float(linregress(z, sizes).pvalue) for name, z in tried.items()}
+    p_values = {name: _chance_of(float(np.corrcoef(z, sizes)[0, 1]), len(u)) for name, z in tried.items()}
     name = min(p_values, key=p_values.__getitem__)
     p_value = min(1.0, p_values[name] * len(tried))
     if p_value >= SPREAD_LEVEL:

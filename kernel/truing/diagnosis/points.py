@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from itertools import product
 
 import numpy as np
-from scipy.stats import qmc
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
@@ -21,8 +20,23 @@ SPREAD = 64
 """Points over several numbers at once."""
 WAVES_PER_POINT = 0.25
 """Step of a frequency, in what one wave more over the record is: its curves are known to change by then."""
+ROOT_ROUNDS = 40
+"""Rounds after which a root that is approached by half and more in each is exact."""
 PLACES = 120
 """Places of a record at which something may begin."""
+
+
+def evenly(dimensions: int, count: int) -> Matrix:
+    """Return points (count, dimensions) that fill the unit cube evenly, every first part of them as well.
+
+    Multiples of powers of the root of x^(d+1) = x + 1, less their whole parts: a Kronecker sequence (H. Niederreiter,
+    Random number generation and quasi-Monte Carlo methods, SIAM 1992, chapter 3).
+    """
+    root = 1.0
+    for _ in range(ROOT_ROUNDS):
+        root = (1 + root) ** (1 / (dimensions + 1))
+    steps = root ** -np.arange(1.0, dimensions + 1)
+    return np.asarray((0.5 + np.arange(count)[:, None] * steps) % 1.0)
 
 
 def middle(number: Number) -> float:
@@ -64,7 +78,7 @@ def first_places(number: Number) -> Matrix:
 def places_over(shapes: Sequence[Number], most: int = FINEST) -> Matrix:
     """Return where curves over some shape numbers are asked for first, (M, numbers), from 0 to 1 in their ranges."""
     if len(shapes) > 1:
-        return thinned(qmc.Sobol(len(shapes), seed=1).random(SPREAD), most)
+        return thinned(evenly(len(shapes), SPREAD), most)
     return thinned(first_places(shapes[0])[:, None], most) if shapes else np.zeros((1, 0))
 
 
@@ -113,7 +127,7 @@ def spread(cause: Cause, count: int, most: int = FINEST) -> Matrix:
             point[cause.shapes], point[place] = values, level * end
             points.append(point)
         return thinned(np.array(points), most)
-    for u in qmc.Sobol(cause.size + 1, seed=1).random(count):
+    for u in evenly(cause.size + 1, count):
         point = np.zeros(cause.size)
         point[cause.shapes] = placed(shapes, u[None, : len(shapes)])[0]
         level = 10 ** (-3 * u[-1])

@@ -15,7 +15,7 @@ import numpy as np
 
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.competition import MARGIN, MOST_CAUSES, RENEWED, TO_THE_END, Competition
-from truing.diagnosis.exact import EXACTLY
+from truing.diagnosis.exact import CLOSELY
 from truing.diagnosis.fitted import Fit, differ
 from truing.studies.bench import Done, unheard
 
@@ -142,4 +142,4 @@ def _exactly(made: Competition) -> None:
     top = made.score(made.ranked()[0])
     near = [found for found in made.ranked()[:RENEWED] if made.score(found) < top + 4 * MARGIN]
     sized = [best for size in range(1, MOST_CAUSES) if (best := made.best(size)) is not None]
-    made.again([made.null, *near, *sized, *_registered(made, BEAM)], EXACTLY)
+    made.again([made.null, *near, *sized, *_registered(made, BEAM)], CLOSELY)

@@ -7,10 +7,10 @@ from dataclasses import replace
 from math import pi
 
 import numpy as np
-from scipy.stats import qmc
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.machine import Machine
+from truing.diagnosis.points import evenly
 from truing.diagnosis.records import Covariate
 from truing.diagnosis.tidying import is_angle
 from truing.measurements import RowsFile
@@ -28,7 +28,7 @@ def settings_of(machine: Machine, tried: int = TRIED) -> dict[str, Matrix]:
     boxes = {name: box for name, box in found if box is not None and box[1] > box[0]}
     if not boxes:
         return {}
-    unit = qmc.Sobol(len(boxes), scramble=False).random(tried)
+    unit = evenly(len(boxes), tried)
     edges = np.random.Generator(np.random.SFC64(0)).integers(0, 3, size=(tried, len(boxes))) / 2
     every = np.concatenate([unit, edges])
     settings = {}
