@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from truing import Float
 
 LEAST_DIMENSION, MOST_DIMENSION = 2.05, 2.95  # exponents 2/(D-2) and 1/(3-D) run away beyond
-STEPS = 12  # of Halley's iteration at most; three or four do
-FINE = 1e-13
+STEPS = 12  # of Halley's iteration at most; two or three do
+FINE = 3e-5  # a step as small leaves about its cube
 
 
 @dataclass(frozen=True)

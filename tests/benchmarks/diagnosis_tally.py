@@ -42,7 +42,7 @@ class Tally:
         self.seconds.append(seconds)
         verdict = str(document["verdict"])
         if wish.strange is not None:
-            said = "called unknown" if verdict == "unknown" else verdict
+            said = {"unknown": "called unknown", "named": "another name"}.get(verdict, verdict)
             self.strange[said] += 1
         elif not wish.hidden:
             self.nothing += 1

@@ -52,13 +52,6 @@ NOTHING = [
 NAMED = [
     Wish(seed=6, hidden={"face_misalignment": {"misalignment": 1.5}}, results=STRESS, count=70),
     Wish(
-        seed=7,
-        hidden={"face_misalignment": {"misalignment": 2, "per_load": 5}},
-        results=STRESS,
-        design="one_way",
-        count=70,
-    ),
-    Wish(
         seed=30,
         hidden={"structural_resonance": {"strength": 0.06, "resonance_speed": 900, "damping": 0.1}},
         results=STRESS,

@@ -42,7 +42,7 @@ NAMED = [
     Wish(seed=5, hidden={"thermal_clearance": {"expansion": 11.5}}, kind="heavy"),
     Wish(seed=6, hidden={"running_in": {"depth": 0.8, "run_in_time": 300}}, count=120),
     Wish(seed=27, hidden={"wear_temperature": {"softening": 0.004}}, design="fleet", count=60),
-    Wish(seed=8, hidden={"film_lubrication": {"film_factor": 110}}, design="fleet", results=BOTH),
+    Wish(seed=8, hidden={"film_lubrication": {"film_factor": 110}}, design="fleet", results=BOTH, count=60),
     Wish(seed=10, hidden={"pin_wear": {"ratio": 0.6}}, kind="growing"),
     Wish(seed=11, hidden={"lost_motion_share": {"loss": 0.5}}, results=BOTH, count=80),
     Wish(seed=12, hidden={"bearing_wear": {"wear": 0.5}}, design="fleet", count=60),

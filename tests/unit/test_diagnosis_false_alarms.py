@@ -15,10 +15,10 @@ from scipy.stats import binom, kstest
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.verdict import explanations_of
 
-SEEDS = range(14)
+SEEDS = range(10)
 PERMITTED, NAMED_WITH_GROSS_ERRORS = 0.05, 0.10
 CHANCE = 0.01
-GROSS_SEEDS = range(30)
+GROSS_SEEDS = range(20)
 
 
 @pytest.fixture(scope="module")
