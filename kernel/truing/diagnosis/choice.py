@@ -126,17 +126,15 @@ def _adds_nothing(made: Competition, best: Fit, found: Fit) -> bool:
 
 def _exchanged(made: Competition, best: Fit) -> Fit:
     """Exchange every cause of the winner for every other one, and take what is better."""
+    kinds = _kinds(best)
     for _ in range(2):
         for place in range(len(best.causes)):
             exchange(made, best, place)
-        kinds = _kinds(best)
-        alike = [found for found in made.ranked(is_sensible) if _kinds(found) == kinds]
-        top = alike[0] if alike else best
-        is_same = top.key == best.key
-        best = made.exact(top)
-        if is_same:
+        top = next(iter(made.ranked(lambda found: is_sensible(found) and _kinds(found) == kinds)), best)
+        if top.key == best.key:
             break
-    return best
+        best = made.exact(top)
+    return made.exact(best)
 
 
 def _kinds(found: Fit) -> tuple[int, int, int]:

@@ -97,8 +97,7 @@ class Competition:
         """Return the same where what is left counts as noise with the memory that suits it best."""
         if found not in self.owned:
             self.owned[found] = as_noise(self.sample, found.predicted)
-        inputs = float(found.inputs @ found.inputs)
-        return self.owned[found] + inputs + self.price(found)
+        return self.owned[found] + float(found.inputs @ found.inputs) + self.price(found)
 
     def ranked(self, accept: Callable[[Fit], bool] = lambda _: True) -> list[Fit]:
         """Return what was fitted and is accepted, the best first."""

@@ -239,8 +239,7 @@ def _duels(chosen: Chosen, several: Sequence[Fit], settings: Mapping[str, Matrix
 
 def _spreads(sample: Sample, best: Fit) -> dict[str, float]:
     """Return the standard deviation of one new value of every result as the winner leaves it, SI."""
-    squares = sample.squares(sample.left(best.predicted))
-    return {each.name: each.scale * float(square) ** 0.5 for each, square in zip(sample.channels, squares, strict=True)}
+    return {each.name: each.scale * square**0.5 for each, _, square in sample.scaled(sample.left(best.predicted))}
 
 
 def _duel(true: _Seen, rival: _Seen, roots: Matrix, spreads: Matrix) -> _Duel:
@@ -269,14 +268,10 @@ def _seen(found: Fit, extended: Extended, tried: Extended) -> _Seen:
     """Return what an explanation predicts and how it changes, on the data and at the settings that are tried."""
     numbers, sample, k, units = numbers_of(found), found.sample, len(found.inputs), unit_of(found)
     flat = np.concatenate(found.values)
-    wide = WIDE if tried.grain else STEP
-    steps = wide * np.maximum(np.abs(flat), 1e-2 * np.abs(units))
+    steps = (WIDE if tried.grain else STEP) * np.maximum(np.abs(flat), 1e-2 * np.abs(units))
     steps = np.where(flat + steps > [number.high for number in numbers], -steps, steps)
-    points = [(parts_of(found.causes, flat), found.moved)]
-    for place, step in enumerate(steps):
-        point = flat.copy()
-        point[place] += step if numbers[place].is_free else 0.0
-        points.append((parts_of(found.causes, point), found.moved))
+    moves = np.diag([step if number.is_free else 0.0 for step, number in zip(steps, numbers, strict=True)])
+    points = [(parts_of(found.causes, flat + move), found.moved) for move in (np.zeros(len(flat)), *moves)]
     for half in 0.5 * np.eye(k):
         points += [(list(found.values), moved_by(sample, found.inputs + sign * half)) for sign in (1, -1)]
     names = [channel.name for channel in sample.channels]

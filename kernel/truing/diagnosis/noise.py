@@ -188,12 +188,6 @@ def standardised(values: Matrix) -> Matrix:
     return (filled - filled.mean()) / sd if sd > 0 else np.zeros_like(filled)
 
 
-def _chance_of(correlation: float, count: int) -> float:
-    """Return how likely normal values without a correlation show one as large, to either side."""
-    slope = abs(correlation) * sqrt((count - 2) / max(1 - correlation**2, 1e-300))
-    return float(2 * stdtr(count - 2, -slope))
-
-
 def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> Spread:
     """Find what the spread of the innovations depends on, if on anything (Bonferroni over the drivers).
 
@@ -207,9 +201,9 @@ def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> Spread:
     sizes = ndtri(0.5 + 0.25 * ranks / (len(u) + 1))
     if not tried or len(u) < 20 or not np.ptp(sizes) > 0:
         return Spread()
-    p_values = {name: _chance_of(float(np.corrcoef(z, sizes)[0, 1]), len(u)) for name, z in tried.items()}
-    name = min(p_values, key=p_values.__getitem__)
-    p_value = min(1.0, p_values[name] * len(tried))
+    correlation, name = max((abs(float(np.corrcoef(z, sizes)[0, 1])), name) for name, z in tried.items())
+    off = correlation * sqrt((len(u) - 2) / max(1 - correlation**2, 1e-300))
+    p_value = min(1.0, 2 * float(stdtr(len(u) - 2, -off)) * len(tried))
     if p_value >= SPREAD_LEVEL:
         return Spread()
     z = tried[name]

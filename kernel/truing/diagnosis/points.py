@@ -20,8 +20,6 @@ SPREAD = 64
 """Points over several numbers at once."""
 WAVES_PER_POINT = 0.25
 """Step of a frequency, in what one wave more over the record is: its curves are known to change by then."""
-ROOT_ROUNDS = 40
-"""Rounds after which a root that is approached by half and more in each is exact."""
 PLACES = 120
 """Places of a record at which something may begin."""
 
@@ -32,9 +30,7 @@ def evenly(dimensions: int, count: int) -> Matrix:
     Multiples of powers of the root of x^(d+1) = x + 1, less their whole parts: a Kronecker sequence (H. Niederreiter,
     Random number generation and quasi-Monte Carlo methods, SIAM 1992, chapter 3).
     """
-    root = 1.0
-    for _ in range(ROOT_ROUNDS):
-        root = (1 + root) ** (1 / (dimensions + 1))
+    root = np.roots([1, *[0] * (dimensions - 1), -1, -1]).real.max()
     steps = root ** -np.arange(1.0, dimensions + 1)
     return np.asarray((0.5 + np.arange(count)[:, None] * steps) % 1.0)
 

@@ -200,11 +200,7 @@ class Sample:
         """What the directions of the inputs add to the predictions about their means, by result (n, K), SI."""
         return {name: slopes @ self.directions for name, slopes in self.machine.slopes.items()}
 
-    def squares(self, left: Matrix) -> list[float]:
-        """Return by channel the square of the scale of what is left, in units of the noise."""
-        return [square for *_, square in self._scaled(left)]
-
-    def _scaled(self, left: Matrix) -> Iterator[tuple[Channel, slice, float]]:
+    def scaled(self, left: Matrix) -> Iterator[tuple[Channel, slice, float]]:
         """Give every channel, where its values stand, and the square of the scale of what is left of them."""
         for channel, part in zip(self.channels, self.parts, strict=True):
             yield channel, part, channel.square(left[part])
@@ -212,7 +208,7 @@ class Sample:
     def cost(self, left: Matrix, inputs: Matrix) -> float:
         """Return -2 log likelihood of what is left, noise of every result free, plus the prior of the inputs."""
         total = float(inputs @ inputs)
-        for channel, part, square in self._scaled(left):
+        for channel, part, square in self.scaled(left):
             total += channel.known * log(square)
             if channel.freedom < inf:
                 total += float(channel.losses(left[part], square).sum())
@@ -220,11 +216,11 @@ class Sample:
 
     def losses(self, left: Matrix, judge: Matrix) -> Matrix:
         """Return by row what is left as -2 log likelihood in noise of the scale that ``judge`` leaves, (rows,)."""
-        return np.concatenate([channel.losses(left[part], square) for channel, part, square in self._scaled(judge)])
+        return np.concatenate([channel.losses(left[part], square) for channel, part, square in self.scaled(judge)])
 
     def roots(self, left: Matrix) -> Matrix:
         """Return by row what makes squares of what is left count: its noise is the one that it shows, (rows,)."""
-        each = self._scaled(left)
+        each = self.scaled(left)
         return np.concatenate([np.sqrt(channel.shares(left[part], square) / square) for channel, part, square in each])
 
     @cached_property

@@ -132,16 +132,11 @@ def _result_to_measure(machine: Machine, explanations: Sequence[Fit]) -> tuple[N
     goals = {goal.result for goal in start.model.objectives if isinstance(goal, (Require, Minimise, Maximise))}
     ranked: list[tuple[tuple[Any, ...], list[_Gap]]] = []
     for place, name in enumerate(names):
-        gaps = [
-            gap
-            for (a, one), (b, other) in combinations(found, 2)
-            if (gap := _gap(there, name, (a, b), one[name] - other[name])) is not None
-        ]
+        pairs = (_gap(there, name, (a, b), one[name] - other[name]) for (a, one), (b, other) in combinations(found, 2))
+        gaps = sorted((gap for gap in pairs if gap is not None), key=lambda gap: gap.clearness)
         if gaps:
-            gaps.sort(key=lambda gap: gap.clearness)
             parted = sum(found[0][0] in gap.names for gap in gaps)
-            is_goal = name in goals
-            clearness = float(f"{gaps[0].clearness:.2g}")
+            is_goal, clearness = name in goals, float(f"{gaps[0].clearness:.2g}")
             has_gauge = is_goal or fields[name].unit not in PURE
             ranked.append(((has_gauge, parted, is_goal, len(gaps), clearness, -place), gaps))
     if not ranked:
