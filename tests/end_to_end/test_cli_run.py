@@ -147,7 +147,7 @@ def test_an_earlier_run_is_replaced_whole(calc: Calc, tmp_path: Path) -> None:
     assert [path.name for path in (tmp_path / "runs").iterdir()] == ["pin_wear"]
 
 
-@pytest.mark.parametrize("name", ["Prüfstand 7", "a b c", "日本", "it's [x] (1)"])
+@pytest.mark.parametrize("name", ["Prüfstand 7 日本", "it's [x] (1)"])
 def test_paths_with_spaces_and_umlauts(calc_process: Calc, tmp_path: Path, name: str) -> None:
     folder = tmp_path / name
     folder.mkdir()
