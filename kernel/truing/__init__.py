@@ -5,6 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from truing.api.loading import load
+    from truing.api.model import Diagnosis, LoadedModel
+    from truing.api.records import read, record
+    from truing.api.run import Run
     from truing.declare.batch import column, either, feasible
     from truing.declare.blocks import Block, Drawing, Table, Words
     from truing.declare.fields import Float, axis, found, given, inputs, loaded, part, results, rows
@@ -26,6 +30,10 @@ if TYPE_CHECKING:
     from truing.units import quantity
 
 _HOMES = {
+    "truing.api.loading": ("load",),
+    "truing.api.model": ("Diagnosis", "LoadedModel"),
+    "truing.api.records": ("read", "record"),
+    "truing.api.run": ("Run",),
     "truing.declare.batch": ("column", "either", "feasible"),
     "truing.declare.blocks": ("Block", "Drawing", "Table", "Words"),
     "truing.declare.fields": ("Float", "axis", "found", "given", "inputs", "loaded", "part", "results", "rows"),
@@ -50,7 +58,8 @@ _HOMES = {
 }  # fmt: skip
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
 
-__all__ = [  # noqa: RUF022  # in the order of a plugin's story
+__all__ = [  # noqa: RUF022  # what a user calls; then what a plugin needs, in the order of its story
+    "load", "LoadedModel", "Run", "read", "record", "Diagnosis",
     "inputs", "results", "given", "found", "axis", "rows", "part", "loaded", "quantity", "Float",
     "feasible", "either", "column",
     "Tolerance", "Effect", "Unknown", "Condition", "ErrorSource",

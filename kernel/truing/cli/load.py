@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from truing.cli.console import Settings
-from truing.errors import UnknownPluginError
-from truing.kernel import Kernel, Offer, demand_readable
+from truing.kernel import Offer
+from truing.kernel.finding import offer_of
 
 if TYPE_CHECKING:
     from truing.setup import Setup
@@ -16,28 +16,7 @@ if TYPE_CHECKING:
 
 def find_offer(word: str, settings: Settings, *, strict: bool = False) -> Offer:
     """Return the model that ``word`` names, after saying which plugins were left out."""
-    kernel = Kernel.installed(strict=strict)
-    if word.endswith(".py"):
-        if not Path(word).is_file():
-            raise UnknownPluginError(f"{word}: no such file")
-        origin = kernel.add_file(Path(word))
-        wanted = origin.name
-    else:
-        wanted = word
-    offers = kernel.offers
-    own = [broken for broken in kernel.broken if broken.plugin == wanted and wanted not in offers]
-    for broken in kernel.broken:
-        if broken not in own:
-            settings.say(f"warning: {broken}")
-    if word.endswith(".py"):
-        own_models = [offer for offer in offers.values() if offer.origin.name == wanted]
-        if len(own_models) == 1:
-            demand_readable(own_models[0])
-            return own_models[0]
-        if len(own_models) > 1:
-            names = ", ".join(offer.model.name for offer in own_models)
-            raise UnknownPluginError(f"{word} offers several models ({names}); a file that is run offers one")
-    return kernel.offer(wanted)
+    return offer_of(word, lambda text: settings.say(f"warning: {text}"), strict=strict)
 
 
 def read_or_example(

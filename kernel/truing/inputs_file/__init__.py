@@ -16,23 +16,25 @@ from truing.setup import Setup
 __all__ = ["json_schema", "read_setup", "setup_from_settings", "setup_from_text"]
 
 
-def read_setup(path: Path, offer: Offer, *, overrides: Sequence[str] = ()) -> Setup:
+def read_setup(path: Path, offer: Offer, *, overrides: Sequence[str] = (), label: str = "--set") -> Setup:
     """Read an inputs file for this calculation.
 
     ``overrides`` are "name=value" as given with ``--set``: names of inputs or conditions, or dotted names such as
-    "tolerances.load", "effects.running_in.extra" and "studies.reliability.draws". Raises InputError with every fault of
-    file and overrides.
+    "tolerances.load", "effects.running_in.extra" and "studies.reliability.draws"; faults of these begin with ``label``.
+    Raises InputError with every fault of file and overrides.
     """
     text = read_text(path, instead=f"`calc init {offer.name}` writes an example")
     document = read_document(text, str(path))
-    apply_overrides(document, offer.model, overrides, "--set")
+    apply_overrides(document, offer.model, overrides, label)
     return _setup(document, offer, path.parent)
 
 
-def setup_from_text(text: str, offer: Offer, *, file: str, folder: Path, overrides: Sequence[str] = ()) -> Setup:
+def setup_from_text(
+    text: str, offer: Offer, *, file: str, folder: Path, overrides: Sequence[str] = (), label: str = "--set"
+) -> Setup:
     """Read the text of an inputs file; data files are looked for in ``folder``. Raises InputError with every fault."""
     document = read_document(text, file)
-    apply_overrides(document, offer.model, overrides, "--set")
+    apply_overrides(document, offer.model, overrides, label)
     return _setup(document, offer, folder)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from truing.kernel import Offer
-from truing.report.diagnosis_sheet import diagnosis_html, diagnosis_markdown, make_diagnosis_sheet
+from truing.report.diagnosis_sheet import DiagnosisSheet, diagnosis_html, diagnosis_markdown, make_diagnosis_sheet
 from truing.report.run import add_pdf, run_info
 from truing.runs.diagnosis_folder import data_digests, write_diagnosis
 from truing.runs.folder import demand_place
@@ -48,18 +48,25 @@ def perform_diagnosis(setup: Setup, offer: Offer, order: DiagnosisOrder, progres
     started = time.time()
     diagnosis = diagnose(setup, read_records(order.data, offer, setup), progress=progress)
     progress("sheet and PDF" if order.pdf else "sheet", 0, 0)
-    document, note = write_all(diagnosis, order, started)
+    document, note = write_diagnosed(diagnosis, order.folder, started=started, pdf=order.pdf)
     return Diagnosed(diagnosis, document, note)
 
 
-def write_all(diagnosis: Diagnosis, order: DiagnosisOrder, started: float) -> tuple[dict[str, Any], str]:
+def write_diagnosed(
+    diagnosis: Diagnosis, folder: Path, *, started: float, pdf: bool = False
+) -> tuple[dict[str, Any], str]:
     """Write sheets and folder of a diagnosis; return diagnosis.json and what became of the printing."""
-    provenance = provenance_of(diagnosis.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
-    provenance = replace(provenance, files={**provenance.files, **data_digests(diagnosis)})
-    sheet = make_diagnosis_sheet(diagnosis, provenance=provenance)
+    sheet = diagnosis_sheet_of(diagnosis, started)
     sheets: dict[str, str | bytes] = {"sheet.html": diagnosis_html(sheet), "sheet.md": diagnosis_markdown(sheet)}
-    note = add_pdf(sheets, order.folder) if order.pdf else ""
+    note = add_pdf(sheets, folder) if pdf else ""
     document = write_diagnosis(
-        order.folder, diagnosis, provenance=provenance, run_info=run_info(started), sheets=sheets
+        folder, diagnosis, provenance=sheet.provenance, run_info=run_info(started), sheets=sheets
     )  # fmt: skip
     return document, note
+
+
+def diagnosis_sheet_of(diagnosis: Diagnosis, started: float) -> DiagnosisSheet:
+    """Return the sheet of a diagnosis, with where its numbers and its data come from."""
+    provenance = provenance_of(diagnosis.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
+    provenance = replace(provenance, files={**provenance.files, **data_digests(diagnosis)})
+    return make_diagnosis_sheet(diagnosis, provenance=provenance)

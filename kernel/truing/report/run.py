@@ -17,6 +17,7 @@ from truing.errors import OutputError
 from truing.executors import BatchLog, KeptExecutor, Place, open_executor
 from truing.kernel import Offer
 from truing.published import compare_published
+from truing.report.context import Sheet
 from truing.report.pdf import pdf_bytes
 from truing.report.render import html_of, markdown_of
 from truing.report.sheet import make_sheet
@@ -24,8 +25,11 @@ from truing.runs.folder import demand_place, write_run
 from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
-from truing.studies.bench import Progress
+from truing.studies.bench import Progress, silent
 from truing.studies.states import State
+
+SERIAL: Mapping[str, Any] = {"workers": {"count": 1, "lost": 0, "where": "serial"}, "resumed": 0, "warnings": []}
+"""What run.json says of a run in one process."""
 
 
 @dataclass(frozen=True)
@@ -88,25 +92,57 @@ def _perform(setup: Setup, offer: Offer, order: RunOrder, *, progress: Progress,
         calculation, cases = _calculate(setup, offer, order, executor=executor, progress=progress)
         place.settle()
         computed = _computed(executor)
-    verified = compare_published(offer, progress=progress, known=calculation)
-    progress("sheet", 0, 0)
-    provenance = provenance_of(calculation.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
-    sheet = make_sheet(calculation, provenance=provenance, verified=verified, cases=cases)
+    document, note = write_calculation(
+        order.folder, calculation, offer, started=started, computed=computed, cases=cases, pdf=order.pdf,
+        excel=order.excel, progress=progress,
+    )  # fmt: skip
+    return Done(calculation, document, cases, note, tuple(computed["warnings"]), computed["resumed"])
+
+
+def write_calculation(
+    folder: Path,
+    calculation: Calculation,
+    offer: Offer,
+    *,
+    started: float,
+    computed: Mapping[str, Any] = SERIAL,
+    cases: CasesTable | None = None,
+    pdf: bool = False,
+    excel: bool = False,
+    progress: Progress = silent,
+) -> tuple[dict[str, Any], str]:
+    """Write sheets and folder of a finished calculation; return results.json and what became of the printing."""
+    sheet = sheet_of(calculation, offer, started=started, cases=cases, progress=progress)
     sheets: dict[str, str | bytes] = {"sheet.html": html_of(sheet), "sheet.md": markdown_of(sheet)}
-    if order.pdf:
+    if pdf:
         progress("printing", 0, 0)
-    note = add_pdf(sheets, order.folder) if order.pdf else ""
+    note = add_pdf(sheets, folder) if pdf else ""
     document = write_run(
-        order.folder,
+        folder,
         calculation,
         offer,
-        provenance=provenance,
+        provenance=sheet.provenance,
         run_info={**run_info(started), **computed},
         sheets=sheets,
         cases=cases,
-        excel=order.excel,
+        excel=excel,
     )
-    return Done(calculation, document, cases, note, tuple(computed["warnings"]), computed["resumed"])
+    return document, note
+
+
+def sheet_of(
+    calculation: Calculation,
+    offer: Offer,
+    *,
+    started: float,
+    cases: CasesTable | None = None,
+    progress: Progress = silent,
+) -> Sheet:
+    """Return the sheet of a finished calculation, the numbers that the paper prints compared."""
+    verified = compare_published(offer, progress=progress, known=calculation)
+    progress("sheet", 0, 0)
+    provenance = provenance_of(calculation.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
+    return make_sheet(calculation, provenance=provenance, verified=verified, cases=cases)
 
 
 def _computed(place: Place) -> dict[str, Any]:

@@ -1,0 +1,101 @@
+"""What a diagnosis found, piece by piece: causes with sizes and intervals, the ranking, the residuals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from truing.api.quantities import quantity_of
+from truing.api.tables import frame_of
+from truing.diagnosis import result as found
+from truing.errors import UsageError
+from truing.report.diagnosis_figures import over_covariate, ranking_bars
+from truing.report.diagnosis_words import explanation
+from truing.units import from_si
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A fitted unknown in its unit, with its 95 % interval; an open end is None. ``quantity`` is pint's."""
+
+    value: float
+    interval95: tuple[float | None, float | None]
+    unit: str
+    quantity: Any
+
+
+@dataclass(frozen=True)
+class NamedCause:
+    """A cause that is named: its effect, its unknowns by name, its share of the correction, and what draws the same."""
+
+    effect: str
+    unknowns: Mapping[str, Fitted]
+    share: float
+    same_as: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """The explanations that were compared, the best first."""
+
+    result: found.Diagnosis
+
+    def frame(self) -> Any:
+        """Return them as a dataframe: explanation, how far behind in score, lambda that separates it from the best."""
+        ranked = self.result.ranking
+        return frame_of(
+            {
+                "explanation": [explanation(each) for each in ranked],
+                "behind": [each.behind for each in ranked],
+                "separation": [each.separation for each in ranked],
+            }
+        )
+
+    def plot(self) -> Figure:
+        """Draw how far every explanation is behind the best."""
+        return ranking_bars(self.result)
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """Measured minus simulated, before (calibrated within its tolerances) and after (extended), by result."""
+
+    result: found.Diagnosis
+
+    def frame(self, name: str = "") -> Any:
+        """Return what was measured, and the model before and after, of one result in its print unit, row by row."""
+        curves = self._curves(name)
+        unit = self.result.setup.print_unit(curves.result)
+        return frame_of({each: from_si(getattr(curves, each), unit) for each in ("measured", "before", "after")})
+
+    def plot(self, over: str = "", name: str = "") -> Figure:
+        """Draw the residuals of a result over a covariate: of what the cause depends on, where none is named."""
+        covariates = self.result.records.covariates
+        if over and over not in covariates:
+            raise UsageError(f"'{over}' is no column of the record; there are {', '.join(covariates)}")
+        asked = [over] if over else [*(self.result.remainder.depends_on if self.result.remainder else ()), *covariates]
+        return over_covariate(self.result, self._curves(name), covariates[asked[0]])
+
+    def _curves(self, name: str) -> found.Curves:
+        by_name = {curves.result: curves for curves in self.result.curves}
+        if name and name not in by_name:
+            raise UsageError(f"'{name}' was not measured; measured are {', '.join(by_name)}")
+        return by_name[name] if name else next(iter(by_name.values()))
+
+
+def causes_of(diagnosis: found.Diagnosis) -> tuple[NamedCause, ...]:
+    """Return the causes that are named, the largest first, unknowns in the units they were declared in."""
+    return tuple(
+        NamedCause(cause.effect, {each.name: _fitted(each) for each in cause.unknowns}, cause.share, cause.same_as)
+        for cause in diagnosis.causes
+    )
+
+
+def _fitted(unknown: found.FittedUnknown) -> Fitted:
+    """Return an unknown in the unit that it was declared in."""
+    low, high = (None if end is None else float(from_si(end, unknown.unit)) for end in (unknown.low, unknown.high))
+    value = float(from_si(unknown.value, unknown.unit))
+    return Fitted(value, (low, high), unknown.unit, quantity_of(unknown.value, unknown.unit))
