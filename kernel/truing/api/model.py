@@ -111,7 +111,9 @@ class LoadedModel:
         with as_file(frame, units or {}) as path:
             rows = read_rows(path, self.offer, setup)
         shown = shown_by_gauge(setup, rows)
-        results = {f"{name} [{shown.units[name] or '1'}]": column for name, column in shown.values.items()}
+        results: dict[str, Any] = {
+            f"{name} [{shown.units[name] or '1'}]": column for name, column in shown.values.items()
+        }
         return beside(frame, {**results, "fault": [shown.reasons.get(row, "") for row in range(len(rows))]})
 
     def diagnose(

@@ -12,7 +12,7 @@ from truing.units.names import CURRENCIES
 
 def quantity_of(si: Any, unit: str) -> Any:
     """Return a number or array in SI as a quantity in a unit; in base units where pint does not know its name."""
-    registry = pint.get_application_registry()
+    registry: Any = pint.get_application_registry()  # type: ignore[no-untyped-call]
     for currency in CURRENCIES:
         if currency not in registry:
             registry.define(f"{currency} = [currency_{currency}]")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -124,6 +124,6 @@ class Run:
             raise UsageError(f"{self.offer.name} has no result '{name}'.{near_miss(name, list(self.si))}")
 
 
-def _table(rows: list[tuple[str, ...]]) -> str:
+def _table(rows: Iterable[Sequence[str]]) -> str:
     lines = ("".join(f"<td>{escape(str(cell))}</td>" for cell in row) for row in rows)
     return "<table>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"

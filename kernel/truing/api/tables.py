@@ -28,7 +28,7 @@ def frame_of(columns: Mapping[str, Sequence[Any]]) -> Any:
     return nw.from_dict(dict(columns), backend=library).to_native()  # type: ignore[arg-type]
 
 
-def beside(frame: Any, columns: Mapping[str, Sequence[Any]]) -> Any:
+def beside(frame: Any, columns: Mapping[str, Any]) -> Any:
     """Return a dataframe with further columns, of the library that it came from."""
     table = nw.from_native(frame, eager_only=True)
     made = [nw.new_series(name, list(values), backend=table.implementation) for name, values in columns.items()]

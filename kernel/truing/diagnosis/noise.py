@@ -201,8 +201,9 @@ def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> Spread:
     sizes = ndtri(0.5 + 0.25 * ranks / (len(u) + 1))
     if not tried or len(u) < 20 or not np.ptp(sizes) > 0:
         return Spread()
-    correlation, name = max((abs(float(np.corrcoef(z, sizes)[0, 1])), name) for name, z in tried.items())
-    off = correlation * sqrt((len(u) - 2) / max(1 - correlation**2, 1e-300))
+    alike = {name: abs(float(np.corrcoef(z, sizes)[0, 1])) for name, z in tried.items()}
+    name = max(alike, key=alike.__getitem__)  # of drivers that are one the first
+    off = alike[name] * sqrt((len(u) - 2) / max(1 - alike[name] ** 2, 1e-300))
     p_value = min(1.0, 2 * float(stdtr(len(u) - 2, -off)) * len(tried))
     if p_value >= SPREAD_LEVEL:
         return Spread()

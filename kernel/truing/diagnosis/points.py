@@ -31,8 +31,7 @@ def evenly(dimensions: int, count: int) -> Matrix:
     Random number generation and quasi-Monte Carlo methods, SIAM 1992, chapter 3).
     """
     root = np.roots([1, *[0] * (dimensions - 1), -1, -1]).real.max()
-    steps = root ** -np.arange(1.0, dimensions + 1)
-    return np.asarray((0.5 + np.arange(count)[:, None] * steps) % 1.0)
+    return np.asarray((0.5 + np.arange(count)[:, None] * root ** -np.arange(1.0, dimensions + 1)) % 1.0)
 
 
 def middle(number: Number) -> float:
