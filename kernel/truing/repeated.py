@@ -92,16 +92,16 @@ def _is_repeated(value: np.ndarray[Any, Any], count: int) -> bool:
 
 
 def _key(values: Mapping[tuple[str, ...], Any]) -> bytes:
-    """Return what tells inputs of one model apart; they always come in the same order."""
+    """Return what tells inputs of one model apart; they come in one order, and each says where it ends."""
     digest = blake2b(digest_size=16)
     for value in values.values():
         if isinstance(value, np.ndarray):
-            digest.update(f"{value.shape}{value.dtype.str}".encode())
+            digest.update(f"array{value.shape}{value.dtype.str}\0".encode())
             digest.update(np.ascontiguousarray(value).data)
         elif isinstance(value, float):
-            digest.update(pack("d", value))
+            digest.update(b"float" + pack("d", value))
         else:
-            digest.update(repr(value).encode())
+            digest.update(f"other{value!r}\0".encode())
     return digest.digest()
 
 

@@ -131,3 +131,10 @@ def test_an_effect_that_changes_an_array_in_place_changes_nothing_that_is_rememb
     load = {"load": np.array([1.0, 2.0, 3.0])}
     for _ in range(3):
         np.testing.assert_allclose(evaluate_rows(setup, load, 3, repeats=1).results["sag"], 8.0 * load["load"] + 0.5)
+
+
+def test_inputs_that_differ_are_told_apart() -> None:
+    """Also where their texts read alike one behind another: 1 and 12 are not 11 and 2."""
+    several = [(1, 12), (11, 2), (112, ""), (1.0, 12), (np.array([1.0]), 12), (np.array([1.0, 12.0]), 12), ("1", "12")]
+    keys = {repeated._key({("one",): one, ("other",): other}) for one, other in several}
+    assert len(keys) == len(several)
