@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from truing.declare.fields import InputField
@@ -36,6 +37,13 @@ def example_text(offer: Offer) -> str:
                 f"{offer.model.example}: the example of '{offer.name}' cannot be read: {error}"
             ) from error
     return "\n".join(_lines(offer)) + "\n"
+
+
+def example_of(offer: Offer) -> tuple[str, str, Path]:
+    """Return that text, the name of the file it stands for, and the folder in which it looks for data files."""
+    shipped = offer.model.example
+    file, folder = (str(shipped), shipped.parent) if shipped is not None else ("example.toml", Path.cwd())
+    return example_text(offer), file, folder
 
 
 def schema_name(offer: Offer) -> str:

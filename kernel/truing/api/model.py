@@ -12,7 +12,7 @@ from typing import Any
 
 from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
 from truing.api.records import Record
-from truing.api.run import Run
+from truing.api.run import Run, html_table
 from truing.api.settings import settings_of
 from truing.api.tables import as_file, beside
 from truing.atomic import write_files
@@ -23,7 +23,7 @@ from truing.diagnosis.engine import diagnose
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.verdict import Verdict
 from truing.errors import UsageError
-from truing.example_file import example_text
+from truing.example_file import example_of
 from truing.executors import open_executor
 from truing.gauge import shown_by_gauge
 from truing.inputs_file import read_setup, setup_from_text
@@ -33,6 +33,7 @@ from truing.measurements import read_rows
 from truing.report.diagnosis_run import diagnosis_sheet_of, write_diagnosed
 from truing.report.diagnosis_sheet import diagnosis_html, diagnosis_markdown
 from truing.report.diagnosis_words import headline
+from truing.report.run import place_of
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_text
 from truing.runs.folder import demand_place
@@ -75,9 +76,7 @@ class LoadedModel:
         overrides = [*self.stated, *settings_of(self.offer.model, values)]
         if inputs is not None:
             return read_setup(Path(inputs), self.offer, overrides=overrides, label="")
-        shipped = self.offer.model.example
-        file, folder = (str(shipped), shipped.parent) if shipped is not None else ("example.toml", Path.cwd())
-        text, file, folder = self.text or (example_text(self.offer), file, folder)
+        text, file, folder = self.text or example_of(self.offer)
         return setup_from_text(text, self.offer, file=file, folder=folder, overrides=overrides, label="")
 
     def run(
@@ -142,7 +141,7 @@ class LoadedModel:
 
     def _ran(self, setup: Setup, *, workers: int = 1, progress: Progress = silent) -> Run:
         started = time.time()
-        with open_executor("serial" if workers == 1 else f"processes:{workers}") as executor:
+        with open_executor(place_of(workers)) as executor:
             calculation = calculate(setup, executor=executor, progress=progress)
         return Run(self.offer, calculation, started)
 
@@ -227,12 +226,10 @@ class Diagnosis:
     def _repr_html_(self) -> str:
         """Show the verdict, the causes and the ranking; inert and self-contained."""
         said = "".join(f"<p>{escape(sentence)}</p>" for sentence in self.sentences)
-        rows = "".join(f"<tr>{cells}</tr>" for cells in self._cells())
-        return f"<h4>{escape(self.result.setup.model.title)}</h4>{said}<table>{rows}</table>"
+        return f"<h4>{escape(self.result.setup.model.title)}</h4>{said}{html_table(self._cells())}"
 
-    def _cells(self) -> Iterator[str]:
+    def _cells(self) -> Iterator[Sequence[str]]:
         for cause in self.causes:
             for name, each in cause.unknowns.items():
                 ends = " … ".join("open" if end is None else f"{end:.4g}" for end in each.interval95)
-                cells = (cause.effect, name, f"{each.value:.4g} {each.unit}".rstrip(), f"95 %: {ends}")
-                yield "".join(f"<td>{escape(cell)}</td>" for cell in cells)
+                yield cause.effect, name, f"{each.value:.4g} {each.unit}".rstrip(), f"95 %: {ends}"

@@ -101,7 +101,7 @@ class Run:
         checks = [(check.compared or check.name, SHORT[check.state]) for check in self.checks]
         results = [(row["name"], row["symbol"], row["text"]) for row in self._rows()]
         parts = [f"<h4>{escape(self._setup.model.title)}</h4>", f"<p>{escape(head)}</p>" if head else ""]
-        return "".join([*parts, _table(checks) if checks else "", _table(results)])
+        return "".join([*parts, html_table(checks) if checks else "", html_table(results)])
 
     @property
     def _setup(self) -> Setup:
@@ -124,6 +124,7 @@ class Run:
             raise UsageError(f"{self.offer.name} has no result '{name}'.{near_miss(name, list(self.si))}")
 
 
-def _table(rows: Iterable[Sequence[str]]) -> str:
+def html_table(rows: Iterable[Sequence[str]]) -> str:
+    """Write rows as a table of HTML, every cell escaped."""
     lines = ("".join(f"<td>{escape(str(cell))}</td>" for cell in row) for row in rows)
     return "<table>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"

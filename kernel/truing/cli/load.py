@@ -23,12 +23,11 @@ def read_or_example(
     offer: Offer, inputs: Path | None, changed: Sequence[str], *, word: str, settings: Settings
 ) -> Setup:
     """Return what the inputs file says, or the shipped example where none is named; ``word`` named the model."""
-    from truing.example_file import example_text
+    from truing.example_file import example_of
     from truing.inputs_file import read_setup, setup_from_text
 
     if inputs is not None:
         return read_setup(inputs, offer, overrides=changed)
     settings.say(f"no --inputs: running the shipped example (calc init {word} writes it to a file)")
-    shipped = offer.model.example
-    file, folder = (str(shipped), shipped.parent) if shipped is not None else ("example.toml", Path.cwd())
-    return setup_from_text(example_text(offer), offer, file=file, folder=folder, overrides=changed)
+    text, file, folder = example_of(offer)
+    return setup_from_text(text, offer, file=file, folder=folder, overrides=changed)

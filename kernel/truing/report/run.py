@@ -28,8 +28,8 @@ from truing.setup import Setup
 from truing.studies.bench import Progress, silent
 from truing.studies.states import State
 
-SERIAL: Mapping[str, Any] = {"workers": {"count": 1, "lost": 0, "where": "serial"}, "resumed": 0, "warnings": []}
-"""What run.json says of a run in one process."""
+UNDISTURBED: Mapping[str, Any] = {"resumed": 0, "warnings": []}
+"""What run.json says beside ``run_info`` of a run in one process."""
 
 
 @dataclass(frozen=True)
@@ -47,9 +47,14 @@ class RunOrder:
     @property
     def place(self) -> str:
         """Where it is computed, as ``open_executor`` reads it."""
-        if self.cluster:
-            return f"dask:{self.cluster}"
-        return "serial" if self.workers == 1 else f"processes:{self.workers}"
+        return place_of(self.workers, self.cluster)
+
+
+def place_of(workers: int, cluster: str = "") -> str:
+    """Return where it is computed, as ``open_executor`` reads it."""
+    if cluster:
+        return f"dask:{cluster}"
+    return "serial" if workers == 1 else f"processes:{workers}"
 
 
 @dataclass(frozen=True)
@@ -105,7 +110,7 @@ def write_calculation(
     offer: Offer,
     *,
     started: float,
-    computed: Mapping[str, Any] = SERIAL,
+    computed: Mapping[str, Any] = UNDISTURBED,
     cases: CasesTable | None = None,
     pdf: bool = False,
     excel: bool = False,
