@@ -56,6 +56,7 @@ class Chosen:
 
     ``same`` holds, by the tag of a cause of ``best``, the names of other causes that draw its curve as it was fitted.
     ``law`` is that of the first step; ``p_second`` is the chance of the last further cause, None where there is none.
+    ``of_some_rows`` is the same decision on the rows of a long record that were searched.
     """
 
     competition: Competition
@@ -64,6 +65,17 @@ class Chosen:
     same: Mapping[str, tuple[str, ...]]
     law: Law
     p_second: float | None
+    of_some_rows: Chosen | None = None
+
+    @property
+    def searched(self) -> Chosen:
+        """The decision on the rows that were searched: this one, but for a long record."""
+        return self.of_some_rows or self
+
+    @property
+    def rows_searched(self) -> float:
+        """How many rows there are for each one that was searched."""
+        return self.competition.sample.rows / self.searched.competition.sample.rows
 
     @property
     def p_any(self) -> float:

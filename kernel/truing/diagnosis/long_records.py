@@ -1,7 +1,9 @@
 """Long records: the search looks at some thousand rows, drawn evenly over the record; what it came to is fitted to all.
 
 One row is drawn of every stretch of equal length, so that no wave of the record is folded into another one by a regular
-step. The decision is that of these rows; estimates, intervals and gains are those of all rows.
+step. The decision is that of these rows, and so is what is said of sizes that would be visible and of how far apart two
+explanations lie, as if every row stood for as many as it was drawn from; estimates, intervals and gains are those of
+all rows.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ from truing.diagnosis.machine import Machine, machine_of
 from truing.diagnosis.records import Records
 from truing.diagnosis.sample import sample_of
 
-LONG = 4000
+LONG = 2500
 """A record of more rows is searched on about so many of them."""
 SINGLES = 12
 RANKED = 8
@@ -44,7 +46,7 @@ def on_all_rows(chosen: Chosen, machine: Machine) -> Chosen:
     made.stage, made.extended.grain = "fits to all rows", few.extended.grain
     made.extended.budget = few.extended.budget.of_rows(len(machine.records) / len(few.sample.machine.records))
     made.tries = dict(few.tries)
-    few.curves, few.looked = made.curves, {}  # those of some rows are much, and needed no more
+    few.looked = {}  # much, and needed no more
     rivals_there = [few.known[rival.fit.key] for rival in chosen.rivals]
     singles = few.ranked(lambda found: len(found.causes) == 1)[:SINGLES]
     wanted = [few.known[chosen.best.key], *rivals_there, *few.ranked()[:RANKED], *singles]
@@ -55,7 +57,7 @@ def on_all_rows(chosen: Chosen, machine: Machine) -> Chosen:
     best = made.known.get(chosen.best.key, made.null)
     ends = [made.exact(made.known[rival.fit.key]) for rival in chosen.rivals if rival.fit.key in made.known]
     rivals = tuple(Rival(found, max(0.0, made.score(found) - made.score(best))) for found in ends)
-    return replace(chosen, competition=made, best=made.exact(best), rivals=rivals)
+    return replace(chosen, competition=made, best=made.exact(best), rivals=rivals, of_some_rows=chosen)
 
 
 def machine_for_search(machine: Machine, *, seed: int) -> Machine:

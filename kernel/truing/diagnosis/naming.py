@@ -184,13 +184,15 @@ def _followed(found: Fit) -> tuple[str, ...]:
 
 def alternative_of(chosen: Chosen, rival: Rival, *, with_sizes: bool = False) -> Alternative:
     """Return a rival explanation: how far behind, how separable, and on demand what its own fit says."""
-    found = rival.fit
+    found, looked = rival.fit, chosen.searched
+    fits = looked.competition.known if looked is not chosen else {}
+    apart = separation(looked.best, fits.get(found.key, found), looked.competition.extended)
     sized = causes_of(chosen, found) if with_sizes else ()
     same = {name: others for name in found.names if (others := _other_names(chosen, found, name))}
     return Alternative(
         found.names,
         rival.behind,
-        separation(chosen.best, found, chosen.competition.extended),
+        apart * chosen.rows_searched,
         _followed(found),
         {cause.effect: cause.unknowns for cause in sized},
         same,

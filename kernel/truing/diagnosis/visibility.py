@@ -52,14 +52,16 @@ def needed(explanations: int) -> float:
 
 
 class _Eye:
-    """What a curve is on these rows: in units of the noise that the answer leaves, and without what inputs can draw.
+    """What a curve is on the rows that were searched: in units of the noise, and without what inputs can draw.
 
+    The noise is that which the answer leaves; a row counts as many times as the record has rows for it.
     ``roots`` has shape (rows,); ``taken`` (rows + K, K) is an orthonormal basis of the inputs beside their prior.
     """
 
     def __init__(self, chosen: Chosen) -> None:
-        self.sample = chosen.best.sample
-        self.roots = self.sample.roots(chosen.best.left)
+        best = chosen.searched.best
+        self.sample = best.sample
+        self.roots = self.sample.roots(best.left) * sqrt(chosen.rows_searched)
         drawn = self.sample.drawn * self.roots[:, None]
         self.taken = np.linalg.qr(np.concatenate([drawn, np.eye(drawn.shape[1])]))[0]
 
@@ -92,10 +94,11 @@ def smallest_visible(chosen: Chosen) -> list[Seen]:
     """Return for every effect how small it may be, whether the tolerances hide it, whether it was excited."""
     machine, eye = chosen.competition.extended.machine, _Eye(chosen)
     effects = [cause for cause in chosen.competition.causes if cause.effect is not None]
-    unfitted = [cause for cause in effects if frozenset({cause.tag}) not in chosen.competition.known]
+    known, unseen = chosen.searched.competition.known, chosen.searched.competition.extended.budget.unseen
+    unfitted = [cause for cause in effects if frozenset({cause.tag}) not in known]
     reasons = {cause.name: failure_of(machine, cause) for cause in unfitted}
     failing = {name: why for name, why in reasons.items() if why}
-    skipped = {*failing, *chosen.competition.extended.budget.unseen}
+    skipped = {*failing, *unseen}
     limit = needed(len(effects) + comb(len(effects), 2))
     names = [cause.name for cause in effects]
     found: dict[str, list[Seen]] = {}
@@ -151,14 +154,15 @@ def _curves(chosen: Chosen, cause: Cause, place: int) -> Iterator[tuple[float, M
 
     Of a cause in proportion the size is 0, and the curve is the one per unit.
     """
-    bundle = chosen.competition.curves.of(cause, chosen.null)
+    looked = chosen.searched
+    bundle = looked.competition.curves.of(cause, looked.null)
     if bundle.is_straight:
         column = cause.amplitudes.index(place)
         yield from ((0.0, curve) for curve in bundle.curves[:, column])
     elif len(cause.amplitudes) == 1:
         yield from zip(bundle.points[:, place].tolist(), bundle.curves[:, 0], strict=True)
     elif len(bundle.points):
-        yield from _one_by_one(chosen, cause, place, bundle.points[:FEW_SHAPES])
+        yield from _one_by_one(looked, cause, place, bundle.points[:FEW_SHAPES])
 
 
 def _one_by_one(chosen: Chosen, cause: Cause, place: int, shapes: Matrix) -> Iterator[tuple[float, Matrix]]:
