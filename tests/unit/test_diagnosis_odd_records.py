@@ -177,3 +177,22 @@ def test_a_long_record_runs_to_the_end_and_counts_every_row(
     assert sum(count.in_file for count in answer.records.counts) == rows == len(answer.records)
     error = NOISE * 1e-6 * np.sqrt(12 / rows)
     assert of_causes(answer)["leans.slant"] == pytest.approx(40e-6, abs=5 * error)
+
+
+def test_of_a_long_record_the_rows_searched_say_what_would_be_visible(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As much as all rows say, up to what a quarter of them is not like the whole."""
+    answers = []
+    for rows_searched in (1_200, 300):
+        monkeypatch.setattr(long_records, "LONG", rows_searched)
+        answers.append(asked(Shop(), EFFECTS[:3], 1_200).diagnosed(tmp_path, record(leaning, 1_200)))
+    whole, few = answers
+    sizes = [{seen.name: seen.smallest.value for seen in answer.seen if seen.smallest} for answer in answers]
+    assert sizes[0].keys() == sizes[1].keys() > {effect.name for effect in EFFECTS[:3]}
+    assert [sizes[1][name] for name in sizes[0]] == pytest.approx(list(sizes[0].values()), rel=0.1)
+    apart = [{rival.causes: rival.separation for rival in answer.ranking} for answer in answers]
+    both = apart[0].keys() & apart[1].keys()
+    assert len(both) > 1
+    assert [apart[1][names] for names in both] == pytest.approx([apart[0][names] for names in both], rel=0.2)
+    assert [cause.effect for cause in whole.causes] == [cause.effect for cause in few.causes] == ["leans"]
