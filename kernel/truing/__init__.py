@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from truing.kernel import Kernel
     from truing.markers import hookimpl, hookspec
     from truing.studies.allocation import Allocation, Allotted
-    from truing.studies.bench import Bench, Check, Proposal
+    from truing.studies.bench import Bench
+    from truing.studies.checks import Check, Proposal
     from truing.studies.optimise import Optimise, Optimum
     from truing.studies.reliability import Odds, Reliability
     from truing.studies.sensitivity import Sensitivities, Sensitivity
@@ -48,7 +49,8 @@ _HOMES = {
     "truing.kernel": ("Kernel",),
     "truing.markers": ("hookimpl", "hookspec"),
     "truing.studies.allocation": ("Allocation", "Allotted"),
-    "truing.studies.bench": ("Bench", "Check", "Proposal"),
+    "truing.studies.bench": ("Bench",),
+    "truing.studies.checks": ("Check", "Proposal"),
     "truing.studies.optimise": ("Optimise", "Optimum"),
     "truing.studies.reliability": ("Odds", "Reliability"),
     "truing.studies.sensitivity": ("Sensitivities", "Sensitivity"),

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from truing.declare.fields import read
 from truing.declare.model import Record
 from truing.errors import InfeasibleError
@@ -15,7 +17,8 @@ from truing.evaluate import acting_inputs, answered, evaluate
 from truing.executors import open_executor
 from truing.prices import price_answers
 from truing.setup import Setup, SwitchedOn
-from truing.studies.bench import Bench, Check, Outcome, Progress, silent
+from truing.studies.bench import Bench, Outcome, Progress, silent
+from truing.studies.checks import Check
 from truing.studies.states import State
 from truing.studies.verdicts import Decided, decide
 
@@ -106,8 +109,6 @@ def _idle_effects(setup: Setup) -> list[str]:
 
 def _acts(setup: Setup, item: SwitchedOn) -> bool:
     """Whether an effect changes what is shown all the same: as the sign of a load, or the cosine of an angle, may."""
-    import numpy as np
-
     others = tuple(other for other in setup.effects if other is not item)
     try:
         with_it, without = (

@@ -17,8 +17,8 @@ from truing.packed import Packed, pack, travels, unpack
 from truing.prices import price_answers
 from truing.setup import Setup
 from truing.studies.allocation import Allocation
-from truing.studies.bench import FINE, Check, Progress, silent, within
-from truing.studies.checks import requirements
+from truing.studies.bench import FINE, Progress, silent, within
+from truing.studies.checks import Check, requirements
 from truing.studies.optimise import Optimise
 from truing.studies.reliability import Reliability
 from truing.studies.sensitivity import Sensitivity

@@ -8,7 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.batch import FailedRows, watching
 from truing.declare.fields import with_values
@@ -19,10 +22,7 @@ from truing.kernel.blame import home_of, place_of
 from truing.parts_of_batch import uniform_parts
 from truing.repeated import results_of
 from truing.setup import Setup, SwitchedOn
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+from truing.units import to_si
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,6 @@ class Rows:
 
     def complete(self) -> Rows:
         """Return the same rows, of which those that lack any result have failed, with that reason."""
-        import numpy as np
-
         lacking = {row: reason for rows in self.absent.values() for row, reason in rows.items()}
         if not lacking:
             return self
@@ -80,8 +78,6 @@ def answered(setup: Setup, *, reading: bool = False) -> Answered:
     Raises InfeasibleError with the sentence of the plugin where something impossible is asked, and where a result is
     not finite; PluginError, with the place, where the plugin's code fails.
     """
-    import numpy as np
-
     with np.errstate(all="ignore"), watching(1, is_single=True) as log:
         results = _apply(setup, {}, setup.model.function, reading=reading)
     flat = setup.model.read_results(results)
@@ -144,8 +140,6 @@ def evaluate_rows(
 
 def _put_together(parts: Sequence[Rows], order: Sequence[NDArray[np.intp]], names: Sequence[str], rows: int) -> Rows:
     """Put the answers of parts back in the order of the rows."""
-    import numpy as np
-
     failed = np.zeros(rows, dtype=bool)
     reasons: dict[int, str] = {}
     absent: dict[str, dict[int, str]] = {}
@@ -168,8 +162,6 @@ def evaluate_in_parts(
     done: Callable[[int, int], None] = lambda count, rows: None,
 ) -> Rows:
     """Run ``rows`` calculations as ``evaluate_rows`` does, ``size`` in one call; ``done`` hears of every call."""
-    import numpy as np
-
     if rows <= size:
         return evaluate_rows(setup, columns, rows, wanted=wanted, done=done)
     parts: list[Rows] = []
@@ -188,8 +180,6 @@ def _is_column(values: Any, rows: int) -> bool:
 
 def _joined(pieces: Sequence[NDArray[np.float64]], order: Sequence[NDArray[np.intp]], rows: int) -> NDArray[np.float64]:
     """Put the answers of the parts back in the order of the rows."""
-    import numpy as np
-
     inner = max((piece.shape[1:] for piece in pieces), default=())
     joined = np.full((rows, *inner), np.nan)
     for index, piece in zip(order, pieces, strict=True):
@@ -204,8 +194,6 @@ def _one_call(
     setup: Setup, columns: Mapping[str, Any], rows: int, names: Collection[str], *, reading: bool, repeats: int = 0
 ) -> Rows:
     """Call the model once for ``rows`` rows; where no column differs between rows, for one that answers for all."""
-    import numpy as np
-
     alike = not any(isinstance(values, np.ndarray) for values in columns.values())
     called = 1 if alike else rows
     with np.errstate(all="ignore"), watching(called) as log:
@@ -232,8 +220,6 @@ def _one_call(
 
 def _as_rows(setup: Setup, name: str, flat: Mapping[str, Any], rows: int) -> NDArray[np.float64]:
     """Bring a result to shape (rows,) or (rows, k); raises PluginError for any other shape."""
-    import numpy as np
-
     item = setup.model.own_result_fields[name]
     try:
         array = np.asarray(flat[name], dtype=float)
@@ -253,8 +239,6 @@ def _as_rows(setup: Setup, name: str, flat: Mapping[str, Any], rows: int) -> NDA
 
 def _sorted_columns(setup: Setup, columns: Mapping[str, Any], rows: int) -> tuple[dict[str, Any], dict[str, Any]]:
     """Check the columns and part them: those a batch is split by, and numbers (arrays where they differ)."""
-    import numpy as np
-
     fields = setup.model.input_fields
     unknowns = {effect_column(on.effect.name, each.name) for on in setup.effects for each in on.effect.unknowns}
     fixed: dict[str, Any] = {}
@@ -320,8 +304,6 @@ def acting_inputs(setup: Setup) -> Any:
 
 def _keywords(item: SwitchedOn, setup: Setup, columns: Mapping[str, Any]) -> dict[str, Any]:
     """Return what an effect is called with: unknowns and conditions, from the columns, else as they are held."""
-    import numpy as np
-
     held: dict[str, Any] = {}
     for unknown in item.effect.unknowns:
         column = effect_column(item.effect.name, unknown.name)
@@ -340,6 +322,4 @@ def _held(item: SwitchedOn, unknown: Unknown) -> float:
         return item.values[unknown.name]
     if not item.effect.parts:
         raise UsageError(f"effect '{item.effect.name}' is on, so its unknown '{unknown.name}' must be given")
-    from truing.units import to_si
-
     return 0.0 if unknown.is_amplitude else to_si(unknown.low, unknown.unit)

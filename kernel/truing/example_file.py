@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
+from dataclasses import MISSING
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,8 @@ from truing.declare.model import Model, Study
 from truing.declare.sources import Tolerance, Unknown
 from truing.errors import PluginError
 from truing.inputs_file.defaults import default_of, spread_text, toml_key, toml_value
+from truing.inputs_file.schema_words import described
+from truing.inputs_file.study_options import options_of
 from truing.inputs_file.values import plain
 from truing.kernel import Offer
 from truing.setup import DEFAULT_SEED
@@ -82,8 +85,6 @@ def _comment(text: str, mark: str = "# ") -> list[str]:
 
 
 def _input(item: InputField) -> Iterator[str]:
-    from truing.inputs_file.schema_words import described
-
     words = described(item)
     if item.choices:
         words = "; ".join(part for part in (words, " or ".join(toml_value(choice) for choice in item.choices)) if part)
@@ -96,8 +97,6 @@ def _assignment(item: InputField) -> str:
     if default is not None:
         return f"{item.name} = {toml_value(default)}"
     if item.kind == "file":
-        from dataclasses import MISSING
-
         is_open = item.spec.default is not MISSING
         return f'{"# " if is_open else ""}{item.name} = {{ file = "{item.name}.txt" }}'
     like = "..." if item.kind in {"choice", "text"} else f"1 {item.unit}".strip()
@@ -171,8 +170,6 @@ def _studies(model: Model[Any, Any]) -> Iterator[str]:
 
 def _options(study: Study) -> dict[str, Any]:
     """Return the options of a study that a file can state as they are."""
-    from truing.inputs_file.study_options import options_of
-
     values = {name: getattr(study, name) for name in options_of(study)}
     return {name: value for name, value in values.items() if _is_plain(value)}
 

@@ -5,20 +5,18 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.fields import Axis
 from truing.declare.model import Model
 from truing.errors import UsageError
 from truing.evaluate import Rows, effect_column, evaluate_rows
+from truing.measurements import RowsFile
 from truing.setup import Setup
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from truing.measurements import RowsFile
-
+from truing.units import from_si
 
 TOGETHER = 16
 """So many calculations that each answer for many rows are one call of the model: more no longer fit the cache."""
@@ -43,8 +41,6 @@ def shown_by_gauge(setup: Setup, rows: RowsFile) -> Shown:
 
     The machine is calibrated; its readings act. What lies nowhere on the axis of a result keeps the reason.
     """
-    from truing.units import from_si
-
     machine = one_machine(setup)
     evaluated = read_by_gauge(machine, rows)
     if not evaluated.results:
@@ -100,8 +96,6 @@ def seen_columns(machine: Setup, columns: Mapping[str, Any]) -> dict[str, Any]:
 
 def _at_places(machine: Setup, rows: RowsFile) -> Setup:
     """Put the places of the rows into the input series that an axis follows, unless a column holds that series."""
-    import numpy as np
-
     changes: dict[str, Any] = {}
     for name, item in machine.model.own_result_fields.items():
         series = item.spec.follows if isinstance(item.spec, Axis) else ""
@@ -113,8 +107,6 @@ def _at_places(machine: Setup, rows: RowsFile) -> Setup:
 
 def without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int, str]:
     """Say which rows lie nowhere on the axis of a result, so that nothing can be read there."""
-    import numpy as np
-
     reasons: dict[int, str] = {}
     for name, values in evaluated.results.items():
         axis = axis_of(name, machine.model)
@@ -157,8 +149,6 @@ class _Answer:
 
     def rows(self, count: int) -> Rows:
         """Return it as a batch answers."""
-        import numpy as np
-
         failed = np.zeros(count, dtype=bool)
         failed[list(self.reasons)] = True
         return Rows(self.values, failed, dict(sorted(self.reasons.items())), self.absent)
@@ -171,8 +161,6 @@ def read_each(
 
     A trial changes columns, to one value or to (n,). Calculations of several trials are one call of the model.
     """
-    import numpy as np
-
     along = {name: axis_of(name, machine.model) for name in _readable(machine, rows, wanted)}
     asked, machine = {*along, *filter(None, along.values())}, _at_places(machine, rows)
     made = [_Answer({name: np.full(len(rows), np.nan) for name in along}) for _ in trials]
@@ -205,8 +193,6 @@ def _calls(
 
 def _one_or_each(values: list[Any]) -> Any:
     """Return what is one value for all as that, floats that differ as an array, other things as a list."""
-    import numpy as np
-
     if all(value == values[0] for value in values):
         return values[0]
     return np.array(values) if isinstance(values[0], float) else values
@@ -214,16 +200,12 @@ def _one_or_each(values: list[Any]) -> Any:
 
 def _records(rows: RowsFile) -> Sequence[NDArray[np.intp]]:
     """Return the rows of each run; without input series, or a column "run", the file is one."""
-    import numpy as np
-
     return _places_by_run(rows.runs) if rows.series and rows.runs else (np.arange(len(rows)),)
 
 
 @lru_cache(maxsize=8)
 def _places_by_run(runs: tuple[str, ...]) -> tuple[NDArray[np.intp], ...]:
     """Return the places of the rows of each run; a fit asks for the same ones again and again."""
-    import numpy as np
-
     found: dict[str, list[int]] = {}
     for place, name in enumerate(runs):
         found.setdefault(name, []).append(place)
@@ -247,8 +229,6 @@ def _alike(
 
 def _grouped(record: NDArray[np.intp], columns: Sequence[Any]) -> Iterator[NDArray[np.intp]]:
     """Give the rows of a record in which no column differs."""
-    import numpy as np
-
     found: dict[tuple[Any, ...], list[int]] = {}
     for place in record.tolist() if columns else ():
         found.setdefault(tuple(column[place] for column in columns), []).append(place)
@@ -291,8 +271,6 @@ def axis_of(name: str, model: Model[Any, Any]) -> str:
 
 def _read_at(places: Any, axis: NDArray[np.float64], curve: NDArray[np.float64]) -> NDArray[np.float64]:
     """Read a curve at places of its axis, NaN beyond its ends; these may be missed by rounding."""
-    import numpy as np
-
     order = np.argsort(axis)
     low, high = axis[order[0]], axis[order[-1]]
     rounding = 1e-9 * max(abs(low), abs(high))

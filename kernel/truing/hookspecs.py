@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from truing.declare.goals import Objective
+from truing.declare.model import Model, Section
+from truing.declare.sources import ErrorSource
 from truing.markers import hookspec
-
-if TYPE_CHECKING:
-    from truing.declare.goals import Objective
-    from truing.declare.model import Model, Section
-    from truing.declare.sources import ErrorSource
 
 
 @hookspec

@@ -6,6 +6,7 @@ import math
 import re
 from typing import Any
 
+from truing.units import difference_unit, from_si, unit_text
 from truing.units.names import PURE
 
 ABSENT = "–"
@@ -71,8 +72,6 @@ def _with_exponent(number: float, digits: int) -> str:
 
 def format_value(si: Any, unit: str, digits: int = RESULT_DIGITS) -> tuple[str, str]:
     """Write an SI number in a unit: the number and the unit as printed ("12.5", "µm"); raises UnitError."""
-    from truing.units import from_si, unit_text
-
     if si is None:
         return ABSENT, unit_text(unit)
     return format_number(_plain(si) if _is_bare(unit, si) else from_si(_plain(si), unit), digits), unit_text(unit)
@@ -80,8 +79,6 @@ def format_value(si: Any, unit: str, digits: int = RESULT_DIGITS) -> tuple[str, 
 
 def format_difference(si: float, unit: str, digits: int = RESULT_DIGITS) -> tuple[str, str]:
     """Write an SI difference (a standard deviation, a width): levels of temperature differ by kelvins."""
-    from truing.units import difference_unit
-
     return format_value(si, difference_unit(unit), digits)
 
 

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.fields import Axis, Kind
 from truing.errors import UsageError
 from truing.setup import Setup
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 
 def uniform_parts(
     setup: Setup, fixed: Mapping[str, Any], arrays: Mapping[str, Any], rows: int
 ) -> Iterator[tuple[NDArray[np.intp], dict[str, Any]]]:
     """Split a batch so that everything but Float inputs has one value; tables are made row by row, equal rows once."""
-    import numpy as np
-
     per_row = {name: _each(values, setup.model.input_fields[name].kind) for name, values in fixed.items()}
     for name, values in per_row.items():
         if values is not None and len(values) != rows:
@@ -36,8 +33,6 @@ def uniform_parts(
 
 def _each(values: Any, kind: Kind) -> list[Any] | None:
     """Return the value of each row, or None where there is one for all; a series is a value itself."""
-    import numpy as np
-
     if isinstance(values, np.ndarray):
         if kind == "series" and values.ndim == 1:
             return None
@@ -48,8 +43,6 @@ def _each(values: Any, kind: Kind) -> list[Any] | None:
 
 
 def _taken(values: Any, index: NDArray[Any], rows: int, *, alone: bool) -> Any:
-    import numpy as np
-
     if not isinstance(values, np.ndarray) or (len(index) == rows and not alone):
         return values
     return values[index[0]] if alone else values[index]
@@ -57,8 +50,6 @@ def _taken(values: Any, index: NDArray[Any], rows: int, *, alone: bool) -> Any:
 
 def _groups(differing: Mapping[str, list[Any]], rows: int) -> list[NDArray[Any]]:
     """Return the row numbers that share the values of every differing column, in the order they first appear."""
-    import numpy as np
-
     if not differing:
         return [np.arange(rows)] if rows else []
     places: dict[tuple[Any, ...], list[int]] = {}
@@ -68,8 +59,6 @@ def _groups(differing: Mapping[str, list[Any]], rows: int) -> list[NDArray[Any]]
 
 
 def _key(value: Any) -> Any:
-    import numpy as np
-
     if isinstance(value, np.ndarray):
         return value.shape, value.tobytes()
     try:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.checks import TOTAL_PRICE
 from truing.declare.goals import Price, PriceByChoice
 from truing.declare.sources import Tolerance
 from truing.setup import Setup
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+from truing.units import to_si
 
 
 def price_of(setup: Setup, tolerance: Tolerance) -> Price | None:
@@ -22,8 +20,6 @@ def price_of(setup: Setup, tolerance: Tolerance) -> Price | None:
 
 def prices_at(price: Price, widths: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return what full widths (n,) in SI cost, in the unit of the price."""
-    import numpy as np
-
     return np.broadcast_to(np.asarray(price.evaluated(widths), dtype=float), widths.shape)
 
 
@@ -32,8 +28,6 @@ def total_price(setup: Setup) -> float | None:
 
     A tolerance on several inputs is one band and is paid once; one that is off is not paid.
     """
-    from truing.units import to_si
-
     if TOTAL_PRICE not in setup.model.result_fields:
         return None
     prices = {name: price_of(setup, item) for name, item in setup.model.tolerances.items()}

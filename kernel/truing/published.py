@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+
+from truing.calculation import Calculation, calculate
 from truing.declare.published import Published
 from truing.errors import DeclarationError
+from truing.inputs_file import setup_from_settings
 from truing.kernel import Offer
+from truing.setup import Setup
 from truing.studies.bench import FINE, Progress, silent, within
-
-if TYPE_CHECKING:
-    from truing.calculation import Calculation
-    from truing.setup import Setup
+from truing.units import from_si
 
 TASK = "published numbers"
 """What the comparison is called while it is made."""
@@ -63,9 +65,6 @@ def compare_published(
 
 
 def _compared(offer: Offer, progress: Progress, known: Calculation | None) -> list[ComparedRow]:
-    from truing.calculation import calculate
-    from truing.inputs_file import setup_from_settings
-
     asked = {frozenset(item.settings.items()): item.settings for item in offer.model.published}
     wanted = {key: setup_from_settings(offer, settings) for key, settings in asked.items()}
     missing = [
@@ -94,8 +93,6 @@ def _covers(known: Setup, wanted: Setup) -> bool:
 
 def compare_one(item: Published, calculation: Calculation) -> ComparedRow:
     """Compare one printed number with a calculation that was made under its settings."""
-    from truing.units import from_si
-
     fields = calculation.setup.model.result_fields
     if item.result not in fields:
         raise DeclarationError(f"the published number '{item.name}' names '{item.result}', which is no result")
@@ -110,8 +107,6 @@ def compare_one(item: Published, calculation: Calculation) -> ComparedRow:
 
 def holds_for(setup: Setup, item: Published) -> bool:
     """Tell whether a run has just the settings that a printed number holds for, so that ours is its own result."""
-    from truing.inputs_file import setup_from_settings
-
     wanted = setup_from_settings(Offer(setup.model.name, setup.model, setup.origin, setup.added), item.settings)
     return same_run(setup, wanted)
 
@@ -128,8 +123,6 @@ def _same(one: Any, other: Any) -> bool:
     if isinstance(one, float) and isinstance(other, (int, float)):
         return math.isclose(one, other, rel_tol=1e-12) or (one != one and other != other)
     if getattr(one, "ndim", 0) or getattr(other, "ndim", 0):
-        import numpy as np
-
         return bool(np.array_equal(one, other, equal_nan=True))
     return bool(one == other)
 

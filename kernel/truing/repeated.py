@@ -10,15 +10,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from hashlib import blake2b
 from struct import pack
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from truing.declare.batch import FailedRows, watching
 from truing.declare.fields import read, with_values
-
-if TYPE_CHECKING:
-    from truing.declare.model import Model
+from truing.declare.model import Model
 
 REMEMBERED = 8
 LARGEST = 500_000

@@ -8,6 +8,8 @@ from functools import cached_property
 from math import isnan
 from typing import Any
 
+import numpy as np
+
 from truing.declare.fields import read, with_values
 from truing.declare.model import Model, Study
 from truing.declare.near_miss import near_miss
@@ -125,8 +127,6 @@ class Setup:
     @cached_property
     def numpy_inputs(self) -> Any:
         """The inputs with numpy's numbers, so that 1/0 is infinite in a call of one value as it is in a batch."""
-        import numpy as np
-
         varying = (item for item in self.model.input_fields.values() if item.varies)
         values = ((item.path, read(self.inputs, item.path)) for item in varying)
         numbers = {path: value if isinstance(value, np.ndarray) else np.float64(value) for path, value in values}

@@ -7,17 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from truing.gauge import answers_many, read_by_gauge, read_each, seen_columns
+from truing.measurements import RowsFile
 from truing.setup import Setup
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from truing.measurements import RowsFile
 
 Trial = Mapping[str, Any]
 AT_ONCE = 65_536

@@ -1,6 +1,7 @@
 """What an instrument that averages over a spot leaves of the structure function of a power law."""
 
 import numpy as np
+from scipy.special import gamma, hyp1f1
 
 from truing import Float
 
@@ -16,8 +17,6 @@ def kept_share(lag: Float, width: Float, exponent: Float) -> Float:
     x = lag²/(4 w²): (2 w/lag)^a Gamma((1+a)/2)/sqrt(pi) (1F1(-a/2; 1/2; -x) - 1).
     Reference: absolute moments of the normal distribution, Abramowitz and Stegun 13.6, 22.5.
     """
-    from scipy.special import gamma, hyp1f1
-
     spot = np.maximum(width, 1e-6 * np.min(lag))
     x = np.square(lag / (2.0 * spot))
     scale = gamma((1.0 + exponent) / 2.0) / np.sqrt(np.pi)

@@ -1,20 +1,18 @@
 """The figures of a measured flank: from above, some of its profiles, its structure function with the local slopes."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from harmonic_fractal.drawn_look import DIRECTIONS, GREY, INK, MICRO, NANO, ORANGE, PALE, WIDTH, panels, quiet
+from harmonic_fractal.estimate import Estimate
+from harmonic_fractal.flank import Flank
 from harmonic_fractal.power_law import structure_function
 from harmonic_fractal.surface import Direction
 from harmonic_fractal.verdict import HIGHEST, LOWEST
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from harmonic_fractal.estimate import Estimate
-    from harmonic_fractal.flank import Flank
 
 Array = NDArray[np.float64]
 PIXELS = 400  # of the picture along either side
@@ -24,9 +22,6 @@ SHOWN = 4  # profiles
 
 def map_figure(flank: "Flank") -> "Figure":
     """Draw the cleaned surface from above, its longer side across the sheet; holes are orange."""
-    from matplotlib import colormaps
-    from matplotlib.figure import Figure
-
     surface = flank.surface
     heights = NANO * surface.heights
     size = np.array([surface.spacing_x, surface.spacing_y]) * (np.array(heights.shape[::-1]) - 1) * MICRO

@@ -1,21 +1,15 @@
 """What is said of D and G: where they come from, both flanks as one, and G in every convention that is in use."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from harmonic_fractal.drawn_look import signed
+from harmonic_fractal.drawn_look import Run, signed
 from harmonic_fractal.drawn_verdict import said_of
-from harmonic_fractal.interface import flanks_of
+from harmonic_fractal.interface import Rough, flanks_of
 from harmonic_fractal.power_law import Convention, constant, converted
-from truing import Table, Words
-
-if TYPE_CHECKING:
-    from harmonic_fractal.drawn_look import Run
-    from harmonic_fractal.interface import Rough
-    from harmonic_fractal.quantities import Drive
-    from truing import Block
+from harmonic_fractal.quantities import Drive
+from truing import Block, Table, Words
 
 KINDS: dict[Convention, str] = {
     "areal": "areal, ridges in all directions (used here)",

@@ -1,16 +1,14 @@
 """What the figures and tables share: colours, sizes, numbers in words, and the inputs as effects leave them."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from matplotlib.figure import Figure
+
+from harmonic_fractal.answers import Stiffness
 from harmonic_fractal.quantities import Drive
+from truing import Record
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from harmonic_fractal.answers import Stiffness
-    from truing import Record
-
-    Run = Record[Drive, Stiffness]
+Run = Record[Drive, Stiffness]
 
 BLUE, ORANGE, GREEN, INK, GREY, PALE = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c", "#e8eff5"
 DIRECTIONS = {"x": BLUE, "y": ORANGE, "both": GREEN}
@@ -20,8 +18,6 @@ MICRO, NANO = 1e6, 1e9
 
 def panels(rows: int, height: float, **options: Any) -> "tuple[Figure, Any]":
     """A figure as wide as the sheet with panels below one another."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(WIDTH, height), layout="constrained")
     return figure, figure.subplots(rows, 1, squeeze=False, **options)[:, 0]
 

@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from harmonic_fractal import clearance as gap
@@ -18,6 +19,7 @@ from harmonic_fractal.drawn_look import (
     MICRO,
     NANO,
     ORANGE,
+    Run,
     microns,
     panels,
     quiet,
@@ -25,14 +27,8 @@ from harmonic_fractal.drawn_look import (
 )
 from harmonic_fractal.interface import interface_of
 from harmonic_fractal.mesh import load_of_largest, mesh_of
-from truing import Drawing, Table, Words
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from harmonic_fractal.drawn_look import Run
-    from harmonic_fractal.quantities import Drive
-    from truing import Block
+from harmonic_fractal.quantities import Drive
+from truing import Block, Drawing, Table, Words
 
 Array = NDArray[np.float64]
 Critical = Literal["hardness", "yield_onset"]

@@ -3,26 +3,20 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from harmonic_fractal.calculation import around_of
 from harmonic_fractal.catalogue import Polyline, polyline_of, ratio_of
 from harmonic_fractal.contact import contact_of
-from harmonic_fractal.drawn_look import BLUE, GREY, INK, MICRO, ORANGE, panels, quiet, signed
+from harmonic_fractal.drawn_look import BLUE, GREY, INK, MICRO, ORANGE, Run, panels, quiet, signed
 from harmonic_fractal.interface import interface_of
 from harmonic_fractal.mesh import mesh_of
+from harmonic_fractal.quantities import Drive
 from harmonic_fractal.torsion import mesh_torsion
-from truing import Drawing, Table, Words
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from harmonic_fractal.drawn_look import Run
-    from harmonic_fractal.quantities import Drive
-    from truing import Block
+from truing import Block, Drawing, Table, Words
 
 Array = NDArray[np.float64]
 POINTS = 101

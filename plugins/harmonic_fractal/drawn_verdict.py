@@ -2,16 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 from harmonic_fractal.drawn_flank import map_figure, profiles_figure, structure_figure
 from harmonic_fractal.drawn_look import MICRO, NANO, microns, signed
-from truing import Drawing, Table, Words
-
-if TYPE_CHECKING:
-    from harmonic_fractal.estimate import Estimate
-    from harmonic_fractal.flank import Flank
-    from truing import Block
+from harmonic_fractal.estimate import Estimate
+from harmonic_fractal.flank import Flank
+from truing import Block, Drawing, Table, Words
 
 ALONG = {"x": "along x", "y": "along y", "both": "x and y together"}
 COMPARISON = (

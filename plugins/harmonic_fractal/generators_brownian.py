@@ -1,6 +1,7 @@
 """Made patches of fractional Brownian motion: alike in all directions, Gaussian, with an exact power law."""
 
 import numpy as np
+from scipy.fft import next_fast_len
 
 from harmonic_fractal.generators import Array
 
@@ -40,8 +41,6 @@ def _covariance(distance: Array, exponent: float, reach: float) -> tuple[Array, 
 
 def field_side(dimension: float, shape: tuple[int, int]) -> int:
     """Return the side, in points, of the square field from which a patch of this shape is cut."""
-    from scipy.fft import next_fast_len
-
     least = 2.0 * _reach(dimension) * float(np.hypot(*shape))
     return 2 * int(next_fast_len(int(np.ceil(least / 2.0)) + 1, real=True))
 

@@ -1,22 +1,20 @@
 """The figures of a made flank: the patch, some of its lines, and its structure function beside the truth."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.figure import Figure
 
 from harmonic_fractal.cleaning import without_form
 from harmonic_fractal.estimate import Estimate
 from harmonic_fractal.generators import Array
+from harmonic_fractal.made_answers import MadeFlank
 from harmonic_fractal.made_calculation import exact_structure_function, levelled_structure_function
 from harmonic_fractal.made_quantities import Made
 from harmonic_fractal.made_truth import Truth
 from harmonic_fractal.power_law import structure_function
 from harmonic_fractal.surface import Surface
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from harmonic_fractal.made_answers import MadeFlank
 
 Curve = tuple[Array, Array]
 BLUE, ORANGE, GREEN, INK, GREY, PALE = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c", "#e8eff5"
@@ -27,9 +25,6 @@ SHOWN = 5  # lines that are drawn
 
 def map_figure(surface: Surface) -> "Figure":
     """The patch from above, less its mean plane; holes are orange."""
-    from matplotlib import colormaps
-    from matplotlib.figure import Figure
-
     rows, points = surface.heights.shape
     extent = (0.0, (points - 1) * surface.spacing_x * MICRO, 0.0, (rows - 1) * surface.spacing_y * MICRO)
     height = float(np.clip(0.8 * WIDTH * extent[3] / extent[1], 1.2, 7.0))
@@ -48,8 +43,6 @@ def map_figure(surface: Surface) -> "Figure":
 
 def lines_figure(surface: Surface) -> "Figure":
     """Some lines, evenly over the patch, one above the other."""
-    from matplotlib.figure import Figure
-
     rows, points = surface.heights.shape
     chosen = np.unique(np.linspace(0, rows - 1, min(rows, SHOWN)).round().astype(int))
     level = NANO * without_form(surface.heights, "plane")[chosen]
@@ -69,8 +62,6 @@ def lines_figure(surface: Surface) -> "Figure":
 
 def structure_figure(made: Made, truth: Truth, answer: "MadeFlank", found: Estimate) -> "Figure":
     """S of this flank beside the exact one and what was fitted; the same over the power law; local slopes."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(WIDTH, 7.6), layout="constrained")
     upper, middle, lower = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
     shown = np.asarray(answer.lag, dtype=np.float64)

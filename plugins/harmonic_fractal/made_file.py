@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,10 +11,7 @@ from harmonic_fractal.made_calculation import surface_of
 from harmonic_fractal.made_quantities import Made
 from harmonic_fractal.made_truth import truth_of
 from harmonic_fractal.surface import Surface
-from truing import Bench, TruingError, Words
-
-if TYPE_CHECKING:
-    from truing import Block, Check
+from truing import Bench, Block, Check, TruingError, Words
 
 PLAIN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,95}\.csv", re.ASCII)
 SCALES = {"m": 1.0, "mm": 1e3, "um": 1e6, "nm": 1e9}

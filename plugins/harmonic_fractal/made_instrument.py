@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import gaussian_filter
 
 from harmonic_fractal.generators import Array
 
@@ -54,8 +55,6 @@ def as_measured(
 
 def _filtered(heights: Array, spacing: float, instrument: Instrument, *, across: bool) -> Array:
     """Weigh with a Gaussian along the rows, and across them where asked, and cut the margin off."""
-    from scipy.ndimage import gaussian_filter
-
     margin = instrument.margin(spacing)
     if not margin:
         return heights.copy()

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,12 +16,9 @@ from harmonic_fractal.made_quantities import Made
 from harmonic_fractal.made_truth import is_patch, truth_of
 from harmonic_fractal.power_law import log_roughness_of
 from harmonic_fractal.surface import Surface
-from truing import Drawing, Section, Table, Words
+from truing import Block, Drawing, Record, Section, Table, Words
 
-if TYPE_CHECKING:
-    from truing import Block, Record
-
-    Run = Record[Made, MadeFlank]
+Run = Record[Made, MadeFlank]
 
 FOUND_AGAIN = (
     "The estimator sees the flank as it would see a measured one: each line without its own straight line, and one "

@@ -30,6 +30,7 @@ of relative half-amplitude 0.4 % at D_s = 1.2, 3.3 % at 1.5 and 17 % at 1.8.
 from typing import Literal
 
 import numpy as np
+from scipy.special import gamma
 
 from truing import Float
 
@@ -42,8 +43,6 @@ def spectral_constant(dimension: Float) -> Float:
     Written by the reflection formula as pi / [2 sin(pi a/2) Gamma(1 + a)] with a = 4 - 2 D_s: the same number, but
     without 0 times infinity at D_s = 1.5.
     """
-    from scipy.special import gamma
-
     exponent = 4.0 - 2.0 * np.asarray(dimension)
     value: Float = np.pi / (2.0 * np.sin(np.pi * exponent / 2.0) * gamma(1.0 + exponent))
     return value
@@ -55,8 +54,6 @@ def constant(dimension: Float, density: Float, convention: Convention) -> Float:
     ``dimension`` is D_s of the profile, 1 to 2; ``density`` is gamma, which only the convention "profile" contains.
     ``areal``: a surface of waves in many directions, any trace; ``one_direction``: parallel waves, trace across them.
     """
-    from scipy.special import gamma
-
     exponent = 4.0 - 2.0 * np.asarray(dimension)
     one_direction: Float = (2.0 * np.pi) ** exponent * spectral_constant(dimension)
     if convention == "profile":

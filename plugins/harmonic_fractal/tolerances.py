@@ -2,17 +2,15 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from harmonic_fractal.flank import Flank
 from harmonic_fractal.interface import Rough, flanks_of, together
 from harmonic_fractal.quantities import Drive
 from truing import Tolerance, drawn, lognormal, normal
-
-if TYPE_CHECKING:
-    from harmonic_fractal.flank import Flank
 
 Pairs = NDArray[np.float64]
 FLANKS = (

@@ -3,19 +3,18 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from harmonic_fractal.drawn_look import BLUE, panels, quiet
 from harmonic_fractal.quantities import Drive
-from truing import Block, Drawing, Table, TruingError, Words, quantity
+from harmonic_fractal.tolerances import FLANKS, flank_samples
+from truing import Bench, Block, Check, Drawing, Table, TruingError, Words, quantity
 
-if TYPE_CHECKING:
-    import numpy as np
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from truing import Bench, Check
-
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 OF = ("stiffness", "clearance", "mesh_stiffness", "torsion")
 PAIR = ("dimension_deviation", "roughness_deviation")
@@ -47,8 +46,6 @@ class Uncertainty:
 
     def run(self, bench: "Bench") -> "Propagated":
         """Calculate every pair, and every pair taken apart."""
-        import numpy as np
-
         known = bench.setup.model.own_result_fields
         unknown = [name for name in self.of if name not in known or known[name].along]
         if unknown:
@@ -71,8 +68,6 @@ class Uncertainty:
 
     def _answered(self, bench: "Bench", columns: Mapping[str, Any], done: Callable[[int, int], None]) -> dict[str, Any]:
         """Calculate all pairs, so many in one call that nobody waits long for the next word."""
-        import numpy as np
-
         parts = []
         for start in range(0, self.draws, TOGETHER):
             done(start, self.draws)
@@ -83,10 +78,6 @@ class Uncertainty:
 
     def _pairs(self, bench: "Bench") -> "Array | None":
         """Draw the pairs as deviations (draws, 2), or nothing where no flank was measured."""
-        import numpy as np
-
-        from harmonic_fractal.tolerances import FLANKS, flank_samples
-
         rng = np.random.default_rng(np.random.SeedSequence(bench.setup.seed, spawn_key=(1,)))
         found = flank_samples(rng, self.draws, **{name: getattr(bench.inputs, name) for name in FLANKS})
         return np.stack([found[name] for name in PAIR], axis=1) if found else None
@@ -110,14 +101,10 @@ class Propagated:
     @property
     def correlation(self) -> float:
         """Of the deviations of D and of ln G."""
-        import numpy as np
-
         return float("nan") if self.pairs is None else float(np.asarray(np.corrcoef(self.pairs.T))[0, 1])
 
     def summary(self, result: str) -> "Summary":
         """Return what the pairs say of one result."""
-        import numpy as np
-
         assert self.together is not None
         assert self.apart is not None
         assert self.nominal is not None
@@ -222,8 +209,6 @@ class Summary:
 
 def _relative_sd(values: "Array") -> float:
     """Return the standard deviation over the size of the mean; NaN without any."""
-    import numpy as np
-
     known = values[np.isfinite(values)]
     mean = abs(float(known.mean())) if known.size > 1 else 0.0
     return float(known.std(ddof=1)) / mean if mean else float("nan")
@@ -240,8 +225,6 @@ def _spoken(unit: str) -> str:
 
 def pairs_figure(pairs: "Array") -> "Figure":
     """Draw the cloud of pairs."""
-    from harmonic_fractal.drawn_look import BLUE, panels, quiet
-
     figure, (panel,) = panels(1, 3.0)
     panel.plot(pairs[:, 0], pairs[:, 1], ".", color=BLUE, markersize=2.5, alpha=0.5, rasterized=True)
     quiet(panel, "deviation of D", "deviation of ln G")

@@ -2,14 +2,11 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from harmonic_fractal.flank import Flank
 from harmonic_fractal.quantities import Drive
-from truing import Block
-
-if TYPE_CHECKING:
-    from harmonic_fractal.flank import Flank
-    from truing import Bench, Check
+from truing import Bench, Block, Check
 
 RESOLVED = 0.3  # radius of the critical area over the sampling interval
 PLASTIC = 0.5  # share of the load on plastic contacts

@@ -1,17 +1,11 @@
 """Servo-press linkage: exact slider position, error sensitivities, reliability and accuracy synthesis."""
 
-from typing import TYPE_CHECKING
-
-from truing import hookimpl
-
-if TYPE_CHECKING:
-    from press_linkage.quantities import Press, Slider
-    from truing import Model
+from press_linkage.model import PRESS_LINKAGE
+from press_linkage.quantities import Press, Slider
+from truing import Model, hookimpl
 
 
 @hookimpl
 def truing_models() -> "list[Model[Press, Slider]]":
     """Offer one calculation: press_linkage."""
-    from press_linkage.model import PRESS_LINKAGE
-
     return [PRESS_LINKAGE]

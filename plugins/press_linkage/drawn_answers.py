@@ -1,9 +1,10 @@
 """The slider over one turn, the influence of the errors, and the reliabilities along the synthesis."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from press_linkage.answers import KEY_POSITION, KEY_TILT
 from press_linkage.increments import (
@@ -20,13 +21,9 @@ from press_linkage.increments import (
 from press_linkage.kinematics import solve, top_crank_angle
 from press_linkage.mechanism import geometry_of, position_of
 from press_linkage.quantities import Press, Slider
+from truing import Allotted, Record, Sensitivities
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from truing import Allotted, Record, Sensitivities
-
-    Run = Record[Press, Slider]
+Run = Record[Press, Slider]
 
 BLUE, ORANGE, GREEN, INK, GREY = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#9aa1ab"
 TURN = np.radians(np.linspace(-180.0, 180.0, 361))
@@ -50,8 +47,6 @@ def letter(kind: str) -> str:
 
 def way(press: Press) -> "Figure":
     """Draw the height of the slider over one turn of the crank, with both dead centres."""
-    from matplotlib.figure import Figure
-
     top = float(top_crank_angle(geometry_of(press)))
     height = np.asarray(position_of(press, TURN).slider_position)
     figure = Figure(figsize=(6.4, 2.9), layout="constrained")
@@ -82,8 +77,6 @@ def _over_the_turn(panel: Any, label: str) -> None:
 
 def over_the_turn(record: "Run") -> "Figure":
     """Draw how the influence of the lengths and the salience of the key errors run over one turn."""
-    from matplotlib.figure import Figure
-
     geometry = geometry_of(record.inputs)
     turn = solve(geometry, TURN)
     by_kind = side_sensitivities(turn.side_1)
@@ -115,8 +108,6 @@ def _both(kind: str) -> list[str]:
 
 def salience_bars(found: "Sensitivities") -> "Figure":
     """Draw the salience of every kind of error for position and tilt; the key errors stand out."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(6.4, 4.0), layout="constrained")
     panels = figure.subplots(1, 2, width_ratios=(1, 1))
     position, tilt = found.derivatives["slider_position"], found.derivatives["slider_tilt"]
@@ -146,8 +137,6 @@ def _bars(panel: Any, shares: Mapping[str, Any], key: Sequence[str], title: str)
 
 def along_the_synthesis(allotted: "Allotted", printed: Mapping[str, Sequence[float]]) -> "Figure":
     """Draw both reliabilities after every adjustment, with their goals and with what the paper prints."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(6.4, 3.4), layout="constrained")
     panel: Any = figure.subplots()
     steps = range(len(allotted.steps) + 1)

@@ -1,17 +1,16 @@
 """The mechanism to scale: one position in full, a few others of the turn behind it, and the way of the slider."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon, Rectangle
+from matplotlib.patheffects import withStroke
 
 from press_linkage.kinematics import Geometry, Half, Position, solve, top_crank_angle
 from press_linkage.mechanism import geometry_of
 from press_linkage.quantities import Press, Slider
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from truing import Record
+from truing import Record
 
 INK, FRAME, CRANK, KNEE, SLIDER = "#22262b", "#7d838c", "#c8641e", "#1f5a8a", "#2f6b4f"
 LINK = "#565c66"
@@ -50,8 +49,6 @@ def places(position: Position, half: Half, sign: float) -> dict[str, Place]:
 
 def mechanism(record: "Record[Press, Slider]") -> "Figure":
     """Draw the press at the crank angle of this run, with earlier positions of its way down in grey."""
-    from matplotlib.figure import Figure
-
     geometry = geometry_of(record.inputs)
     crank_angle = float(record.inputs.crank_angle)
     figure = Figure(figsize=(6.4, 6.6), layout="constrained")
@@ -137,8 +134,6 @@ def _pin(panel: Any, place: Place) -> None:
 
 def _slider(panel: Any, position: Position) -> None:
     """The slider as a block below its joints."""
-    from matplotlib.patches import Rectangle
-
     (right, low), (left, _) = (joints["H"] for joints in _sides(position))
     block = Rectangle(
         (1.04 * left, low), 1.04 * (right - left), SLIDER_HEIGHT, facecolor="#dfe9e3", edgecolor=SLIDER, linewidth=1.2,
@@ -150,8 +145,6 @@ def _slider(panel: Any, position: Position) -> None:
 
 def _frame(panel: Any, position: Position) -> None:
     """Hatched supports at the joints that belong to the frame, and the origin midway between the crank pivots."""
-    from matplotlib.patches import Polygon
-
     for joints in _sides(position):
         for name in "AM":
             y, z = joints[name]
@@ -181,7 +174,5 @@ def _names(panel: Any, position: Position) -> None:
 
 
 def _name(panel: Any, text: str, place: Place, colour: str = INK) -> None:
-    from matplotlib.patheffects import withStroke
-
     halo = [withStroke(linewidth=2.5, foreground="white")]
     panel.text(*place, text, ha="center", va="center", fontsize=9, color=colour, zorder=7, path_effects=halo)

@@ -9,7 +9,7 @@ from press_linkage.closure import demands
 from press_linkage.increments import derivatives
 from press_linkage.kinematics import Deviations, Geometry, Position, solve
 from press_linkage.quantities import Press, Side, Slider
-from truing import Float, feasible
+from truing import Float, either, feasible
 
 ROUNDING = 1e-15
 TILT_LIMITS = {"complete": radians(0.0013), "printed": radians(0.001324)}
@@ -68,8 +68,6 @@ def permitted_tilt(press: Press) -> Float:
 
     Where a batch gives it for some rows only, the others take that of the reading.
     """
-    from truing import either
-
     return either(press.tilt_limit, TILT_LIMITS[press.reading])
 
 

@@ -2,13 +2,10 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from press_linkage.mechanism import permitted_tilt
-from truing import Allocation, Allotted, Block, Table
-
-if TYPE_CHECKING:
-    from truing import Bench, Check
+from truing import Allocation, Allotted, Bench, Block, Check, Table
 
 READINGS = ("printed", "complete")
 CHECKS = {"slider_position": "position", "slider_tilt": "tilt"}

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from functools import partial
 from math import degrees, isfinite
-from typing import TYPE_CHECKING, TypeGuard
+from typing import TypeGuard
 
 from press_linkage.answers import LINKS, sources_of
 from press_linkage.drawn_answers import along_the_synthesis, over_the_turn, salience_bars, way
@@ -13,12 +13,9 @@ from press_linkage.kinematics import top_crank_angle
 from press_linkage.mechanism import geometry_of
 from press_linkage.published import WHERE
 from press_linkage.quantities import Press, Slider
-from truing import Block, Drawing, Section, Table, Words
+from truing import Block, Drawing, Record, Section, Sensitivities, Table, Words
 
-if TYPE_CHECKING:
-    from truing import Record, Sensitivities
-
-    Run = Record[Press, Slider]
+Run = Record[Press, Slider]
 
 CHAIN = (
     "crank_direction", "platform_height", "rod_direction", "ground_distance", "knee_along", "knee_across", "knee_y",

@@ -1,18 +1,12 @@
 """Planetary roller screw: the profile shift of roller and ring, and what it does to strength and sliding."""
 
-from typing import TYPE_CHECKING
-
-from truing import hookimpl
-
-if TYPE_CHECKING:
-    from roller_screw_shift.answers import Meshing
-    from roller_screw_shift.quantities import Pair
-    from truing import Model
+from roller_screw_shift.answers import Meshing
+from roller_screw_shift.model import ROLLER_SCREW_SHIFT
+from roller_screw_shift.quantities import Pair
+from truing import Model, hookimpl
 
 
 @hookimpl
 def truing_models() -> "list[Model[Pair, Meshing]]":
     """Offer one calculation: roller_screw_shift."""
-    from roller_screw_shift.model import ROLLER_SCREW_SHIFT
-
     return [ROLLER_SCREW_SHIFT]

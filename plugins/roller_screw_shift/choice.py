@@ -2,7 +2,10 @@
 
 from math import nan
 
+import numpy as np
+
 from roller_screw_shift.courses import MEGA, course_of
+from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.shifts import Chosen
 from roller_screw_shift.weighing import Three
 from truing import Float, found, results
@@ -72,10 +75,6 @@ class Choice:
 
 def choice(chosen: Chosen) -> Choice:
     """The numbers of the study; NaN where no shift keeps every limit."""
-    import numpy as np
-
-    from roller_screw_shift.geometry import geometry_of
-
     difference = float(np.asarray(geometry_of(chosen.inputs).shift_difference))
     equal = {"equal_sliding_roller": chosen.equal, "equal_sliding_ring": chosen.equal + difference}
     field = chosen.field
@@ -110,8 +109,6 @@ def _weights(weights: Three) -> dict[str, float]:
 
 
 def _optimum(chosen: Chosen, difference: float) -> dict[str, float]:
-    import numpy as np
-
     at = course_of(chosen.inputs, np.array([chosen.shift]))
     total, stress, sliding = (float(values[0]) for values in at.objectives)
     return {

@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 from roller_screw_shift.drawn_course import limits_figure, objectives_figure
+from roller_screw_shift.drawn_look import Run
 from roller_screw_shift.drawn_teeth import sliding_figure, teeth_figure
 from roller_screw_shift.drawn_weights import front_figure, triangle_figure
-from roller_screw_shift.shifts import Chosen, before
-from roller_screw_shift.shifts_printed import (
+from roller_screw_shift.shifts import (
+    Chosen,
+    before,
     compared_table,
     intervals_words,
     optimum_words,
@@ -16,11 +17,7 @@ from roller_screw_shift.shifts_printed import (
     variants_table,
     weights_table,
 )
-from truing import Drawing, Optimum, Words
-
-if TYPE_CHECKING:
-    from roller_screw_shift.drawn_look import Run
-    from truing import Block
+from truing import Block, Drawing, Optimum, Words
 
 CONVENTION = (
     "Signs: E is the roller (an external gear), I the ring (an internal one, its number of teeth counted positive). A "

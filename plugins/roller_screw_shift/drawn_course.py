@@ -1,17 +1,13 @@
 """Objectives, limits and margins over the shift of the roller, with the optimum."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from roller_screw_shift.courses import Course, Values, course_of
 from roller_screw_shift.drawn_look import BLUE, GREEN, GREY, INK, ORANGE, PALE, panels, quiet
-from roller_screw_shift.shifts_printed import LIMITS, signed
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from roller_screw_shift.shifts import Chosen
+from roller_screw_shift.shifts import LIMITS, Chosen, signed
 
 POINTS = 1201
 BESIDE = 0.35  # of a shift, shown on either side of what is allowed

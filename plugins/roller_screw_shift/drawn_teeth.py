@@ -1,21 +1,18 @@
 """Roller and ring to scale, and how their flanks slide along the path of contact."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from roller_screw_shift.drawn_look import BLUE, GREEN, GREY, INK, MM, ORANGE, panels, quiet
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.profiles import ring_half, roller_half, toothing
 from roller_screw_shift.quantities import Pair
-from roller_screw_shift.shifts_printed import signed
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
+from roller_screw_shift.shifts import signed
 
 PITCHES = 1.75  # shown on either side of the middle
 POINTS = 121

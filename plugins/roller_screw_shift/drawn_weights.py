@@ -1,20 +1,16 @@
 """What the weights choose: places on the front, and the optimum over all weights there are."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from roller_screw_shift.best_shifts import READINGS, Field, grid_optimum
 from roller_screw_shift.courses import Values, course_of
 from roller_screw_shift.drawn_look import BLUE, GREEN, GREY, INK, ORANGE, panels, quiet
-from roller_screw_shift.shifts_printed import READING, signed
+from roller_screw_shift.shifts import READING, Chosen, signed
 from roller_screw_shift.weighing import Three, normalised, weights_of
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from roller_screw_shift.shifts import Chosen
-    from truing import Optimum
+from truing import Optimum
 
 MANY = 72  # weights along each side of the triangle
 GRID = 401

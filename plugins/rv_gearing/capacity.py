@@ -3,19 +3,15 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isnan, nan
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rv_gearing.quantities import Gearing
-from truing import Block, Float, Sweep, Swept, Table, TruingError, found, results
+from truing import Bench, Block, Check, Float, Sweep, Swept, Table, TruingError, found, results
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from truing import Bench, Check
-
-    Values = NDArray[np.float64]
+Values = NDArray[np.float64]
 
 HOUR = 3600.0
 SPAN = 1e4  # a limit is sought between the load as it is over SPAN and times SPAN

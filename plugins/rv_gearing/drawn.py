@@ -3,23 +3,18 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rv_gearing.capacity import Reserve
 from rv_gearing.catalogue import MODULE, catalogue_table
 from rv_gearing.drawn_groups import groups_figure, stresses_figure, window_words
-from rv_gearing.drawn_look import number
+from rv_gearing.drawn_look import Run, number
 from rv_gearing.drawn_mesh import mesh_figure, meshing_of
 from rv_gearing.drawn_safeties import AXES, safeties_figure
 from rv_gearing.drawn_tooth import notched_of, root_figure
 from rv_gearing.search import MEETING, SIZES, STRENGTH, Column, Found, printed_in
-from truing import Drawing, Swept, Table, Words
-
-if TYPE_CHECKING:
-    from rv_gearing.drawn_look import Run
-    from truing import Block
+from truing import Block, Drawing, Swept, Table, Words
 
 HEADS = {
     "deviation": "deviation", "torque": "output torque", "centre_distance": "centre distance",

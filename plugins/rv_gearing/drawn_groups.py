@@ -1,19 +1,16 @@
 """The groups that the search finds: where they lie in the window, and how hard each is loaded."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from rv_gearing.drawn_look import BLUE, INK, MM, MPA, ORANGE, WIDTH, one_panel
 from rv_gearing.duty import centre_distance_window, pin_circle_factors
+from rv_gearing.search import Found
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from rv_gearing.search import Found
-
-    Values = NDArray[np.float64]
+Values = NDArray[np.float64]
 
 MOST_NUMBERED = 40
 MOST_TICKS = 30
@@ -76,8 +73,6 @@ def window_words(found: "Found") -> str:
 
 def stresses_figure(found: "Found") -> "Figure":
     """Draw the root and contact stresses of all groups below what each of them may be."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(WIDTH, 4.8), layout="constrained")
     panels = figure.subplots(2, 1, sharex=True)
     order = np.argsort(found.numbers)

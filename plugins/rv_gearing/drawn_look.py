@@ -1,17 +1,15 @@
 """What the figures share: colours, panels, and what a finished run knows."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from matplotlib.figure import Figure
 
 from gear_geometry.roots import Rack
+from rv_gearing.answers import Strength
 from rv_gearing.quantities import Gearing
+from truing import Record
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from rv_gearing.answers import Strength
-    from truing import Record
-
-    Run = Record[Gearing, Strength]
+Run = Record[Gearing, Strength]
 
 BLUE, ORANGE, GREEN, INK, GREY = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c"
 SUN_FILL, PLANET_FILL = "#e8eff5", "#fbeee3"
@@ -31,8 +29,6 @@ def rack_of(stage: Gearing) -> Rack:
 
 def one_panel(height: float) -> "tuple[Figure, Any]":
     """A figure as wide as the sheet with one panel."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(WIDTH, height), layout="constrained")
     return figure, figure.subplots()
 

@@ -1,20 +1,16 @@
 """Sun and planets to scale, and the mesh of one pair with the path of contact."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
 
 from gear_geometry.roots import Rack
-from rv_gearing.drawn_look import BLUE, GREY, INK, MM, ORANGE, PLANET_FILL, SUN_FILL, WIDTH, number, rack_of
-from rv_gearing.tooth_form import gear, half_space, tooth, turned
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from rv_gearing.drawn_look import Run
-    from rv_gearing.quantities import Gearing
-    from rv_gearing.tooth_form import Values
+from rv_gearing.drawn_look import BLUE, GREY, INK, MM, ORANGE, PLANET_FILL, SUN_FILL, WIDTH, Run, number, rack_of
+from rv_gearing.quantities import Gearing
+from rv_gearing.tooth_form import Values, gear, half_space, tooth, turned
 
 COARSE, FINE = 10, 90  # points of a flank
 CLOSE = 3.1  # modules around the pitch point that are shown of the mesh
@@ -119,8 +115,6 @@ def _transverse(record: "Run", stage: "Gearing", name: str) -> tuple[Rack, float
 
 def mesh_figure(meshing: Meshing) -> "Figure":
     """Draw the whole stage on the left, and on the right what happens around the pitch point."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(WIDTH, 3.5), layout="constrained")
     stage, close = figure.subplots(1, 2, width_ratios=(1.0, 1.12))
     _stage(stage, meshing)
@@ -139,8 +133,6 @@ def _fill(panel: Any, outline: "Values", colours: tuple[str, str], width: float)
 
 def _stage(panel: Any, meshing: Meshing) -> None:
     """Sun, planets and the circle of their centres, which turns with the output."""
-    from matplotlib.patches import Circle
-
     _fill(panel, meshing.sun.outline, (SUN_FILL, BLUE), 0.8)
     above = meshing.planet.outline + np.array([[0.0], [meshing.distance]])
     for place in range(meshing.planets):
@@ -159,8 +151,6 @@ def _stage(panel: Any, meshing: Meshing) -> None:
 
 def _close(panel: Any, meshing: Meshing) -> None:
     """Flanks around the pitch point, the line of action between the base circles and the path of contact on it."""
-    from matplotlib.patches import Circle
-
     _fill(panel, meshing.sun.teeth, (SUN_FILL, BLUE), 1.2)
     _fill(panel, meshing.planet.teeth + np.array([[0.0], [meshing.distance]]), (PLANET_FILL, ORANGE), 1.2)
     for height, wheel, colour in ((0.0, meshing.sun, BLUE), (meshing.distance, meshing.planet, ORANGE)):

@@ -1,14 +1,12 @@
 """How the safeties run over load and face width."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from matplotlib.figure import Figure
 
 from rv_gearing.capacity import SAFETIES
 from rv_gearing.drawn_look import BLUE, INK, MM, ORANGE, one_panel
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from truing import Swept
+from truing import Swept
 
 LOOKS = {
     "root_safety_sun": (BLUE, "-", "sun, breakage"),

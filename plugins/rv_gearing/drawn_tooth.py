@@ -1,20 +1,15 @@
 """The critical section of both teeth: root chord, fillet, and the arm of the force at the tip and at single contact."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from gear_geometry.roots import Arm, Rack, Root, external_arm, external_root
-from rv_gearing.drawn_look import BLUE, GREY, INK, MM, ORANGE, PLANET_FILL, SUN_FILL, WIDTH, number, rack_of
-from rv_gearing.tooth_form import tooth
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from rv_gearing.drawn_look import Run
-    from rv_gearing.quantities import Gearing
-    from rv_gearing.tooth_form import Values
+from rv_gearing.drawn_look import BLUE, GREY, INK, MM, ORANGE, PLANET_FILL, SUN_FILL, WIDTH, Run, number, rack_of
+from rv_gearing.quantities import Gearing
+from rv_gearing.tooth_form import Values, tooth
 
 ARROW = 0.95  # modules
 BELOW = -0.9  # modules; where the rim is cut off
@@ -66,8 +61,6 @@ def _single(rack: Rack, teeth: float, tip: float, contact_ratio: float) -> float
 
 def root_figure(teeth: tuple[Notched, Notched]) -> "Figure":
     """Draw both teeth to one scale with what the form factors are made from."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(WIDTH, 2.95), layout="constrained")
     panels = figure.subplots(1, 2)
     colours = ((SUN_FILL, BLUE), (PLANET_FILL, ORANGE))

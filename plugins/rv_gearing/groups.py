@@ -6,9 +6,10 @@ at least ``least_tooth_ratio`` times as many, centre distance within the window 
 """
 
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rv_gearing.duty import (
     centre_distance_of,
@@ -23,10 +24,7 @@ from rv_gearing.preference import preference_of
 from rv_gearing.quantities import Gearing
 from truing import Float, column, either, feasible
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Values = NDArray[np.float64]
+Values = NDArray[np.float64]
 
 ROUNDING = 1e-12  # a limit that is met exactly is met
 MOST_TRIED = 4_000_000  # sets of tooth numbers in one search

@@ -6,16 +6,13 @@ Derived on the theory page. A value is an array (groups,), numbers of teeth are 
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rv_gearing.quantities import Gearing
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Values = NDArray[np.float64]
+Values = NDArray[np.float64]
 
 HUNTING_IN_PHASE, HUNTING, IN_PHASE, NEITHER = 1.0, 2.0, 3.0, 4.0
 

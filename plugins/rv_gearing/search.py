@@ -2,21 +2,17 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rv_gearing.groups import Groups, chosen_teeth, search
 from rv_gearing.preference import reason_of
 from rv_gearing.quantities import Gearing
-from truing import Block, Float, TruingError, found, results, rows
+from truing import Bench, Block, Check, Float, TruingError, found, results, rows
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from truing import Bench, Check
-
-    Values = NDArray[np.float64]
+Values = NDArray[np.float64]
 
 Column = Literal[
     "group", "sun", "planet", "pins", "ratio", "deviation", "torque", "centre_distance", "circle_low", "circle_high",

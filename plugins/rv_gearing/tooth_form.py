@@ -3,17 +3,13 @@
 Lengths are in modules, the centre of the gear is the origin and the axis of the tooth points along +y. For drawings.
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
 from gear_geometry.involute import involute
 from gear_geometry.roots import Rack
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Values = NDArray[np.float64]
+Values = NDArray[np.float64]
 
 FINE = 60
 

@@ -2,14 +2,11 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rv_wear.costs import FORMS, price
 from rv_wear.tolerances import PRICED
-from truing import Block, Float, Table, found, results
-
-if TYPE_CHECKING:
-    from truing import Bench, Check
+from truing import Bench, Block, Check, Float, Table, found, results
 
 
 @results

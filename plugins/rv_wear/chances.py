@@ -2,17 +2,14 @@
 
 from dataclasses import replace
 from math import nan
-from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rv_wear.backlash import backlash_of
+from rv_wear.curves import Flank, flank
 from rv_wear.quantities import Reducer
 from truing import Float, Odds, Sensitivities, Swept, axis, found, results
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from rv_wear.curves import Flank
 
 STEP = 1e-6  # m; equation 21 is linear, so any step gives its derivatives
 COUNTED = "counted among the machines that were drawn, equation 23"
@@ -103,10 +100,6 @@ class Chances:
 
 def history(swept: Swept) -> History:
     """The flank after its working time; wear and backlash over the time, empty if another input is swept."""
-    import numpy as np
-
-    from rv_wear.curves import flank
-
     reducer: Reducer = swept.inputs
     new, worn = flank(reducer), flank(reducer, float(reducer.working_time))
     wear = worn.wear[0]
@@ -179,8 +172,6 @@ def chances(odds: Odds) -> Chances:
 
 def over_time(odds: Odds) -> "tuple[NDArray[np.float64], NDArray[np.float64]]":
     """Working times and reliabilities; empty where the study did not run over the working time."""
-    import numpy as np
-
     curve = odds.curve
     if curve is None or curve.over != "working_time" or "backlash" not in curve.probability:
         return np.empty(0), np.empty(0)

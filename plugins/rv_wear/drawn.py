@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 from rv_wear.bill import Bill
 from rv_wear.chances import FACTORS
@@ -16,15 +15,12 @@ from rv_wear.drawn_flank import (
     wear_figure,
 )
 from rv_wear.drawn_fronts import PRINTED_OPTIMA, at_printed_wear, better, fronts_figure
+from rv_wear.drawn_look import Run
 from rv_wear.drawn_mesh import mesh_figure
 from rv_wear.least_costs import Fronts
 from rv_wear.modifications import Ground
 from rv_wear.new_machines import Newborn
-from truing import Drawing, Odds, Optimum, Sensitivities, Swept, Words
-
-if TYPE_CHECKING:
-    from rv_wear.drawn_look import Run
-    from truing import Block
+from truing import Block, Drawing, Odds, Optimum, Sensitivities, Swept, Words
 
 
 def geometry(record: "Run") -> "Sequence[Block]":

@@ -1,19 +1,18 @@
 """What scatter does: backlash of drawn machines, reliability over the hours, sensitivity indices, costs."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from rv_wear.bill import Bill
+from rv_wear.costs import price
 from rv_wear.drawn_look import ARCMIN, BLUE, GREY, HOUR, INK, MICRO, ORANGE, WIDTH, one_panel, over_hours, signed
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from rv_wear.bill import Bill
-    from rv_wear.new_machines import Newborn
-    from truing import Odds
+from rv_wear.new_machines import Newborn
+from rv_wear.tolerances import PRICED
+from truing import Odds
 
 Values = NDArray[np.float64]
 PRINTED_INDICES = {
@@ -33,8 +32,6 @@ PRINTED_RELIABILITY = (6000.0, 0.887)
 
 def machines_figure(born: "Newborn") -> "Figure":
     """Draw the backlash of every machine, new, and the histograms of new and used ones with the limit."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(WIDTH, 3.4), layout="constrained")
     left, right = figure.subplots(1, 2, sharey=True, width_ratios=(5, 2))
     hours = f"after {float(born.inputs.working_time) / HOUR:.4g} h"
@@ -131,11 +128,6 @@ def indices_figure(indices: Mapping[int, float]) -> "Figure":
 
 def costs_figure(bill: "Bill", form: str) -> "Figure":
     """Draw the price of every zone in one form of the cost functions, and what another width would cost."""
-    from matplotlib.figure import Figure
-
-    from rv_wear.costs import price
-    from rv_wear.tolerances import PRICED
-
     figure = Figure(figsize=(WIDTH, 3.2), layout="constrained")
     left, right = figure.subplots(1, 2, width_ratios=(1, 1))
     _bars(left, {name: prices[form] for name, prices in bill.prices.items()}, "{:.0f}")

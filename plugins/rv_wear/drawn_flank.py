@@ -1,15 +1,17 @@
 """Along the flank: clearance, forces by both ways of sharing, forces and wear of differently ground discs."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rv_wear.calculation import rv_wear
 from rv_wear.curves import clearance_over_angle, flank
 from rv_wear.cycloid import longest_arm_angle, relative_arm
 from rv_wear.drawn_look import (
+    ARCMIN,
     BLUE,
     DASHES,
     GREY,
@@ -27,13 +29,9 @@ from rv_wear.drawn_look import (
     signed,
 )
 from rv_wear.mesh import mesh_of
+from rv_wear.modifications import Ground
 from rv_wear.quantities import Reducer
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from rv_wear.modifications import Ground
-    from truing import Swept
+from truing import Swept
 
 FINE = np.radians(np.linspace(0.0, 180.0, 361))
 Values = NDArray[np.float64]
@@ -92,8 +90,6 @@ def difference_of_sharing(reducer: Reducer) -> tuple[float, float]:
 
 def modifications_figure(ground: "Ground", own: Reducer) -> "Figure":
     """Draw the forces of the new discs over the phase angle and below them the wear, as the paper's Figs. 1 and 2."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(WIDTH, 5.6), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
     shift = float(own.equidistant_modification - own.shift_modification)
@@ -128,10 +124,6 @@ def wear_figure(reducer: Reducer) -> "Figure":
 
 def history_figure(swept: "Swept") -> "Figure":
     """Draw deepest wear and backlash over the working time."""
-    from matplotlib.figure import Figure
-
-    from rv_wear.drawn_look import ARCMIN
-
     figure = Figure(figsize=(WIDTH, 4.4), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
     hours = swept.axis / HOUR

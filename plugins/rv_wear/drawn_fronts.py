@@ -1,18 +1,15 @@
 """Better tolerances: the fronts of cost and wear, and what they do to the reliability over the hours."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rv_wear.drawn_look import BLUE, GREEN, GREY, INK, MICRO, ORANGE, one_panel, signed
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from rv_wear.least_costs import Front, Fronts
-    from truing import Optimum
+from rv_wear.least_costs import Front, Fronts
+from truing import Optimum
 
 PRINTED_OPTIMA = {0.95: (1291.0, 3.151), 0.999: (1300.0, 3.207)}
 """Cost (yuan) and wear (um) of the paper's optima by required reliability; its 100 % is read as 0.999."""

@@ -1,19 +1,16 @@
 """What the figures share: colours, grids, and the inputs that a run was made with."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
+from rv_wear.answers import Wear
 from rv_wear.quantities import Reducer
+from truing import Record
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from rv_wear.answers import Wear
-    from truing import Record
-
-    Run = Record[Reducer, Wear]
+Run = Record[Reducer, Wear]
 
 BLUE, ORANGE, GREEN, INK, GREY = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c"
 WIDTH = 6.4
@@ -29,8 +26,6 @@ def hours_of(reducer: Reducer) -> str:
 
 def one_panel(height: float) -> "tuple[Figure, Any]":
     """A figure as wide as the sheet with one panel."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(WIDTH, height), layout="constrained")
     return figure, figure.subplots()
 

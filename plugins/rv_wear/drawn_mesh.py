@@ -1,9 +1,11 @@
 """The mesh to scale: one disc among its pins, the crank, and the forces of one position."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Arc, Circle
 from numpy.typing import NDArray
 
 from rv_wear import cycloid
@@ -11,9 +13,6 @@ from rv_wear.curves import flank
 from rv_wear.drawn_look import BLUE, GREY, INK, ORANGE
 from rv_wear.mesh import Mesh, mesh_of
 from rv_wear.quantities import Reducer
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 Points = NDArray[np.complex128]
 MM = 1e3
@@ -58,8 +57,6 @@ def position_of(reducer: Reducer) -> Position:
 
 def mesh_figure(reducer: Reducer) -> "Figure":
     """Draw pins, disc and crank to scale, with the forces of the new mesh in one position."""
-    from matplotlib.figure import Figure
-
     mesh, position = mesh_of(reducer), position_of(reducer)
     figure = Figure(figsize=(6.4, 6.3), layout="constrained")
     panel: Any = figure.subplots()
@@ -85,8 +82,6 @@ def _disc(panel: Any, position: Position) -> None:
 
 
 def _pins(panel: Any, position: Position, radius: float) -> None:
-    from matplotlib.patches import Circle
-
     for place, pin in enumerate(position.pins):
         bears = place < len(position.force) and position.force[place] > 0.0
         panel.add_patch(
@@ -125,8 +120,6 @@ def _ends(first: complex, second: complex) -> tuple[list[float], list[float]]:
 
 def _angle_and_arm(panel: Any, position: Position) -> None:
     """The phase angle of one pin about the middle of the pins, and the arm of its force about that of the disc."""
-    from matplotlib.patches import Arc
-
     bearing = np.flatnonzero(position.force > 0.0)
     if not len(bearing):
         return
@@ -151,8 +144,6 @@ def _angle_and_arm(panel: Any, position: Position) -> None:
 
 def _centres(panel: Any, position: Position, mesh: Mesh) -> None:
     """Both centres, the crank line, the pitch point, and the circle on which the longest arm ends."""
-    from matplotlib.patches import Circle
-
     reach = abs(position.pins[0])
     panel.plot([-reach, reach], [0, 0], color=INK, linewidth=0.7, linestyle=(0, (8, 3, 1, 3)), zorder=4)
     panel.add_patch(

@@ -4,6 +4,9 @@ from dataclasses import replace
 from math import isnan, nan
 from typing import Any
 
+import numpy as np
+
+from rv_wear.calculation import rv_wear
 from rv_wear.least_costs import Fronts
 from rv_wear.quantities import Reducer
 from truing import Allotted, Emulated, Float, Optimum, axis, found, results
@@ -76,10 +79,6 @@ class Bought:
 
 def learnt(emulated: Emulated) -> Learnt:
     """Coverage and errors of the surrogate, and how many of ten times lie in its band."""
-    import numpy as np
-
-    from rv_wear.calculation import rv_wear
-
     judged = emulated.judged.get("max_wear")
     times = np.array(TIMES)
     try:
@@ -98,8 +97,6 @@ def learnt(emulated: Emulated) -> Learnt:
 
 def front(optimum: Optimum) -> Front:
     """The front in the order of cost; empty, and without a knee, where no design keeps the limits."""
-    import numpy as np
-
     designs = sorted(optimum.front, key=lambda design: _of(design, "tolerance_price"))
     knee = optimum.knee
     wear = np.array([_of(design, "max_wear") for design in designs])

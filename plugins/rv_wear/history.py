@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rv_wear import coefficient, sliding
+from rv_wear.cycloid import longest_arm_angle, relative_radius
 from rv_wear.mesh import Array
 from rv_wear.sharing import Loads, shared, start_scale
 from rv_wear.teeth import Teeth, part_of
@@ -92,8 +93,6 @@ def _power_law(factor: Array, power: float) -> Rate:
 
 def _at_pitch_point(teeth: Teeth, unworn: Loads) -> Array:
     """What force and radius do to the coefficient at the longest arm, where the unworn force is largest; (m,)."""
-    from rv_wear.cycloid import longest_arm_angle, relative_radius
-
     mesh = teeth.mesh
     radius = relative_radius(mesh, longest_arm_angle(mesh))
     line_load = unworn.scale.max(axis=0) / mesh.width

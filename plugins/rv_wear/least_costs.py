@@ -7,18 +7,15 @@ modification alone, this is the front itself (the epsilon-constraint method). An
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import ceil
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rv_wear.quantities import Reducer
-from truing import Allocation, Bench, Reliability, TruingError
+from truing import Allocation, Bench, Block, Check, Reliability, TruingError
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from truing import Block, Check
-
-    Values = NDArray[np.float64]
+Values = NDArray[np.float64]
 
 MICRO, HOUR = 1e-6, 3600.0
 STEP = 1.0  # um of the equidistant modification from one design to the next
@@ -99,8 +96,6 @@ class LeastCosts:
 
     def _knee(self, bench: Bench, designs: Sequence["Design"]) -> tuple[int | None, Any, Any]:
         """The knee's place, and its reliability over the working time to first order."""
-        import numpy as np
-
         if not designs:
             return None, np.empty(0), np.empty(0)
         place = farthest_from_chord(np.array([[design.cost, design.wear / MICRO] for design in designs]))
@@ -135,8 +130,6 @@ def ground(
 
 def farthest_from_chord(front: "Values") -> int:
     """The place of the design (n, 2) below the chord of the front, both objectives brought to 0 to 1."""
-    import numpy as np
-
     span = np.ptp(front, axis=0)
     scaled = (front - front.min(axis=0)) / np.where(span > 0, span, 1.0)
     return int(np.argmin(scaled.sum(axis=1)))

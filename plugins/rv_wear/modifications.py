@@ -2,18 +2,15 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rv_wear.calculation import rv_wear
 from rv_wear.curves import Flank, flank
 from rv_wear.quantities import Reducer
-from truing import Block, Float, Table, TruingError, found, results
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from truing import Bench, Check
+from truing import Bench, Block, Check, Float, Table, TruingError, found, results
 
 HOUR = 3600.0
 MOST = 100
@@ -46,8 +43,6 @@ class Modifications:
 
     def run(self, bench: "Bench") -> "Ground":
         """Calculate all of them at the radial clearance of the inputs."""
-        import numpy as np
-
         reducer: Reducer = replace(bench.inputs, working_time=self.hours * HOUR)
         clearance = reducer.equidistant_modification - reducer.shift_modification
         low, high = float(bench.answers["equidistant_low"]), float(bench.answers["equidistant_high"])
@@ -78,8 +73,6 @@ class Ground:
     @property
     def loaded(self) -> "NDArray[np.float64]":
         """The share of all contacts that carry, (n,)."""
-        import numpy as np
-
         return np.asarray(np.mean(self.new.force > 0.0, axis=-1))
 
     def as_json(self) -> Mapping[str, Any]:
@@ -116,8 +109,6 @@ class Ground:
 
 def trend(ground: Ground) -> Trend:
     """How many of the steps go the way the paper says."""
-    import numpy as np
-
     return Trend(
         force_falls=float(np.mean(np.diff(ground.force) < 0.0)),
         mesh_widens=float(np.mean(np.diff(ground.loaded) >= 0.0)),

@@ -2,15 +2,12 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from truing import TruingError
+import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from truing import Bench, Block, Check
+from truing import Bench, Block, Check, TruingError
 
 ARCMIN = 3.141592653589793 / 10800.0
 MOST = 100_000
@@ -57,8 +54,6 @@ class Newborn:
         }
 
     def _summary(self, values: "NDArray[np.float64]") -> dict[str, Any]:
-        import numpy as np
-
         known = values[np.isfinite(values)]
         if len(known) < 2:
             return {"failed": len(values)}

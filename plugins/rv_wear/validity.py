@@ -2,14 +2,11 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rv_wear.curves import allowed_equidistant
 from rv_wear.quantities import Reducer
-from truing import Block, Table
-
-if TYPE_CHECKING:
-    from truing import Bench, Check
+from truing import Bench, Block, Check, Table
 
 FEWEST_PINS = 2
 VISCOSITY = (5e-9, 5e-8)  # 1/Pa

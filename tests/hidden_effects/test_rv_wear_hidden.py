@@ -15,7 +15,7 @@ from hidden_effects.plugin_asking import Answer, demand_named
 from hidden_effects.rv_asking import REDUCER, diagnosed
 from hidden_effects.rv_cases import BACKLASH, WEAR, Case, Wish, make_case, measured
 from hidden_effects.rv_machine import RATED, ROUGHNESS, Array, Rows, Wearing, shown, wear_after
-from truing.diagnosis.verdict import APART
+from truing.diagnosis.result import APART
 
 BOTH = (BACKLASH, WEAR)
 ONE_CURVE = {"pin_rolling", "lost_motion_share", "duty_share", "pin_wear", "bearing_wear", "sensor_gain"}

@@ -19,7 +19,7 @@ from truing.kernel import Origin
 from truing.measurements import Case, CasesFile, RowCount
 from truing.report.content import least_margin
 from truing.setup import Setup, default_setup
-from truing.studies.bench import Check, Proposal
+from truing.studies.checks import Check, Proposal
 from truing.studies.verdicts import Decided
 
 

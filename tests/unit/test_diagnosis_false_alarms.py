@@ -13,7 +13,7 @@ from diagnosis_nothing import NOISES, decision_on, gross_errors, nothing_wrong
 from scipy.stats import binom, kstest
 
 from truing.diagnosis.engine import diagnose
-from truing.diagnosis.verdict import explanations_of
+from truing.diagnosis.result import explanations_of
 
 SEEDS = range(10)
 PERMITTED, NAMED_WITH_GROSS_ERRORS = 0.05, 0.10

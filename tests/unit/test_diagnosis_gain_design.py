@@ -38,8 +38,8 @@ from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import FOLDS, SHORTEST_BLOCK, Folds, carries_over, errors_left_out, folds_of
 from truing.diagnosis.gain import _log_density, nested, sign_flip_p
 from truing.diagnosis.noise import Setting
+from truing.diagnosis.result import APART
 from truing.diagnosis.sample import Sample, sample_of
-from truing.diagnosis.verdict import APART
 from truing.diagnosis.visibility import needed, smallest_visible
 from truing.setup import DiagnoseOptions
 

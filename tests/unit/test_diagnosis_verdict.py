@@ -29,8 +29,18 @@ from hypothesis import HealthCheck, given, settings
 from truing.cli.diagnosis_printed import report
 from truing.declare.blocks import Words
 from truing.diagnosis.noise import SETTINGS
-from truing.diagnosis.result import Alternative, Amount, Cause, Contradiction, Diagnosis, Finding, Thinned, Trade
-from truing.diagnosis.verdict import doubts, shared_of
+from truing.diagnosis.result import (
+    Alternative,
+    Amount,
+    Cause,
+    Contradiction,
+    Diagnosis,
+    Finding,
+    Thinned,
+    Trade,
+    doubts,
+    shared_of,
+)
 from truing.report.chapters import Figures
 from truing.report.context import TableView
 from truing.report.diagnosis_chapters import diagnosis_chapters

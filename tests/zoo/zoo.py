@@ -20,8 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from truing import Kernel, Model
-from truing.diagnosis.result import Diagnosis
-from truing.diagnosis.verdict import UNKNOWN, explanations_of
+from truing.diagnosis.result import UNKNOWN, Diagnosis, explanations_of
 from truing.testing import Hidden, recorded
 
 Array: TypeAlias = NDArray[np.float64]

@@ -21,7 +21,7 @@ from truing.declare.model import Study
 from truing.diagnosis import result as found
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.reading import read_records
-from truing.diagnosis.verdict import Verdict
+from truing.diagnosis.result import Verdict
 from truing.errors import UsageError
 from truing.example_file import example_of
 from truing.executors import open_executor

@@ -8,6 +8,11 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 
+from truing.cli.app import app
+from truing.cli.completion import answer_the_shell
+from truing.cli.console import Settings, after_output, close_stream, lose_output, ready_streams
+from truing.cli.endings import hear_endings
+
 FLAGS = {"--traceback": "traceback", "-v": "verbose", "--verbose": "verbose", "-q": "quiet", "--quiet": "quiet"}
 
 
@@ -33,16 +38,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(words: list[str], *, is_program: bool) -> int:
-    from truing.cli.app import app
-    from truing.cli.console import Settings, after_output, close_stream, lose_output, ready_streams
-    from truing.cli.endings import hear_endings
-
     ready_streams()
     if is_program:
         hear_endings()
     if "_CALC_COMPLETE" in os.environ:
-        from truing.cli.completion import answer_the_shell
-
         return answer_the_shell(app)
     end = words.index("--") if "--" in words else len(words)
     said = {FLAGS[word] for word in words[:end] if word in FLAGS}

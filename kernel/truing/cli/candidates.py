@@ -7,17 +7,21 @@ not, but never told of an error.
 from __future__ import annotations
 
 import functools
+import inspect
 from collections.abc import Callable, Iterator
 from contextlib import redirect_stderr, redirect_stdout
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ParamSpec
+from typing import Any, ParamSpec
 
 import typer
 
-if TYPE_CHECKING:
-    from truing.declare.model import Model
-    from truing.kernel import Offer
+from truing.cli.console import one_line
+from truing.declare.model import Model
+from truing.inputs_file.diagnose_options import diagnose_schema
+from truing.inputs_file.file_model import HEAD
+from truing.inputs_file.study_options import options_of
+from truing.kernel import Kernel, Offer, entry_points
 
 P = ParamSpec("P")
 Named = tuple[str, str]
@@ -42,8 +46,6 @@ def silent(function: Callable[P, Iterator[Named]]) -> Callable[P, list[Named]]:
 
 def _one_line(words: str) -> str:
     """Return a help text as one line that no shell and no markup takes for an order."""
-    from truing.cli.console import one_line
-
     plain = one_line(words).replace("[", "(").replace("]", ")")
     return plain if len(plain) <= LONGEST_HELP else plain[: LONGEST_HELP - 1] + "…"
 
@@ -56,8 +58,6 @@ def _is_plain(name: str) -> bool:
 @silent
 def plugins(incomplete: str) -> Iterator[Named]:
     """Offer installed plugins; behind the whole name of one, or its point, the models it offers."""
-    from truing.kernel import entry_points
-
     if _is_file(incomplete):
         return
     entries = {entry.name: entry for entry in entry_points()}
@@ -71,8 +71,6 @@ def plugins(incomplete: str) -> Iterator[Named]:
 @silent
 def names(incomplete: str) -> Iterator[Named]:
     """Offer PLUGIN.NAME: plugins first, then what the one that is named answers, takes, and could have wrong."""
-    from truing.kernel import entry_points
-
     if _is_file(incomplete):
         return
     if "." not in incomplete:
@@ -135,8 +133,6 @@ def _from(distribution: Any) -> str:
 
 def _offers(word: str) -> list[Offer]:
     """Return what the plugin offers to which a word belongs; no other plugin is loaded."""
-    from truing.kernel import Kernel
-
     if word.endswith(".py"):
         kernel = Kernel()
         kernel.add_file(Path(word))
@@ -153,8 +149,6 @@ def _typed_model(context: typer.Context) -> Model[Any, Any]:
 
 def _model(word: str) -> Model[Any, Any]:
     """Return the model of this name, or the one to which a name inside belongs (PLUGIN.RESULT)."""
-    from truing.kernel import Kernel
-
     offers = _offers(word)
     named = {name: offer.model for offer in offers for name in (offer.name, f"{offer.origin.name}.{offer.model.name}")}
     meant = max((name for name in named if f"{word}.".startswith(f"{name}.")), key=len, default="")
@@ -208,8 +202,6 @@ def _inside(model: Model[Any, Any], section: str, name: str) -> Iterator[Named]:
     elif section == "units":
         yield from ((f"units.{one}=", item.spec.note) for one, item in model.result_fields.items())
     elif section == "sheet":
-        from truing.inputs_file.file_model import HEAD
-
         yield from ((f"sheet.{one}=", "") for one in (*HEAD, "detail"))
     elif section == "conditions":
         yield from ((f"conditions.{one.name}=", one.note) for one in model.known_conditions.values())
@@ -229,9 +221,6 @@ def _effects(model: Model[Any, Any], wanted: str, *, is_inside: bool) -> Iterato
 
 
 def _studies(model: Model[Any, Any], wanted: str, *, is_inside: bool) -> Iterator[Named]:
-    from truing.inputs_file.diagnose_options import diagnose_schema
-    from truing.inputs_file.study_options import options_of
-
     if not is_inside:
         for study in model.studies:
             yield f"studies.{study.name}.", (type(study).__doc__ or "").strip().partition("\n")[0]
@@ -249,8 +238,6 @@ def _studies(model: Model[Any, Any], wanted: str, *, is_inside: bool) -> Iterato
 
 def _reader(model: Model[Any, Any], name: str) -> Iterator[Named]:
     """Give the options of the reader of a data file."""
-    import inspect
-
     reader = getattr(model.input_fields[name].spec, "reader", None)
     if reader is not None:
         yield f"{name}.file=", "the data file"

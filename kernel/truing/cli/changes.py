@@ -7,8 +7,11 @@ from typing import Any
 
 from truing.cli.coloured import BAD, GOOD, NEW, OLD
 from truing.cli.console import one_line
+from truing.numbers import format_number
 from truing.runs.comparison import Change, differing, number_in
 from truing.studies.states import EXIT_CODES, SHORT
+from truing.units import difference_unit, unit_text
+from truing.units.names import LEVELS
 
 LONGEST = 60
 ABSENT = "-"
@@ -76,8 +79,6 @@ def _flip(change: Change) -> str:
 
 
 def _moved(change: Change) -> str:
-    from truing.units.names import LEVELS
-
     before, after, share = number_in(change.before), number_in(change.after), change.relative
     if before is None or after is None or before == after:
         return ""
@@ -104,8 +105,6 @@ def _series(change: Change) -> str:
 
 def growth(share: float) -> str:
     """Write a relative change: +12.5 %, -3 %, beyond tenfold as a factor."""
-    from truing.numbers import format_number
-
     if abs(share) < LEAST:
         return f"below {LEAST:.0e} of it"
     if share >= MANY_TIMES - 1:
@@ -114,17 +113,12 @@ def growth(share: float) -> str:
 
 
 def _difference(before: float, after: float, unit: str) -> str:
-    from truing.numbers import format_number
-    from truing.units import difference_unit, unit_text
-
     step = format_number(after - before, 3)
     return f"{'+' if after > before else ''}{step} {unit_text(difference_unit(unit))}".strip()
 
 
 def _limit(change: Change) -> str:
     """Say that a limit moved, which the value of a check does not show."""
-    from truing.numbers import format_number
-
     if change.kind != "checks" or change.before.get("limit") == change.after.get("limit"):
         return ""
     limits = (format_number(piece.get("limit"), 8) for piece in (change.before, change.after))
@@ -154,8 +148,6 @@ def _interval(change: Change) -> str:
 
 
 def _value(value: Any) -> str:
-    from truing.numbers import format_number
-
     if value is None:
         return ABSENT
     if isinstance(value, bool):

@@ -6,6 +6,9 @@ import os
 import sys
 from collections.abc import Sequence
 
+from rich.console import Console
+from rich.text import Text
+
 from truing.cli.console import GAP, aligned, harmless, out, put
 
 GOOD, BAD, NEW, OLD = "green", "red", "bold", "dim"
@@ -23,9 +26,6 @@ def out_table(rows: Sequence[Sequence[str]], styles: Sequence[Sequence[str]], *,
     if not shows_colour():
         out("\n".join(lines))
         return
-    from rich.console import Console
-    from rich.text import Text
-
     console = Console(file=sys.stdout, highlight=False, soft_wrap=True)
     starts = _starts(rows)
     with console.capture() as coloured:

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from truing.cli.candidates import runs
-from truing.cli.console import out, out_json, verb
+from truing.cli.changes import styles_of, words_of
+from truing.cli.coloured import out_table
+from truing.cli.console import one_line, out, out_json, verb
 from truing.cli.words import AsJson
-
-if TYPE_CHECKING:
-    from truing.runs.comparison import Change
+from truing.runs.comparison import Change, compared, in_order
+from truing.runs.folder import load_either
 
 
 @verb
@@ -24,9 +25,6 @@ def compare(
     as_json: AsJson = False,
 ) -> int:
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""
-    from truing.runs.comparison import compared
-    from truing.runs.folder import load_either
-
     found = compared(load_either(first), load_either(second))
     if as_json:
         out_json({"equal": not found, "changes": [asdict(change) for change in found]})
@@ -39,11 +37,6 @@ def compare(
 
 def _print(found: list[Change], titles: tuple[str, str]) -> None:
     """Print a row for each change, checks that flipped above all others; where there is colour it repeats the words."""
-    from truing.cli.changes import styles_of, words_of
-    from truing.cli.coloured import out_table
-    from truing.cli.console import one_line
-    from truing.runs.comparison import in_order
-
     ordered = in_order(found)
     rows = [("what", "name", *map(one_line, titles), "change"), *map(words_of, ordered)]
     out_table(rows, [("",) * 5, *map(styles_of, ordered)])

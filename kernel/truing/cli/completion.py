@@ -16,6 +16,7 @@ import typer
 from truing.atomic import write_files
 from truing.cli.console import out, settings_of, verb
 from truing.errors import UsageError
+from truing.report.templates import template_folder
 
 LINE = "_TYPER_COMPLETE_ARGS"
 """The environment variable in which a shell hands over what was typed."""
@@ -41,8 +42,6 @@ def completion(
     install: Annotated[bool, typer.Option("--install", help="Put the script where your shell finds it.")] = False,
 ) -> int:
     """Print the script by which your shell completes plugins, inputs and results, or install it."""
-    from truing.report.templates import template_folder
-
     wanted = shell or _present_shell()
     text = (template_folder() / "completion" / FILES[wanted]).read_text(encoding="utf-8")
     if not install:

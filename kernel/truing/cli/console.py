@@ -13,16 +13,15 @@ import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ParamSpec, TextIO
+from typing import Any, ParamSpec, TextIO
 
 import typer
 
 from truing.atomic import writings, written
 from truing.cli.endings import Terminated
+from truing.cli.progress import has_terminal, shown_progress
 from truing.errors import InputError, OutputError, TruingError
-
-if TYPE_CHECKING:
-    from truing.studies.bench import Progress
+from truing.studies.bench import Progress
 
 P = ParamSpec("P")
 NARROWEST = 60
@@ -191,8 +190,6 @@ def close_stream(stream: TextIO) -> None:
 @contextmanager
 def progress_bar(settings: Settings) -> Iterator[Progress]:
     """Show a progress bar where the errors go to a terminal, once the work takes its time, and nothing elsewhere."""
-    from truing.cli.progress import has_terminal, shown_progress
-
     if settings.quiet or not has_terminal():
         yield lambda task, done, total: None
         return

@@ -11,6 +11,9 @@ from truing.cli.console import columns, one_line, out, out_json, settings_of, ve
 from truing.cli.load import find_offer
 from truing.cli.words import AsJson, Plugin
 from truing.describe import description
+from truing.formulas import symbol_text
+from truing.inputs_file import json_schema
+from truing.units import unit_text
 
 WHERE_MEASURED = (
     ("thermal_drift_of_INPUT", "", "", "where a record varies an input in K"),
@@ -30,8 +33,6 @@ def describe(
     """Show inputs, results, error sources and objectives: symbols, units, bounds, sources."""
     offer = find_offer(plugin, settings_of(context))
     if as_schema:
-        from truing.inputs_file import json_schema
-
         out_json(json_schema(offer))
     elif as_json:
         out_json(description(offer))
@@ -77,14 +78,10 @@ def _row(*cells: object) -> tuple[str, ...]:
 
 
 def _symbol(item: dict[str, Any]) -> str:
-    from truing.formulas import symbol_text
-
     return symbol_text(item["symbol"]) if item["symbol"] else ""
 
 
 def _unit(unit: str) -> str:
-    from truing.units import unit_text
-
     return unit_text(unit) or "-"
 
 

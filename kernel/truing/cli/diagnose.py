@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from truing.cli.console import Settings, one_line, out, out_json, progress_bar, say, settings_of, verb
+from truing.cli.diagnosis_printed import report
 from truing.cli.load import find_offer, read_or_example
 from truing.cli.words import AsJson, Changed, Plugin
 from truing.errors import UsageError
-
-if TYPE_CHECKING:
-    from truing.report.diagnosis_run import Diagnosed
-    from truing.studies.bench import Progress
+from truing.inputs_file.culprit import told_by_line
+from truing.report.diagnosis_run import Diagnosed, DiagnosisOrder, perform_diagnosis
+from truing.studies.bench import Progress
 
 Data = Annotated[list[Path] | None, typer.Option("--data", "-d", help="A CSV file of measured rows; may be repeated.")]
 
@@ -39,10 +39,6 @@ def diagnose(
     as_json: AsJson = False,
 ) -> int:
     """Find what the simulation gets wrong, name the cause, extend the model and measure the gain."""
-    from truing.cli.diagnosis_printed import report
-    from truing.inputs_file.culprit import told_by_line
-    from truing.report.diagnosis_run import DiagnosisOrder, perform_diagnosis
-
     settings = settings_of(context)
     measured = (*(data or ()), *(files or ()))
     if not measured:

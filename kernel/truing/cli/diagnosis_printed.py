@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from truing.cli.console import broken, one_line
-from truing.diagnosis.verdict import explanations_of
+from truing.diagnosis.result import Alternative, Amount, Diagnosis, Seen, Wrong, explanations_of
 from truing.numbers import format_number, pretty
+from truing.report.diagnosis_sheet import data_words
 from truing.report.diagnosis_words import (
     amount_text,
     cause_text,
@@ -31,9 +33,6 @@ from truing.report.diagnosis_words import (
     tie_text,
     verdict_word,
 )
-
-if TYPE_CHECKING:
-    from truing.diagnosis.result import Alternative, Diagnosis, Seen, Wrong
 
 INDENT = 18
 MOST_PLACES = 5
@@ -68,15 +67,9 @@ def report(diagnosis: Diagnosis, folder: Path) -> Iterator[str]:
 
 def _data(diagnosis: Diagnosis) -> str:
     """Say what was measured, how long it took, and which model it was held against."""
-    from truing.report.diagnosis_sheet import data_words
-
     time = next((item for item in diagnosis.records.covariates.values() if item.role == "time"), None)
     lasting = ""
     if time is not None:
-        import numpy as np
-
-        from truing.diagnosis.result import Amount
-
         hours = Amount(float(np.nanmax(time.values) - np.nanmin(time.values)), time.unit)
         lasting = f", {amount_text(hours)}"
     model = diagnosis.setup.model

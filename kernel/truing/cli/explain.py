@@ -9,9 +9,12 @@ import typer
 
 from truing.cli import candidates
 from truing.cli.console import Settings, out, out_json, progress_bar, settings_of, verb
+from truing.cli.explain_printed import lines_of, width_of_page
 from truing.cli.load import find_offer, read_or_example
 from truing.cli.words import AsJson, Changed
 from truing.errors import UsageError
+from truing.explain import SECTIONS, told
+from truing.inputs_file.culprit import told_by_line
 from truing.kernel import Offer
 
 
@@ -34,10 +37,6 @@ def explain(
     as_json: AsJson = False,
 ) -> int:
     """Explain a result: formula, what it is made from, what moves it; or an input, an effect, a tolerance."""
-    from truing.cli.explain_printed import lines_of, width_of_page
-    from truing.explain import told
-    from truing.inputs_file.culprit import told_by_line
-
     settings = settings_of(context)
     offer, wanted = _asked(what, name, settings)
     setup = read_or_example(offer, inputs, changed or (), word=offer.name, settings=settings)
@@ -52,8 +51,6 @@ def explain(
 
 def _asked(what: str, name: str, settings: Settings) -> tuple[Offer, str]:
     """Return the calculation and the name that the words mean."""
-    from truing.explain import SECTIONS
-
     if name:
         return find_offer(what, settings), name
     if what.endswith(".py"):

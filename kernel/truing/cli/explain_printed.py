@@ -9,6 +9,9 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from truing.cli.console import GAP, NARROWEST, one_line
+from truing.formulas.write_text import HOLD, folded
+from truing.numbers import format_number, pretty
+from truing.units import unit_text
 
 PAGE = 80
 WIDEST = 110
@@ -61,8 +64,6 @@ def _result(told: Told, width: int) -> Iterator[str]:
 
 
 def _formula(told: Told, width: int) -> Iterator[str]:
-    from truing.formulas.write_text import HOLD, folded
-
     formula = told["formula"]
     if formula is None:
         return
@@ -84,8 +85,6 @@ def _formula(told: Told, width: int) -> Iterator[str]:
 
 def one_line_held(text: str) -> str:
     """Return a formula without control characters; what holds number and unit together stays."""
-    from truing.formulas.write_text import HOLD
-
     return "".join(c if c.isprintable() or c == HOLD else " " for c in text)
 
 
@@ -145,9 +144,6 @@ def _limits(told: Told, width: int) -> Iterator[str]:
 
 
 def _check_words(limit: Told) -> str:
-    from truing.numbers import format_number
-    from truing.units import unit_text
-
     check = limit["check"]
     if check is None:
         return ""
@@ -159,8 +155,6 @@ def _check_words(limit: Told) -> str:
 
 
 def _published(told: Told, width: int) -> Iterator[str]:
-    from truing.numbers import format_number
-
     if not told["published"]:
         return
     yield from _title("What the source prints, and ours")
@@ -327,14 +321,10 @@ def _more(items: Sequence[Any], most: int = MOST) -> Iterator[str]:
 
 
 def _percent(share: float) -> str:
-    from truing.numbers import format_number
-
     return f"{format_number(100 * share, 3)} %" if share else ""
 
 
 def _per_cent(percent: float | None) -> str:
-    from truing.numbers import format_number, pretty
-
     return "" if percent is None else _plus(f"{pretty(format_number(percent, 3))} %")
 
 

@@ -9,6 +9,8 @@ import typer
 
 from truing.cli.console import one_line, out, out_json, settings_of, verb
 from truing.cli.words import AsJson
+from truing.report.index_page import listing_document, summary_of, write_index
+from truing.runs.index import list_folder
 
 
 @verb
@@ -23,9 +25,6 @@ def index(
     as_json: AsJson = False,
 ) -> int:
     """Write one page that lists the runs and diagnoses of a folder, to sort and to filter, offline."""
-    from truing.report.index_page import listing_document, summary_of, write_index
-    from truing.runs.index import list_folder
-
     settings = settings_of(context)
     listing = list_folder(folder)
     page = output or folder / "index.html"

@@ -13,6 +13,8 @@ from truing.cli.console import json_text, out, settings_of, verb
 from truing.cli.load import find_offer
 from truing.cli.words import OutputFile, Plugin
 from truing.errors import OutputError
+from truing.example_file import example_text, schema_name, with_schema_line
+from truing.inputs_file import json_schema
 
 
 @verb
@@ -24,8 +26,6 @@ def init(
     no_schema: Annotated[bool, typer.Option("--no-schema", help="Write no schema for editors beside it.")] = False,
 ) -> int:
     """Write a commented inputs file that holds the shipped example."""
-    from truing.example_file import example_text, schema_name, with_schema_line
-
     settings = settings_of(context)
     offer = find_offer(plugin, settings)
     text = example_text(offer)
@@ -34,8 +34,6 @@ def init(
         return 0
     files = {output: text}
     if not no_schema:
-        from truing.inputs_file import json_schema
-
         schema = output.parent / schema_name(offer)
         files = {output: with_schema_line(text, schema.name), schema: json_text(json_schema(offer), indent=None) + "\n"}
     if not force:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from truing.cli.console import Settings
+from truing.example_file import example_of
+from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Offer
 from truing.kernel.finding import offer_of
-
-if TYPE_CHECKING:
-    from truing.setup import Setup
+from truing.setup import Setup
 
 
 def find_offer(word: str, settings: Settings, *, strict: bool = False) -> Offer:
@@ -23,9 +22,6 @@ def read_or_example(
     offer: Offer, inputs: Path | None, changed: Sequence[str], *, word: str, settings: Settings
 ) -> Setup:
     """Return what the inputs file says, or the shipped example where none is named; ``word`` named the model."""
-    from truing.example_file import example_of
-    from truing.inputs_file import read_setup, setup_from_text
-
     if inputs is not None:
         return read_setup(inputs, offer, overrides=changed)
     settings.say(f"no --inputs: running the shipped example (calc init {word} writes it to a file)")

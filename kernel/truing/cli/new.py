@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+import os
+import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from truing.cli.console import settings_of, verb
 from truing.errors import UsageError
-
-if TYPE_CHECKING:
-    from truing.new_project import Plan
+from truing.new_project import (
+    Plan,
+    check_name,
+    check_title,
+    project,
+    single_file,
+    title_of,
+    write_project,
+    write_single_file,
+)
 
 
 @verb
@@ -25,8 +34,6 @@ def new(
     single: Annotated[bool, typer.Option("--single-file", help="One Python file instead of a project.")] = False,
 ) -> int:
     """Write a plugin of your own: package, tests, entry point, CI; it works as written."""
-    from truing.new_project import Plan, check_name, check_title, title_of
-
     check_name(name)
     if title is not None:
         check_title(title)
@@ -40,8 +47,6 @@ def new(
 
 def _project(plan: Plan, output: Path | None) -> list[str]:
     """Write a project; return what to type next."""
-    from truing.new_project import project, write_project
-
     folder = output if output is not None else Path(plan.name)
     files = project(plan)
     write_project(folder, files)
@@ -55,8 +60,6 @@ def _project(plan: Plan, output: Path | None) -> list[str]:
 
 def _file(plan: Plan, output: Path | None) -> list[str]:
     """Write a single file; return what to type next."""
-    from truing.new_project import single_file, write_single_file
-
     path = output if output is not None else Path(f"{plan.name}.py")
     if path.suffix != ".py":
         raise UsageError(f"--output: {path} is no name of a Python file; with --single-file it ends in .py")
@@ -72,9 +75,6 @@ def _file(plan: Plan, output: Path | None) -> list[str]:
 
 def _typed(path: str) -> str:
     """Write a path as one types it."""
-    import os
-    import shlex
-
     if os.name != "nt":
         return shlex.quote(path)
     return f'"{path}"' if " " in path else path

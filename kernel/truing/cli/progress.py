@@ -9,10 +9,14 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from truing.studies.bench import Progress
+from rich.console import Console
+from rich.live import Live
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+
+from truing.studies.bench import Progress
 
 PATIENCE = 2.0
 """Seconds that pass before anything is shown: short work shows nothing."""
@@ -101,9 +105,6 @@ class Watched:
             line.stop()
 
     def _show(self) -> None:
-        from rich.console import Console
-        from rich.live import Live
-
         with self._lock:
             if self._over:
                 return
@@ -113,9 +114,6 @@ class Watched:
 
     def _drawn(self) -> Any:
         """Draw the present task: its name, a bar, how much is done, and how long it will take."""
-        from rich.progress_bar import ProgressBar
-        from rich.table import Table
-
         task, now = self.task, time.monotonic()
         known = task.share > 0
         bar = ProgressBar(total=1.0, completed=task.share, width=30, pulse=not known, animation_time=now)

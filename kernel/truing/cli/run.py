@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -15,10 +15,10 @@ from truing.cli.load import find_offer, read_or_example
 from truing.cli.run_printed import lines_of
 from truing.cli.words import AsJson, Changed, Excel, Plugin
 from truing.errors import UsageError
+from truing.inputs_file.culprit import told_by_line
+from truing.report.run import Done, RunOrder, perform
+from truing.runs.partial import is_partial, partial_folder
 from truing.studies.states import EXIT_CODES
-
-if TYPE_CHECKING:
-    from truing.report.run import Done, RunOrder
 
 
 @verb
@@ -43,9 +43,6 @@ def run(
     as_json: AsJson = False,
 ) -> int:
     """Run the calculation and its studies and write the calculation sheet."""
-    from truing.inputs_file.culprit import told_by_line
-    from truing.report.run import RunOrder, perform
-
     settings = settings_of(context)
     if cluster and workers is not None:
         raise UsageError("--cluster and --workers exclude each other: a cluster has its own workers")
@@ -66,8 +63,6 @@ def run(
 @contextmanager
 def _told_what_is_kept(order: RunOrder, settings: Settings) -> Iterator[None]:
     """Say of batches that lie there whether they are taken up, and of an interrupt whether they are kept."""
-    from truing.runs.partial import is_partial, partial_folder
-
     kept, before = partial_folder(order.folder), writings()
     if not order.resume and is_partial(kept):
         settings.say(f"note: {kept} holds finished batches of an interrupted run; --resume would take them up")

@@ -5,25 +5,28 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+
+from truing.calculation import Calculation
+from truing.cases import CaseResult, CasesTable
 from truing.cli.console import aligned, columns, one_line
+from truing.numbers import format_value, with_unit
+from truing.report.content import check_rows, least_margin
+from truing.report.context import Value
+from truing.report.run import Done
+from truing.report.sheet import sentence_of_cases
+from truing.setup import Setup
+from truing.studies.bench import files_of
 from truing.studies.states import EXIT_CODES, HEADLINES, SHORT
-
-if TYPE_CHECKING:
-    from truing.calculation import Calculation
-    from truing.cases import CaseResult, CasesTable
-    from truing.report.context import Value
-    from truing.report.run import Done
-    from truing.setup import Setup
+from truing.studies.verdicts import change_words, sentence_of
 
 MOST_CASES = 40
 
 
 def lines_of(done: Done, folder: Path, *, with_titles: bool) -> Iterator[str]:
     """Say what a run found, and what fails; ``with_titles`` puts the results under the sections of the sheet."""
-    from truing.studies.bench import files_of
-
     calculation = done.calculation
     model = calculation.setup.model
     yield one_line(f"{model.name}: {model.title}")
@@ -43,9 +46,6 @@ def lines_of(done: Done, folder: Path, *, with_titles: bool) -> Iterator[str]:
 
 def _verdict_lines(done: Done) -> Iterator[str]:
     """Say which limits, or which cases, are not kept as stated, and what would have to change."""
-    from truing.report.sheet import sentence_of_cases
-    from truing.studies.verdicts import change_words, sentence_of
-
     decided, verdict = done.calculation.decided, done.verdict
     if verdict == "passes":
         return
@@ -69,9 +69,6 @@ def _cases_lines(cases: CasesTable, setup: Setup) -> Iterator[str]:
 
 
 def _case_row(case: CaseResult, setup: Setup, *, governs: bool) -> tuple[str, ...]:
-    from truing.numbers import format_value
-    from truing.report.content import least_margin
-
     values = [
         one_line(value) if isinstance(value, (str, bool)) else format_value(value, setup.print_unit(name))[0]
         for name, value in case.values.items()
@@ -117,8 +114,6 @@ def _groups(calculation: Calculation) -> Iterator[tuple[str, Sequence[str]]]:
 
 
 def _result_row(calculation: Calculation, name: str) -> tuple[str, ...]:
-    from truing.numbers import format_value
-
     item = calculation.setup.model.result_fields[name]
     value, print_unit = calculation.answers[name], calculation.setup.print_unit(name)
     if getattr(value, "ndim", 0):
@@ -128,10 +123,6 @@ def _result_row(calculation: Calculation, name: str) -> tuple[str, ...]:
 
 def _range_words(values: Any, print_unit: str) -> tuple[str, str]:
     """Say an array by its count and range."""
-    import numpy as np
-
-    from truing.numbers import format_value
-
     finite = values[np.isfinite(values)]
     if not finite.size:
         return "–", format_value(None, print_unit)[1]
@@ -141,8 +132,6 @@ def _range_words(values: Any, print_unit: str) -> tuple[str, str]:
 
 def _checks(calculation: Calculation) -> str:
     """Say every limit: what is compared, with what, and what is left."""
-    from truing.report.content import check_rows
-
     rows = list(check_rows(calculation))
     proposed = calculation.decided.proposal is not None
     head = ("check", "as stated" if proposed else "value", "", "limit", "margin", "", "as proposed" if proposed else "")
@@ -157,6 +146,4 @@ def _checks(calculation: Calculation) -> str:
 
 
 def _written(value: Value) -> str:
-    from truing.numbers import with_unit
-
     return with_unit(value.text, value.unit)

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from truing.cli.console import Settings, one_line, out, say, settings_of, verb
 from truing.cli.load import find_offer
 from truing.cli.words import Changed, Excel, OutputFile, Plugin
+from truing.declare.near_miss import near_miss
 from truing.errors import OutputError, UsageError
-
-if TYPE_CHECKING:
-    from truing.measurements import RowsFile
-    from truing.setup import Setup
+from truing.gauge import shown_by_gauge
+from truing.inputs_file import read_setup
+from truing.inputs_file.culprit import told_by_line
+from truing.measurements import EXCEL, PLAIN, RowsFile, read_rows, table_text, write_table
+from truing.measurements.cell_text import with_comma
+from truing.measurements.overriding import NAMES, REMARKS
+from truing.setup import Setup
 
 
 @verb
@@ -29,11 +33,6 @@ def table(
     excel: Excel = False,
 ) -> int:
     """Print what the gauge would show at every row: the file's columns, then the results, units in the header."""
-    from truing.gauge import shown_by_gauge
-    from truing.inputs_file import read_setup
-    from truing.inputs_file.culprit import told_by_line
-    from truing.measurements import EXCEL, PLAIN, read_rows, table_text, write_table
-
     settings = settings_of(context)
     if excel and output is None:
         raise UsageError("--excel writes a file for a spreadsheet; name it with -o")
@@ -75,9 +74,6 @@ def _name(header: str) -> str:
 
 def _with_commas(header: str, cells: Sequence[str], setup: Setup) -> Sequence[str]:
     """Return a column as written, its numbers with decimal commas; names of runs and words are no numbers."""
-    from truing.measurements.cell_text import with_comma
-    from truing.measurements.overriding import NAMES, REMARKS
-
     item = setup.model.input_fields.get(_name(header))
     is_word = item.kind in {"choice", "text"} if item is not None else _name(header) in {"run", *NAMES, *REMARKS}
     return cells if is_word else with_comma(cells)
@@ -85,9 +81,6 @@ def _with_commas(header: str, cells: Sequence[str], setup: Setup) -> Sequence[st
 
 def _say_unused(read: RowsFile, setup: Setup, settings: Settings) -> None:
     """Say which columns change nothing, and which of them may be misspelt."""
-    from truing.declare.near_miss import near_miss
-    from truing.measurements.overriding import NAMES, REMARKS
-
     known = [*setup.model.input_fields, *setup.conditions]
     for name in read.others:
         if name in setup.model.result_fields:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import typer
 
@@ -12,9 +12,9 @@ from truing.cli.console import aligned, one_line, out, out_json, progress_bar, s
 from truing.cli.load import find_offer
 from truing.cli.words import AsJson, Plugin
 from truing.declare.published import rules_of
-
-if TYPE_CHECKING:
-    from truing.published import ComparedRow
+from truing.numbers import format_number
+from truing.published import ComparedRow, compare_published
+from truing.units import unit_text
 
 HEAD = ("quantity", "where", "unit", "paper", "ours", "ratio", "verdict", "obtained", "kind", "why")
 
@@ -26,8 +26,6 @@ def verify(
     as_json: AsJson = False,
 ) -> int:
     """Print every number that the source prints beside ours; exit 0 if every row matches its stated verdict."""
-    from truing.published import compare_published
-
     settings = settings_of(context)
     offer = find_offer(plugin, settings)
     with progress_bar(settings) as progress:
@@ -89,9 +87,6 @@ def _lines(model: Any, rows: Sequence[ComparedRow]) -> Iterator[str]:
 
 
 def _cells(row: ComparedRow, numbers: Mapping[str, str]) -> tuple[str, ...]:
-    from truing.numbers import format_number
-    from truing.units import unit_text
-
     printed = row.published
     verdict = "matches" if row.matches else "differs"
     if not row.as_stated:

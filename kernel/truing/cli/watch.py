@@ -4,22 +4,28 @@ from __future__ import annotations
 
 import sys
 import time
+import traceback
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from truing.atomic import writings, written
+from truing.cli.changes import amount_of
 from truing.cli.console import Settings, one_line, out, progress_bar, say, sentence_of, settings_of, verb
 from truing.cli.load import find_offer
 from truing.cli.words import Changed, Excel, Plugin
+from truing.inputs_file import read_setup
+from truing.inputs_file.culprit import told_by_line
+from truing.inputs_file.files import refuse_file
+from truing.kernel import Offer
+from truing.report.run import Done, RunOrder, perform
+from truing.runs.comparison import changes, in_order
+from truing.runs.folder import demand_place
 from truing.studies.states import EXIT_CODES, SHORT
-
-if TYPE_CHECKING:
-    from truing.kernel import Offer
-    from truing.report.run import Done, RunOrder
+from truing.watching import Watched, code_files, files_named_in, forget
 
 MOST = 4
 """So many changed results are named."""
@@ -39,10 +45,6 @@ def watch(
     every: Annotated[float, typer.Option("--every", min=0.02, help="Seconds between two looks at the files.")] = 0.5,
 ) -> int:
     """Run, and run again whenever the inputs file, its data files or the plugin's code change; Ctrl-C ends it."""
-    from truing.report.run import RunOrder
-    from truing.runs.folder import demand_place
-    from truing.watching import Watched
-
     settings = settings_of(context)
     sys.dont_write_bytecode = True  # two savings within one second would otherwise be one to Python
     offer = find_offer(plugin, settings)
@@ -67,8 +69,6 @@ def watch(
 
 
 def _demand_file(inputs: Path) -> None:
-    from truing.inputs_file.files import refuse_file
-
     if not inputs.is_file():
         refuse_file(inputs, largest=0, instead="", is_table=False)
 
@@ -95,8 +95,6 @@ class _Watcher:
 
     def files(self, offer: Offer) -> list[Path]:
         """Return everything whose change asks for another run."""
-        from truing.watching import code_files, files_named_in
-
         if self.looks:  # once as loaded, once after a run, which may import more
             self.looks -= 1
             self.code |= code_files(offer)
@@ -105,8 +103,6 @@ class _Watcher:
 
     def loaded_anew(self, offer: Offer, files: Sequence[Path]) -> Offer:
         """Return the calculation as its code is now; where that is broken say so and keep the last that was whole."""
-        from truing.watching import forget
-
         self.settings.detail(f"changed: {', '.join(file.name for file in files)}")
         if not self.broken and not self.code & {file.resolve() for file in files}:
             return offer
@@ -122,10 +118,6 @@ class _Watcher:
 
     def run(self, offer: Offer) -> None:
         """Run once and say so in one line; what is wrong is said, and the last sheet stays."""
-        from truing.inputs_file import read_setup
-        from truing.inputs_file.culprit import told_by_line
-        from truing.report.run import perform
-
         if self.broken:
             return
         started, self.before, self.calculating = time.monotonic(), writings(), True
@@ -162,8 +154,6 @@ class _Watcher:
     def _complain(self, error: Exception) -> None:
         self.exit_code = 1
         if self.settings.traceback:
-            import traceback
-
             traceback.print_exception(error)
         say(sentence_of(error))
         self.settings.say(f"{time.strftime('%H:%M:%S')} not calculated; {self.what_stays()}")
@@ -188,9 +178,6 @@ def _words(before: Mapping[str, Any] | None, after: Mapping[str, Any], folder: P
 
 def _changes(before: Mapping[str, Any], after: Mapping[str, Any]) -> str:
     """Say which checks flipped and which results moved most."""
-    from truing.cli.changes import amount_of
-    from truing.runs.comparison import changes, in_order
-
     found = in_order(changes(before, after))
     flips = [f"{change.name} {amount_of(change).partition(',')[0]}" for change in found if change.flipped]
     moved = [change for change in found if change.kind == "results"]

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from truing.declare.fields import Float
 from truing.errors import InfeasibleError
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from truing.declare.fields import Float
 
 
 class FailedRows:
@@ -24,8 +22,6 @@ class FailedRows:
     """
 
     def __init__(self, rows: int, *, is_single: bool = False) -> None:
-        import numpy as np
-
         self.codes: NDArray[np.int32] = np.zeros(rows, dtype=np.int32)
         self.sentences: list[str] = []
         self.of: dict[str, FailedRows] = {}
@@ -36,8 +32,6 @@ class FailedRows:
 
         ``failed`` is one bool for all rows, (rows,), (rows, k), or (k,) along an axis that no column reaches.
         """
-        import numpy as np
-
         if failed.ndim > 1:
             failed = failed.any(axis=tuple(range(1, failed.ndim)))
         elif failed.ndim and len(failed) != len(self.codes):
@@ -54,8 +48,6 @@ class FailedRows:
 
     def reasons(self, rows: int) -> dict[int, str]:
         """Return why rows failed, by row; what holds for a batch of one answer holds for all its ``rows``."""
-        import numpy as np
-
         codes = np.broadcast_to(self.codes, (rows,))
         return {int(row): self.sentences[codes[row] - 1] for row in np.flatnonzero(codes)}
 
@@ -83,8 +75,6 @@ def feasible(holds: Any, sentence: str, *, only: Sequence[str] = ()) -> None:
     ``only`` names results (flat names): where it does not hold these alone have no answer, with the sentence as the
     reason, and all others stand. The function returns any number for them, which nobody sees.
     """
-    import numpy as np
-
     values = np.asarray(holds, dtype=bool)
     if values.all():
         return
@@ -100,8 +90,6 @@ def feasible(holds: Any, sentence: str, *, only: Sequence[str] = ()) -> None:
 
 def either(value: Float, otherwise: Float) -> Float:
     """Return ``value`` where it is given (not NaN), else ``otherwise``."""
-    import numpy as np
-
     if isinstance(value, (int, float)):
         return otherwise if value != value else value
     return np.where(np.isnan(value), otherwise, value)
@@ -109,6 +97,4 @@ def either(value: Float, otherwise: Float) -> Float:
 
 def column(value: Float) -> Float:
     """Make one value per row meet an axis: (n,) becomes (n, 1); a number stays a number."""
-    import numpy as np
-
     return value[..., np.newaxis] if isinstance(value, np.ndarray) and value.ndim else value

@@ -22,17 +22,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
 
 from truing.declare.batch import column
 from truing.declare.builtin_sources import Seen, angles, temperatures, time_of
+from truing.declare.declared import Declared
 from truing.declare.fields import ResultField, read, with_values
 from truing.declare.sources import Effect, Unknown
 from truing.declare.specs import Axis, Float
+from truing.units import difference_unit, to_si
 from truing.units.names import PURE
-
-if TYPE_CHECKING:
-    from truing.declare.model import Model
 
 WIDE = 1e6
 LONGEST = 1e6
@@ -87,7 +88,7 @@ class Reading:
         return sight - self.seen.zero if self.kind.is_from_zero and self.seen.zero else sight
 
 
-def builtin_effects(model: Model[Any, Any]) -> dict[str, Effect[Any, Any]]:
+def builtin_effects(model: Declared) -> dict[str, Effect[Any, Any]]:
     """Return the kernel's effects on the readings of this model, by name, without those whose name it has taken."""
     results = tuple(_gauged(model))
     made = [
@@ -107,7 +108,7 @@ def may_stand(effect: Effect[Any, Any]) -> bool:
     return isinstance(reading, Reading) and reading.seen is not None and reading.seen.may_stand
 
 
-def _gauged(model: Model[Any, Any]) -> Iterator[ResultField]:
+def _gauged(model: Declared) -> Iterator[ResultField]:
     """Give the results that a gauge can show: numbers and curves; no axes, and nothing of a table."""
     fields = model.own_result_fields
     for item in fields.values():
@@ -163,8 +164,6 @@ def _amplitude(name: str, unit: str, note: str) -> Unknown:
 
 def _difference(item: ResultField, per: str = "") -> str:
     """Return the unit of a difference of this result, or of one per something."""
-    from truing.units import difference_unit
-
     unit = difference_unit(item.unit)
     return (f"1/{per}" if unit in PURE else f"{unit}/{per}") if per else unit
 
@@ -205,8 +204,6 @@ def _step_of(item: ResultField) -> dict[str, Unknown]:
 
 def zero_of(item: ResultField) -> float:
     """Return the zero of the unit of a result in SI: 273.15 K for degC, 0 for all that are no levels."""
-    from truing.units import to_si
-
     return float(to_si(0.0, item.unit))
 
 
@@ -219,15 +216,11 @@ def _in_proportion(own: Mapping[str, Float], sight: Float) -> Float:
 
 
 def _wave(own: Mapping[str, Float], sight: Float) -> Float:
-    import numpy as np
-
     turned = own["order"] * sight
     return own.get("sine", 0.0) * np.sin(turned) + own.get("cosine", 0.0) * np.cos(turned)
 
 
 def _jump(own: Mapping[str, Float], sight: Float) -> Float:
-    import numpy as np
-
     return own.get("size", 0.0) * np.where(sight >= own["after"], 1.0, 0.0)
 
 

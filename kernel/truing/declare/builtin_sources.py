@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
+
+import numpy as np
 
 from truing.declare.batch import column
+from truing.declare.declared import Declared
 from truing.declare.fields import InputField, ResultField, read
 from truing.declare.sources import SINCE_START, Condition, Tolerance
 from truing.declare.specs import Axis, Float
+from truing.units import same_dimension
 from truing.units.names import LEVELS, PURE
-
-if TYPE_CHECKING:
-    from truing.declare.model import Model
 
 TIME = Condition("time", "h", note="since the first row of the file", derived=SINCE_START)
 TEMPERATURE = Condition("temperature", "degC", reference=20, note="where the gauge is")
@@ -42,8 +43,6 @@ class Seen:
 
     def of(self, inputs: Any, results: Any, conditions: Mapping[str, Float], item: ResultField) -> Float:
         """Return its values, SI, in a shape that meets this result."""
-        import numpy as np
-
         if self.place in {"condition", "input"}:
             value = conditions[self.name] if self.place == "condition" else read(inputs, self.path)
             return column(value) if item.along else value
@@ -54,7 +53,7 @@ def _axes_of(item: ResultField) -> set[str]:
     return {item.along, f"{item.along}_{item.scope}"} - {""}
 
 
-def time_of(model: Model[Any, Any]) -> list[Seen]:
+def time_of(model: Declared) -> list[Seen]:
     """Return the time: what the model calls so (condition, input or axis), else the kernel's condition.
 
     Nothing where the model calls something else by that name.
@@ -64,7 +63,7 @@ def time_of(model: Model[Any, Any]) -> list[Seen]:
     return [seen for seen in named if seen.name == TIME.name] or _own(model, TIME)
 
 
-def temperatures(model: Model[Any, Any]) -> list[Seen]:
+def temperatures(model: Declared) -> list[Seen]:
     """Return the temperatures: conditions first, then inputs (about their default), else the kernel's condition.
 
     Of an input in a unit of differences (K: a temperature, or a rise) only a record can say that it is one.
@@ -75,7 +74,7 @@ def temperatures(model: Model[Any, Any]) -> list[Seen]:
     return [*known, *(replace(seen, may_stand=True) for seen in numbers if seen not in levels)]
 
 
-def angles(model: Model[Any, Any]) -> list[Seen]:
+def angles(model: Declared) -> list[Seen]:
     """Return the angles, the likeliest to turn first.
 
     That is what a study of the model runs over, then conditions, then series and axes of results; the kernel's
@@ -93,7 +92,7 @@ def angles(model: Model[Any, Any]) -> list[Seen]:
     return [*{seen.name: seen for seen in turning}.values(), *(replace(seen, may_stand=True) for seen in free)]
 
 
-def _own(model: Model[Any, Any], condition: Condition) -> list[Seen]:
+def _own(model: Declared, condition: Condition) -> list[Seen]:
     """Return a condition of the kernel, unless the model uses its name for something else."""
     if condition.name in {*model.conditions, *model.input_fields, *model.result_fields}:
         return []
@@ -104,11 +103,11 @@ def _condition(condition: Condition) -> Seen:
     return Seen(condition.name, "condition", zero=condition.zero, condition=condition)
 
 
-def _conditions(model: Model[Any, Any], unit: str) -> Iterator[Seen]:
+def _conditions(model: Declared, unit: str) -> Iterator[Seen]:
     return (_condition(item) for item in model.conditions.values() if _is_like(item.unit, unit))
 
 
-def _inputs(model: Model[Any, Any], unit: str) -> Iterator[Seen]:
+def _inputs(model: Declared, unit: str) -> Iterator[Seen]:
     """Give the inputs of a dimension that are always given: numbers, and series along an axis."""
     for name, item in model.input_fields.items():
         if item.is_optional or not _is_like(item.unit, unit):
@@ -124,13 +123,11 @@ def _default(item: InputField) -> Any:
     return initial() if initial is not None else 0.0
 
 
-def _result_axes(model: Model[Any, Any], unit: str) -> Iterator[Seen]:
+def _result_axes(model: Declared, unit: str) -> Iterator[Seen]:
     for name, item in model.own_result_fields.items():
         if isinstance(item.spec, Axis) and not item.spec.is_table and _is_like(item.unit, unit):
             yield Seen(name, "axis", item.path, axes=frozenset({name}))
 
 
 def _is_like(unit: str, wanted: str) -> bool:
-    from truing.units import same_dimension
-
     return unit not in PURE and same_dimension(unit, wanted)

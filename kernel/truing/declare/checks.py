@@ -6,25 +6,24 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import is_dataclass
 from inspect import signature
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from truing.declare.fields import hints_of
+from truing.declare.declared import Declared
+from truing.declare.fields import InputField, ResultField, hints_of
 from truing.declare.goals import Maximise, Minimise, PriceByChoice, Require, Vary, prices_in
 from truing.declare.near_miss import near_miss
 from truing.declare.promises import PROMISES
+from truing.declare.scope import formula_scope
 from truing.declare.sources import Condition, Effect, Tolerance
 from truing.declare.specs import Axis, Found
 from truing.declare.spreads import Band, ByChoice, Drawn, Grade, Spread
 from truing.errors import DeclarationError
-
-if TYPE_CHECKING:
-    from truing.declare.fields import InputField, ResultField
-    from truing.declare.model import Model
+from truing.formulas import parse
 
 TOTAL_PRICE = "tolerance_price"
 
 
-def check_model(model: Model[Any, Any]) -> None:
+def check_model(model: Declared) -> None:
     """Refuse a model in which something names what does not exist, all such places at once."""
     faults = [
         *_of_names(model),
@@ -41,7 +40,7 @@ def check_model(model: Model[Any, Any]) -> None:
         raise DeclarationError(f"model '{model.name}': " + "; ".join(faults))
 
 
-def _of_names(model: Model[Any, Any]) -> Iterator[str]:
+def _of_names(model: Declared) -> Iterator[str]:
     if not model.name.replace("_", "").isalnum():
         yield f"the name '{model.name}' may hold letters, digits and underscores only"
     for name in model.input_fields:
@@ -56,7 +55,7 @@ def _of_names(model: Model[Any, Any]) -> Iterator[str]:
         yield f"two studies are called '{name}'"
 
 
-def _of_exceptions(model: Model[Any, Any]) -> Iterator[str]:
+def _of_exceptions(model: Declared) -> Iterator[str]:
     for name, reason in model.exceptions.items():
         if name not in PROMISES:
             yield f"an exception is declared from '{name}', which is no check of the kit.{near_miss(name, PROMISES)}"
@@ -68,7 +67,7 @@ def _twice(names: Iterable[str]) -> list[str]:
     return [name for name, times in Counter(names).items() if times > 1]
 
 
-def _of_axes(model: Model[Any, Any]) -> Iterator[str]:
+def _of_axes(model: Declared) -> Iterator[str]:
     """Say which results and series run along an axis that nobody declares."""
     fields = model.own_result_fields
     axes = {name for name, item in fields.items() if isinstance(item.spec, Axis)}
@@ -88,7 +87,7 @@ def _of_axes(model: Model[Any, Any]) -> Iterator[str]:
             yield f"the axis '{name}' follows '{followed}', which is no input series.{near_miss(followed, series)}"
 
 
-def _of_companions(model: Model[Any, Any]) -> Iterator[str]:
+def _of_companions(model: Declared) -> Iterator[str]:
     """Say which inputs are to be stated with one that does not exist."""
     for name, item in model.input_fields.items():
         other = item.spec.stated_with
@@ -97,7 +96,7 @@ def _of_companions(model: Model[Any, Any]) -> Iterator[str]:
             yield f"the input '{name}' is stated with '{other}', which is no other input.{meant}"
 
 
-def _of_halving(model: Model[Any, Any]) -> Iterator[str]:
+def _of_halving(model: Declared) -> Iterator[str]:
     """Say which numerical steps are no numbers, promise nothing, or name what is no result."""
     fields = model.own_result_fields
     for name, item in model.input_fields.items():
@@ -111,7 +110,7 @@ def _of_halving(model: Model[Any, Any]) -> Iterator[str]:
                 yield f"the halving of '{name}' names '{result}', which is no result.{near_miss(result, fields)}"
 
 
-def _of_errors(model: Model[Any, Any]) -> Iterator[str]:
+def _of_errors(model: Declared) -> Iterator[str]:
     conditions: dict[str, Condition] = {}
     for source in model.errors:
         if isinstance(source, Tolerance):
@@ -128,7 +127,7 @@ def _of_errors(model: Model[Any, Any]) -> Iterator[str]:
         yield f"the prices are in {' and '.join(units)}; give all of them in one unit, so that they can be added"
 
 
-def of_effect(source: Effect[Any, Any], model: Model[Any, Any]) -> Iterator[str]:
+def of_effect(source: Effect[Any, Any], model: Declared) -> Iterator[str]:
     """Say what keeps an effect from acting on the model: names that are taken, inputs and results of another one."""
     for condition in source.needs:
         for known, kind in ((model.input_fields, "an input"), (model.result_fields, "a result")):
@@ -149,7 +148,7 @@ def of_effect(source: Effect[Any, Any], model: Model[Any, Any]) -> Iterator[str]
             yield f"effect '{source.name}' acts on {given.__qualname__}, but the model has {wanted.__qualname__}"
 
 
-def of_tolerance(source: Tolerance, model: Model[Any, Any]) -> Iterator[str]:
+def of_tolerance(source: Tolerance, model: Declared) -> Iterator[str]:
     """Say what a tolerance names that the model does not have."""
     for name in source.on:
         item = model.input_fields.get(name)
@@ -163,7 +162,7 @@ def of_tolerance(source: Tolerance, model: Model[Any, Any]) -> Iterator[str]:
     yield from _of_price(source, model)
 
 
-def _of_price(source: Tolerance, model: Model[Any, Any]) -> Iterator[str]:
+def _of_price(source: Tolerance, model: Declared) -> Iterator[str]:
     what = f"the price of tolerance '{source.name}'"
     if isinstance(source.price, PriceByChoice):
         for fault in _of_choices(source.price.chooser, source.price.prices, "price", model):
@@ -176,7 +175,7 @@ def _of_price(source: Tolerance, model: Model[Any, Any]) -> Iterator[str]:
             yield f"{what} names {', '.join(sorted(names)) or 'nothing'}; it is a formula in width"
 
 
-def _of_choices(chooser: str, branches: Mapping[str, Any], what: str, model: Model[Any, Any]) -> Iterator[str]:
+def _of_choices(chooser: str, branches: Mapping[str, Any], what: str, model: Declared) -> Iterator[str]:
     """Say why an input cannot choose among these branches."""
     item = model.input_fields.get(chooser)
     if item is None:
@@ -187,7 +186,7 @@ def _of_choices(chooser: str, branches: Mapping[str, Any], what: str, model: Mod
         yield f"has a {what} for {', '.join(branches)}, but '{chooser}' offers {', '.join(item.choices)}"
 
 
-def _of_spread(spread: Spread, model: Model[Any, Any]) -> Iterator[str]:
+def _of_spread(spread: Spread, model: Declared) -> Iterator[str]:
     if not hasattr(spread, "resolve"):
         yield f"has the spread {spread!r}; write normal(...), plus_minus(...), grade(...) or another of the words"
     elif isinstance(spread, ByChoice):
@@ -209,15 +208,13 @@ def _read_by(spread: Spread) -> tuple[str, ...]:
 
 def _names_in(formula: str) -> frozenset[str] | str:
     """Return the names in a formula, or why it cannot be read."""
-    from truing.formulas import parse
-
     try:
         return frozenset(parse(formula).names)
     except DeclarationError as error:
         return str(error)
 
 
-def _of_objectives(model: Model[Any, Any]) -> Iterator[str]:
+def _of_objectives(model: Declared) -> Iterator[str]:
     for objective in model.objectives:
         yield from of_objective(objective, model.input_fields, model.result_fields)
 
@@ -269,7 +266,7 @@ def _unknown_result(name: str, known: Iterable[str]) -> str:
     return " No tolerance has a price." if name == TOTAL_PRICE else near_miss(name, known)
 
 
-def _of_sheet(model: Model[Any, Any]) -> Iterator[str]:
+def _of_sheet(model: Declared) -> Iterator[str]:
     for section in model.sheet:
         yield from of_section(section, model.result_fields)
 
@@ -281,10 +278,7 @@ def of_section(section: Any, results: Mapping[str, ResultField]) -> Iterator[str
             yield f"section '{section.title}' names '{name}', which is no result.{near_miss(name, results)}"
 
 
-def _of_formulas(model: Model[Any, Any]) -> Iterator[str]:
-    from truing.declare.scope import formula_scope
-    from truing.formulas import parse
-
+def _of_formulas(model: Declared) -> Iterator[str]:
     for item in model.result_fields.values():
         text = getattr(item.spec, "formula", "")
         if not text:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, replace
-from typing import Any, Literal, TypeVar, dataclass_transform, get_args, get_origin
+from typing import Any, Literal, TypeVar, dataclass_transform, get_args, get_origin, get_type_hints
 
 from truing.declare.near_miss import near_miss
 from truing.declare.specs import KEY, Axis, Float, Found, Given, Kind, Loaded, Part, Spec, in_si
@@ -283,8 +284,6 @@ def _indexed(symbol: str, index: str) -> str:
 
 def hints_of(item: Any) -> dict[str, Any]:
     """Return the annotations of a class or function; a name that is not found is a fault of the declaration."""
-    from typing import get_type_hints
-
     try:
         return get_type_hints(item, include_extras=True)
     except NameError as error:
@@ -315,8 +314,6 @@ def _kind(place: _Place) -> tuple[Kind, tuple[str, ...]]:
 
 def _array_type() -> Any:
     """Return numpy's array type if anybody has imported numpy; without it nothing can be annotated with it."""
-    import sys
-
     numpy = sys.modules.get("numpy")
     return numpy.ndarray if numpy is not None else None
 

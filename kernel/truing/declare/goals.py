@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 from truing.errors import DeclarationError
+from truing.formulas import evaluate, parse
+from truing.units import from_si
 
 LimitKind = Literal["at_most", "at_least", "within"]
 YES = "yes"
@@ -27,9 +29,6 @@ class Price:
 
     def evaluated(self, widths: Any) -> Any:
         """Return the formula at a full width in SI, or at widths (n,), in the unit of the price."""
-        from truing.formulas import evaluate, parse
-        from truing.units import from_si
-
         return evaluate(parse(self.formula), {"width": from_si(widths, self.width)})
 
 

@@ -6,8 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, Literal, Protocol, TypeVar
+from typing import Any, Generic, Literal, Protocol, TypeVar
 
+import numpy as np
+
+from truing.declare.blocks import Block
+from truing.declare.builtin import builtin_effects
 from truing.declare.checks import TOTAL_PRICE, check_model
 from truing.declare.fields import (
     Axis,
@@ -27,9 +31,6 @@ from truing.declare.published import Finding, Published
 from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance
 from truing.declare.specs import Found
 from truing.errors import DeclarationError, UsageError
-
-if TYPE_CHECKING:
-    from truing.declare.blocks import Block
 
 I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
 R = TypeVar("R")
@@ -230,8 +231,6 @@ class Model(Generic[I, R]):
 
         They act in this order. The kernel's are those on every reading (``declare.builtin``).
         """
-        from truing.declare.builtin import builtin_effects
-
         return {**self.effects, **builtin_effects(self)}
 
     @cached_property
@@ -272,6 +271,4 @@ def _in_si(value: Any, item: InputField) -> Any:
     numbers = tuple(in_si(number, item.unit) if isinstance(number, str) else number for number in value)
     if not item.spec.along:
         return numbers
-    import numpy as np
-
     return np.array(numbers, dtype=float)

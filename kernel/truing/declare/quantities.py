@@ -6,19 +6,17 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from truing.declare.checks import TOTAL_PRICE
+from truing.declare.fields import InputField, ResultField
 from truing.declare.goals import Require, Vary, prices_in
+from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
 from truing.declare.specs import Given
 from truing.declare.spreads import Target
 from truing.errors import UnitError, UsageError
 from truing.units import check_unit, difference_unit, read_quantity, same_dimension
-
-if TYPE_CHECKING:
-    from truing.declare.fields import InputField, ResultField
-    from truing.declare.model import Model
 
 BOUNDS = ("above", "below", "at_least", "at_most")
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    from truing.declare.fields import InputField, ResultField
-    from truing.declare.model import Model
+from truing.declare.declared import Declared
+from truing.declare.fields import InputField, ResultField
 
 
-def formula_scope(model: Model[Any, Any], item: ResultField) -> Mapping[str, InputField | ResultField]:
+def formula_scope(model: Declared, item: ResultField) -> Mapping[str, InputField | ResultField]:
     """Return what each name means in the formula of ``item``: own part first, then the flat names.
 
     The function's results know each other; what a study gives knows the results of all studies besides.

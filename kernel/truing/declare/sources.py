@@ -13,6 +13,8 @@ from truing.declare.goals import Price, PriceByChoice
 from truing.declare.near_miss import near_miss
 from truing.declare.spreads import Spread
 from truing.errors import DeclarationError
+from truing.units import to_si
+from truing.units.names import LEVELS
 
 if TYPE_CHECKING:
     from typing_extensions import TypeVar as TypeVarWithDefault
@@ -133,15 +135,11 @@ class Condition:
     @cached_property
     def zero(self) -> float:
         """The reference in SI, as effects see the condition itself."""
-        from truing.units import to_si
-
         return float(to_si(self.reference, self.unit))
 
 
 def _check_condition(condition: Condition) -> None:
     """Refuse a history that nobody knows how to derive, and a range that is none."""
-    from truing.units.names import LEVELS
-
     low, high = condition.low, condition.high
     if low is not None and high is not None and not low < high:
         raise DeclarationError(f"condition '{condition.name}': its range goes from {low} to {high}; lower first")

@@ -6,6 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, field
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
+import numpy as np
+
+from truing.units import read_quantity, to_si
 from truing.units.names import PURE
 
 if TYPE_CHECKING:
@@ -104,17 +107,11 @@ def in_si(value: Any, unit: str | None, is_series: bool = False) -> Any:
     if unit is None or isinstance(value, bool):
         return value
     if is_series and not isinstance(value, str):
-        import numpy as np
-
         return np.array([in_si(item, unit) for item in value], dtype=float)
     if isinstance(value, (tuple, list)):
         return tuple(in_si(item, unit) for item in value)
     if isinstance(value, str):
-        from truing.units import read_quantity
-
         return read_quantity(value, unit)
     if isinstance(value, int) and unit in PURE:
         return value
-    from truing.units import to_si
-
     return to_si(value, unit)

@@ -9,15 +9,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING, Any, Literal, Protocol, overload
+from typing import Any, Literal, Protocol, overload
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
 
 from truing.declare.goals import Price, PriceByChoice
 from truing.errors import DeclarationError, UnitError
+from truing.fits import tolerance
+from truing.units import difference_unit, read_quantity, same_dimension, split_quantity
 from truing.units.grammar import shown, split
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 Shape = Literal["normal", "uniform", "lognormal"]
 SIGMAS_IN_BAND = 6.0
@@ -48,18 +50,12 @@ class Distribution:
     def from_standard(self, standard: Any) -> Any:
         """Map standard normal values to this distribution (for FORM, Sobol sequences and fixed draws)."""
         if self.shape != "uniform":
-            import numpy as np
-
             return self._scaled(np.array(standard, dtype=float))
-        from scipy.special import ndtr
-
         return self.mean + self.width * (ndtr(standard) - 0.5)
 
     def _scaled(self, standard: NDArray[np.float64]) -> NDArray[np.float64]:
         """Scale standard normal values in place."""
         if self.shape == "lognormal":
-            import numpy as np
-
             log_variance = np.log1p((self.sd / self.mean) ** 2)
             return np.asarray(np.exp(np.log(self.mean) - log_variance / 2 + np.sqrt(log_variance) * standard))
         standard *= self.sd
@@ -114,8 +110,6 @@ class Band:
         return Distribution(target.nominal, sd, self.shape)
 
     def _amount(self, target: Target) -> float:
-        from truing.units import read_quantity, split_quantity
-
         quantity = split_quantity(self.amount)
         if quantity.unit == "%" and target.unit != "%":
             if not target.nominal:
@@ -143,9 +137,6 @@ class Grade:
 
     def width(self, target: Target) -> float:
         """Return the full width in metres; raises UnitError where the input is no length."""
-        from truing.fits import tolerance
-        from truing.units import same_dimension
-
         if not same_dimension(target.unit, "m"):
             raise UnitError(
                 f"{self.grade} is a grade for lengths; '{target.name}' is in {target.unit or 'pure numbers'}"
@@ -250,8 +241,6 @@ class Drawn:
 
         A mean within four standard errors of the nominal is the nominal. None where nothing scatters.
         """
-        import numpy as np
-
         drawn = self.bound(target.value_of).function(np.random.default_rng(0), FIXED_DRAWS)
         if not drawn:
             return None
@@ -330,8 +319,6 @@ def drawn(function: Callable[..., Mapping[str, Any]], *, of: Sequence[str] = ())
 @lru_cache(maxsize=1024)
 def difference(text: str, unit: str) -> float:
     """Read a difference: like any quantity, except that levels of temperature differ by kelvins."""
-    from truing.units import difference_unit, read_quantity
-
     return read_quantity(text, difference_unit(unit))
 
 
@@ -353,8 +340,6 @@ def read_spread(text: str | Mapping[str, Any], declared: Spread) -> Spread:
     if words == "off":
         return Off()
     if words.upper().startswith("IT") and words.isascii() and words[2:].strip().isdigit():
-        from truing.fits import tolerance
-
         tolerance(name := "IT" + words[2:].strip(), 0.1)  # refuses IT19 at once; every grade exists at 100 mm
         return Grade(name, _settled(declared, "size"))
     if words.startswith("zone"):

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from truing.declare.spreads import SIGMAS_IN_BAND, Band, Grade, Spread, Target, Zone, difference, settled
 from truing.errors import UsageError
+from truing.units import difference_unit, from_si, split_quantity
 
 GROWTH = {"up": 0.5, "down": -0.5, "both": 0.0}
 
@@ -54,15 +55,11 @@ def _refusal(spread: Spread, target: Target) -> str:
 
 
 def _unit(target: Target) -> str:
-    from truing.units import difference_unit
-
     return difference_unit(target.unit)
 
 
 def _amount(band: Band, target: Target, width: float) -> str:
     """Return what a band of this width states, in the unit that it states now."""
-    from truing.units import split_quantity
-
     whole = 12**0.5 if band.shape == "uniform" else SIGMAS_IN_BAND
     size = width / {"sd": whole, "band": 1.0, "±": 2.0}[band.says]
     unit = split_quantity(band.amount).unit
@@ -75,8 +72,6 @@ def _amount(band: Band, target: Target, width: float) -> str:
 
 def _zone(zone: Zone, target: Target, width: float) -> Zone:
     """Move the end or the ends that give way."""
-    from truing.units import split_quantity
-
     low, high = difference(zone.low, target.unit), difference(zone.high, target.unit)
     below, above = (split_quantity(end).unit for end in (zone.low, zone.high))
     if zone.grows == "up":
@@ -89,6 +84,4 @@ def _zone(zone: Zone, target: Target, width: float) -> Zone:
 
 def _quantity(value: float, unit: str) -> str:
     """Write a difference in SI as a text in a unit; the number has all its digits."""
-    from truing.units import difference_unit, from_si
-
     return f"{float(from_si(value, difference_unit(unit)))!r} {unit}".strip()

@@ -23,11 +23,10 @@ from truing.diagnosis.exact import fit
 from truing.diagnosis.extended import Extended, elsewhere, parts_of
 from truing.diagnosis.fitted import STEP, WIDE, Fit, moved_by
 from truing.diagnosis.intervals import numbers_of
-from truing.diagnosis.result import Amount, NextPoint, readable_unit
+from truing.diagnosis.result import APART, Amount, NextPoint, readable_unit
 from truing.diagnosis.sample import Sample
 from truing.diagnosis.settings import FEW, TRIED, machine_there, settings_of
 from truing.diagnosis.shape_words import in_unit
-from truing.diagnosis.verdict import APART
 from truing.numbers import format_number
 from truing.units import from_si
 

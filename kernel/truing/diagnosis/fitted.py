@@ -7,9 +7,9 @@ from math import inf, log
 
 import numpy as np
 
-from truing.diagnosis.alarms import AT_BOUND, OUTSIDE
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
+from truing.diagnosis.result import AT_BOUND, OUTSIDE
 from truing.diagnosis.sample import Sample
 
 STEP = 1e-4

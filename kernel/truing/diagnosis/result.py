@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain, product
+from math import isnan, sqrt
 from typing import Literal
 
-from truing.diagnosis.alarms import warnings_of
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.records import Records
-from truing.diagnosis.verdict import Verdict, explanations_of, verdict_of
+from truing.diagnosis.records import FEWEST_READINGS, Records
+from truing.numbers import format_number, with_unit
 from truing.setup import Setup
-from truing.units import difference_unit, from_si, same_dimension
+from truing.units import difference_unit, from_si, same_dimension, to_si
 
 Kind = Literal["bias", "trend", "order", "step", "wave", "spread", "autocorrelation", "outlier"]
 Sight = Literal["visible", "hidden in the tolerances", "not excited", "cannot be fitted"]
@@ -347,3 +348,260 @@ def readable_unit(unit: str, size: float) -> str:
         return own
     families = (each for each in FAMILIES if own in each or (own not in KNOWN and same_dimension(own, each[0])))
     return next((unit for unit in next(families, ()) if reads_well(size, unit)), own)
+
+
+# What makes a named cause doubtful: what a wrong cause looks like, each in one sentence with what to check
+
+
+AT_BOUND = 5e-3
+"""Of the declared range of an unknown: what lies nearer to an end of it lies there."""
+OUTSIDE = 3.0
+"""An input is off its band beyond this many standard deviations of its tolerance."""
+RANDOM_WALK = 0.92
+"""From this AR coefficient on noise is nearly a random walk, which draws any slow curve (the largest that is tried).
+
+Beside a cause one within two standard errors of it is: few rows do not tell them apart.
+"""
+OVERFITTED = 0.5
+"""Of the noise that is stated: what is left is below it by chance 1 in 100 with ten rows, 1 in 3000 with twenty."""
+STABLE = 0.5
+"""Less than this share of the folds that name the same causes is another verdict on parts of the record."""
+
+
+def alarms_of(diagnosis: Diagnosis) -> Iterator[str]:
+    """Give what speaks against the causes that are named, one sentence each; nothing where none is named."""
+    if diagnosis.causes:
+        yield from chain(
+            _at_bounds(diagnosis),
+            moved_inputs(diagnosis),
+            _growing(diagnosis),
+            _unstable(diagnosis),
+            _torn(diagnosis),
+            _overfitted(diagnosis),
+            wandering(diagnosis),
+            diagnosis.hindrances,
+        )
+
+
+def warnings_of(diagnosis: Diagnosis) -> Iterator[str]:
+    """Give the alarms, and what is left beside the causes that are named: more to be found, nothing against them."""
+    yield from alarms_of(diagnosis)
+    if diagnosis.causes:
+        yield from _waves_left(diagnosis)
+    else:
+        yield from diagnosis.hindrances
+
+
+def _at_bounds(diagnosis: Diagnosis) -> Iterator[str]:
+    for cause in diagnosis.causes:
+        for unknown in cause.unknowns:
+            if _is_at_bound(diagnosis, cause, unknown):
+                yield (
+                    f"{unknown.name} of {cause.effect} was fitted at the bound declared for it "
+                    f"({_text(unknown.value, unknown.unit)}): a wrong cause often ends there; look at what else could "
+                    "draw this curve, and widen the range if the machine allows more"
+                )
+
+
+def _is_at_bound(diagnosis: Diagnosis, cause: Cause, unknown: FittedUnknown) -> bool:
+    """Whether a fitted unknown lies at an end of its declared range, other than at zero."""
+    effect = diagnosis.setup.model.known_effects.get(cause.effect)
+    declared = next((each for each in effect.unknowns if each.name == unknown.name), None) if effect else None
+    if declared is None or declared.whole or declared.along:
+        return False
+    low, high = (float(to_si(end, declared.unit)) for end in (declared.low, declared.high))
+    return any(end and abs(unknown.value - end) <= AT_BOUND * (high - low) for end in (low, high))
+
+
+def moved_inputs(diagnosis: Diagnosis) -> Iterator[str]:
+    """Give the inputs that no cause names and that were calibrated far beyond their tolerances."""
+    named = {cause.effect.removeprefix("input:") for cause in diagnosis.causes}
+    for moved in diagnosis.calibrated:
+        if abs(moved.of_its_sd) > OUTSIDE and moved.name not in named:
+            yield (
+                f"{moved.name} had to move by {moved.of_its_sd:.1f} standard deviations of its tolerance to meet the "
+                "measurement: its tolerance is stated too narrow, or something else is wrong; measure it"
+            )
+
+
+def _growing(diagnosis: Diagnosis) -> Iterator[str]:
+    for gain in diagnosis.gain:
+        if gain.held_out is not None and gain.held_out[1] > gain.held_out[0]:
+            before, after = (_text(error, gain.rmse_before.unit) for error in gain.held_out)
+            yield (
+                f"on the rows held out the error of {gain.result} grows from {before} to {after}: the extension "
+                "does not carry over to them; look at what is different there"
+            )
+    if diagnosis.gain and all(gain.rmse_after.value > gain.rmse_before.value for gain in diagnosis.gain):
+        first = diagnosis.gain[0]
+        yield (
+            f"on rows that were not fitted the error of {first.result} grows from {_amount(first.rmse_before)} to "
+            f"{_amount(first.rmse_after)}: the cause draws this record and predicts nothing; measure more rows"
+        )
+
+
+def _unstable(diagnosis: Diagnosis) -> Iterator[str]:
+    if diagnosis.stability < STABLE:
+        yield (
+            f"the same causes are named in {100 * diagnosis.stability:.0f} % of the folds only: parts of the record "
+            "say something else; look at the ranking, and measure more rows"
+        )
+
+
+def _torn(diagnosis: Diagnosis) -> Iterator[str]:
+    """Give the amplitudes that parts of the record, or tolerances, do not let be what all rows say."""
+    for each in diagnosis.contradictions:
+        yield (
+            f"{each.unknown} of {each.effect} is {_amount(each.first)} in one half of the rows and "
+            f"{_amount(each.second)} in the other: the two contradict one another; look at what changed between them"
+        )
+    for half in diagnosis.thinned:
+        yield (
+            f"on {half.rows}, {' + '.join(half.causes)} explains more, by {half.ahead:.1f} in score: rows that should "
+            "say the same do not; look at what alternates between them, and measure more rows"
+        )
+    for two in diagnosis.trades:
+        yield (
+            f"{two.unknown} of {two.effect} and {two.input} trade against one another (correlation "
+            f"{two.correlation:.3f}): {two.input}, off by what its tolerance allows, draws nearly the same; measure "
+            f"{two.input}, or state its tolerance narrower if it is known better"
+        )
+
+
+def _overfitted(diagnosis: Diagnosis) -> Iterator[str]:
+    for wrong in diagnosis.wrong:
+        if wrong.stated is not None and wrong.noise_floor.value < OVERFITTED * wrong.stated.value:
+            yield (
+                f"what is left of {wrong.result}, {_amount(wrong.noise_floor)}, is far below the standard deviation "
+                f"stated for it, {_amount(wrong.stated)}: the causes follow the noise, or it is smaller than stated; "
+                "read some settings again to see how far readings scatter"
+            )
+
+
+def wandering(diagnosis: Diagnosis) -> Iterator[str]:
+    """Give the results whose noise was taken as nearly a random walk."""
+    for wrong in diagnosis.wrong:
+        rho = wrong.noise.ar_coefficient
+        most = rho + 2 * sqrt((1 - rho**2) / wrong.rows) if rho > 0 and diagnosis.causes else rho
+        if most >= RANDOM_WALK:
+            yield (
+                f"the noise of {wrong.result} was taken as nearly a random walk (AR coefficient {rho:.2g}), which "
+                "draws any slow effect: something that wanders over time is unexplained; measure again, in a changed "
+                "order"
+            )
+
+
+def _waves_left(diagnosis: Diagnosis) -> Iterator[str]:
+    for wrong in diagnosis.wrong:
+        for finding in wrong.findings:
+            if finding.kind == "wave":
+                yield f"in what is left of {wrong.result} there are {finding.text}: something more is at work"
+
+
+def _amount(amount: Amount) -> str:
+    return _text(amount.value, amount.unit)
+
+
+def _text(value: float, unit: str) -> str:
+    return with_unit(format_number(float(from_si(value, unit)), 3), unit)
+
+
+# The verdict of a diagnosis: one rule over all that was found, for headline, terminal, sheet and JSON alike
+
+
+Verdict = Literal["named", "one_of", "unknown", "none", "undecided"]
+
+UNKNOWN = "unknown"
+"""What an explanation calls a shape that nobody registered."""
+CHANCE = 0.2
+"""Below this p-value the best explanation is not called chance: one record of nothing in five lies below it."""
+APART = 25.0
+"""The lambda from which on two explanations are told apart. Their scores then differ by 25 with a standard deviation of
+2 sqrt(25) = 10, so that with a chance of 97 % the difference is above the 6 below which a rival is not excluded."""
+_STRUCTURE = ("bias", "trend", "order", "step", "wave")
+
+Explanation = tuple[str, ...]
+
+
+def explanations_of(diagnosis: Diagnosis) -> tuple[Explanation, ...]:
+    """Return every explanation that this record does not exclude, the best first; names of one curve count each."""
+    if not diagnosis.causes and diagnosis.remainder is None:
+        return ()
+    best = [cause.effect for cause in diagnosis.causes]
+    same: Mapping[str, Sequence[str]] = {cause.effect: cause.same_as for cause in diagnosis.causes}
+    found = [([*best, UNKNOWN] if diagnosis.remainder is not None else best, same)]
+    for rival in diagnosis.alternatives:
+        over = [f"{UNKNOWN}:{','.join(rival.depends_on)}" if name == UNKNOWN else name for name in rival.causes]
+        found.append((over, rival.same_as))
+    once: dict[frozenset[str], Explanation] = {}
+    for names, same in found:
+        for each in product(*((name, *same.get(name, ())) for name in names)):
+            once.setdefault(frozenset(each), each)
+    return tuple(once.values())
+
+
+def shared_of(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """Return the names that every one of several explanations holds: so much is sure where the rest is open.
+
+    A shape that nobody registered is the same in two of them where it is one over the same covariates.
+    """
+    first, *others = explanations_of(diagnosis) or ((),)
+    over = ",".join(diagnosis.remainder.depends_on) if diagnosis.remainder is not None else ""
+    names = {name: {name, f"{UNKNOWN}:{over}"} if name == UNKNOWN else {name} for name in first}
+    return tuple(name for name, words in names.items() if others and all(words & set(each) for each in others))
+
+
+def further_of(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """Return the names of what may be there beside the best explanation, where every other one holds all of it."""
+    first, *others = explanations_of(diagnosis) or ((),)
+    if len(shared_of(diagnosis)) < len(first):
+        return ()
+    return tuple(dict.fromkeys(name for names in others for name in names if name.split(":")[0] not in first))
+
+
+def verdict_of(diagnosis: Diagnosis) -> Verdict:
+    """Return the verdict; "one_of" wherever a cause has another name or a rival is near, "none" without any doubt.
+
+    One explanation that an alarm speaks against is not named, with or without what may be there as well: it is
+    undecided.
+    """
+    explanations = explanations_of(diagnosis)
+    if not explanations:
+        return "undecided" if any(doubts(diagnosis)) else "none"
+    if all(name.startswith(UNKNOWN) for names in explanations for name in names):
+        return "unknown"
+    if (len(explanations) == 1 or further_of(diagnosis)) and any(alarms_of(diagnosis)):
+        return "undecided"
+    return "one_of" if len(explanations) > 1 else "named"
+
+
+def doubts(diagnosis: Diagnosis) -> Iterator[str]:
+    """Give the reasons for which a diagnosis may be undecided, one clause each.
+
+    Where a cause would be named: what speaks against it. Where none is: why it cannot be said that nothing is wrong.
+    """
+    yield from alarms_of(diagnosis) if explanations_of(diagnosis) else _doubts_of_nothing(diagnosis)
+
+
+def _doubts_of_nothing(diagnosis: Diagnosis) -> Iterator[str]:
+    readings = diagnosis.records.readings
+    if readings < FEWEST_READINGS:
+        yield f"{readings} readings that differ are too few to tell a cause from chance"
+    elif diagnosis.p_any is None or not diagnosis.p_any >= CHANCE:
+        yield _nearly(diagnosis)
+    for wrong in diagnosis.wrong:
+        for finding in wrong.findings:
+            if finding.kind in _STRUCTURE and not finding.is_allowed:
+                yield f"the residuals of {wrong.result} are no mere noise: {finding.text}"
+    yield from wandering(diagnosis)
+    yield from moved_inputs(diagnosis)
+    yield from diagnosis.hindrances
+
+
+def _nearly(diagnosis: Diagnosis) -> str:
+    if diagnosis.p_any is None or isnan(diagnosis.p_any):
+        return "whether anything is wrong was not tested"
+    best = next((rival.causes for rival in diagnosis.ranking if rival.causes), ())
+    named = f", {' + '.join(best)}," if best else ""
+    chance = "less than 0.001" if diagnosis.p_any < 0.001 else f"{diagnosis.p_any:.2g}"
+    return f"the best explanation{named} would come about by chance with a probability of {chance}"

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from truing.diagnosis.alarms import OUTSIDE
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.chance import Law, law_of
 from truing.diagnosis.competition import MARGIN, MOST_CAUSES, Competition
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import Folds, carries_over, ends_of, folds_of
 from truing.diagnosis.records import FEWEST_READINGS
+from truing.diagnosis.result import OUTSIDE
 
 ANY_LEVEL = 0.015
 FURTHER_LEVEL = 0.01

@@ -24,9 +24,8 @@ from truing.diagnosis.design import Proposal, is_physical, name_of, rival_fits
 from truing.diagnosis.extended import switched_on
 from truing.diagnosis.fitted import Fit, input_value
 from truing.diagnosis.machine import Machine, Predicted, machine_of, predict
-from truing.diagnosis.result import Amount, Fact, NextPoint, Tie, readable_unit
+from truing.diagnosis.result import APART, Amount, Fact, NextPoint, Tie, readable_unit
 from truing.diagnosis.shape_words import in_unit
-from truing.diagnosis.verdict import APART
 from truing.units import read_quantity
 from truing.units.names import PURE
 

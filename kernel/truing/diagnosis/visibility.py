@@ -20,8 +20,7 @@ from truing.diagnosis.fitted import Fit, inward
 from truing.diagnosis.intervals import Certainty, certainty_of, numbers_of, places_of, value_of
 from truing.diagnosis.machine import Machine
 from truing.diagnosis.points import LEVELS
-from truing.diagnosis.result import Amount, Seen, Sight, Trade
-from truing.diagnosis.verdict import APART
+from truing.diagnosis.result import APART, Amount, Seen, Sight, Trade
 
 POWER = 0.9
 LEVEL = 0.05

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from truing.errors import UsageError
+from truing.executors.cluster import ClusterExecutor
 from truing.executors.data import keepable
 from truing.executors.kept import BatchLog, KeptExecutor
 from truing.executors.ordered import in_order
@@ -32,7 +33,5 @@ def open_executor(address: str) -> Place:
     if kind == "processes" and rest.isascii() and rest.isdigit() and int(rest) > 0:
         return ProcessExecutor(int(rest))
     if kind == "dask" and "://" in rest:
-        from truing.executors.cluster import ClusterExecutor
-
         return ClusterExecutor(rest)
     raise UsageError(f"'{address}' is no place to compute; write serial, processes:4 or dask:tcp://host:8786")

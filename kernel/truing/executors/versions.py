@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import platform
 from collections.abc import Mapping
 from functools import lru_cache
+from importlib import metadata
 from pathlib import Path
 
 from truing.kernel.source import code_hash
@@ -18,9 +20,6 @@ def versions_here(code: tuple[str, ...] = ()) -> dict[str, str]:
     A place is the name of a package or module, or the path of a Python file. The answer is that of the first call: what
     a process has loaded does not change when a file does.
     """
-    import platform
-    from importlib import metadata
-
     found = {"python": platform.python_version()}
     for name in PACKAGES:
         try:

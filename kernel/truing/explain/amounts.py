@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
+from truing.formulas import symbol_text
+from truing.numbers import ABSENT, format_difference, format_value, pretty, with_unit
+from truing.report.content import input_value
+from truing.runs.documents import clean
 from truing.setup import Setup
+from truing.units import from_si
 
 
 def amount(setup: Setup, name: str, value: Any) -> dict[str, Any]:
     """Return the value (SI) of an input, a condition or a result as data, with the text that is printed of it."""
-    from truing.runs.documents import clean
-    from truing.units import from_si
-
     unit = setup.print_unit(name)
     shown = text_of(setup, name, value)
     if isinstance(value, (bool, str)) or value is None or not _is_number(value):
@@ -25,17 +29,12 @@ def _is_number(value: Any) -> bool:
 
 def text_of(setup: Setup, name: str, value: Any) -> str:
     """Write a value with its unit: a number, the range of a series, a choice, a file."""
-    from truing.numbers import ABSENT, format_value, pretty, with_unit
-    from truing.report.content import input_value
-
     field = setup.model.input_fields.get(name)
     if field is not None:
         shown = input_value(setup, field, value)
         return with_unit(pretty(shown.text), shown.unit)
     unit = setup.print_unit(name)
     if getattr(value, "ndim", 0):
-        import numpy as np
-
         finite = np.asarray(value, dtype=float)[np.isfinite(value)]
         if not finite.size:
             return ABSENT
@@ -48,8 +47,6 @@ def text_of(setup: Setup, name: str, value: Any) -> str:
 
 def step_text(setup: Setup, name: str, step: float | None, digits: int = 3) -> str:
     """Write a difference (SI) of a result or an input, with its unit."""
-    from truing.numbers import ABSENT, format_difference, pretty, with_unit
-
     if step is None:
         return ABSENT
     number, unit = format_difference(step, setup.print_unit(name), digits)
@@ -58,8 +55,6 @@ def step_text(setup: Setup, name: str, step: float | None, digits: int = 3) -> s
 
 def item_of(setup: Setup, name: str, value: Any) -> dict[str, Any]:
     """Return a row about an input, a condition or a result: what it is called, its symbol, its value, its note."""
-    from truing.formulas import symbol_text
-
     model = setup.model
     field: Any = model.result_fields.get(name) or model.input_fields.get(name)
     kind = "result" if name in model.result_fields else "input" if field is not None else "condition"

@@ -13,6 +13,7 @@ from truing.setup import Setup
 from truing.studies.bench import Progress, silent
 from truing.studies.differences import exact_slopes, nominal_of, slopes
 from truing.studies.scatter import Scatter, scatter_of
+from truing.units import difference_unit, unit_factor
 from truing.units.names import LEVELS
 
 PATIENCE = 20.0
@@ -100,8 +101,6 @@ def _slopes(
 
 
 def _influence(setup: Setup, scatter: Scatter, name: str, slope: Any, *, size: float, share: float) -> Influence:
-    from truing.units import unit_factor
-
     value = nominal_of(setup, name)
     is_level = name in _levels(setup)
     steepness = _size(slope) * (-1.0 if getattr(slope, "ndim", 0) == 0 and slope < 0 else 1.0)
@@ -114,8 +113,6 @@ def _influence(setup: Setup, scatter: Scatter, name: str, slope: Any, *, size: f
 
 
 def _unit(setup: Setup, name: str) -> str:
-    from truing.units import difference_unit
-
     known = name in setup.model.input_fields or name in setup.model.known_conditions
     return difference_unit(setup.unit_of(name)) if known else ""
 

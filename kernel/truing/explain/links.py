@@ -8,13 +8,12 @@ from typing import Any
 from truing.declare.fields import Found
 from truing.declare.model import Model
 from truing.declare.scope import formula_scope
+from truing.formulas import parse
+from truing.formulas.tree import Name, walk
 
 
 def made_from(model: Model[Any, Any]) -> Mapping[str, tuple[str, ...]]:
     """Return, for every result with a formula, the inputs and results that it names, in the order of its text."""
-    from truing.formulas import parse
-    from truing.formulas.tree import Name, walk
-
     found: dict[str, tuple[str, ...]] = {}
     for name, item in model.result_fields.items():
         if not isinstance(item.spec, Found) or not item.spec.formula:

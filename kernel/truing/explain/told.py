@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from truing.explain import told_result, told_sources
 from truing.explain.names import kind_of
 from truing.kernel import Offer
 from truing.setup import Setup
@@ -16,8 +17,6 @@ def told(setup: Setup, offer: Offer, name: str, *, progress: Progress = silent) 
     Numbers are in the unit that stands beside them. Raises UsageError for a name that the model does not have, and
     what a run raises where the calculation is impossible.
     """
-    from truing.explain import told_result, told_sources
-
     model = setup.model
     kind = kind_of(model, name)
     name = name.rpartition(".")[2]

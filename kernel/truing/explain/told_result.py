@@ -14,9 +14,19 @@ from truing.explain.amounts import amount, item_of, step_text
 from truing.explain.influence import Influence, by_share, by_slope, differentiable, influences
 from truing.explain.links import chain, following, made_from
 from truing.explain.touched import all_touched, effects_on
+from truing.formulas import symbol_text
+from truing.formulas.layout import substituted, symbolic
+from truing.formulas.write_text import TextWriter
+from truing.inputs_file import setup_from_settings
 from truing.kernel import Offer
+from truing.numbers import ABSENT, pretty, with_unit
+from truing.published import compare_one, same_run
+from truing.report.equations import equation_of
+from truing.runs.documents import clean
 from truing.setup import Setup
 from truing.studies.bench import Progress
+from truing.studies.checks import check_name
+from truing.units import unit_text
 
 
 def of_result(setup: Setup, offer: Offer, name: str, progress: Progress) -> dict[str, Any]:
@@ -60,8 +70,6 @@ def _needed(setup: Setup, study: str) -> tuple[Study, ...]:
 
 
 def _declared(item: ResultField) -> dict[str, Any]:
-    from truing.formulas import symbol_text
-
     return {
         "symbol": symbol_text(item.symbol) if item.symbol else "",
         "note": item.spec.note,
@@ -73,11 +81,6 @@ def _declared(item: ResultField) -> dict[str, Any]:
 
 def formula_of(setup: Setup, answers: Mapping[str, Any], item: ResultField) -> dict[str, Any] | None:
     """Return the formula of a result as text: in symbols, with numbers, and the result; None where it has none."""
-    from truing.formulas.layout import substituted, symbolic
-    from truing.formulas.write_text import TextWriter
-    from truing.numbers import ABSENT, pretty, with_unit
-    from truing.report.equations import equation_of
-
     equation = equation_of(setup, answers, item)
     if equation is None:
         return None
@@ -134,8 +137,6 @@ def slope_row(setup: Setup, result: str, one: Influence) -> dict[str, Any]:
 
 def _limits(setup: Setup, name: str, calculation: Calculation, below: set[str]) -> Iterator[dict[str, Any]]:
     """Say the limits and goals on a result and on those ``below`` it, and those that it sets for others."""
-    from truing.studies.checks import check_name
-
     requires = [item for item in setup.model.objectives if isinstance(item, Require)]
     checks = {check.name: check for check in calculation.checks}
     for item in sorted(setup.model.objectives, key=lambda item: getattr(item, "result", "") != name):
@@ -158,8 +159,6 @@ def require_words(item: Require, name: str) -> str:
 
 def check_data(check: Any) -> dict[str, Any]:
     """Return value, limit, margin and verdict of a check."""
-    from truing.runs.documents import clean
-
     named = ("value", "limit", "unit", "margin", "compared", "relation", "state", "passed", "undecided")
     return {key: clean(getattr(check, key)) for key in named}
 
@@ -169,10 +168,6 @@ def _published(setup: Setup, offer: Offer, name: str, calculation: Calculation) 
 
     Ours is None for a result of a study under other settings: to verify these takes whole runs.
     """
-    from truing.inputs_file import setup_from_settings
-    from truing.published import compare_one, same_run
-    from truing.units import unit_text
-
     study = study_of(setup.model, name)
     for item in setup.model.published:
         if item.result != name:

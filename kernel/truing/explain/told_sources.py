@@ -13,14 +13,15 @@ from truing.explain.influence import Influences, influences
 from truing.explain.links import following, made_from
 from truing.explain.told_result import require_words
 from truing.explain.touched import Touched, all_touched, touched
+from truing.formulas import symbol_text
+from truing.inputs_file.values import bounds_in_words
+from truing.numbers import format_value, pretty, with_unit
 from truing.setup import Setup
+from truing.units import unit_text
 
 
 def of_input(setup: Setup, name: str) -> dict[str, Any]:
     """Explain an input: value, bounds, scatter, the results it moves, limits and effects that have to do with it."""
-    from truing.formulas import symbol_text
-    from truing.inputs_file.values import bounds_in_words
-
     model = setup.model
     item = model.input_fields[name]
     direct, further = following(made_from(model), name)
@@ -151,8 +152,6 @@ def _effect_row(setup: Setup, effect: Effect[Any, Any]) -> dict[str, Any]:
 
 
 def _unknowns(setup: Setup, effect: Effect[Any, Any]) -> Iterator[dict[str, Any]]:
-    from truing.units import unit_text
-
     held = next((item.values for item in setup.effects if item.effect.name == effect.name), {})
     for unknown in effect.unknowns:
         value = held.get(unknown.name)
@@ -164,8 +163,6 @@ def _unknowns(setup: Setup, effect: Effect[Any, Any]) -> Iterator[dict[str, Any]
 
 
 def _in(value: float, unit: str) -> str:
-    from truing.numbers import format_value, pretty, with_unit
-
     number, word = format_value(value, unit)
     return with_unit(pretty(number), word)
 
@@ -182,8 +179,6 @@ def _need(setup: Setup, name: str) -> dict[str, Any]:
 
 def of_condition(setup: Setup, name: str) -> dict[str, Any]:
     """Explain a condition: its value, the reference where its effects vanish, and these effects."""
-    from truing.units import unit_text
-
     condition = setup.model.known_conditions[name]
     effects = [effect for effect in setup.model.known_effects.values() if condition in effect.needs]
     ends = [condition.low, condition.high]

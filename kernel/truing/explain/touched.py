@@ -6,10 +6,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from truing.declare.sources import Condition, Effect, Unknown
 from truing.errors import InfeasibleError
 from truing.evaluate import acting_inputs, evaluate
 from truing.setup import Setup, SwitchedOn
+from truing.units import to_si
 
 SIZES = (0.5, 0.05, 0.005)
 """Shares of an amplitude's bound that are tried, until the calculation is possible."""
@@ -58,8 +61,6 @@ def _trials(setup: Setup, effect: Effect[Any, Any]) -> Iterator[tuple[dict[str, 
 
 def _tried(setup: Setup, unknown: Unknown, size: float) -> float:
     """Return a value of an unknown: an amplitude at a share of its bound, a shape amid its bounds."""
-    from truing.units import to_si
-
     if unknown.is_amplitude:
         return float(to_si(size * (unknown.high or unknown.low), unknown.unit))
     if unknown.whole:
@@ -71,8 +72,6 @@ def _tried(setup: Setup, unknown: Unknown, size: float) -> float:
 
 def _off_reference(setup: Setup, need: Condition) -> float:
     """Return a value of a condition that is not its reference."""
-    from truing.units import to_si
-
     value = setup.conditions.get(need.name, need.zero)
     if value != need.zero:
         return float(value)
@@ -83,8 +82,6 @@ def _off_reference(setup: Setup, need: Condition) -> float:
 
 
 def _changed(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
-    import numpy as np
-
     for name, value in before.items():
         one, other = np.atleast_1d(np.asarray(value, dtype=float)), np.atleast_1d(np.asarray(after[name], dtype=float))
         if one.shape != other.shape:

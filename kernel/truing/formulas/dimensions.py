@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
+
+import numpy as np
+import pint
 
 from truing.errors import UnitError
 from truing.formulas.evaluation import evaluate, value_of
 from truing.formulas.tree import Binary, Call, Comparison, Formula, Logic, Name, Negative, Node, Number, source
-
-if TYPE_CHECKING:
-    import pint
+from truing.units import human_dimension
+from truing.units import registry as shared_registry
 
 KEEPS_DIMENSION = frozenset({"abs", "sum", "mean"})
 OF_LIKES = frozenset({"min", "max", "hypot", "either"})
@@ -33,8 +35,6 @@ def evaluate_quantities(formula: Formula, values: Mapping[str, pint.Quantity[Any
             number got something else; the sentence names the part of the formula.
         DeclarationError: a name of the formula has no value.
     """
-    import numpy as np
-
     registry = _registry_of(values)
     magnitudes: dict[str, Any] = {}
     dimensions: dict[str, Dimension] = {}
@@ -56,8 +56,6 @@ def _registry_of(values: Mapping[str, Any]) -> Any:
     for value in values.values():
         if (registry := getattr(value, "_REGISTRY", None)) is not None:
             return registry
-    from truing.units import registry as shared_registry
-
     return shared_registry()
 
 
@@ -94,8 +92,6 @@ _SHORT = {"meter": "m", "kilogram": "kg", "second": "s", "ampere": "A", "kelvin"
 
 def _spoken(dimension: Dimension | None) -> str:
     """Say a dimension in the engineer's words: "a force", "a pure number"."""
-    from truing.units import human_dimension
-
     if not dimension:
         return "a pure number"
     unit = "*".join(f"{_SHORT.get(unit, unit)}^{_written(exponent)}" for unit, exponent in dimension)
@@ -172,8 +168,6 @@ class _Proof:
             self.fail(f"{sentence}, not {_spoken(found)} ('{source(node)}')")
 
     def power(self, node: Node, base: Node, exponent: Node) -> Dimension | None:
-        import numpy as np
-
         self.pure(exponent, f"'{source(node)}': an exponent must be a pure number")
         dimension = self.of(base)
         if not dimension:

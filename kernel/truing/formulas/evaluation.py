@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
+
+import numpy as np
+from scipy.special import ndtr
 
 from truing.errors import DeclarationError
 from truing.formulas.tree import (
@@ -34,8 +38,6 @@ def evaluate(formula: Formula, values: Mapping[str, Any]) -> Any:
     Raises:
         DeclarationError: a name of the formula has no value, or its value is no number.
     """
-    import numpy as np
-
     numbers = {name: _as_number(formula, name, values) for name in sorted(formula.names)}
     with np.errstate(all="ignore"):
         result = value_of(formula.right, numbers)
@@ -46,8 +48,6 @@ def evaluate(formula: Formula, values: Mapping[str, Any]) -> Any:
 
 
 def _as_number(formula: Formula, name: str, values: Mapping[str, Any]) -> Any:
-    import numpy as np
-
     if name not in values:
         known = ", ".join(sorted(values)) or "nothing"
         raise DeclarationError(f"formula {formula.text!r} names {name!r}, which has no value here (known: {known})")
@@ -61,8 +61,6 @@ def _as_number(formula: Formula, name: str, values: Mapping[str, Any]) -> Any:
 
 def value_of(node: Node, values: Mapping[str, Any]) -> Any:
     """Compute one node from arrays; ``evaluate`` is the door for callers."""
-    import numpy as np
-
     match node:
         case Number(_, value):
             return np.float64(value)
@@ -88,8 +86,6 @@ def value_of(node: Node, values: Mapping[str, Any]) -> Any:
 
 
 def _cases(arguments: tuple[Node, ...], values: Mapping[str, Any]) -> Any:
-    import numpy as np
-
     result = value_of(arguments[-1], values)
     for place in range(len(arguments) - 3, -1, -2):
         condition = value_of(arguments[place + 1], values)
@@ -99,10 +95,6 @@ def _cases(arguments: tuple[Node, ...], values: Mapping[str, Any]) -> Any:
 
 @cache
 def _operators() -> dict[str, Callable[..., Any]]:
-    import operator
-
-    import numpy as np
-
     return {
         "+": np.add,
         "-": np.subtract,
@@ -120,8 +112,6 @@ def _operators() -> dict[str, Callable[..., Any]]:
 
 @cache
 def _functions() -> dict[str, Callable[..., Any]]:
-    import numpy as np
-
     return {
         **{name: getattr(np, name) for name in ("sqrt", "cbrt", "exp", "log", "log10", "abs", "sign", "sin", "cos")},
         **{name: getattr(np, name) for name in ("tan", "sinh", "cosh", "tanh")},
@@ -143,8 +133,6 @@ def _functions() -> dict[str, Callable[..., Any]]:
 
 def _normal_probability(x: Any) -> Any:
     """Return the chance that a standard normal value stays below x."""
-    from scipy.special import ndtr
-
     return ndtr(x)
 
 
@@ -156,6 +144,4 @@ def _pairwise(function: Callable[[Any, Any], Any], given: tuple[Any, ...]) -> An
 
 
 def _over_last_axis(function: Callable[..., Any], values: Any) -> Any:
-    import numpy as np
-
     return function(values, axis=-1) if np.ndim(values) else values

@@ -6,12 +6,20 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from pydantic import ValidationError
+
 from truing.errors import InputError
+from truing.inputs_file import assemble
 from truing.inputs_file.document import UNREADABLE, Document, read_document
+from truing.inputs_file.effects_on import names_stated, part_faults
+from truing.inputs_file.file_model import file_model
 from truing.inputs_file.files import read_text
 from truing.inputs_file.overrides import apply_overrides
+from truing.inputs_file.sentences import each, faults_of, in_order
+from truing.inputs_file.values import Reading
 from truing.kernel import Offer
 from truing.setup import Setup
+from truing.units.grammar import shown
 
 __all__ = ["json_schema", "read_setup", "setup_from_settings", "setup_from_text"]
 
@@ -47,22 +55,12 @@ def setup_from_settings(offer: Offer, settings: Mapping[str, str]) -> Setup:
 
 def json_schema(offer: Offer) -> dict[str, Any]:
     """Return the JSON Schema (draft 2020-12) of this calculation's inputs files, for editors that complete TOML."""
-    from truing.inputs_file.file_model import file_model
-
     schema = file_model(offer.model).model_json_schema(by_alias=True)
     head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": f"{offer.name}: {offer.model.title}"}
     return {**head, **{key: value for key, value in schema.items() if key != "title"}}
 
 
 def _setup(document: Document, offer: Offer, folder: Path) -> Setup:
-    from pydantic import ValidationError
-
-    from truing.inputs_file import assemble
-    from truing.inputs_file.effects_on import names_stated, part_faults
-    from truing.inputs_file.file_model import file_model
-    from truing.inputs_file.sentences import each, faults_of, in_order
-    from truing.inputs_file.values import Reading
-
     reading = Reading(folder)
     faults, more = document.faults, 0
     unreadable = _prune(document.data, ())
@@ -113,6 +111,4 @@ def _of_plugin(offer: Offer, reading: Any) -> list[tuple[tuple[str, ...], str]]:
     named = reading.values.get(("plugin",), offer.name)
     if named in {offer.name, offer.model.name, offer.origin.name}:
         return []
-    from truing.units.grammar import shown
-
     return [(("plugin",), f"this file is for {shown(named)}; the calculation is '{offer.name}'")]

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from truing.declare.fields import InputField
+from truing.declare.fields import InputField, make
 from truing.declare.model import Model, Study
 from truing.declare.spreads import Off, Spread, Target
 from truing.errors import Fault, TruingError
@@ -142,8 +142,6 @@ def _with_options(study: Study, options: Mapping[str, Any]) -> tuple[Study, dict
 
 def make_setup(offer: Offer, reading: Reading, studies: tuple[Study, ...], document: Document) -> Setup:
     """Put the checked values together."""
-    from truing.declare.fields import make
-
     model, values = offer.model, reading.values
     fields: Mapping[str, InputField] = model.input_fields
     stated = {path: value for path, value in values.items() if len(path) == 2}

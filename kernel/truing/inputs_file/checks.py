@@ -7,12 +7,17 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from truing.declare.fields import InputField
 from truing.declare.model import Model, Study
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Condition, Effect, Tolerance, Unknown
+from truing.declare.spreads import read_spread
 from truing.errors import UnitError
+from truing.inputs_file.study_options import options_of, read_option
 from truing.inputs_file.values import Reading, SentenceError, plain, read_input, read_number
+from truing.units import demand_dimension, difference_unit, from_si, to_si, unit_factor
 from truing.units.grammar import shown
 from truing.units.names import PURE
 
@@ -99,8 +104,6 @@ def of_tolerance(tolerance: Tolerance) -> Check:
     """Make the check of a tolerance; what it resolves to is checked when the nominals are known."""
 
     def check(raw: Any, reading: Reading) -> Any:
-        from truing.declare.spreads import read_spread
-
         if not isinstance(raw, (str, dict)):
             raise SentenceError(f"{tolerance.name}: a tolerance is a text such as '±0.05 mm', 'sd 3 %', 'IT6' or 'off'")
         try:
@@ -143,8 +146,6 @@ def of_unknown(effect: Effect[Any, Any], unknown: Unknown) -> Check:
 
 
 def _keep_within(unknown: Unknown, value: float) -> None:
-    from truing.units import from_si, to_si
-
     low, high = to_si(unknown.low, unknown.unit), to_si(unknown.high, unknown.unit)
     slack = 1e-9 * (high - low)
     if not low - slack <= value <= high + slack:
@@ -160,8 +161,6 @@ def _keep_within(unknown: Unknown, value: float) -> None:
 
 def _sd(unknown: Unknown, raw: Any) -> float:
     """Return a standard deviation in SI; that of a temperature level is a difference."""
-    from truing.units import difference_unit
-
     unit = difference_unit(unknown.unit)
     value = read_number(f"sd of {unknown.name}", raw, unit)
     if value < 0:
@@ -181,8 +180,6 @@ def of_covariance(effect: Effect[Any, Any]) -> Check:
         if not isinstance(raw, list) or len(raw) != size or any(not _is_row(row, size) for row in raw):
             raise SentenceError(like)
         _keep_possible(raw)
-        from truing.units import unit_factor
-
         factors = [unit_factor(unknown.unit) for unknown in unknowns]
         rows = tuple(
             tuple(float(one) * factors[i] * factors[j] for j, one in enumerate(row)) for i, row in enumerate(raw)
@@ -205,8 +202,6 @@ def _is_finite(one: Any) -> bool:
 
 def _keep_possible(rows: list[list[float]]) -> None:
     """Raise unless a matrix is symmetric and no combination of the unknowns has a negative variance."""
-    import numpy as np
-
     matrix = np.array(rows, dtype=float)
     if (np.diag(matrix) < 0).any():
         raise SentenceError("covariance holds a negative variance on its diagonal")
@@ -242,7 +237,6 @@ def of_run(names: Sequence[str]) -> Check:
 
 def of_study(study: Study) -> Check:
     """Make the check of the options of a study; all that are wrong are said in one answer."""
-    from truing.inputs_file.study_options import options_of, read_option
 
     def check(raw: Any, reading: Reading) -> Any:
         if not isinstance(raw, dict):
@@ -267,8 +261,6 @@ def of_unit(name: str, declared: str) -> Check:
     """Make the check of a unit in which something is printed."""
 
     def check(raw: Any, reading: Reading) -> Any:
-        from truing.units import demand_dimension
-
         try:
             demand_dimension(text(raw), declared)
         except (UnitError, SentenceError) as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from math import isclose
 from typing import Any
 
 from truing.errors import Fault, InfeasibleError, InputError
@@ -48,8 +49,6 @@ def _changed(setup: Setup) -> set[str]:
 
 
 def _is_default(spec: Any, value: Any) -> bool:
-    from math import isclose
-
     default = spec.initial() if hasattr(spec, "initial") else None
     if isinstance(value, float) and isinstance(default, (int, float)):
         return isclose(value, default, rel_tol=1e-12) or (value != value and default != default)

@@ -11,6 +11,7 @@ from truing.declare.near_miss import near_miss
 from truing.errors import UnitError
 from truing.inputs_file.values import Reading, SentenceError, broken_bound, read_number, written
 from truing.setup import DiagnoseOptions, column_and_word
+from truing.units import split_quantity
 from truing.units.grammar import shown
 
 NAME = "diagnose"
@@ -168,8 +169,6 @@ def _range(name: str, raw: Any, model: Model[Any, Any]) -> tuple[float, float]:
 
 def _ends(option: str, name: str, raw: Any, unit: str, *, may_be_open: bool = False) -> tuple[float, float]:
     """Return "low..high unit" in SI, infinite where an end may be, and is, left out."""
-    from truing.units import split_quantity
-
     like = f'"0..10 {unit}"'.replace(' "', '"')
     ends = [end.strip() for end in raw.split("..")] if isinstance(raw, str) else []
     if len(ends) != 2 or not (any(ends) if may_be_open else all(ends)):

@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, PlainValidator, ValidationInfo, WithJsonSchema, create_model
 
 from truing.declare.fields import InputField
 from truing.declare.model import Model
@@ -30,9 +32,6 @@ from truing.inputs_file.schema_words import (
 from truing.inputs_file.values import Reading
 from truing.setup import DEFAULT_SEED
 
-if TYPE_CHECKING:
-    from pydantic import BaseModel
-
 Check = Callable[[Any, Reading], Any]
 HEAD = (
     "project", "drawing", "revision", "prepared_by", "checked_by", "approved_by", "date", "company", "logo",
@@ -52,8 +51,6 @@ class Entry:
 @lru_cache(maxsize=16)
 def file_model(model: Model[Any, Any]) -> type[BaseModel]:
     """Make the pydantic model of this calculation's inputs files."""
-    from pydantic import Field, create_model
-
     sections: dict[str, tuple[Any, str]] = {
         "sheet": (_section("Sheet", _sheet()), "What the head of the sheet says, and how much the sheet shows."),
         "inputs": (
@@ -77,16 +74,10 @@ def file_model(model: Model[Any, Any]) -> type[BaseModel]:
 
 
 def _config() -> Any:
-    from pydantic import ConfigDict
-
     return ConfigDict(extra="forbid", arbitrary_types_allowed=True)
 
 
 def _field(name: str, entry: Entry) -> tuple[Any, Any]:
-    from typing import Annotated
-
-    from pydantic import Field, PlainValidator, ValidationInfo, WithJsonSchema
-
     def check(value: Any, info: ValidationInfo[Any]) -> Any:
         return entry.check(value, info.context)
 
@@ -98,8 +89,6 @@ def _field(name: str, entry: Entry) -> tuple[Any, Any]:
 
 def _section(title: str, entries: Mapping[str, Entry]) -> type[BaseModel]:
     """Make the model of one section; fields have neutral names inside, so that no input can clash with pydantic's."""
-    from pydantic import create_model
-
     fields: dict[str, Any] = {f"entry_{place}": _field(name, one) for place, (name, one) in enumerate(entries.items())}
     return create_model(title, __config__=_config(), **fields)
 
@@ -147,8 +136,6 @@ def _conditions(model: Model[Any, Any]) -> dict[str, Entry]:
 
 
 def _effects(model: Model[Any, Any]) -> type[BaseModel]:
-    from pydantic import Field, create_model
-
     fields: dict[str, Any] = {}
     for place, (name, effect) in enumerate(model.known_effects.items()):
         words = effect_schema(effect)["description"]

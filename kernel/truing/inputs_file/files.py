@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 from pathlib import Path
 
+from truing.declare.near_miss import near_miss
 from truing.errors import Fault, InputError
 from truing.units.grammar import shown
 
@@ -75,8 +76,6 @@ def _broken_link(path: Path) -> str:
 
 
 def _nearby(path: Path) -> str:
-    from truing.declare.near_miss import near_miss
-
     try:
         names = [item.name for _, item in zip(range(1000), path.parent.iterdir(), strict=False) if item != path]
     except OSError:

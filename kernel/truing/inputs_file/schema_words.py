@@ -8,6 +8,7 @@ from truing.declare.fields import InputField
 from truing.declare.model import Study
 from truing.declare.sources import Condition, Effect, Tolerance, Unknown
 from truing.inputs_file.defaults import default_of, spread_text
+from truing.inputs_file.study_options import option_schema, options_of
 from truing.inputs_file.values import bounds_in_words, plain
 from truing.units.names import PURE
 
@@ -108,8 +109,6 @@ def unknown_schema(unknown: Unknown) -> dict[str, Any]:
 
 def study_schema(study: Study) -> dict[str, Any]:
     """Return the schema of a study's options."""
-    from truing.inputs_file.study_options import option_schema, options_of
-
     properties: dict[str, Any] = {}
     for name, hint in options_of(study).items():
         schema = option_schema(hint)

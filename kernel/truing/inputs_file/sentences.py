@@ -9,6 +9,7 @@ from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
 from truing.errors import Fault
 from truing.inputs_file.document import Document
+from truing.inputs_file.file_model import HEAD
 from truing.inputs_file.overrides import SECTIONS
 from truing.units.grammar import shown
 
@@ -94,8 +95,6 @@ class _Words:
         """Return what the entries of a section are called and which there are."""
         model = self.model
         studies = ["run", "seed", *(study.name for study in model.studies), "diagnose"]
-        from truing.inputs_file.file_model import HEAD
-
         return {
             "inputs": ("input", list(model.input_fields)),
             "tolerances": ("tolerance", list(model.tolerances)),

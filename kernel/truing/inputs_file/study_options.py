@@ -8,6 +8,9 @@ import sys
 from collections.abc import Sequence
 from typing import Any, get_origin, get_type_hints
 
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic.errors import PydanticUserError
+
 from truing.declare.model import Study
 from truing.inputs_file.values import written
 
@@ -40,8 +43,6 @@ def _hint(owner: type[Any], item: dataclasses.Field[Any], value: Any) -> Any:
 
 def read_option(study: Study, name: str, hint: Any, raw: Any) -> Any:
     """Return an option as the study wants it. Raises ValueError with one sentence."""
-    from pydantic import ConfigDict, PydanticUserError, TypeAdapter, ValidationError
-
     if isinstance(raw, bool) and not _takes_bool(hint):
         raise ValueError(f"study '{study.name}': {name} = {written(raw)} is no {_spoken(hint)}")
     try:
@@ -79,9 +80,6 @@ def _spoken(hint: Any) -> str:
 
 def option_schema(hint: Any) -> dict[str, Any]:
     """Return the JSON Schema of an option's type; an empty one where the type has none."""
-    from pydantic import ConfigDict, TypeAdapter
-    from pydantic.errors import PydanticUserError
-
     try:
         config = None if dataclasses.is_dataclass(hint) else ConfigDict(arbitrary_types_allowed=True)
         return TypeAdapter(hint, config=config).json_schema()

@@ -10,9 +10,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from truing.declare.fields import InputField
+from truing.declare.near_miss import near_miss
 from truing.declare.specs import Given, Loaded
 from truing.errors import TruingError, UnitError
+from truing.units import from_si, human_dimension, read_quantity, to_si
 from truing.units.grammar import shown
 from truing.units.names import PURE
 
@@ -53,8 +57,6 @@ def read_input(item: InputField, raw: Any, reading: Reading) -> Any:
 def read_number(name: str, raw: Any, unit: str) -> float:
     """Return a quantity in SI; a bare number is one only where no unit is needed."""
     if isinstance(raw, str):
-        from truing.units import read_quantity
-
         try:
             return read_quantity(raw, unit)
         except UnitError as error:
@@ -68,8 +70,6 @@ def read_number(name: str, raw: Any, unit: str) -> float:
     if not math.isfinite(raw):
         raise SentenceError(f"{name} is {raw}, which is not a finite number")
     if unit not in PURE:
-        from truing.units import human_dimension
-
         like = _like(name, unit, raw)
         raise SentenceError(f"{name} = {written(raw)} has no unit; it is {human_dimension(unit)}: write {like}")
     return float(raw)
@@ -112,8 +112,6 @@ def broken_bound(item: InputField, value: float) -> str:
     spec = item.spec
     if not isinstance(spec, Given) or value != value:
         return ""
-    from truing.units import from_si, to_si
-
     unit = item.unit
     for words, bound, sign in (
         ("above", spec.above, 1),
@@ -188,8 +186,6 @@ def _integer(item: InputField, raw: Any) -> int:
 def _choice(item: InputField, raw: Any) -> Any:
     text = written(raw) if isinstance(raw, (bool, int)) else raw
     if not isinstance(text, str) or text not in item.choices:
-        from truing.declare.near_miss import near_miss
-
         offered = " or ".join(f"'{choice}'" for choice in item.choices)
         meant = near_miss(text[:80], item.choices) if isinstance(text, str) else ""
         raise SentenceError(f"{item.name} = {written(raw)} is not offered; choose {offered}.{meant}")
@@ -220,8 +216,6 @@ def _series(item: InputField, raw: Any) -> Any:
         keep_bounds(item, value)
     if not item.spec.along:
         return tuple(values)
-    import numpy as np
-
     return np.array(values, dtype=float)
 
 
@@ -277,8 +271,6 @@ def _check_options(item: InputField, reader: Callable[..., Any], options: Mappin
     known = ", ".join(parameter.name for parameter in named) or "none"
     strange = [name for name in options if name not in {parameter.name for parameter in named}]
     if strange and not any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters):
-        from truing.declare.near_miss import near_miss
-
         meant = near_miss(strange[0][:80], [parameter.name for parameter in named])
         raise SentenceError(
             f"{item.name}: the reader takes no {shown(strange[0])}; beside file it takes: {known}.{meant}"

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import importlib.util
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from importlib import metadata
+from importlib import import_module, metadata
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import pluggy
+from pluggy import HookImpl
+
+from truing import hookspecs
 from truing.declare.model import Model, Section
 from truing.declare.near_miss import near_miss
 from truing.declare.quantities import unread_quantities
@@ -17,9 +22,6 @@ from truing.errors import DeclarationError, PluginError, UnknownPluginError
 from truing.kernel.blame import Place, home_of, line_of, line_of_words, place_of
 from truing.kernel.loading import check_hooks, load_file
 from truing.units.grammar import shown
-
-if TYPE_CHECKING:
-    from pluggy import HookImpl
 
 GROUP = "truing.plugins"
 
@@ -77,10 +79,6 @@ class Kernel:
     """
 
     def __init__(self, plugins: Iterable[ModuleType] = (), *, strict: bool = False) -> None:
-        import pluggy
-
-        from truing import hookspecs
-
         self.strict = strict
         self.origins: dict[str, Origin] = {}
         self._manager = pluggy.PluginManager("truing")
@@ -297,8 +295,6 @@ def _homes(origin: Origin) -> list[Path]:
 
 def _file_of(origin: Origin) -> str:
     """Return the plugin's file; before it is loaded, the one its entry point would import."""
-    import importlib.util
-
     if Path(origin.file).is_file():
         return origin.file
     try:
@@ -319,8 +315,6 @@ def kernel_for(ref: str, *, strict: bool = False) -> Kernel:
     """
     kind, _, value = ref.partition(":")
     if kind == "module":
-        from importlib import import_module
-
         return Kernel([import_module(name) for name in value.split(",")], strict=strict)
     kernel = Kernel.installed(strict=strict)
     if kind == "file":

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import importlib.util
 import inspect
 import re
+import sys
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from pluggy import PluginManager
 
 from truing.declare.near_miss import near_miss
 from truing.errors import DeclarationError, UnknownPluginError
 from truing.kernel.blame import line_of
-
-if TYPE_CHECKING:
-    from pluggy import PluginManager
 
 
 def load_file(path: Path) -> ModuleType:
@@ -21,9 +22,6 @@ def load_file(path: Path) -> ModuleType:
 
     Raises UnknownPluginError for what is no Python file; whatever the file itself raises goes through.
     """
-    import importlib.util
-    import sys
-
     if not path.is_file():
         raise UnknownPluginError(f"{path}: no such file")
     path = path.resolve()

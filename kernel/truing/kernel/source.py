@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable
+from importlib.util import find_spec
 from pathlib import Path
 
 
@@ -20,8 +21,6 @@ def _files_of(place: str) -> Iterable[Path]:
     path = Path(place)
     if path.suffix == ".py":
         return [path] if path.is_file() else []
-    from importlib.util import find_spec
-
     try:
         spec = find_spec(place)
     except (ImportError, ValueError):

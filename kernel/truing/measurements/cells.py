@@ -5,17 +5,16 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.errors import UnitError
 from truing.measurements.cell_text import MISSING_WORDS, NUMBER
 from truing.measurements.csv_text import CsvFile, Faults, Header
+from truing.units import demand_dimension, difference_unit, human_dimension, si_fault, to_si
 from truing.units.grammar import number, shown
 from truing.units.names import PURE
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 _COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?|(?=[eE]|$))(?:[eE][+-]?\d+)?", re.ASCII)
 _INFINITE = re.compile(r"[+-]?(?:inf|infinity|∞)", re.IGNORECASE)
@@ -59,8 +58,6 @@ def read_cells(
     cells: Sequence[str], lines: Sequence[int], header: Header, table: CsvFile, *, strict: bool
 ) -> NDArray[np.float64]:
     """Return the numbers of a column as they stand; what is none is a fault with its line."""
-    import numpy as np
-
     fast = _plain_numbers(cells)
     if fast is not None and not (table.decimal_comma and any("." in cell for cell in cells)):
         return fast
@@ -77,8 +74,6 @@ def read_cells(
 
 def _plain_numbers(cells: Sequence[str]) -> NDArray[np.float64] | None:
     """Return a column at once where every cell is a number that Python reads as we do; else None."""
-    import numpy as np
-
     try:
         fast = np.array(list(map(float, cells)))
     except ValueError:
@@ -94,10 +89,6 @@ def column_in_si(
     values: NDArray[np.float64], lines: Sequence[int], header: Header, declared: str, faults: Faults
 ) -> NDArray[np.float64]:
     """Bring a column from the unit of its header to SI; a number that cannot be one of *declared* there is a fault."""
-    import numpy as np
-
-    from truing.units import si_fault, to_si
-
     unit = header.unit or ""
     with np.errstate(over="ignore"):
         found = values if unit in PURE else to_si(values, unit)
@@ -111,8 +102,6 @@ def column_in_si(
 
 def header_fault(header: Header, declared: str, *, is_difference: bool = False) -> str:
     """Return what is wrong with the unit in a header where ``declared`` is expected, or nothing."""
-    from truing.units import demand_dimension, difference_unit, human_dimension
-
     wanted = difference_unit(declared) if is_difference else declared
     if header.unit is None:
         if wanted in PURE:

@@ -14,14 +14,13 @@ has been so far stands; before the first X of a run it is missing too (the direc
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.sources import SINCE_START, Condition
 from truing.errors import UsageError
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 
 def derive(
@@ -32,8 +31,6 @@ def derive(
     Rows follow one another by ``time`` inside each run, those without a time last, and as they stand where no time is
     given; without ``runs`` all rows are one. Raises UsageError where the column it is made from is not there.
     """
-    import numpy as np
-
     if condition.made_from not in columns:
         what = f"'{condition.made_from}', which is no column"
         raise UsageError(f"condition '{condition.name}' is derived from {what}")
@@ -48,8 +45,6 @@ def derive(
 
 def _earliest(values: NDArray[np.float64], time: NDArray[Any] | None) -> float:
     """Return the value at the earliest row that has one; NaN where none has."""
-    import numpy as np
-
     known = np.flatnonzero(np.isfinite(values))
     if not len(known):
         return float("nan")
@@ -59,8 +54,6 @@ def _earliest(values: NDArray[np.float64], time: NDArray[Any] | None) -> float:
 
 def _records(rows: int, runs: NDArray[Any] | None, time: NDArray[Any] | None) -> Iterator[NDArray[np.intp]]:
     """Give the rows of each run in the order in which they were measured."""
-    import numpy as np
-
     run_of = np.zeros(rows, dtype=np.intp) if runs is None else np.unique(np.asarray(runs), return_inverse=True)[1]
     clock = np.zeros(rows) if time is None else np.asarray(time, dtype=float)
     order = np.lexsort((clock, run_of))
@@ -69,8 +62,6 @@ def _records(rows: int, runs: NDArray[Any] | None, time: NDArray[Any] | None) ->
 
 def _history(word: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the history of the values of one run, which follow one another; what is missing is passed over."""
-    import numpy as np
-
     known = np.isfinite(values)
     made = np.full(len(values), np.nan)
     if known.any():
@@ -83,21 +74,15 @@ def _history(word: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _running_maximum(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    import numpy as np
-
     return np.maximum.accumulate(values)
 
 
 def _cumulative(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    import numpy as np
-
     return np.concatenate([[0.0], np.cumsum(np.abs(np.diff(values)))])
 
 
 def _ways(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the sign of every step; of one that does not move that of the step before, or of the first that moves."""
-    import numpy as np
-
     ways = np.sign(np.diff(values))
     moves = np.flatnonzero(ways)
     if not len(moves):
@@ -107,15 +92,11 @@ def _ways(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _direction(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    import numpy as np
-
     ways = _ways(values)
     return np.concatenate([ways[:1], ways]) if len(ways) else np.zeros(len(values))
 
 
 def _last_reversal(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    import numpy as np
-
     ways = _ways(values)
     turns = np.flatnonzero(np.diff(ways)) + 1
     turned_at = np.zeros(len(values), dtype=np.intp)

@@ -6,7 +6,10 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.fields import Axis, InputField
 from truing.declare.near_miss import near_miss
@@ -18,12 +21,9 @@ from truing.measurements.csv_text import CsvFile, Header, opened
 from truing.measurements.derived import derive
 from truing.measurements.row_count import UNCOUNTED, RowCount
 from truing.setup import Setup
+from truing.units import si_fault, to_si
 from truing.units.grammar import shown
 from truing.units.names import PURE
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 NAMES = ("case", "name")
 REMARKS = ("note", "remark", "comment")
@@ -81,14 +81,11 @@ class RowsFile:
 
     def placed(self, name: str) -> NDArray[np.float64] | None:
         """Return what each row says of an input, a condition or an axis, SI (n,); None where no column has it."""
-        import numpy as np
-
         kinds: tuple[Mapping[str, Any], ...] = (self.columns, self.axes, self.series)
         return next((np.asarray(kind[name], dtype=float) for kind in kinds if name in kind), None)
 
     def taken(self, places: NDArray[np.intp] | slice) -> RowsFile:
         """Return some of the rows, in this order."""
-        import numpy as np
 
         def of(column: Any) -> Any:
             if isinstance(places, slice) or isinstance(column, np.ndarray):
@@ -197,8 +194,6 @@ class _Columns:
 
 def _take(header: Header, cells: list[str], texts: _Texts, setup: Setup, read: _Columns) -> None:
     """Read one column to its place; where a cell is empty the value of the inputs file stands."""
-    import numpy as np
-
     name = header.name
     is_axis, is_known = _is_axis(name, setup), _is_known(name, setup)
     if name == "run" and not is_axis:
@@ -227,8 +222,6 @@ def _histories(texts: _Texts, setup: Setup, read: _Columns) -> tuple[dict[str, N
     One with a column of its own is not made from another. Where nothing can be said the value of the inputs file
     stands.
     """
-    import numpy as np
-
     wanted = [item for item in setup.model.known_conditions.values() if item.derived and _is_known(item.name, setup)]
     wanted = [item for item in wanted if item.made_from == item.name or item.name not in read.columns]
     made: dict[str, NDArray[np.float64]] = {}
@@ -264,8 +257,6 @@ def _stranger(condition: Condition, texts: _Texts) -> NDArray[np.float64] | None
 
 def _clock(texts: _Texts) -> NDArray[np.float64] | None:
     """Return a column "time" that nothing but the order of the rows depends on; None where it is none of numbers."""
-    import numpy as np
-
     for header in texts.table.headers:
         if header.name == "time":
             comma = texts.table.decimal_comma
@@ -362,8 +353,6 @@ def _value(cell: str, header: Header, item: InputField | None, texts: _Texts, se
     """Return one cell in SI, its bounds checked. Raises ValueError with one sentence."""
     if item is not None and item.kind in WORDS:
         return read_word(item, cell, decimal_comma=texts.table.decimal_comma)
-    from truing.units import si_fault, to_si
-
     number, unit = read_cell(cell.strip(), decimal_comma=texts.table.decimal_comma), header.unit or ""
     value = number if unit in PURE else to_si(number, unit)
     fault = si_fault(number, value, _unit_of(header.name, setup))

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.errors import UnitError
 from truing.measurements.cells import column_in_si, header_fault, read_cell, read_cells
 from truing.measurements.csv_text import Chunk, CsvFile, Faults, Header, opened
 from truing.measurements.row_count import UNCOUNTED, RowCount
+from truing.units import difference_unit, to_si
 from truing.units.names import PURE
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 SIGMA = "sigma_"
 RUN = "run"
@@ -125,8 +124,6 @@ class _Known:
         self.parts.append(self._in_si(values, chunk, table.faults) if self.is_usable else values)
 
     def _in_si(self, values: NDArray[np.float64], chunk: Chunk, faults: Faults) -> NDArray[np.float64]:
-        from truing.units import difference_unit
-
         if not self.is_sigma:
             return column_in_si(values, chunk.lines, self.header, self.declared, faults)
         header = replace(self.header, unit=difference_unit(self.header.unit or ""))
@@ -134,8 +131,6 @@ class _Known:
 
     def made(self) -> NDArray[np.float64]:
         """Return the column in SI."""
-        import numpy as np
-
         return np.concatenate(self.parts) if self.parts else np.empty(0)
 
 
@@ -153,8 +148,6 @@ class _Other:
 
     def made(self, table: CsvFile, lines: Sequence[int]) -> NDArray[np.float64] | tuple[str, ...]:
         """Return numbers, in SI where the unit is known, or words."""
-        import numpy as np
-
         if self.header.name == RUN or not any(cell.strip() for cell in self.cells):
             return self.words()
         try:
@@ -180,6 +173,4 @@ def in_si(values: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
     """Bring numbers from the unit of a header to SI."""
     if unit in PURE:
         return values
-    from truing.units import to_si
-
     return to_si(values, unit)

@@ -8,15 +8,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from truing.atomic import place_folder, recover, write_files
 from truing.errors import OutputError
 from truing.report.markdown import escaped
 from truing.report.templates import template_folder
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
 
 PROJECT = {
     ".github/workflows/tests.yml": "workflow.yml.j2",
@@ -78,8 +76,6 @@ def rendered(template: str, words: Mapping[str, str]) -> str:
 
 @lru_cache(maxsize=1)
 def _environment() -> Environment:
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
     return Environment(
         loader=FileSystemLoader(template_folder()), undefined=StrictUndefined, trim_blocks=True,
         keep_trailing_newline=True,

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
+
+import numpy as np
 
 from truing.calculation import Calculation
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.declare.fields import Axis, Found, ResultField
 from truing.declare.model import Section
-from truing.errors import PluginError
+from truing.errors import PluginError, UnitError
 from truing.kernel.blame import spoken_place
 from truing.numbers import format_value, pretty
 from truing.report.context import BlockView, Chapter, Entry, FigureView, TableView, Value
@@ -19,6 +21,7 @@ from truing.report.equations import equation_of, value_text
 from truing.report.figures import draw
 from truing.setup import Setup
 from truing.studies.bench import Outcome
+from truing.units import unit_text
 
 RANK = {"short": 0, "normal": 1, "full": 2}
 LONGEST_TABLE = {"short": 20, "normal": 60, "full": 1000}
@@ -155,8 +158,6 @@ def _entry(writing: Writing, name: str, *, with_formula: bool) -> Entry:
 
 def _range_entry(writing: Writing, item: ResultField) -> Entry:
     """Say a result along an axis by its ends."""
-    import numpy as np
-
     values = np.asarray(writing.calculation.answers[item.name], dtype=float)
     finite = values[np.isfinite(values)]
     unit = writing.setup.print_unit(item.name)
@@ -182,8 +183,6 @@ def _range_entry(writing: Writing, item: ResultField) -> Entry:
 
 def _axis_tables(writing: Writing, names: Sequence[str]) -> Iterator[TableView]:
     """Write what runs along an axis as a table where it is short enough or the sheet is a full one."""
-    import numpy as np
-
     fields, answers = writing.setup.model.result_fields, writing.calculation.answers
     by_axis: dict[str, list[str]] = {}
     for name in names:
@@ -203,8 +202,6 @@ def _axis_tables(writing: Writing, names: Sequence[str]) -> Iterator[TableView]:
 
 def _columns_table(writing: Writing, title: str, names: Sequence[str], most: int) -> TableView:
     """Write equally long results as columns, evenly thinned where there are too many rows."""
-    import numpy as np
-
     answers, setup = writing.calculation.answers, writing.setup
     length = len(answers[names[-1]])
     places = sorted({round(one) for one in np.linspace(0, length - 1, min(length, most))}) if length else []
@@ -241,8 +238,6 @@ def _view(writing: Writing, block: Block) -> BlockView:
 
 def table_view(table: Table, most: int) -> TableView:
     """Write the cells of a plugin's table; what is left out is said."""
-    from truing.units import unit_text
-
     shown = table.rows[:most]
     width = len(table.columns)
     rows = tuple(tuple([*map(value_text, row), *[""] * width][:width]) for row in shown)
@@ -262,8 +257,6 @@ def _is_numeric(cell: Any) -> bool:
 
 def _known_unit(write: Callable[[str], str], unit: str) -> str:
     """Write a unit for print; a heading that is no unit stays as it is."""
-    from truing.errors import UnitError
-
     try:
         return write(unit) if unit else ""
     except UnitError:
@@ -272,8 +265,6 @@ def _known_unit(write: Callable[[str], str], unit: str) -> str:
 
 def numbered(chapters: Sequence[Chapter], start: int) -> Mapping[str, Chapter]:
     """Give chapters their numbers and identifiers, in order."""
-    from dataclasses import replace
-
     found = {}
     for place, chapter in enumerate(chapters, start):
         ident = chapter.ident or f"chapter-{place}"

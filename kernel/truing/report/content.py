@@ -32,8 +32,7 @@ from truing.report.context import (
     Value,
 )
 from truing.setup import Setup
-from truing.studies.bench import Check
-from truing.studies.checks import check_name, requirements
+from truing.studies.checks import Check, check_name, requirements
 from truing.studies.verdicts import NO_RESULT, NO_STUDY
 from truing.units import unit_text
 

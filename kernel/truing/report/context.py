@@ -7,17 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from truing.declare.blocks import Words
 from truing.declare.published import Finding
+from truing.formulas import Formula
 from truing.published import ComparedRow
 from truing.runs.provenance import Provenance
-from truing.studies.bench import Proposal
+from truing.studies.checks import Proposal
 from truing.studies.states import State
-
-if TYPE_CHECKING:
-    from truing.formulas import Formula
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from truing.declare.blocks import Words
-from truing.diagnosis.verdict import APART, UNKNOWN, explanations_of
+from truing.diagnosis.result import (
+    APART,
+    UNKNOWN,
+    Alternative,
+    Amount,
+    Diagnosis,
+    FittedUnknown,
+    Noise,
+    explanations_of,
+)
 from truing.numbers import ABSENT, STATED_DIGITS, format_number, pretty
 from truing.report import diagnosis_figures as figures
 from truing.report.chapters import Figures
@@ -30,9 +40,6 @@ from truing.report.diagnosis_words import (
     together,
 )
 from truing.runs.diagnosis_document import file_labels
-
-if TYPE_CHECKING:
-    from truing.diagnosis.result import Alternative, Diagnosis, FittedUnknown, Noise
 
 MOST_OUTLIERS = 12
 FITTED_DIGITS = 7
@@ -271,8 +278,6 @@ def _fitted(cause: str, unknown: FittedUnknown) -> Iterator[tuple[str, ...]]:
 
 
 def _calibrated(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
-    from truing.diagnosis.result import Amount
-
     setup = diagnosis.setup
     for item in diagnosis.calibrated:
         nominal = float(setup.nominal(item.name))
@@ -354,10 +359,6 @@ def _data(diagnosis: Diagnosis) -> Iterator[BlockView]:
 
 
 def _covariates(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
-    import numpy as np
-
-    from truing.diagnosis.result import Amount
-
     for item in diagnosis.records.covariates.values():
         finite = item.values[np.isfinite(item.values)]
         ends = (float(finite.min()), float(finite.max())) if finite.size else (None, None)

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from truing.diagnosis.records import Covariate
+from truing.diagnosis.result import Alternative, Curves, Diagnosis, Gain
 from truing.report.diagnosis_words import amount_text, explanation, spoken, wrong_results
-
-if TYPE_CHECKING:
-    import numpy as np
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from truing.diagnosis.records import Covariate
-    from truing.diagnosis.result import Alternative, Curves, Diagnosis, Gain
+from truing.units import from_si, unit_factor, unit_text
 
 BEFORE, AFTER, QUIET, NEUTRAL = "#9d1c1c", "#0b4f8a", "#8b949e", "#3b434c"
 MOST_POINTS = 1500
@@ -70,8 +69,6 @@ def _main(diagnosis: Diagnosis) -> Covariate | None:
 
 
 def _places(covariate: Covariate) -> int:
-    import numpy as np
-
     return len(np.unique(covariate.values[np.isfinite(covariate.values)]))
 
 
@@ -83,15 +80,11 @@ def shown_curves(diagnosis: Diagnosis) -> list[Curves]:
 
 def has_changed(curves: Curves) -> bool:
     """Tell whether the extension changes a result at all."""
-    import numpy as np
-
     return not np.array_equal(curves.before, curves.after, equal_nan=True)
 
 
 def residuals_of(diagnosis: Diagnosis, curves: Curves) -> _Residuals:
     """Return the residuals of one result in the unit for its differences."""
-    from truing.units import unit_factor
-
     unit = diagnosis.units.get(curves.result) or diagnosis.setup.print_unit(curves.result)
     factor = unit_factor(unit)
     floor = next((item.noise_floor.value for item in diagnosis.wrong if item.result == curves.result), 0.0)
@@ -125,18 +118,12 @@ def _mark_censored(diagnosis: Diagnosis, result: str, axes: Axes, *, places: Any
 
 
 def _label(name: str, unit: str) -> str:
-    from truing.units import unit_text
-
     words = spoken(name).replace("$", r"\$")
     return f"{words} [{unit_text(unit)}]" if unit else words
 
 
 def over_covariate(diagnosis: Diagnosis, curves: Curves, covariate: Covariate) -> Figure:
     """Draw the residuals of one result over a covariate, before and after, with the noise floor as a band."""
-    from matplotlib.figure import Figure
-
-    from truing.units import from_si
-
     shown = residuals_of(diagnosis, curves)
     kept = thinned(len(shown.before))
     place = from_si(covariate.values, covariate.unit)[kept]
@@ -166,10 +153,6 @@ def _span(values: NDArray[np.float64]) -> float:
 
 def against_simulated(diagnosis: Diagnosis, curves: Curves) -> Figure:
     """Draw measured against simulated, and beside it their difference, where the error can be seen."""
-    from matplotlib.figure import Figure
-
-    from truing.units import from_si
-
     shown = residuals_of(diagnosis, curves)
     unit = diagnosis.setup.print_unit(curves.result)
     kept = thinned(len(shown.before))
@@ -196,14 +179,10 @@ def against_simulated(diagnosis: Diagnosis, curves: Curves) -> Figure:
 
 
 def _unit(unit: str) -> str:
-    from truing.units import unit_text
-
     return unit_text(unit) or "1"
 
 
 def _extent(values: Sequence[NDArray[np.float64]]) -> tuple[float, float]:
-    import numpy as np
-
     joined = np.concatenate([one[np.isfinite(one)] for one in values])
     return (float(joined.min()), float(joined.max())) if joined.size else (0.0, 1.0)
 
@@ -223,8 +202,6 @@ def is_open(item: Alternative, diagnosis: Diagnosis) -> bool:
 
 def ranking_bars(diagnosis: Diagnosis) -> Figure:
     """Draw how far every explanation is behind the best, in blue those that are not excluded."""
-    from matplotlib.figure import Figure
-
     items = shown_ranking(diagnosis)
     figure = Figure(figsize=(6.4, 0.7 + 0.3 * len(items)), layout="constrained")
     axes = figure.subplots()
@@ -250,8 +227,6 @@ def _short(text: str, most: int = 46) -> str:
 
 def gain_bars(diagnosis: Diagnosis) -> Figure:
     """Draw the error on rows that were not fitted, before and after, each as a share of what it was before."""
-    from matplotlib.figure import Figure
-
     gains = diagnosis.gain
     figure = Figure(figsize=(6.4, 0.7 + 0.75 * len(gains)), layout="constrained")
     axes = figure.subplots()

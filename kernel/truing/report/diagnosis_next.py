@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 from truing.declare.blocks import Words
-from truing.diagnosis.verdict import APART
+from truing.diagnosis.result import APART, Diagnosis, NextPoint
 from truing.numbers import ABSENT
 from truing.report.context import BlockView, TableView
 from truing.report.diagnosis_words import amount_text, listed, readable, score_text, spoken, together
-
-if TYPE_CHECKING:
-    from truing.diagnosis.result import Diagnosis, NextPoint
 
 
 def table_of(

@@ -6,8 +6,11 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from truing.diagnosis.engine import diagnose
+from truing.diagnosis.reading import read_records
+from truing.diagnosis.result import Diagnosis
 from truing.kernel import Offer
 from truing.report.diagnosis_sheet import DiagnosisSheet, diagnosis_html, diagnosis_markdown, make_diagnosis_sheet
 from truing.report.run import add_pdf, run_info
@@ -16,9 +19,6 @@ from truing.runs.folder import demand_place
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
 from truing.studies.bench import Progress
-
-if TYPE_CHECKING:
-    from truing.diagnosis.result import Diagnosis
 
 
 @dataclass(frozen=True)
@@ -42,9 +42,6 @@ class Diagnosed:
 def perform_diagnosis(setup: Setup, offer: Offer, order: DiagnosisOrder, progress: Progress) -> Diagnosed:
     """Read, diagnose and write the folder; it is complete or absent, whatever happens."""
     demand_place(order.folder, "diagnosis")
-    from truing.diagnosis.engine import diagnose
-    from truing.diagnosis.reading import read_records
-
     started = time.time()
     diagnosis = diagnose(setup, read_records(order.data, offer, setup), progress=progress)
     progress("sheet and PDF" if order.pdf else "sheet", 0, 0)

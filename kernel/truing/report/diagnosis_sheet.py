@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
+from truing.diagnosis.result import Diagnosis
 from truing.report.chapters import Figures, numbered
 from truing.report.context import Chapter, Head
 from truing.report.diagnosis_chapters import diagnosis_chapters
@@ -14,9 +14,6 @@ from truing.report.render import markdown_page, page
 from truing.report.sheet import head_of, logo_of
 from truing.runs.diagnosis_document import file_labels
 from truing.runs.provenance import Provenance
-
-if TYPE_CHECKING:
-    from truing.diagnosis.result import Diagnosis
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 from truing.diagnosis.result import (
     FAMILIES,
+    UNKNOWN,
     Alternative,
     Amount,
     Cause,
@@ -18,10 +19,14 @@ from truing.diagnosis.result import (
     Gain,
     NextPoint,
     Tie,
+    doubts,
+    explanations_of,
+    further_of,
     reads_well,
+    shared_of,
 )
-from truing.diagnosis.verdict import UNKNOWN, doubts, explanations_of, further_of, shared_of
 from truing.numbers import ABSENT, format_number, format_value, pretty, with_unit
+from truing.units import from_si, unit_text
 
 CERTAIN, LIKELY = 0.005, 0.05
 MUCH, FEW_BLOCKS = 0.5, 0.25
@@ -109,9 +114,6 @@ def certainty(p_value: float | None) -> str:
 
 def number_texts(unknown: FittedUnknown, fitted: tuple[float, float | None, float | None]) -> tuple[str, str, str, str]:
     """Write value, lower end, upper end and unit; the width of the interval decides the digits, an open end is open."""
-    from truing.diagnosis.result import Amount
-    from truing.units import from_si, unit_text
-
     size = readable(Amount(unknown.value, unknown.unit))
     unit = unknown.unit if size is None else size.unit
     numbers = [None if one is None else float(from_si(one, unit)) for one in fitted]

@@ -16,6 +16,7 @@ from truing.formulas.tree import Binary, Call, Constant, Name, Node, Number, chi
 from truing.numbers import ABSENT, RESULT_DIGITS, format_number, format_value
 from truing.report.context import Equation, Value
 from truing.setup import Setup
+from truing.units import difference_unit, from_si, to_si
 
 LINE = 34.0
 """How wide a line may be, in em as estimated (it may come out a sixth wider): the column of formulas on A4 is 38."""
@@ -67,8 +68,6 @@ def _departing(
     Rounding is no difference: neither a millionth of the value nor what a billionth of any operand makes of it. None
     also for an equation that is solved, and where the formula gives no number.
     """
-    from truing.units import from_si, to_si
-
     numeric = isinstance(item.spec, Found) and item.spec.numeric
     if formula.left is not None or answer is None or any(value is None for value in values.values()):
         return None
@@ -91,8 +90,6 @@ def _is_single(value: Any) -> bool:
 
 def _number(setup: Setup, item: InputField | ResultField, value: Any, *, numeric: bool) -> tuple[str, str]:
     """Return what stands for a name: in the printed unit (temperature levels in kelvin) or bare in the declared one."""
-    from truing.units import difference_unit
-
     if value is None or value != value:
         return ABSENT, ""
     digits = INPUT_DIGITS if isinstance(item, InputField) else item.digits

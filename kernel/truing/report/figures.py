@@ -13,6 +13,10 @@ from html import escape
 from io import StringIO
 from typing import Any
 
+import matplotlib as mpl
+from matplotlib.mathtext import MathTextParser
+from matplotlib.text import Text
+
 from truing.errors import PluginError
 from truing.formulas.symbols import printable
 from truing.kernel.blame import spoken_place
@@ -62,8 +66,6 @@ def draw(what: Callable[[], Any], *, title: str, ident: str) -> str:
 
     ``what()`` returns a matplotlib Figure. Raises PluginError, naming the figure and the place, where drawing fails.
     """
-    import matplotlib as mpl
-
     look: Any = {key: value for key, value in mpl.rcParamsDefault.items() if not key.startswith("backend")}
     look.update(STYLE)
     with mpl.rc_context(look):
@@ -98,9 +100,6 @@ def _svg(figure: Any) -> str:
 
 def _broken_formulas(figure: Any) -> list[Any]:
     """Return the texts of a figure that matplotlib takes for formulas and cannot read."""
-    from matplotlib.mathtext import MathTextParser
-    from matplotlib.text import Text
-
     parser: Any = MathTextParser("path")
     broken = []
     for text in figure.findobj(Text):

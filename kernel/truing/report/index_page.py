@@ -12,13 +12,14 @@ from typing import Any
 from urllib.parse import quote
 
 from truing.atomic import write_files
-from truing.errors import OutputError
+from truing.errors import OutputError, UnitError
 from truing.numbers import ABSENT, counted, format_number, pretty, with_unit
 from truing.report.context import Head
 from truing.report.render import page
 from truing.report.templates import template_folder
 from truing.runs.index import Entry, Finding, Listing, Other
 from truing.studies.states import State
+from truing.units import unit_text
 
 MARK = '<meta name="generator" content="calc index">'
 """What an index of ours holds, and no other page."""
@@ -118,9 +119,6 @@ def _findings(entry: Entry) -> Iterator[FindingView]:
 
 
 def _number(one: Finding, value: float | None) -> str:
-    from truing.errors import UnitError
-    from truing.units import unit_text
-
     try:
         unit = unit_text(one.unit) if one.unit else ""
     except UnitError:

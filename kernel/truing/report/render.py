@@ -6,22 +6,22 @@ import base64
 from collections.abc import Sequence
 from functools import lru_cache
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
 
 from truing.formulas.symbols import printable
 from truing.formulas.write_latex import LatexWriter
 from truing.formulas.write_mathml import MathMLWriter
-from truing.numbers import pretty, with_unit
+from truing.numbers import format_number, pretty, with_unit
 from truing.published import ComparedRow
 from truing.report import equations
 from truing.report.columns import with_room
 from truing.report.context import Entry, Equation, FigureView, Sheet, TableView, Value
 from truing.report.markdown import Raw, escaped
 from truing.report.templates import template_folder
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
-
+from truing.units import unit_text
 
 COLUMN = equations.LINE
 """How wide a formula may be, in em, beside the words of its result; a wider one stands below them."""
@@ -73,14 +73,10 @@ def css_text(text: str) -> str:
 
 
 def _markup(text: str) -> Any:
-    from markupsafe import Markup
-
     return Markup(text)  # only for what this package wrote itself
 
 
 def _environment(**options: Any) -> Environment:
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
     return Environment(
         loader=FileSystemLoader(template_folder()),
         undefined=StrictUndefined,
@@ -165,16 +161,12 @@ def _ratio(row: ComparedRow) -> str:
 
 def _paper_digits(row: ComparedRow) -> tuple[str, str]:
     """Write the paper's number as it prints it and ours with as many digits, at least four."""
-    from truing.numbers import format_number
-
     paper = format_number(row.published.value, 10)
     digits = len(paper.partition("e")[0].replace(".", "").replace("-", "").lstrip("0"))
     return pretty(paper), pretty(format_number(row.value, max(digits + 1, 4)))
 
 
 def _unit(unit: str) -> str:
-    from truing.units import unit_text
-
     return unit_text(unit) if unit else ""
 
 

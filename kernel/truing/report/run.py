@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import getpass
 import platform
 import time
 from collections.abc import Mapping
@@ -16,6 +17,7 @@ from truing.cases import CasesTable, run_cases
 from truing.errors import OutputError
 from truing.executors import BatchLog, KeptExecutor, Place, open_executor
 from truing.kernel import Offer
+from truing.measurements import read_cases
 from truing.published import compare_published
 from truing.report.context import Sheet
 from truing.report.pdf import pdf_bytes
@@ -173,15 +175,11 @@ def _calculate(
 ) -> tuple[Calculation, CasesTable | None]:
     if order.cases is None:
         return calculate(setup, executor=executor, progress=progress), None
-    from truing.measurements import read_cases
-
     return run_cases(setup, read_cases(order.cases, offer, setup), executor=executor, progress=progress)
 
 
 def run_info(started: float) -> dict[str, Any]:
     """Return what may differ between two equal runs: date, duration, machine, user, workers."""
-    import getpass
-
     try:
         user = getpass.getuser()
     except (OSError, KeyError, ImportError):

@@ -6,9 +6,10 @@ from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from truing.calculation import Calculation
+from truing.cases import CaseResult, CasesTable
 from truing.declare.published import rules_of
 from truing.numbers import STATED_DIGITS, format_value, with_unit
 from truing.published import ComparedRow, parted
@@ -27,13 +28,11 @@ from truing.report.content import (
 )
 from truing.report.context import Banner, Chapter, Head, InputRow, Sheet, TableView
 from truing.runs.provenance import Provenance
-from truing.studies.bench import Proposal
+from truing.setup import Setup
+from truing.studies.checks import Proposal
 from truing.studies.states import HEADLINES, SHORT
 from truing.studies.verdicts import sentence_of
-
-if TYPE_CHECKING:
-    from truing.cases import CaseResult, CasesTable
-    from truing.setup import Setup
+from truing.units import unit_text
 
 HEAD_FIELDS = {
     "project": "Project",
@@ -252,8 +251,6 @@ def cases_table(calculation: Calculation, cases: CasesTable, most: int) -> Table
 
 
 def _check_unit(cases: CasesTable, name: str) -> str:
-    from truing.units import unit_text
-
     check = next(check for case in cases.cases for check in case.checks if check.name == name)
     return "%" if check.chance else unit_text(check.unit)
 

@@ -4,25 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from truing.diagnosis.verdict import doubts, explanations_of, shared_of
+from truing.diagnosis.result import (
+    Alternative,
+    Amount,
+    Cause,
+    Diagnosis,
+    FittedUnknown,
+    Gain,
+    NextPoint,
+    Remainder,
+    Tie,
+    Wrong,
+    doubts,
+    explanations_of,
+    shared_of,
+)
 from truing.runs.documents import clean
 from truing.runs.provenance import provenance_of
-
-if TYPE_CHECKING:
-    from truing.diagnosis.result import (
-        Alternative,
-        Amount,
-        Cause,
-        Diagnosis,
-        FittedUnknown,
-        Gain,
-        NextPoint,
-        Remainder,
-        Tie,
-        Wrong,
-    )
+from truing.units import from_si
 
 SCHEMA = "truing.diagnosis/1"
 
@@ -135,8 +136,6 @@ def _value(value: float | None, unit: str) -> dict[str, Any]:
 
 def _in(value: float | None, unit: str) -> float | None:
     """Bring an SI number to a unit; what is no finite number is None."""
-    from truing.units import from_si
-
     number: float | None = None if value is None else clean(float(from_si(float(value), unit)))
     return number
 

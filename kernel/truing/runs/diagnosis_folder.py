@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from hashlib import file_digest
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from truing.diagnosis.result import Diagnosis
 from truing.runs.diagnosis_document import diagnosis_document, file_labels
 from truing.runs.extension import extended_text
 from truing.runs.folder import RUN_SCHEMA, json_text, npz_bytes, write_folder
 from truing.runs.inputs_written import complete_inputs
 from truing.runs.new_effect import new_effect_source
-
-if TYPE_CHECKING:
-    from truing.diagnosis.result import Diagnosis
-    from truing.runs.provenance import Provenance
+from truing.runs.provenance import Provenance
+from truing.units import from_si
 
 
 def write_diagnosis(
@@ -69,8 +68,6 @@ def data_digests(diagnosis: Diagnosis) -> dict[str, str]:
 
 def curve_arrays(diagnosis: Diagnosis) -> dict[str, Any]:
     """Return what arrays.npz holds: per result measured, before and after in its printed unit; file, line and run."""
-    from truing.units import from_si
-
     records = diagnosis.records
     arrays: dict[str, Any] = {"file": records.file_of, "line": records.lines, "run": records.run_of}
     for item in diagnosis.curves:

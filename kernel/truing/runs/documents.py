@@ -5,17 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
 
 from truing.calculation import Calculation
+from truing.cases import CasesTable
+from truing.declare.fields import InputField
 from truing.runs.provenance import Provenance
 from truing.setup import Setup, SwitchedOn
+from truing.studies.checks import Check, Proposal
+from truing.units import difference_unit, from_si, unit_factor
 from truing.units.names import PURE
-
-if TYPE_CHECKING:
-    from truing.cases import CasesTable
-    from truing.declare.fields import InputField
-    from truing.studies.bench import Check, Proposal
 
 SCHEMA = "truing.results/1"
 LARGE = 1000
@@ -116,10 +117,6 @@ def _case_value(setup: Setup, name: str, value: Any) -> dict[str, Any]:
 
 def large_arrays(calculation: Calculation) -> dict[str, Any]:
     """Return the results that are too large for results.json, in the unit each is printed in."""
-    import numpy as np
-
-    from truing.units import from_si
-
     found = {}
     for name, value in calculation.answers.items():
         if np.size(value) > LARGE:
@@ -149,8 +146,6 @@ def _number(value: Any) -> float | int | None:
 
 
 def _value(value: Any, unit: str) -> dict[str, Any]:
-    from truing.units import from_si
-
     if isinstance(value, int) and unit in PURE:
         return {"value": value, "unit": unit}
     return {"value": clean(from_si(value, unit)), "unit": unit}
@@ -162,15 +157,11 @@ def _input_value(setup: Setup, item: InputField, value: Any) -> dict[str, Any]:
     if item.kind in {"switch", "text", "choice", "integer"} or getattr(item.spec, "unit", None) is None:
         return {"value": clean(value), "unit": item.unit}
     if item.kind == "series":
-        import numpy as np
-
         return _value(np.asarray(value, dtype=float), setup.print_unit(item.name))
     return _value(value, setup.print_unit(item.name))
 
 
 def _tolerances(setup: Setup) -> dict[str, Any]:
-    from truing.units import difference_unit, from_si, unit_factor
-
     said: dict[str, Any] = {}
     scattering = setup.distributions()
     for name in setup.model.tolerances:
@@ -184,8 +175,6 @@ def _tolerances(setup: Setup) -> dict[str, Any]:
 
 
 def _effect_values(item: SwitchedOn) -> dict[str, Any]:
-    from truing.units import difference_unit, unit_factor
-
     said = {}
     for unknown in item.unknowns:
         value = _value(item.values[unknown.name], unknown.unit)
@@ -197,8 +186,6 @@ def _effect_values(item: SwitchedOn) -> dict[str, Any]:
 
 
 def _result(calculation: Calculation, name: str) -> dict[str, Any]:
-    import numpy as np
-
     value, unit = calculation.answers[name], calculation.setup.print_unit(name)
     if np.size(value) > LARGE:
         return {"value": None, "unit": unit, "array": name, "shape": list(np.shape(value))}

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from truing.diagnosis.verdict import explanations_of
+from truing.diagnosis.result import Calibrated, Cause, Diagnosis, FittedUnknown, explanations_of
 from truing.formulas.symbols import printable
+from truing.numbers import format_number
 from truing.runs.diagnosis_document import file_labels
 from truing.runs.inputs_written import complete_inputs
-
-if TYPE_CHECKING:
-    from truing.diagnosis.result import Calibrated, Cause, Diagnosis, FittedUnknown
-    from truing.setup import Setup
+from truing.setup import Setup
+from truing.units import from_si
 
 WIDTH = 116
 
@@ -47,8 +46,6 @@ def extended_text(diagnosis: Diagnosis, folder: Path | None = None) -> str:
 
 def _comment(sentences: Iterator[str]) -> Iterator[str]:
     """Write sentences as comments, each beginning a line of its own."""
-    import textwrap
-
     for sentence in sentences:
         yield from (f"# {line}" for line in textwrap.wrap(printable(sentence), WIDTH))
 
@@ -110,9 +107,6 @@ def _of_cause(cause: Cause, diagnosis: Diagnosis) -> Iterator[str]:
 
 
 def _number(value: float, unknown: FittedUnknown) -> str:
-    from truing.numbers import format_number
-    from truing.units import from_si
-
     return format_number(from_si(value, unknown.unit))
 
 

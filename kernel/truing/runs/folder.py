@@ -8,20 +8,20 @@ import zipfile
 from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
+
+import numpy as np
 
 from truing.atomic import place_folder, recover
+from truing.calculation import Calculation
+from truing.cases import CasesTable
 from truing.errors import OutputError, UnknownPluginError
+from truing.kernel import Offer
 from truing.runs.documents import SCHEMA, large_arrays, results_document
 from truing.runs.inputs_written import complete_inputs
+from truing.runs.provenance import Provenance
 from truing.runs.spreadsheet import spreadsheets
 from truing.runs.study_files import study_files
-
-if TYPE_CHECKING:
-    from truing.calculation import Calculation
-    from truing.cases import CasesTable
-    from truing.kernel import Offer
-    from truing.runs.provenance import Provenance
 
 RUN_SCHEMA = "truing.run/1"
 Kind = Literal["run", "diagnosis"]
@@ -76,8 +76,6 @@ def write_run(
 
 def npz_bytes(arrays: Mapping[str, Any]) -> bytes:
     """Pack arrays as numpy's .npz, the same bytes whenever and wherever it is done."""
-    import numpy as np
-
     stream = BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
         for name in sorted(arrays):

@@ -8,15 +8,17 @@ import math
 import os
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from truing.declare.fields import InputField
+from truing.declare.model import Study
 from truing.declare.spreads import ByChoice, Drawn
+from truing.formulas.symbols import printable
+from truing.inputs_file.defaults import toml_key, toml_value
+from truing.inputs_file.study_options import options_of
 from truing.setup import Setup, SwitchedOn
+from truing.units import difference_unit, from_si, read_quantity, to_si, unit_factor
 from truing.units.names import PURE
-
-if TYPE_CHECKING:
-    from truing.declare.fields import InputField
-    from truing.declare.model import Study
 
 
 def input_hash(setup: Setup) -> str:
@@ -32,8 +34,6 @@ def complete_inputs(setup: Setup, folder: Path | None = None) -> str:
     Data files are named relative to ``folder``, where the text will stand. A tolerance that follows a choice is left to
     follow it, as a comment; so is an input that is not given.
     """
-    from truing.inputs_file.defaults import toml_key, toml_value
-
     lines = [f"plugin = {toml_value(setup.model.name)}"]
     remarks = dict(_remarks(setup))
     for name, content in _sections(setup, folder):
@@ -92,8 +92,6 @@ def _of_diagnosis(setup: Setup) -> dict[str, Any]:
 
 def exact(value: Any, unit: str) -> Any:
     """Write an SI number in its declared unit so that reading it gives the same number again."""
-    from truing.units import from_si, read_quantity, to_si
-
     if unit in PURE:
         return _plain(value)
     number = float(from_si(float(value), unit))
@@ -158,8 +156,6 @@ def _spread(setup: Setup, name: str) -> str:
 
 
 def _effect(item: SwitchedOn) -> dict[str, Any]:
-    from truing.units import difference_unit, unit_factor
-
     said: dict[str, Any] = {}
     for unknown in item.unknowns:
         value = exact(item.values[unknown.name], unknown.unit)
@@ -176,8 +172,6 @@ def _effect(item: SwitchedOn) -> dict[str, Any]:
 
 def _options(study: Study, declared: Study | None) -> dict[str, Any]:
     """Return the options of a study that are not as its plugin declares them."""
-    from truing.inputs_file.study_options import options_of
-
     said = {}
     for name in options_of(study):
         value = getattr(study, name)
@@ -187,8 +181,6 @@ def _options(study: Study, declared: Study | None) -> dict[str, Any]:
 
 
 def _remarks(setup: Setup) -> Iterator[tuple[tuple[str, str], str]]:
-    from truing.formulas.symbols import printable
-
     for name, item in setup.model.input_fields.items():
         words = [printable(item.spec.note), "" if name in setup.stated else "default"]
         yield ("inputs", name), ", ".join(word for word in words if word)

@@ -13,14 +13,11 @@ import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from truing.declare.sources import Condition
+from truing.diagnosis.result import Diagnosis, ShapeTerm
 from truing.formulas.symbols import printable
 from truing.runs.diagnosis_document import file_labels
-
-if TYPE_CHECKING:
-    from truing.declare.sources import Condition
-    from truing.diagnosis.result import Diagnosis, ShapeTerm
 
 NAME = "remainder"
 FACTOR = 5.0
@@ -85,8 +82,6 @@ def _terms(diagnosis: Diagnosis) -> Mapping[str, Sequence[ShapeTerm]]:
 
 def _sources(diagnosis: Diagnosis) -> Iterator[_Source]:
     """Find where each covariate of the shape comes from: an input, an axis of the results, or a condition."""
-    from truing.declare.sources import Condition
-
     assert diagnosis.remainder is not None
     model = diagnosis.setup.model
     taken = set(TAKEN)

@@ -18,6 +18,11 @@ from truing.runs.folder import json_text
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
 
+if os.name == "nt":
+    import msvcrt
+else:
+    import fcntl
+
 PARTIAL_SCHEMA = "truing.partial/2"
 HEADER, FRESH, BATCHES, LOCK = OURS = ("partial.json", "partial.json.new", "batches.log", "lock")
 
@@ -122,13 +127,9 @@ def _opened(place: Path, identity: Mapping[str, Any]) -> tuple[IO[bytes], BatchL
 
 def _lock(file: IO[bytes]) -> None:
     if os.name == "nt":
-        import msvcrt
-
         file.seek(0)
         msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined,unused-ignore]
     else:
-        import fcntl
-
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import metadata
 
 from truing.runs.inputs_written import input_hash
 from truing.setup import DEFAULT_SEED, Setup
@@ -33,8 +35,6 @@ class Provenance:
 
 def provenance_of(setup: Setup, *, date: str = "") -> Provenance:
     """Say where the numbers of a run come from: versions, hash of the inputs, seed, guests, data files."""
-    import platform
-
     return Provenance(
         kernel=_version("truing"),
         plugin=setup.origin.name,
@@ -51,8 +51,6 @@ def provenance_of(setup: Setup, *, date: str = "") -> Provenance:
 
 
 def _version(name: str) -> str:
-    from importlib import metadata
-
     try:
         return metadata.version(name)
     except metadata.PackageNotFoundError:

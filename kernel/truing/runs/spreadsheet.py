@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from truing.declare.model import Model
+from truing.formulas.symbols import printable
 from truing.measurements import EXCEL, table_text
 from truing.studies.states import SHORT
-
-if TYPE_CHECKING:
-    from truing.declare.model import Model
 
 HEADERS = ("part", "name", "place", "value", "unit", "limit", "margin", "verdict", "note")
 Row = dict[str, Any]
@@ -47,8 +46,6 @@ def _single(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[Row
 
 
 def _notes(model: Model[Any, Any]) -> dict[str, str]:
-    from truing.formulas.symbols import printable
-
     return {name: printable(item.spec.note) for name, item in (model.input_fields | model.result_fields).items()}
 
 

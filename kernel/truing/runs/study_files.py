@@ -4,13 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 from truing.errors import PluginError
-from truing.studies.bench import files_of
-
-if TYPE_CHECKING:
-    from truing.studies.bench import Outcome
+from truing.studies.bench import Outcome, files_of
 
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}", re.ASCII)
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import KW_ONLY, dataclass, field, replace
-from typing import Any, Literal, Protocol
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol
 
 from truing.declare.blocks import Block
-from truing.executors import keepable
+from truing.evaluate import acting_inputs, answered, evaluate_rows
+from truing.prices import price_answers
 from truing.setup import Setup
-from truing.studies.states import State
+from truing.studies.checks import Check, Proposal
+from truing.studies.scatter import scatter_of
+from truing.studies.strips import with_widths
 
 Progress = Callable[[str, int, int], None]
 
@@ -56,63 +59,6 @@ def within(progress: Progress, task: str, begin: float, end: float, stages: Sequ
     return told
 
 
-@keepable
-@dataclass(frozen=True)
-class Check:
-    """A limit and how far it is kept: margin > 0 is safe, everywhere. Values are in ``unit``, probabilities have none.
-
-    Value and margin are those of the design as stated; ``passed`` says that this one keeps the limit. ``proposed`` is
-    the same limit for the design that a study proposes. Where no study of the run decides the limit, ``undecided`` says
-    which one would, and value and margin are NaN. ``compared`` says what the value is, as P(backlash ≤ 1′); empty: the
-    result called ``name``. ``relation`` is read from the margin where it is not given. A ``flag`` is a yes or a no.
-    ``method`` says how a probability was found.
-    """
-
-    name: str
-    value: float
-    limit: float
-    unit: str
-    margin: float
-    passed: bool
-    note: str = ""
-    method: str = ""
-    _: KW_ONLY
-    relation: Literal["", "≤", "≥"] = ""
-    compared: str = ""
-    chance: bool = False
-    flag: bool = False
-    undecided: str = ""
-    proposed: Check | None = None
-
-    def __post_init__(self) -> None:
-        if not self.relation:
-            safe_above = (self.limit - self.value) * self.margin < 0
-            object.__setattr__(self, "relation", "≥" if safe_above else "≤")
-
-    @property
-    def state(self) -> State:
-        """Whether the limit is kept: by the design as stated, by the one proposed, or by neither."""
-        if self.undecided:
-            return "undecided"
-        if self.passed:
-            return "passes"
-        return "proposed" if self.proposed is not None and self.proposed.passed else "fails"
-
-
-@keepable
-@dataclass(frozen=True)
-class Proposal:
-    """Another design that a study proposes: what it changes, as (name, stated, proposed), and limits as it keeps them.
-
-    A limit that the changes do not touch is not among the checks.
-    """
-
-    study: str
-    what: str
-    changes: tuple[tuple[str, str, str], ...]
-    checks: tuple[Check, ...]
-
-
 @dataclass(frozen=True)
 class Bench:
     """The workbench of a study: the checked setup, the calculation's own results, and what was answered before.
@@ -133,8 +79,6 @@ class Bench:
     @property
     def inputs(self) -> Any:
         """The inputs as the effects that are on leave them: what the calculation itself is called with."""
-        from truing.evaluate import acting_inputs
-
         return acting_inputs(self.setup)
 
     def part(self, task: str, begin: float, end: float) -> Done:
@@ -146,10 +90,6 @@ class Bench:
 
         Results and price are those of the new design; nobody hears of its progress. Raises InfeasibleError.
         """
-        from truing.evaluate import answered
-        from truing.prices import price_answers
-        from truing.studies.strips import with_widths
-
         setup = with_widths(self.setup.changed(values), dict(widths or {}))
         first = answered(setup)
         answers = {**setup.model.read_results(first.results), **price_answers(setup)}
@@ -157,14 +97,10 @@ class Bench:
 
     def drawn(self, rows: int) -> Mapping[str, Any]:
         """Return what scatters in so many machines, (rows,) by column in SI: the first that ``Reliability`` draws."""
-        from truing.studies.scatter import scatter_of
-
         return scatter_of(self.setup).draw(self.setup.seed, 0, rows)
 
     def rows(self, columns: Mapping[str, Any], rows: int, *results: str) -> Mapping[str, Any]:
         """Return these results (rows,) of so many calculations in SI; NaN where one has no answer."""
-        from truing.evaluate import evaluate_rows
-
         return evaluate_rows(self.setup, columns, rows, wanted=results).results
 
 

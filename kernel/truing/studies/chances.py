@@ -11,6 +11,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from truing.studies.demands import Demand, normal_chance, results_needed
 from truing.studies.differences import Slopes, slopes
 from truing.studies.sampling import Machines
@@ -33,8 +35,6 @@ class Straight:
     @property
     def sd(self) -> Any:
         """The first-order standard deviation."""
-        import numpy as np
-
         return np.sqrt(np.maximum(self.variance, 0.0))
 
 

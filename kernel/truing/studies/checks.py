@@ -3,16 +3,77 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
 from math import isnan
-from typing import Any
+from typing import Any, Literal
+
+import numpy as np
 
 from truing.declare.fields import in_si
 from truing.declare.goals import Require
 from truing.evaluate import evaluate
+from truing.executors import keepable
 from truing.numbers import STATED_DIGITS, format_value, with_unit
 from truing.setup import Setup
-from truing.studies.bench import Check
+from truing.studies.states import State
+from truing.units import difference_unit, from_si
+
+
+@keepable
+@dataclass(frozen=True)
+class Check:
+    """A limit and how far it is kept: margin > 0 is safe, everywhere. Values are in ``unit``, probabilities have none.
+
+    Value and margin are those of the design as stated; ``passed`` says that this one keeps the limit. ``proposed`` is
+    the same limit for the design that a study proposes. Where no study of the run decides the limit, ``undecided`` says
+    which one would, and value and margin are NaN. ``compared`` says what the value is, as P(backlash ≤ 1′); empty: the
+    result called ``name``. ``relation`` is read from the margin where it is not given. A ``flag`` is a yes or a no.
+    ``method`` says how a probability was found.
+    """
+
+    name: str
+    value: float
+    limit: float
+    unit: str
+    margin: float
+    passed: bool
+    note: str = ""
+    method: str = ""
+    _: KW_ONLY
+    relation: Literal["", "≤", "≥"] = ""
+    compared: str = ""
+    chance: bool = False
+    flag: bool = False
+    undecided: str = ""
+    proposed: Check | None = None
+
+    def __post_init__(self) -> None:
+        if not self.relation:
+            safe_above = (self.limit - self.value) * self.margin < 0
+            object.__setattr__(self, "relation", "≥" if safe_above else "≤")
+
+    @property
+    def state(self) -> State:
+        """Whether the limit is kept: by the design as stated, by the one proposed, or by neither."""
+        if self.undecided:
+            return "undecided"
+        if self.passed:
+            return "passes"
+        return "proposed" if self.proposed is not None and self.proposed.passed else "fails"
+
+
+@keepable
+@dataclass(frozen=True)
+class Proposal:
+    """Another design that a study proposes: what it changes, as (name, stated, proposed), and limits as it keeps them.
+
+    A limit that the changes do not touch is not among the checks.
+    """
+
+    study: str
+    what: str
+    changes: tuple[tuple[str, str, str], ...]
+    checks: tuple[Check, ...]
 
 
 @dataclass(frozen=True)
@@ -117,10 +178,6 @@ def plain_checks(setup: Setup, answers: dict[str, Any]) -> list[Check]:
 
 
 def _plain(limit: Limit, setup: Setup, answers: dict[str, Any]) -> Check:
-    import numpy as np
-
-    from truing.units import difference_unit, from_si
-
     unit = setup.print_unit(limit.result)
     at_least = limit.require.kind == "at_least"
     value, stated = answers[limit.result], limit.low if at_least else limit.high
@@ -157,8 +214,6 @@ def _subject(require: Require) -> str:
 
 def _bound_words(require: Require, setup: Setup, answers: Mapping[str, Any]) -> str:
     """Write the bound inside a probability as a number, or by its name where it moves from machine to machine."""
-    from truing.units import difference_unit
-
     scattering = {name for inner in setup.distributions().values() for name in inner}
     if require.limit in setup.model.result_fields or require.limit in scattering:
         return require.limit

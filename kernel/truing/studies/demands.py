@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
 
 from truing.declare.fields import Given
 from truing.setup import Setup
 from truing.studies.checks import Limit, limits
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 Z95 = 1.959963984540054  # standard normal quantile of 97.5 %
 
@@ -55,8 +56,6 @@ class Demand:
 
 def _beside(limit: Any, values: Any) -> Any:
     """Make one limit per row meet values along an axis."""
-    import numpy as np
-
     deeper = np.ndim(values) - np.ndim(limit)
     return limit if deeper <= 0 or np.ndim(limit) == 0 else np.expand_dims(limit, tuple(range(-deeper, 0)))
 
@@ -75,8 +74,6 @@ def demands(setup: Setup, answers: Mapping[str, Any], *, with_goal: bool | None 
 
 def exists(answer: Any) -> bool:
     """Tell whether an answer in SI is a number, or numbers along an axis."""
-    import numpy as np
-
     return not np.isnan(answer).any()
 
 
@@ -110,9 +107,6 @@ def normal_chance(mean: Any, sd: Any, low: Any, high: Any) -> Any:
 
     A standard deviation of 0 gives 1 or 0. Numbers or arrays.
     """
-    import numpy as np
-    from scipy.special import ndtr
-
     mean, sd, low, high = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in (mean, sd, low, high)))
     with np.errstate(all="ignore"):
         above, below = (low - mean) / sd, (high - mean) / sd
@@ -124,8 +118,6 @@ def normal_chance(mean: Any, sd: Any, low: Any, high: Any) -> Any:
 
 def wilson(hits: Any, draws: int) -> tuple[Any, Any]:
     """Return Wilson's 95 % interval of a probability (E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209)."""
-    import numpy as np
-
     share = np.asarray(hits, dtype=float) / draws
     square = Z95 * Z95
     centre = (share + square / (2 * draws)) / (1 + square / draws)
@@ -136,15 +128,11 @@ def wilson(hits: Any, draws: int) -> tuple[Any, Any]:
 
 def worst(value: Any) -> float:
     """Return the smallest of a curve of probabilities, or the number itself."""
-    import numpy as np
-
     return float(np.min(value))
 
 
 def as_number(value: Any) -> Any:
     """Return a number, or a list of numbers, for results.json; None where there is none."""
-    import numpy as np
-
     array = np.asarray(value, dtype=float)
     if array.ndim == 0:
         return float(array) if np.isfinite(array) else None

@@ -11,16 +11,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.errors import TruingError
 from truing.evaluate import effect_column, evaluate_rows
 from truing.setup import Setup
 from truing.studies.scatter import Scatter
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+from truing.units import unit_factor
 
 LEVELS = 15
 WIDEST_SHARE = 1 / 16  # of the nominal value
@@ -51,8 +51,6 @@ def nominal_of(setup: Setup, column: str) -> float:
 
 def slopes(setup: Setup, results: Sequence[str], columns: Sequence[str], scatter: Scatter) -> Slopes:
     """Differentiate these results by these columns about the nominal point, in one call of the model."""
-    import numpy as np
-
     nominals = np.array([nominal_of(setup, column) for column in columns])
     widest = np.array([_widest(setup, column, scatter) for column in columns])
     steps = widest[:, None] * 0.5 ** np.arange(LEVELS)  # (columns, levels), falling
@@ -114,8 +112,6 @@ def _sd_when_on(setup: Setup, column: str) -> float:
 
 
 def _one_unit(setup: Setup, column: str) -> float:
-    from truing.units import unit_factor
-
     for item in setup.effects:
         for unknown in item.unknowns:
             if column == effect_column(item.effect.name, unknown.name):
@@ -124,8 +120,6 @@ def _one_unit(setup: Setup, column: str) -> float:
 
 
 def _largest(values: NDArray[np.float64]) -> float:
-    import numpy as np
-
     finite = np.abs(values[np.isfinite(values)])
     return float(finite.max()) if finite.size else 0.0
 
@@ -137,8 +131,6 @@ def _slope(
 
     ``points`` (2 * LEVELS,) are the steps from the nominal point, those above first; ``values`` the results there.
     """
-    import numpy as np
-
     shape = (LEVELS,) + (1,) * (values.ndim - 1)
     up, down = values[:LEVELS], values[LEVELS:]
     above, below = points[:LEVELS].reshape(shape), points[LEVELS:].reshape(shape)
@@ -163,8 +155,6 @@ def _slope(
 
 def _best(estimates: NDArray[np.float64]) -> tuple[Any, Any]:
     """Return, per component, the estimate that agrees best with both its neighbours, and how well it does."""
-    import numpy as np
-
     apart = np.abs(np.diff(estimates, axis=0))
     score = np.maximum(apart[:-1], apart[1:])
     score = np.where(np.isfinite(score), score, np.inf)
@@ -176,8 +166,6 @@ def _best(estimates: NDArray[np.float64]) -> tuple[Any, Any]:
 
 def _one_sided(sides: Sequence[NDArray[np.float64]], slope: Any) -> tuple[Any, Any]:
     """Extrapolate first differences of the side that is feasible to third order."""
-    import numpy as np
-
     doubt = np.full(np.shape(slope), np.nan)
     for side in sides:
         for power in (2.0, 4.0):
@@ -189,7 +177,5 @@ def _one_sided(sides: Sequence[NDArray[np.float64]], slope: Any) -> tuple[Any, A
 
 
 def _plain(value: Any) -> Any:
-    import numpy as np
-
     array = np.asarray(value)
     return float(array) if array.ndim == 0 else np.array(array)

@@ -3,40 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from matplotlib.figure import Figure
 
 from truing.studies.reading import spoken
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from truing.studies.sweep import Swept
 
 BLUE, ORANGE, GREY = "#1f5a8a", "#c8641e", "#8a8f98"
 WIDTH = 6.4
 MOST_BARS = 16
-
-
-def curves(swept: Swept, names: Sequence[str]) -> Callable[[], Figure]:
-    """Draw results along the swept input, one below the other."""
-
-    def draw() -> Figure:
-        from matplotlib.figure import Figure
-
-        from truing.units import from_si, unit_text
-
-        figure = Figure(figsize=(WIDTH, 0.6 + 1.6 * len(names)), layout="constrained")
-        panels = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
-        x_unit = swept.units[swept.over]
-        for panel, name in zip(panels, names, strict=True):
-            unit = swept.units[name]
-            panel.plot(from_si(swept.axis, x_unit), from_si(swept.results[name], unit), color=BLUE)
-            panel.set_ylabel(labelled(name, unit_text(unit)))
-            panel.grid(alpha=0.3)
-        panels[-1].set_xlabel(labelled(swept.over, unit_text(x_unit)))
-        return figure
-
-    return draw
 
 
 def labelled(name: str, unit: str) -> str:
@@ -48,8 +23,6 @@ def bars(title: str, values: Mapping[str, float], label: str, *, most: int = MOS
     """Draw ranked bars, the longest on top."""
 
     def draw() -> Figure:
-        from matplotlib.figure import Figure
-
         ranked = sorted(values.items(), key=lambda item: -abs(item[1]))[:most][::-1]
         figure = Figure(figsize=(WIDTH, 0.9 + 0.26 * len(ranked)), layout="constrained")
         panel = figure.subplots()
@@ -72,8 +45,6 @@ def lines(
     """Draw probabilities against steps or an input, with their goals as dashed lines."""
 
     def draw() -> Figure:
-        from matplotlib.figure import Figure
-
         figure = Figure(figsize=(WIDTH, 3.2), layout="constrained")
         panel: Any = figure.subplots()
         for place, (name, values) in enumerate(series.items()):

@@ -9,16 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
 
 from truing.studies.demands import Demand
 from truing.studies.sampling import Machines, standard_rows
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    LimitState = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+LimitState = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 STEP = 1e-3
 ITERATIONS = 60
@@ -60,9 +60,6 @@ class Form:
 
 def form(machines: Machines, demand: Demand, nominal: Mapping[str, float]) -> Form:
     """Find the reliability index of each side of a demand on a number."""
-    import numpy as np
-    from scipy.special import ndtr
-
     if machines.setup.model.own_result_fields[demand.result].along:
         return Form({}, None, "not done: the result runs along an axis")
     if not machines.scatter.dimension:
@@ -94,8 +91,6 @@ def _limit_state(
 
 
 def _with_gradient(distance: LimitState, point: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
-    import numpy as np
-
     moves = STEP * np.eye(len(point))
     batch = np.hstack([point[:, None], point[:, None] + moves, point[:, None] - moves])
     values = distance(batch)
@@ -105,8 +100,6 @@ def _with_gradient(distance: LimitState, point: NDArray[np.float64]) -> tuple[fl
 
 def _search(distance: LimitState, machines: Machines) -> Side:
     """Walk to the point of the limit nearest to the origin."""
-    import numpy as np
-
     point = np.zeros(machines.scatter.dimension)
     scale = 0.0
     for iteration in range(1, ITERATIONS + 1):
@@ -134,8 +127,6 @@ def _length(
     distance: LimitState, point: NDArray[np.float64], direction: NDArray[np.float64], here: tuple[float, float]
 ) -> float:
     """Choose the longest step of 1, 1/2, 1/4 ... that lowers the merit function; all are tried in one batch."""
-    import numpy as np
-
     value, steepness = here
     target = point + direction
     penalty = 2 * max(np.sqrt(target @ target), np.sqrt(point @ point)) / steepness + 10 / steepness

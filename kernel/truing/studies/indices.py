@@ -7,14 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtri
+
+from truing.heavy import stats
 from truing.studies.bench import Done
 from truing.studies.sampling import Machines, standard_rows
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 ROWS = 2**14
 
@@ -24,9 +25,6 @@ class _Standard:
 
     def ppf(self, share: Any) -> Any:
         """Return the quantile; the outermost points of a Sobol sequence stay finite."""
-        import numpy as np
-        from scipy.special import ndtri
-
         tiny = 2.0**-54
         return ndtri(np.clip(share, tiny, 1 - 2.0**-53))
 
@@ -43,8 +41,6 @@ class _Sampled:
     run: int = 0
 
     def __call__(self, standard: NDArray[np.float64]) -> NDArray[np.float64]:
-        import numpy as np
-
         count = standard.shape[1]
         standard = standard[: self.machines.scatter.dimension]
         answers = np.empty((len(self.results), count))
@@ -67,9 +63,6 @@ def sobol_indices(
 
     There are none, and a sentence says so, where sources scatter together or machines fail.
     """
-    import numpy as np
-    from scipy import stats
-
     causes = machines.scatter.causes
     joint = [cause.name for cause in causes if cause.mixing is not None]
     if joint:

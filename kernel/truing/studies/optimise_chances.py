@@ -9,17 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtri
 
 from truing.studies.demands import normal_chance
 from truing.studies.differences import nominal_of
 from truing.studies.optimise_goals import Bound, World, beside
 from truing.studies.optimise_spreads import Scattered
 from truing.studies.scatter import Cause, Scatter, generator
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 STEP = 0.1  # of a standard deviation, for central differences
 
@@ -50,16 +50,12 @@ class Designs:
 
     def nominal(self, column: str) -> Any:
         """Return the nominal values (m,) of a column."""
-        import numpy as np
-
         own = self.world.columns.get(column)
         return np.full(self.rows, nominal_of(self.world.setup, column)) if own is None else own
 
 
 def cloud_of(scatter: Scatter, seed: int, study: str, draws: int) -> Cloud:
     """Draw the machines once, for all designs; other random numbers than those of any verification."""
-    import numpy as np
-
     standard: dict[str, NDArray[np.float64]] = {}
     for cause in scatter.causes:
         rng = generator(seed, 0, f"{study}: {cause.name}")
@@ -72,16 +68,11 @@ def cloud_of(scatter: Scatter, seed: int, study: str, draws: int) -> Cloud:
 
 
 def _stratified(rng: np.random.Generator, draws: int) -> NDArray[np.float64]:
-    import numpy as np
-    from scipy.special import ndtri
-
     return np.asarray(ndtri((rng.permutation(draws) + rng.random(draws)) / draws))
 
 
 def by_draws(cloud: Cloud, designs: Designs, bounds: Sequence[Bound], answer: Answering) -> NDArray[np.float64]:
     """Return the share of machines (m, bounds) that keep each limit; a machine without an answer keeps none."""
-    import numpy as np
-
     shape = (designs.rows, cloud.draws)
     columns = _machines(cloud, designs)
     flat = {name: np.ascontiguousarray(values).reshape(-1) for name, values in columns.items()}
@@ -103,8 +94,6 @@ def by_draws(cloud: Cloud, designs: Designs, bounds: Sequence[Bound], answer: An
 
 def _per_design(limit: Any, values: Any) -> Any:
     """Bring a limit, a number or (m, ...), beside values (m, n, ...)."""
-    import numpy as np
-
     if np.ndim(limit) == 0:
         return limit
     return beside(np.expand_dims(np.asarray(limit), 1), values)
@@ -134,8 +123,6 @@ def _ends(world: World, bound: Bound) -> tuple[Any, Any]:
 
 def _machines(cloud: Cloud, designs: Designs) -> dict[str, Any]:
     """Return the columns of all machines of all designs (m, n); two tolerances on one input add their deviations."""
-    import numpy as np
-
     shape = (designs.rows, cloud.draws)
     columns: dict[str, Any] = {}
     for cause in cloud.causes:
@@ -162,8 +149,6 @@ def by_first_order(
     scatter: Scatter, designs: Designs, bounds: Sequence[Bound], answer: Answering
 ) -> NDArray[np.float64]:
     """Return the normal probability (m, bounds) of the model made straight at every design; 0 where there is none."""
-    import numpy as np
-
     columns = scatter.columns
     steps, variances, shifts = _moments(scatter, designs)
     values = _beside_the_designs(designs, columns, steps, _wanted(bounds), answer)
@@ -182,8 +167,6 @@ def by_first_order(
 
 def _moments(scatter: Scatter, designs: Designs) -> tuple[dict[str, Any], Any, dict[str, Any]]:
     """Return by column the step (m,), then how variances follow from slopes, and how far means lie from nominals."""
-    import numpy as np
-
     squares: dict[str, Any] = {}
     shifts: dict[str, Any] = {}
     for cause in scatter.causes:
@@ -217,8 +200,6 @@ def _beside_the_designs(
     designs: Designs, columns: Sequence[str], steps: Mapping[str, Any], wanted: Sequence[str], answer: Answering
 ) -> dict[str, Any]:
     """Run every design, and every design with one column a step up and a step down: results (m, 1 + 2 k, ...)."""
-    import numpy as np
-
     width = 1 + 2 * len(columns)
     batch: dict[str, Any] = {}
     for name in dict.fromkeys([*designs.world.columns, *columns]):
@@ -240,8 +221,6 @@ def _line(
     designs: Designs, bound: Bound, values: Mapping[str, Any], steps: tuple[Sequence[str], Mapping[str, Any]]
 ) -> tuple[Any, dict[str, Any]]:
     """Return the response at every design and its slopes by column; from one side where the other has no answer."""
-    import numpy as np
-
     response = values[bound.result]
     if _moves(designs.world, bound):
         limit = values.get(bound.require.limit)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+import numpy as np
+from numpy.typing import NDArray
+
+from truing.heavy import pymoo_hypervolume
 
 REFERENCE = 1.1
 """The reference point of the hypervolume, in every objective: the box of the final front is 0 to 1."""
@@ -49,8 +49,6 @@ def volume_of(fronts: Sequence[NDArray[np.float64]], *, exhausted: bool = False)
     In one objective it is the way from the reference to the best. An objective in which the last front has no extent
     takes that of all fronts. Source: E. Zitzler, L. Thiele, IEEE Trans. Evol. Comput. 3 (1999) 257.
     """
-    import numpy as np
-
     found = [front for front in fronts if len(front)]
     last, whole = found[-1], np.vstack(found)
     ideal, nadir = last.min(axis=0), last.max(axis=0)
@@ -61,17 +59,13 @@ def volume_of(fronts: Sequence[NDArray[np.float64]], *, exhausted: bool = False)
 
 
 def _hypervolume(values: NDArray[np.float64]) -> float:
-    import numpy as np
-
     inside = values[(values < REFERENCE).all(axis=1)]
     if not len(inside):
         return 0.0
     if values.shape[1] == 1:
         return float(REFERENCE - inside.min())
     if values.shape[1] > 2:
-        from pymoo.indicators.hv import HV
-
-        return float(HV(ref_point=np.full(values.shape[1], REFERENCE))(inside))
+        return float(pymoo_hypervolume.HV(ref_point=np.full(values.shape[1], REFERENCE))(inside))
     order = inside[np.lexsort(inside.T[::-1])]
     below = np.minimum.accumulate(np.concatenate([[REFERENCE], order[:, 1]]))
     return float(((REFERENCE - order[:, 0]) * (below[:-1] - below[1:])).sum())
@@ -83,8 +77,6 @@ def knee_of(front: NDArray[np.float64]) -> tuple[int, float]:
     The chord (with more objectives the plane) goes through the ends of the front, each objective from 0 to 1. With one
     objective it is the best design. Source: I. Das, Structural Optimization 18 (1999) 107.
     """
-    import numpy as np
-
     if front.shape[1] == 1:
         return int(np.argmin(front[:, 0])), 0.0
     span = np.ptp(front, axis=0)

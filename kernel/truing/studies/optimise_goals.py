@@ -7,7 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.checks import TOTAL_PRICE
 from truing.declare.fields import in_si
@@ -15,10 +18,6 @@ from truing.declare.goals import Maximise, Minimise, Require
 from truing.errors import UsageError
 from truing.setup import Setup
 from truing.studies.checks import check_name, requirements
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
@@ -107,8 +106,6 @@ class World:
 
 def beside(limit: Any, values: Any) -> Any:
     """Make a number per design meet values that run along further axes."""
-    import numpy as np
-
     deeper = np.ndim(values) - np.ndim(limit)
     return limit if deeper <= 0 or np.ndim(limit) == 0 else np.expand_dims(limit, tuple(range(-deeper, 0)))
 
@@ -165,8 +162,6 @@ def left_out(setup: Setup) -> tuple[str, ...]:
 
 def constants(setup: Setup, answers: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
     """Return the limits that are results of earlier studies: they stay what they are."""
-    import numpy as np
-
     limits = {item.limit for item in requirements(setup)}
     theirs = limits & given_by_studies(setup) & set(answers)
     return tuple((name, float(answers[name])) for name in sorted(theirs) if np.ndim(answers[name]) == 0)
@@ -174,8 +169,6 @@ def constants(setup: Setup, answers: Mapping[str, Any]) -> tuple[tuple[str, floa
 
 def margins(bound: Bound, world: World, rows: int) -> NDArray[np.float64]:
     """Return how far every design (m,) keeps a limit on itself; along an axis the smallest margin."""
-    import numpy as np
-
     values = np.asarray(world.value(bound.result), dtype=float)
     low, high = world.ends(bound)
     if bound.require.kind == "within":

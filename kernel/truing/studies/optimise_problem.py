@@ -6,7 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.checks import TOTAL_PRICE
 from truing.evaluate import evaluate_rows
@@ -18,10 +21,6 @@ from truing.studies.optimise_goals import Aim, Bound, World, aims_of, bounds_of,
 from truing.studies.optimise_space import Brief, Space, open_space
 from truing.studies.optimise_spreads import scattered, total_prices
 from truing.studies.scatter import Scatter, scatter_of
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 ROWS = 2**16  # of one call of the model, so that memory stays flat
 
@@ -75,8 +74,6 @@ class Problem:
 
 
 def _of_rows(values: Any, rows: int) -> NDArray[np.float64]:
-    import numpy as np
-
     return np.broadcast_to(np.asarray(values, dtype=float), (rows,))
 
 
@@ -106,8 +103,6 @@ class Answers:
 
 def joined(parts: Sequence[Answers]) -> Answers:
     """Put the answers of several batches together, in their order."""
-    import numpy as np
-
     return Answers(
         **{item.name: np.concatenate([getattr(part, item.name) for part in parts]) for item in fields(Answers)}
     )
@@ -124,8 +119,6 @@ def make_problem(setup: Setup, brief: Brief) -> Problem:
 
 def answers_of(problem: Problem, designs: NDArray[np.float64], *, as_stated: bool = False) -> Answers:
     """Answer designs (m, v) in one go; ``as_stated`` leaves inputs that follow as the inputs file states them."""
-    import numpy as np
-
     count = len(designs)
     world, spreads = _world(problem, designs, as_stated=as_stated)
     objectives = np.column_stack([np.broadcast_to(world.value(aim.name), (count,)) for aim in problem.aims])
@@ -147,8 +140,6 @@ def answers_of(problem: Problem, designs: NDArray[np.float64], *, as_stated: boo
 
 def _without_spread(spreads: Mapping[str, Any], count: int) -> NDArray[np.bool_]:
     """Return the designs in which some tolerance has no width, as a grade that does not exist for their size."""
-    import numpy as np
-
     missing = np.zeros(count, dtype=bool)
     for inner in spreads.values():
         for item in inner.values():
@@ -173,8 +164,6 @@ def _world(
 
 def _own_results(problem: Problem, columns: Mapping[str, Any], count: int) -> dict[str, NDArray[np.float64]]:
     """Return the results from which ``within`` is measured, where they are not the nominal ones: see ``of_design``."""
-    import numpy as np
-
     setup = problem.setup
     wanted = [bound.result for bound in problem.bounds if bound.require.kind == "within"]
     names = {name for item in setup.model.tolerances.values() for name in item.on if name in setup.model.input_fields}
@@ -189,8 +178,6 @@ def _own_results(problem: Problem, columns: Mapping[str, Any], count: int) -> di
 
 
 def _chances(problem: Problem, designs: Designs) -> NDArray[np.float64]:
-    import numpy as np
-
     bounds = problem.by_chance
     if not bounds:
         return np.zeros((designs.rows, 0))

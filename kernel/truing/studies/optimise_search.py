@@ -8,13 +8,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from truing.heavy import (
+    pymoo_config,
+    pymoo_evaluator,
+    pymoo_mutation,
+    pymoo_nsga2,
+    pymoo_problem,
+    pymoo_repair,
+    pymoo_static,
+)
 from truing.studies.optimise_problem import Answers, Problem, joined
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 FAILED = 1e6
 """How far a design without an answer is counted beyond every limit: finite, and worse than any that has one."""
@@ -57,8 +65,6 @@ class Trail:
 
 def search(problem: Problem, plan: Plan, answer: Answering, done: Callable[[int, int], None]) -> Trail:
     """Look for the designs that no other beats. ``answer(designs)`` is called once per generation."""
-    import numpy as np
-
     algorithm, shell = _algorithm(problem, plan)
     rng = np.random.default_rng([plan.seed, LED])
     kept: tuple[NDArray[np.float64], Answers] | None = None
@@ -94,8 +100,6 @@ def _led(
     front whatever its direction (R. Storn, K. Price, J. Glob. Optim. 11 (1997) 341). ``places`` are those of the
     offspring and of the population.
     """
-    import numpy as np
-
     offspring, population = places
     changed = offspring.copy()
     count = len(changed[1::LED])
@@ -110,8 +114,6 @@ def _led(
 
 def small(problem: Problem, answers: Answers) -> NDArray[np.float64]:
     """Return the objectives of feasible designs as numbers that should be small."""
-    import numpy as np
-
     return np.asarray(answers.objectives[answers.feasible] * np.array([aim.sign for aim in problem.aims]))
 
 
@@ -125,8 +127,6 @@ def _best(
 
     At most ``most`` of them, chosen so that they spread along the front; the ends always stay.
     """
-    import numpy as np
-
     designs, answers = new if kept is None else (np.vstack([kept[0], new[0]]), joined([kept[1], new[1]]))
     if not answers.feasible.any():
         least = int(np.argmin(violation(answers)))
@@ -140,16 +140,12 @@ def _best(
 
 def violation(answers: Answers) -> NDArray[np.float64]:
     """Return how far every design misses its limits together; finite where it has no answer."""
-    import numpy as np
-
     missed = np.where(np.isfinite(answers.margins), np.maximum(-answers.margins, 0.0), FAILED).sum(axis=1)
     return np.asarray(np.where(answers.failed, FAILED * (1 + answers.margins.shape[1]), missed))
 
 
 def non_dominated(values: NDArray[np.float64]) -> NDArray[np.intp]:
     """Return the rows (of values that should be small) that no other row beats; of equal rows the first."""
-    import numpy as np
-
     order = np.lexsort(values.T[::-1])
     if values.shape[1] <= 2:  # sorted by the first, a row stays where the last falls below all before it
         last = values[order, -1]
@@ -169,8 +165,6 @@ def worth_it(front: NDArray[np.float64]) -> NDArray[np.bool_]:
     One that is better than another by less than ``TRIFLE`` of the front's extent, in what it is better in, and worse
     by more than ``DEAR`` in anything, is no trade: the ends of a front would hang on to such designs for ever.
     """
-    import numpy as np
-
     span = np.ptp(front, axis=0)
     scaled = front / np.where(span > 0, span, 1.0)
     apart: NDArray[np.float64] = scaled[:, None, :] - scaled[None, :, :]  # how much worse the first is than the second
@@ -180,8 +174,6 @@ def worth_it(front: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 def spread_out(values: NDArray[np.float64], front: NDArray[np.intp], most: int) -> NDArray[np.intp]:
     """Thin a front to ``most`` rows by leaving out, one by one, the most crowded; ends have no neighbour and stay."""
-    import numpy as np
-
     while len(front) > most:
         found = values[front]
         span = np.ptp(found, axis=0)
@@ -197,29 +189,21 @@ def spread_out(values: NDArray[np.float64], front: NDArray[np.intp], most: int) 
 
 def _tell(algorithm: Any, shell: Any, asked: Any, problem: Problem, found: Answers) -> None:
     """Hand the answers back; a design without one is finite and worse than any other."""
-    import numpy as np
-    from pymoo.core.evaluator import Evaluator
-    from pymoo.problems.static import StaticProblem
-
     signs = np.array([aim.sign for aim in problem.aims])
     objectives = np.where(found.failed[:, None], FAILED, found.objectives * signs)
     missing = np.where(found.failed, FAILED, -1.0)
     limits = np.where(found.failed[:, None], FAILED, -found.margins)
-    Evaluator().eval(StaticProblem(shell, F=objectives, G=np.column_stack([limits, missing])), asked)
+    pymoo_evaluator.Evaluator().eval(
+        pymoo_static.StaticProblem(shell, F=objectives, G=np.column_stack([limits, missing])), asked
+    )
     algorithm.tell(infills=asked)
 
 
 def _algorithm(problem: Problem, plan: Plan) -> tuple[Any, Any]:
     """Set up the algorithm of the literature with the first population."""
-    import numpy as np
-    from pymoo.config import Config
-
-    Config.warnings["not_compiled"] = False
-    from pymoo.algorithms.moo.nsga2 import NSGA2
-    from pymoo.core.problem import Problem as Shell
-
+    pymoo_config.Config.warnings["not_compiled"] = False
     count = len(problem.space.variables)
-    shell = Shell(
+    shell = pymoo_problem.Problem(
         n_var=count,
         n_obj=len(problem.aims),
         n_ieq_constr=len(problem.bounds) + 1,
@@ -227,15 +211,15 @@ def _algorithm(problem: Problem, plan: Plan) -> tuple[Any, Any]:
         xu=np.ones(count),
     )
     mutation, repair = _operators(problem)
-    algorithm = NSGA2(pop_size=plan.population, sampling=_first(problem, plan), mutation=mutation, repair=repair)
+    algorithm = pymoo_nsga2.NSGA2(
+        pop_size=plan.population, sampling=_first(problem, plan), mutation=mutation, repair=repair
+    )
     algorithm.setup(shell, termination=("n_gen", plan.generations), seed=plan.seed, verbose=False)
     return algorithm, shell
 
 
 def _first(problem: Problem, plan: Plan) -> NDArray[np.float64]:
     """Return the first population: the stated design, it with every width at its ends, and a Latin hypercube."""
-    import numpy as np
-
     space = problem.space
     start = space.units(space.start[None, :])[0]
     widths = np.array([not variable.is_input for variable in space.variables])
@@ -249,14 +233,10 @@ def _first(problem: Problem, plan: Plan) -> NDArray[np.float64]:
 
 def _operators(problem: Problem) -> tuple[Any, Any]:
     """Return the mutation and the repair that know whole variables."""
-    import numpy as np
-    from pymoo.core.repair import Repair
-    from pymoo.operators.mutation.pm import PM
-
     space = problem.space
     discrete = np.flatnonzero([variable.discrete for variable in space.variables])
 
-    class Mutation(PM):  # type: ignore[misc]  # pymoo has no types
+    class Mutation(pymoo_mutation.PM):  # type: ignore[misc]  # pymoo has no types
         def _do(self, shell: Any, places: Any, *args: Any, random_state: Any = None, **kwargs: Any) -> Any:
             changed = super()._do(shell, places, *args, random_state=random_state, **kwargs)
             if len(discrete):
@@ -265,7 +245,7 @@ def _operators(problem: Problem) -> tuple[Any, Any]:
                 changed[:, discrete] = np.where(jumps, anywhere, changed[:, discrete])
             return changed
 
-    class ToSteps(Repair):  # type: ignore[misc]
+    class ToSteps(pymoo_repair.Repair):  # type: ignore[misc]
         def _do(self, shell: Any, places: Any, **kwargs: Any) -> Any:
             return space.units(space.designs(np.asarray(places, dtype=float)))
 

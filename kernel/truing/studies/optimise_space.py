@@ -9,7 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from math import ceil, floor, isnan
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.fields import InputField
 from truing.declare.goals import Vary
@@ -19,14 +23,11 @@ from truing.declare.spreads import Band, Distribution, Grade, Zone
 from truing.declare.widths import with_width
 from truing.errors import TruingError, UnitError, UsageError
 from truing.fits import GRADES
+from truing.formulas import Formula, evaluate, parse
+from truing.inputs_file.values import broken_bound
 from truing.prices import price_of
 from truing.setup import Setup
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from truing.formulas import Formula
+from truing.units import read_quantity
 
 Kind = Literal["number", "whole", "width", "grade"]
 SLACK = 1e-9
@@ -104,38 +105,26 @@ class Space:
     @property
     def start(self) -> NDArray[np.float64]:
         """The design that the inputs file states, as a row."""
-        import numpy as np
-
         return np.array([variable.start for variable in self.variables])
 
     def designs(self, units: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return designs (m, v) from places in the unit cube; whole variables are at their steps."""
-        import numpy as np
-
         low, high, discrete = self._ends()
         values = low + units * (high - low)
         return np.where(discrete, np.rint(values), np.clip(values, low, high))
 
     def units(self, designs: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the places of designs in the unit cube, where they lie outside of it those nearest to them."""
-        import numpy as np
-
         low, high, _ = self._ends()
         return np.clip((designs - low) / (high - low), 0.0, 1.0)
 
     def _ends(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
-        import numpy as np
-
         low = np.array([variable.low for variable in self.variables])
         high = np.array([variable.high for variable in self.variables])
         return low, high, np.array([variable.discrete for variable in self.variables])
 
     def columns(self, designs: NDArray[np.float64], *, as_stated: bool = False) -> dict[str, Any]:
         """Return the nominal inputs (m,) that differ; ``as_stated`` leaves followers as the file states them."""
-        import numpy as np
-
-        from truing.formulas import evaluate
-
         fields = self.setup.model.input_fields
         columns: dict[str, Any] = {
             variable.name: designs[:, place] for place, variable in enumerate(self.variables) if variable.is_input
@@ -205,8 +194,6 @@ def _demand_known(setup: Setup, brief: Brief, known: set[str]) -> None:
 
 
 def _of_input(setup: Setup, vary: Vary, brief: Brief) -> Variable:
-    from math import ceil, floor, isnan
-
     item = setup.model.input_fields[vary.input]
     what = f"study '{brief.study}': Vary('{vary.input}')"
     low, high = (_end(item, text, what) for text in (vary.low, vary.high))
@@ -223,9 +210,6 @@ def _of_input(setup: Setup, vary: Vary, brief: Brief) -> Variable:
 
 def _end(item: InputField, text: str, what: str) -> float:
     """Read one end of a range in SI. Raises UsageError for a text that is none, or beyond the bounds of the input."""
-    from truing.inputs_file.values import broken_bound
-    from truing.units import read_quantity
-
     try:
         value = read_quantity(text, item.unit)
     except UnitError as error:
@@ -267,8 +251,6 @@ def _of_grade(setup: Setup, tolerance: Tolerance, spread: Grade, brief: Brief, w
 
 def _followers(setup: Setup, stated: list[Vary], brief: Brief) -> Iterator[Follower]:
     """Yield the inputs that follow, each behind those it follows itself. Raises UsageError for a circle."""
-    from truing.formulas import parse
-
     formulas = {item.input: parse(item.by) for item in stated if item.by}
     done: set[str] = set()
     while len(done) < len(formulas):

@@ -7,8 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+from truing.declare.checks import TOTAL_PRICE
 from truing.declare.sources import Tolerance
 from truing.declare.spreads import SIGMAS_IN_BAND, Band, Distribution, Grade, Shape, Spread, Target
 from truing.declare.widths import shift_per_width
@@ -17,10 +22,7 @@ from truing.fits import GRADES
 from truing.prices import price_of, prices_at
 from truing.setup import Setup
 from truing.studies.optimise_space import Space, Variable
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+from truing.units import to_si
 
 
 @dataclass(frozen=True)
@@ -38,15 +40,11 @@ class Scattered:
 
     def values(self, standard: NDArray[np.float64]) -> NDArray[np.float64]:
         """Map standard normal values (n,) to every design (m, n), as ``Distribution.from_standard`` does for one."""
-        import numpy as np
-
         mean, sd = self.mean[:, None], self.sd[:, None]
         if self.shape == "lognormal":
             log_variance = np.log1p((sd / mean) ** 2)
             return np.asarray(np.exp(np.log(mean) - log_variance / 2 + np.sqrt(log_variance) * standard))
         if self.shape == "uniform":
-            from scipy.special import ndtr
-
             return np.asarray(mean + self.width[:, None] * (ndtr(standard) - 0.5))
         return np.asarray(standard * sd + mean)
 
@@ -76,8 +74,6 @@ def _is_width(variable: Variable | None) -> bool:
 
 def _widened(tolerance: Tolerance, spread: Spread, each: Mapping[str, Scattered], widths: Any) -> dict[str, Scattered]:
     """Bring a band to its chosen width (that of its first input); a zone grows where it says."""
-    import numpy as np
-
     first = next(iter(each.values())).width
     with np.errstate(all="ignore"):
         factor = widths / first
@@ -95,8 +91,6 @@ def _resolved(
     given: tuple[Distribution, Mapping[str, Any], NDArray[np.float64] | None, int],
 ) -> Scattered:
     """Resolve one spread in every design, once for all of them where nothing it reads differs."""
-    import numpy as np
-
     base, columns, grades, rows = given
     reads = sorted(_reads(spread, column) & space.moved)
     if not reads and grades is None:
@@ -148,11 +142,6 @@ def _reads(spread: Spread, column: str) -> frozenset[str]:
 
 def total_prices(setup: Setup, spreads: Mapping[str, Mapping[str, Scattered]], rows: int) -> NDArray[np.float64]:
     """Return what the tolerances of every design cost together (m,), in SI of the currency."""
-    import numpy as np
-
-    from truing.declare.checks import TOTAL_PRICE
-    from truing.units import to_si
-
     total = np.zeros(rows)
     for name, inner in spreads.items():
         price = price_of(setup, setup.model.tolerances[name])

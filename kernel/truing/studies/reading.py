@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.near_miss import near_miss
 from truing.errors import UnitError, UsageError
 from truing.setup import Setup
+from truing.studies.demands import as_number
+from truing.units import difference_unit, from_si, read_quantity, split_quantity, unit_factor
 from truing.units.names import PURE
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 
 def read_range(text: str, unit: str, points: int) -> NDArray[np.float64]:
@@ -19,8 +20,6 @@ def read_range(text: str, unit: str, points: int) -> NDArray[np.float64]:
 
     Raises UsageError with one sentence for anything else.
     """
-    import numpy as np
-
     is_range = ".." in text
     words = [word.strip() for word in (text.split("..") if is_range else text.split(","))]
     if not text.strip() or (is_range and len(words) != 2) or not all(words):
@@ -30,8 +29,6 @@ def read_range(text: str, unit: str, points: int) -> NDArray[np.float64]:
 
 
 def _with_common_unit(words: list[str], unit: str, text: str) -> list[float]:
-    from truing.units import read_quantity, split_quantity
-
     try:
         common = split_quantity(words[-1]).unit
         quantities = [split_quantity(word) for word in words]
@@ -72,8 +69,6 @@ def spoken(name: str) -> str:
 
 def per(unit: str, source: str) -> str:
     """Return the unit of a derivative: "mm/deg"."""
-    from truing.units import difference_unit
-
     above, below = difference_unit(unit), difference_unit(source)
     if below in PURE:
         return above
@@ -86,19 +81,9 @@ def per(unit: str, source: str) -> str:
 
 def printed(value: Any, unit: str) -> Any:
     """Bring a value from SI to a unit; a number or a list, None where it is not finite, for results.json."""
-    import numpy as np
-
-    from truing.studies.demands import as_number
-    from truing.units import from_si
-
     return as_number(from_si(np.asarray(value, dtype=float), unit))
 
 
 def printed_step(value: Any, unit: str) -> Any:
     """Bring a difference or standard deviation from SI to a unit, for results.json."""
-    import numpy as np
-
-    from truing.studies.demands import as_number
-    from truing.units import difference_unit, unit_factor
-
     return as_number(np.asarray(value, dtype=float) / unit_factor(difference_unit(unit)))

@@ -10,7 +10,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.evaluate import Rows, evaluate_rows
 from truing.executors import SerialExecutor, in_order, keepable
@@ -18,10 +21,6 @@ from truing.packed import Packed, pack, unpack
 from truing.setup import Setup
 from truing.studies.demands import Demand, nominal_inputs, results_needed
 from truing.studies.scatter import Scatter, scatter_of
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 KEPT_REASONS = 8
 
@@ -69,8 +68,6 @@ class Moments:
     @property
     def sd(self) -> Any:
         """Standard deviation (n - 1)."""
-        import numpy as np
-
         return np.sqrt(self.squares / (self.count - 1)) if self.count > 1 else self.squares * float("nan")
 
 
@@ -138,8 +135,6 @@ def _keep_freed_memory() -> None:
     Freeing one large array, never touched, raises glibc's thresholds for doing so. Without it the page faults of the
     temporaries cost as much as the arithmetic of the model. Other C libraries do not care.
     """
-    import numpy as np
-
     np.empty(31 * 2**20, dtype=np.uint8)
 
 
@@ -160,8 +155,6 @@ def run_batch(job: Job) -> Tally:
 
 def _hits(demand: Demand, rows: Rows, columns: Mapping[str, Any], plan: Plan) -> Any:
     """Count the rows within the limits; NaN, as in failed rows, lies in none."""
-    import numpy as np
-
     response = demand.response(rows.results, columns, plan.nominal)
     inside = response <= demand.high
     if np.any(demand.low > -np.inf):
@@ -170,8 +163,6 @@ def _hits(demand: Demand, rows: Rows, columns: Mapping[str, Any], plan: Plan) ->
 
 
 def _moments(rows: Rows, name: str, centre: Any) -> Moments:
-    import numpy as np
-
     values = rows.results[name]
     if rows.failed.any():
         values = values[~rows.failed]
@@ -211,8 +202,6 @@ def merged(first: Tally, second: Tally) -> Tally:
 
 def joined(first: Moments, second: Moments) -> Moments:
     """Join moments (T. F. Chan, G. H. Golub, R. J. LeVeque, Am. Stat. 37 (1983) 242)."""
-    import numpy as np
-
     if not first.count or not second.count:
         return first if first.count else second
     count = first.count + second.count

@@ -11,16 +11,15 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.spreads import FIXED_DRAWS, Distribution, Drawn
 from truing.errors import UsageError
 from truing.evaluate import effect_column
 from truing.setup import Setup, SwitchedOn
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +58,6 @@ class Cause:
 
     def covariance(self) -> NDArray[np.float64]:
         """Return the covariance of the columns (k, k), SI."""
-        import numpy as np
-
         if self.mixing is not None:
             return np.asarray(self.mixing @ self.mixing.T)
         return np.diag([distribution.sd**2 for distribution in self.distributions])
@@ -110,8 +107,6 @@ class Scatter:
 
     def variances(self, slopes: Mapping[str, Any]) -> dict[str, Any]:
         """Return the first-order variance by column from derivatives (numbers or arrays along an axis)."""
-        import numpy as np
-
         found: dict[str, Any] = {}
         for cause in self.causes:
             gradient = np.array([np.asarray(slopes[column], dtype=float) for column in cause.columns])
@@ -141,8 +136,6 @@ def generator(seed: int, batch: int, name: str) -> np.random.Generator:
 
     SFC64 is the fastest of numpy's generators and passes the same batteries of tests as its default.
     """
-    import numpy as np
-
     sequence = np.random.SeedSequence(seed, spawn_key=(batch, *_words(name)))
     return np.random.Generator(np.random.SFC64(sequence))
 
@@ -176,8 +169,6 @@ def _of_tolerance(setup: Setup, name: str, inner: Mapping[str, Distribution]) ->
 
 def _stand_in(spread: Drawn, columns: tuple[str, ...]) -> NDArray[np.float64]:
     """Return the mixing matrix of the normal stand-in of a joint draw, from the fixed draws of its distributions."""
-    import numpy as np
-
     deviations = spread.function(np.random.default_rng(0), FIXED_DRAWS)
     joint = np.array([np.asarray(deviations[column], dtype=float) for column in columns])
     return root_of(np.atleast_2d(np.cov(joint)))
@@ -185,8 +176,6 @@ def _stand_in(spread: Drawn, columns: tuple[str, ...]) -> NDArray[np.float64]:
 
 def _of_effect(item: SwitchedOn) -> Cause | None:
     """Return the uncertainty with which an effect was diagnosed, or None where it is known exactly or only read."""
-    import numpy as np
-
     if item.effect.place == "reading":
         return None
     names = [unknown.name for unknown in item.unknowns]
@@ -204,8 +193,6 @@ def _of_effect(item: SwitchedOn) -> Cause | None:
 
 def root_of(covariance: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return a matrix whose product with its transpose is the covariance, also where that is singular."""
-    import numpy as np
-
     scale = np.sqrt(np.diag(covariance))
     safe = np.where(scale > 0, scale, 1.0)
     values, vectors = np.linalg.eigh(covariance / np.outer(safe, safe))

@@ -12,11 +12,15 @@ from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
 from truing.evaluate import acting_inputs, effect_column
 from truing.setup import Setup
-from truing.studies.bench import Bench, Check
+from truing.studies.bench import Bench
+from truing.studies.checks import Check
 from truing.studies.differences import exact_slopes, nominal_of, slopes
+from truing.studies.drawings import MOST_BARS, bars
+from truing.studies.indices import sobol_indices
 from truing.studies.reading import per, printed_step, result_names, scalar_results, spoken
 from truing.studies.sampling import Machines
 from truing.studies.scatter import Scatter, scatter_of
+from truing.units import difference_unit, unit_factor, unit_text
 
 AGREES_TO = 1e-6
 
@@ -86,8 +90,6 @@ class Sensitivity:
     def _indices(self, bench: Bench, scatter: Scatter, results: Sequence[str]) -> tuple[_Indices, _Indices, list[str]]:
         if not self.sobol or not scatter.causes:
             return {}, {}, []
-        from truing.studies.indices import sobol_indices
-
         return sobol_indices(Machines(bench.setup, scatter), results, self.sobol, bench.part(self.name, 0.0, 1.0))
 
 
@@ -179,8 +181,6 @@ class Sensitivities:
         }
 
     def _entry(self, result: str, source: str) -> dict[str, Any] | None:
-        from truing.units import difference_unit, unit_factor
-
         unit, source_unit = self.units.get(result, ""), self.units.get(source, "")
         derivative = printed_step(self.derivatives[result][source], unit)
         if derivative is None:
@@ -194,8 +194,6 @@ class Sensitivities:
 
     def blocks(self) -> Sequence[Block]:
         """Return, for every result, the sources ranked and a bar for each."""
-        from truing.studies.drawings import MOST_BARS, bars
-
         blocks: list[Block] = []
         for result in self.derivatives:
             ranked = self._ranked(result)
@@ -216,8 +214,6 @@ class Sensitivities:
 
     def _sizes(self, result: str, ranked: Sequence[str]) -> tuple[dict[str, float], str]:
         """Return the length of each bar: what one standard deviation does, or where nothing scatters the derivative."""
-        from truing.units import difference_unit, unit_factor, unit_text
-
         unit = difference_unit(self.units.get(result, ""))
         if self.sd[result] > 0:
             whole = self.sd[result] / unit_factor(unit)
@@ -228,8 +224,6 @@ class Sensitivities:
         return {name: entry["derivative"] for name, entry in entries.items() if entry}, "derivative, in printed units"
 
     def _table(self, result: str, ranked: Sequence[str]) -> Table:
-        from truing.units import unit_text
-
         with_indices = result in self.sobol_first
         rows: list[list[Any]] = []
         for source in ranked:
@@ -249,8 +243,6 @@ class Sensitivities:
         )
 
     def _note(self, result: str) -> str:
-        from truing.units import difference_unit, unit_factor, unit_text
-
         unit = difference_unit(self.units.get(result, ""))
         words = []
         if self.sd[result] > 0:

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.studies.demands import wilson
 from truing.studies.surrogate_box import Box
 from truing.studies.surrogate_fit import Emulator
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Values: TypeAlias = NDArray[np.float64]
+Values: TypeAlias = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,16 +76,12 @@ class Judged:
     @property
     def whole(self) -> Any:
         """What errors are shares of: the values (n,), or their range."""
-        import numpy as np
-
         size = abs(self.simulated)
         return size if self.is_share else np.ptp(self.simulated) or size.max() or 1.0
 
     @property
     def shares(self) -> Values:
         """The same as shares of the value, or of the range of all values."""
-        import numpy as np
-
         return np.asarray(self.errors / self.whole)
 
 
@@ -103,8 +98,6 @@ class Course:
 
     def inside(self, name: str) -> tuple[int, int]:
         """Return how many of the model's points lie in the band, and how many there are."""
-        import numpy as np
-
         simulated = self.simulated[name]
         low, high = (end[:: self.every] for end in self.bands[name][1:])
         return int(((low <= simulated) & (simulated <= high)).sum()), int(np.isfinite(simulated).sum())

@@ -9,17 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.near_miss import near_miss
 from truing.errors import DeclarationError, UnitError, UsageError
-from truing.formulas import Formula, evaluate, parse
+from truing.formulas import Formula, evaluate, evaluate_quantities, parse
 from truing.setup import Setup
 from truing.studies.reading import read_range
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+from truing.units import pint_quantity, split_quantity, unit_factor
 
 STEPS = 3
 STRAIGHT_TO = 1e-9
@@ -51,8 +51,6 @@ class Feature:
 
     def place(self, values: Any) -> Any:
         """Return places, 0 to 1 inside the range; NaN where a logarithm does not exist."""
-        import numpy as np
-
         if not self.logarithmic:
             return (values - self.low) / (self.high - self.low)
         with np.errstate(all="ignore"):
@@ -78,8 +76,6 @@ class Box:
 
         Columns are numbers or arrays (n,) in SI. Raises UsageError for one that the surrogate does not follow.
         """
-        import numpy as np
-
         rows = max((np.size(values) for values in columns.values()), default=1)
         self._demand_known(columns)
         values = {**self.held, **columns}
@@ -88,8 +84,6 @@ class Box:
 
     def outside(self, columns: Mapping[str, Any]) -> NDArray[np.bool_]:
         """Say per calculation (n,) whether it lies outside the box, where nothing was learnt."""
-        import numpy as np
-
         places = self.places(columns)
         within = (places >= -STRAIGHT_TO) & (places <= 1 + STRAIGHT_TO)
         return np.asarray(~within.all(axis=1))
@@ -101,8 +95,6 @@ class Box:
         return tuple(item.name for item, is_inside in zip(self.features, inside, strict=True) if not is_inside)
 
     def _demand_known(self, columns: Mapping[str, Any]) -> None:
-        import numpy as np
-
         followed = {name for feature in self.features for name in feature.formula.names}
         for name, values in columns.items():
             if name in followed:
@@ -114,8 +106,6 @@ class Box:
 
     def _solved(self, feature: Feature, wanted: Any, columns: Mapping[str, Any]) -> Any:
         """Return the values of the input with which a formula takes the values that are wanted."""
-        import numpy as np
-
         if feature.is_plain:
             return wanted
         values: dict[str, Any] = {**self.held, **columns}
@@ -157,8 +147,6 @@ def open_box(setup: Setup, over: Mapping[str, str], logarithmic: Sequence[str], 
 
 def setup_step(setup: Setup, name: str) -> float:
     """Return one unit of an input or condition in SI, where its value says nothing about its size."""
-    from truing.units import unit_factor
-
     return unit_factor(setup.unit_of(name))
 
 
@@ -212,9 +200,6 @@ def _range(setup: Setup, formula: Formula, text: str, study: str) -> tuple[float
 
 def _unit_of(setup: Setup, formula: Formula, text: str, study: str) -> str:
     """Return the unit in which the range of a formula is written, proven to be one of its own."""
-    from truing.formulas import evaluate_quantities
-    from truing.units import pint_quantity, split_quantity
-
     try:
         unit = split_quantity(text.rpartition("..")[2]).unit
         quantities = {name: pint_quantity(1.0, setup.unit_of(name)) for name in formula.names}

@@ -10,15 +10,16 @@ import math
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
 
 from truing.evaluate import Rows
+from truing.heavy import gaussian_kernels, gaussian_process, learning_exceptions
 from truing.studies.demands import Z95
 from truing.studies.threads import one_thread
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 LENGTHS = (1e-2, 1e3)
 AMPLITUDES = (1e-3, 1e3)
@@ -40,21 +41,15 @@ class Emulator:
 
     def band(self, places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Return the expected result and the two ends of its 95 % band, noise included."""
-        import numpy as np
-
         mean, sd = _in_parts(lambda part: np.array(self.process.predict(part, return_std=True)), places, 2)
         return self._result(mean), self._result(mean - Z95 * sd), self._result(mean + Z95 * sd)
 
     def _result(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        import numpy as np
-
         return np.exp(values) if self.logarithmic else values
 
     @property
     def lengths(self) -> tuple[float, ...]:
         """The length of every direction over the side of the box."""
-        import numpy as np
-
         return tuple(float(one) for one in np.atleast_1d(self.process.kernel_.k1.k2.length_scale))
 
     @property
@@ -65,8 +60,6 @@ class Emulator:
 
 def _in_parts(predict: Any, places: NDArray[np.float64], answers: int = 1) -> NDArray[np.float64]:
     """Predict a part at a time, so that memory stays flat; rows that are not finite stay NaN."""
-    import numpy as np
-
     found = np.full((answers, len(places)), np.nan)
     usable = np.flatnonzero(np.isfinite(places).all(axis=1))
     with one_thread():
@@ -89,26 +82,20 @@ def fitted(
 
     ``done`` hears of every search for them that ends: the first, and each of the restarts.
     """
-    import numpy as np
-    from scipy.optimize import minimize
-    from sklearn.exceptions import ConvergenceWarning
-    from sklearn.gaussian_process import GaussianProcessRegressor
-    from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
-
-    shape = RBF(np.ones(places.shape[1]), LENGTHS)
-    kernel = ConstantKernel(10.0, AMPLITUDES) * shape + WhiteKernel(1e-6, NOISES)
+    shape = gaussian_kernels.RBF(np.ones(places.shape[1]), LENGTHS)
+    kernel = gaussian_kernels.ConstantKernel(10.0, AMPLITUDES) * shape + gaussian_kernels.WhiteKernel(1e-6, NOISES)
 
     def searched(likelihood: Any, start: Any, bounds: Any) -> tuple[Any, float]:
         found: Any = minimize(likelihood, start, method="L-BFGS-B", jac=True, bounds=bounds)  # as scikit-learn does
         done()
         return found.x, found.fun
 
-    process = GaussianProcessRegressor(
+    process = gaussian_process.GaussianProcessRegressor(
         kernel, alpha=JITTER, normalize_y=True, n_restarts_optimizer=restarts, random_state=seed % 2**32,
         optimizer=searched,
     )  # fmt: skip
     with one_thread(), warnings.catch_warnings():
-        warnings.simplefilter("ignore", ConvergenceWarning)
+        warnings.simplefilter("ignore", learning_exceptions.ConvergenceWarning)
         process.fit(places, np.log(values) if logarithmic else values)
     process.set_params(optimizer=None)  # it is fitted, and travels to workers
     return Emulator(process, logarithmic)
@@ -116,8 +103,6 @@ def fitted(
 
 def usable(rows: Rows, names: tuple[str, ...], *, logarithmic: bool) -> NDArray[np.bool_]:
     """Say which rows have every result, and above zero where the logarithm is learnt."""
-    import numpy as np
-
     kept = ~rows.failed
     for name in names:
         values = rows.results[name]

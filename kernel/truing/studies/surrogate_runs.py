@@ -7,19 +7,19 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import lru_cache
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.evaluate import Rows, evaluate_rows
 from truing.executors import SerialExecutor, in_order, keepable
+from truing.heavy import stats
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup
 from truing.studies.bench import Done
 from truing.studies.scatter import generator
 from truing.studies.surrogate_box import Box
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 LONGEST = 3.0
 """Seconds after which the model is stopped and its time for the rest is taken from what was run."""
@@ -49,9 +49,7 @@ class Ran:
 
 def latin(box: Box, points: int, rng: np.random.Generator) -> dict[str, NDArray[np.float64]]:
     """Return the columns of a Latin hypercube: every side of the box in as many layers as there are points."""
-    from scipy.stats import qmc
-
-    return box.sampled(qmc.LatinHypercube(len(box.features), seed=rng).random(points))
+    return box.sampled(stats.qmc.LatinHypercube(len(box.features), seed=rng).random(points))
 
 
 def designed(setup: Setup, box: Box, stage: int, points: int, study: str) -> dict[str, NDArray[np.float64]]:
@@ -83,8 +81,6 @@ class Work:
 
 def ran(setup: Setup, columns: Mapping[str, Any], wanted: tuple[str, ...], work: Work) -> Ran:
     """Run the model at all points."""
-    import numpy as np
-
     carried: Setup | Packed = setup if isinstance(work.executor, SerialExecutor) else pack(setup)
     points = len(next(iter(columns.values())))
     jobs = (Job(carried, part, rows, wanted) for part, rows in _parts(columns, points, work.batch))

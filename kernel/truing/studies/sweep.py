@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.errors import UsageError
 from truing.evaluate import acting_inputs, evaluate_in_parts
 from truing.setup import Setup
-from truing.studies.bench import Bench, Check
+from truing.studies.bench import Bench
+from truing.studies.checks import Check
+from truing.studies.drawings import BLUE, WIDTH, labelled
 from truing.studies.reading import printed, read_range, scattering_name, spoken
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+from truing.units import from_si, unit_text
 
 LARGEST = 1_000_000
 ROUNDING = 1e-12
@@ -63,8 +66,6 @@ class Sweep:
 
 def _points(setup: Setup, over: str, at: str, points: int) -> NDArray[np.float64]:
     """Return the points in SI; of an input that takes whole numbers, all between the ends or those listed."""
-    import numpy as np
-
     axis = read_range(at, setup.unit_of(over), points)
     item = setup.model.input_fields.get(over)
     if item is None or item.kind not in {"integer", "whole"}:
@@ -118,8 +119,6 @@ class Swept:
         if table.rows:
             blocks.append(table)
         if self.shown and self._moving():
-            from truing.studies.drawings import curves
-
             blocks.append(Drawing(f"Along the {spoken(self.over)}", curves(self, self._moving()[:4])))
         if self.failed:
             row, reason = self.failed[0]
@@ -141,22 +140,14 @@ class Swept:
 
     def _plain(self) -> list[str]:
         """Name the results that are one number per point and finite somewhere."""
-        import numpy as np
-
         return [name for name, values in self.results.items() if values.ndim == 1 and np.isfinite(values).any()]
 
     def _moving(self) -> list[str]:
         """Name those of them that change by more than rounding."""
-        import numpy as np
-
         spans = {name: (np.nanmin(self.results[name]), np.nanmax(self.results[name])) for name in self._plain()}
         return [name for name, (low, high) in spans.items() if not high - low <= ROUNDING * max(abs(low), abs(high))]
 
     def _extremes(self) -> Table:
-        import numpy as np
-
-        from truing.units import from_si, unit_text
-
         unit = self.units[self.over]
         rows: list[list[Any]] = []
         for name in self._moving():
@@ -170,3 +161,21 @@ class Swept:
         note = f"Of {len(self.axis)} points; nothing is sought between them."
         note += f" {still} other results do not change." if still > 1 else " One other result does not change." * still
         return Table(f"Extremes along the {spoken(self.over)}", columns, rows, ("", "", "", unit, "", unit), note)
+
+
+def curves(swept: Swept, names: Sequence[str]) -> Callable[[], Figure]:
+    """Draw results along the swept input, one below the other."""
+
+    def draw() -> Figure:
+        figure = Figure(figsize=(WIDTH, 0.6 + 1.6 * len(names)), layout="constrained")
+        panels = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
+        x_unit = swept.units[swept.over]
+        for panel, name in zip(panels, names, strict=True):
+            unit = swept.units[name]
+            panel.plot(from_si(swept.axis, x_unit), from_si(swept.results[name], unit), color=BLUE)
+            panel.set_ylabel(labelled(name, unit_text(unit)))
+            panel.grid(alpha=0.3)
+        panels[-1].set_xlabel(labelled(swept.over, unit_text(x_unit)))
+        return figure
+
+    return draw

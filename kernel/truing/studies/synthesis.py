@@ -11,6 +11,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+from scipy.optimize import Bounds, LinearConstraint, brentq, milp
+
 from truing.fits import GRADES
 from truing.studies.demands import Demand, normal_chance
 from truing.studies.grades import Shop
@@ -100,8 +103,6 @@ def largest_variance(demand: Demand, mean: float) -> float | None:
 
     Between its limits the probability falls as the variance grows, so the bound is exact. Goals of one half and more.
     """
-    from scipy.optimize import brentq
-
     assert demand.goal is not None  # goals only
     goal = demand.goal
     if not demand.low < mean < demand.high:
@@ -148,9 +149,6 @@ def _finest(shop: Shop, reason: str) -> Plan:
 
 def _solve(shop: Shop, bounds: Mapping[str, float], margin: float) -> dict[str, str] | None:
     """Solve the choice of grades as a mixed-integer linear program; None where no choice meets the bounds."""
-    import numpy as np
-    from scipy.optimize import Bounds, LinearConstraint, milp
-
     choices = [(name, choice) for name, part in shop.parts.items() for choice in part.choices.values()]
     costs = np.array([choice.cost for _, choice in choices])
     one_each = np.array([[float(name == part) for name, _ in choices] for part in shop.parts])

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from threadpoolctl import threadpool_limits
+
 
 @contextmanager
 def one_thread() -> Iterator[None]:
     """Keep the linear algebra of numpy and scipy on one thread, both loaded first: a later one would not be held."""
-    import scipy.linalg  # noqa: F401
-    from threadpoolctl import threadpool_limits
-
     with threadpool_limits(limits=1):
         yield

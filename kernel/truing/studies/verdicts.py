@@ -7,11 +7,15 @@ from dataclasses import dataclass, replace
 from math import isnan, nan
 from typing import Any
 
+import numpy as np
+
 from truing.declare.goals import Require
 from truing.executors import keepable
 from truing.setup import Setup
-from truing.studies.bench import Check, Outcome, Proposal, proposals_of
+from truing.studies.bench import Outcome, proposals_of
 from truing.studies.checks import (
+    Check,
+    Proposal,
     check_name,
     compared_words,
     goal_of,
@@ -23,6 +27,7 @@ from truing.studies.checks import (
 from truing.studies.demands import exists
 from truing.studies.reliability import Reliability
 from truing.studies.states import EXIT_CODES, State
+from truing.units import from_si
 
 NO_STUDY = "no study of the model"
 """What would decide a limit that none of the model's studies decides."""
@@ -94,10 +99,6 @@ def _undecided(require: Require, name: str, setup: Setup, answers: Mapping[str, 
 
 def _single(amount: Any, unit: str) -> float:
     """Return a limit in its unit; of one that runs along an axis there is no single number."""
-    import numpy as np
-
-    from truing.units import from_si
-
     return float(from_si(float(amount), unit)) if np.ndim(amount) == 0 else nan
 
 

@@ -12,17 +12,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import exp, inf
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from scipy.optimize import Bounds, brentq, minimize, nnls
+from scipy.special import ndtr, ndtri
 
 from truing.studies.demands import Demand
+from truing.studies.grades import Shop
 from truing.studies.strips import Values, prices_at
 from truing.studies.synthesis import Plan, largest_variance
 from truing.studies.threads import one_thread
-
-if TYPE_CHECKING:
-    from truing.studies.grades import Shop
 
 MARGINS = (0.0, 1e-10, 1e-8, 1e-6)
 ROUNDING = 1e-13
@@ -82,8 +82,6 @@ class Search:
 
 def _room(demand: Demand, mean: float, sd: float) -> tuple[float, float, float]:
     """Return how far a goal is kept in the unit of the result, with its derivatives by mean and standard deviation."""
-    from scipy.special import ndtri
-
     assert demand.goal is not None  # goals only
     times = float(ndtri(demand.goal))
     if demand.low == -inf:
@@ -99,9 +97,6 @@ def _room(demand: Demand, mean: float, sd: float) -> tuple[float, float, float]:
 
 def _largest_sd(demand: Demand, mean: float) -> tuple[float, float]:
     """Return the standard deviation up to which a goal between two limits is met, and its derivative by the mean."""
-    from scipy.optimize import brentq
-    from scipy.special import ndtr, ndtri
-
     goal = demand.goal or 0.0
     reach = min(demand.high - mean, mean - demand.low)
     if goal <= 0.5:
@@ -240,8 +235,6 @@ def _nearest(search: Search, starts: Sequence[Values]) -> Values:
 
 def _solved(objective: Any, start: Values, ends: tuple[Values, Values], constraint: Any) -> Values | None:
     """Return where SLSQP ends, inside the bounds; None where it loses itself."""
-    from scipy.optimize import Bounds, minimize
-
     held: Any = {"type": "ineq", **constraint}
     options: Any = {"ftol": 1e-13, "maxiter": 300}
     answer = minimize(
@@ -256,8 +249,6 @@ def _residual(search: Search, x: Values) -> float:
 
     0 is a minimum of Karush, Kuhn and Tucker; 1 is no balance at all.
     """
-    from scipy.optimize import nnls
-
     low, high = search.ends()
     slack, rows = search.slack(x)
     forces = [row for row, room in zip(rows, slack, strict=True) if room <= AT_END]

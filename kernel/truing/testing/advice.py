@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from truing.declare.sources import Effect
+from truing.diagnosis.result import Diagnosis, Seen
+from truing.report.diagnosis_words import settings_text
 from truing.testing.hidden import Hidden
-
-if TYPE_CHECKING:
-    from truing.declare.sources import Effect
-    from truing.diagnosis.result import Diagnosis, Seen
+from truing.units import difference_unit, from_si, unit_factor
 
 
 def advice_on(hidden: Hidden) -> str:
@@ -79,8 +79,6 @@ def _vary(hidden: Hidden) -> str:
 
 def _next(diagnosis: Diagnosis) -> str:
     """Say what the diagnosis asks for to tell two causes apart."""
-    from truing.report.diagnosis_words import settings_text
-
     if not diagnosis.next:
         return "nothing that can be measured here tells them apart; measure another result"
     point = diagnosis.next[0]
@@ -98,14 +96,10 @@ def hidden_words(hidden: Hidden) -> str:
 
 def quantity_text(value: float, unit: str) -> str:
     """Write an SI number in its unit."""
-    from truing.units import from_si
-
     return f"{float(from_si(value, unit)):.4g} {unit}".strip()
 
 
 def difference_text(value: float, unit: str) -> str:
     """Write a difference (an error, a noise), which is SI, in the unit of its result."""
-    from truing.units import difference_unit, unit_factor
-
     own = difference_unit(unit)
     return f"{value / unit_factor(own):.3g} {own}".strip()

@@ -5,7 +5,9 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
 
 from truing.declare.fields import Axis, InputField
 from truing.declare.sources import Condition, Unknown
@@ -15,9 +17,7 @@ from truing.evaluate import Rows, effect_column, evaluate_rows
 from truing.setup import Setup
 from truing.testing.sources import off_reference, shape, switched
 from truing.testing.subject import Subject, fail
-
-if TYPE_CHECKING:
-    import numpy as np
+from truing.units import to_si, unit_factor
 
 ROUNDING = 2**12 * sys.float_info.epsilon
 """How far two ways of calculating one number may lie apart, in parts of it: 9.1e-13.
@@ -80,8 +80,6 @@ def is_row_by_row(subject: Subject) -> bool:
 
 def compare(name: str, batch: Batch) -> None:
     """Fail where a row of a batch is another one than the same row alone, or breaks another condition."""
-    import numpy as np
-
     try:
         together = evaluate_rows(batch.setup, batch.columns, batch.rows, reading=True)
     except PluginError as error:
@@ -116,8 +114,6 @@ def rounding(batch: Batch, row: int, result: str) -> Any:
     So all that is calculated of it is rounded anew, by half a unit in the last place; the vector path of a function may
     be off by up to eight times that.
     """
-    import numpy as np
-
     own = {name: values[row] for name, values in batch.columns.items()}
     fields = batch.setup.model.input_fields
     numbers = {name: batch.setup.nominal(name) for name, item in fields.items() if item.varies} | own
@@ -132,8 +128,6 @@ def rounding(batch: Batch, row: int, result: str) -> Any:
 
 def _differs(here: Any, there: Any, values: np.ndarray[Any, Any], most: Any = 0.0) -> bool:
     """Tell whether numbers lie apart by more than rounding, and by more than ``most`` beyond that."""
-    import numpy as np
-
     finite = np.abs(values[np.isfinite(values)])
     scale = np.maximum(np.abs(there), finite.max(initial=0.0))
     near = np.abs(here - there) <= ROUNDING * scale + most
@@ -146,8 +140,6 @@ def _short(value: Any) -> str:
 
 def together(subject: Subject) -> Batch:
     """All Float inputs in one batch, at points that have an answer."""
-    import numpy as np
-
     points = subject.points(FEW if is_row_by_row(subject) else ROWS)
     columns = {name: np.array([point[name] for point in points]) for name in subject.scattering}
     return Batch(subject.setup, columns, "all Float inputs vary")
@@ -185,8 +177,6 @@ def _is_within(item: InputField, value: float) -> bool:
 
 def optional_values(item: InputField) -> list[float]:
     """Return values of an input that is not given, SI: between its bounds where it has both, else of its unit."""
-    from truing.units import to_si
-
     spec = item.spec
     assert isinstance(spec, Given)
     low = spec.above if spec.above is not None else spec.at_least
@@ -199,8 +189,6 @@ def optional_values(item: InputField) -> list[float]:
 
 def _effects_alone(subject: Subject) -> Iterator[Batch]:
     """Each effect on: its unknowns and conditions one by one, then these and all Float inputs together."""
-    import numpy as np
-
     for effect in subject.model.effects.values():
         setup = switched(off_reference(subject.setup), effect)
         if setup is None:
@@ -224,8 +212,6 @@ def unknown_values(setup: Setup, unknown: Unknown) -> list[float]:
 
 def condition_values(setup: Setup, need: Condition) -> list[float]:
     """Return values of a condition, SI, its own first, then its reference and one more within its range."""
-    from truing.units import to_si, unit_factor
-
     if need.low is None or need.high is None:
         other = need.zero - 3 * unit_factor(need.unit)
     else:

@@ -5,17 +5,25 @@ from __future__ import annotations
 import json
 import math
 import tempfile
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from truing.declare.goals import Vary
 from truing.declare.quantities import unread_goals, unread_units
 from truing.declare.specs import Given
 from truing.errors import InputError, TruingError
+from truing.evaluate import evaluate
+from truing.example_file import example_text
+from truing.inputs_file import setup_from_settings, setup_from_text
+from truing.inputs_file.defaults import toml_key, toml_value
+from truing.inputs_file.values import broken_bound
 from truing.testing.subject import Subject, fail
-from truing.units import read_quantity
+from truing.units import from_si, read_quantity, same_dimension
 
 SAME = 1e-12
 
@@ -28,8 +36,6 @@ def units_are_known(subject: Subject) -> None:
 
 
 def _check_histories(subject: Subject) -> None:
-    from truing.units import same_dimension
-
     model = subject.model
     units = {name: item.unit for name, item in model.input_fields.items()}
     units |= {name: item.unit for name, item in model.conditions.items()}
@@ -43,8 +49,6 @@ def _check_histories(subject: Subject) -> None:
 
 def defaults_keep_their_bounds(subject: Subject) -> None:
     """No default lies outside the bounds that are declared beside it."""
-    from truing.inputs_file.values import broken_bound
-
     for name, item in subject.scattering.items():
         if isinstance(item.spec, Given):
             broken = broken_bound(item, float(subject.setup.nominal(name)))
@@ -66,9 +70,6 @@ def goals_can_be_read(subject: Subject) -> None:
 
 def printed_numbers_are_of_results(subject: Subject) -> None:
     """Every printed number names a result of the model, in a unit of its kind, and settings that can be read."""
-    from truing.inputs_file import setup_from_settings
-    from truing.units import same_dimension
-
     for item in subject.model.published:
         field = subject.model.result_fields.get(item.result)
         if field is None:
@@ -95,10 +96,6 @@ def sheet_is_in_order(subject: Subject) -> None:
 
 def example_can_be_read(subject: Subject) -> None:
     """The inputs file that ``calc init`` writes is read without a fault and can be calculated."""
-    from truing.evaluate import evaluate
-    from truing.example_file import example_text
-    from truing.inputs_file import setup_from_text
-
     example = subject.model.example
     with tempfile.TemporaryDirectory() as empty:
         folder = example.parent if example is not None else Path(empty)
@@ -109,9 +106,6 @@ def example_can_be_read(subject: Subject) -> None:
 
 def inputs_survive_a_file(subject: Subject) -> None:
     """Inputs written as JSON and as an inputs file are read back the same."""
-    from truing.inputs_file import setup_from_text
-    from truing.inputs_file.defaults import toml_key, toml_value
-
     files = _stated_files(subject)
     for point in ({}, *subject.points(1)):
         setup = subject.at(point)
@@ -132,18 +126,12 @@ def inputs_survive_a_file(subject: Subject) -> None:
 
 def _stated_files(subject: Subject) -> dict[str, Any]:
     """Return the data files as the example names them."""
-    import tomllib
-
-    from truing.example_file import example_text
-
     needed = [name for name, item in subject.model.input_fields.items() if item.kind == "file"]
     named = tomllib.loads(example_text(subject.offer)).get("inputs", {}) if needed else {}
     return {name: named[name] for name in needed if name in named}
 
 
 def _stated(subject: Subject, setup: Any) -> Iterator[tuple[str, Any]]:
-    from truing.units import from_si
-
     for name, value in subject.model.read_inputs(setup.inputs).items():
         item = subject.model.input_fields[name]
         if item.kind == "file":
@@ -167,8 +155,6 @@ def _folder(subject: Subject) -> Path:
 
 
 def _same(one: Any, other: Any) -> bool:
-    import numpy as np
-
     if isinstance(one, (str, bool)):
         return bool(one == other)
     before, after = np.asarray(one, dtype=float), np.asarray(other, dtype=float)

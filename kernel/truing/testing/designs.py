@@ -5,20 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import qmc
 
 from truing.declare.fields import Axis
 from truing.declare.goals import Vary
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import SINCE_START, Condition, Effect, Tolerance
-from truing.errors import TruingError
-from truing.measurements.overriding import WORDS
+from truing.errors import TruingError, UsageError
+from truing.evaluate import evaluate
+from truing.inputs_file.values import broken_bound
+from truing.measurements.overriding import WORDS, read_word
 from truing.setup import Setup
+from truing.studies.reading import read_range
 from truing.studies.sweep import Sweep
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+from truing.units import from_si, split_quantity, to_si
 
 USUAL = {"time": "0..24 h", "temperature": "15..35 degC", "angle": "0..360 deg"}
 """The ranges of the kernel's own conditions, which no model declares."""
@@ -47,8 +51,6 @@ class Column:
 
     def at(self, shares: NDArray[np.float64]) -> Any:
         """Return the values (n,) at these shares of the range, 0 to 1."""
-        import numpy as np
-
         if self.words or self.levels:
             chosen: Any = np.array(self.words or self.levels, dtype=object if self.words else float)
             return chosen[np.minimum((shares * len(chosen)).astype(int), len(chosen) - 1)]
@@ -72,9 +74,6 @@ class Design:
 
     def drawn(self, rng: np.random.Generator) -> dict[str, Any]:
         """Return the columns by header, as they are written: space-filling, and in the order of the clock."""
-        import numpy as np
-        from scipy.stats import qmc
-
         count = self.rows * self.runs
         spread = [column for column in self.columns if not (column.rises or column.places)]
         points = self.runs if self.is_record else count
@@ -162,11 +161,6 @@ def _axes(setup: Setup, measured: Sequence[str]) -> Iterator[str]:
 
 def _whole_axis(setup: Setup, axis: str) -> str:
     """Return the range of an axis at the defaults."""
-    import numpy as np
-
-    from truing.evaluate import evaluate
-    from truing.units import from_si
-
     unit = setup.model.own_result_fields[axis].unit
     places = from_si(np.asarray(setup.model.read_results(evaluate(setup))[axis], dtype=float), unit)
     return f"{float(np.min(places))!r}..{float(np.max(places))!r} {unit}".strip()
@@ -174,8 +168,6 @@ def _whole_axis(setup: Setup, axis: str) -> str:
 
 def _column(setup: Setup, name: str, said: Any, measured: Sequence[str]) -> Column:
     """Read one range, or the values that a column takes. Raises UsageError with a sentence."""
-    from truing.errors import UsageError
-
     model = setup.model
     item = model.input_fields.get(name)
     if item is not None and item.kind in WORDS:
@@ -199,10 +191,6 @@ def _column(setup: Setup, name: str, said: Any, measured: Sequence[str]) -> Colu
 
 def _ends(said: Any, unit: str) -> tuple[float, float, tuple[float, ...], str]:
     """Read "low..high unit" or "a, b, c unit" in the unit in which it is written, checked against the declared one."""
-    from truing.errors import UsageError
-    from truing.studies.reading import read_range
-    from truing.units import from_si, split_quantity
-
     text = said if isinstance(said, str) else ", ".join(str(one) for one in said)
     values = read_range(text, unit, 2)
     shown = split_quantity(text.replace("..", ",").split(",")[-1].strip()).unit or unit
@@ -217,9 +205,6 @@ def _ends(said: Any, unit: str) -> tuple[float, float, tuple[float, ...], str]:
 
 def _words(item: Any, said: Any) -> Column:
     """Read the values of a choice, a switch or a whole number. Raises UsageError with a sentence."""
-    from truing.errors import UsageError
-    from truing.measurements.overriding import read_word
-
     words = [word.strip() for word in said.split(",")] if isinstance(said, str) else [str(word) for word in said]
     for word in words:
         try:
@@ -231,10 +216,6 @@ def _words(item: Any, said: Any) -> Column:
 
 def _demand_bounds(item: Any, ends: Sequence[float], unit: str) -> None:
     """Raise UsageError where a range leaves the bounds of an input."""
-    from truing.errors import UsageError
-    from truing.inputs_file.values import broken_bound
-    from truing.units import to_si
-
     for end in ends:
         broken = broken_bound(item, float(to_si(end, unit)))
         if broken:

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from truing.declare.model import Model
-from truing.diagnosis.verdict import explanations_of
+from truing.diagnosis.result import Cause, Diagnosis, explanations_of
 from truing.errors import UsageError
+from truing.report.diagnosis_words import cause_text, fitted_text, listed
 from truing.testing.advice import advice_on, difference_text, hidden_words, quantity_text
 from truing.testing.hidden import Hidden
 from truing.testing.hiding import hide
 from truing.testing.subject import fail
-
-if TYPE_CHECKING:
-    from truing.diagnosis.result import Cause, Diagnosis
 
 WITHIN = 1.2
 
@@ -123,8 +121,6 @@ def _carries(cause: Cause, hidden: Hidden) -> bool:
 def _demand_sizes(hidden: Hidden, cause: Cause) -> None:
     """Demand that every interval holds the truth; a cause with another name has other unknowns."""
     __tracebackhide__ = True
-    from truing.report.diagnosis_words import fitted_text
-
     if cause.effect != hidden.effect:
         return
     for unknown in cause.unknowns:
@@ -175,8 +171,6 @@ def _notes(hidden: Hidden) -> str:
 
 def _found(diagnosis: Diagnosis) -> str:
     """Say what was found, in one clause."""
-    from truing.report.diagnosis_words import cause_text, listed
-
     parts = [f"'{cause.effect}' was named ({cause_text(cause)})" for cause in diagnosis.causes]
     remainder = diagnosis.remainder
     if remainder is not None:

@@ -6,14 +6,17 @@ pytest loads it wherever Truing is installed, so it imports nothing but pytest u
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import pytest
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+from truing.cli import main
 
 LONGEST = 900
 """Seconds that a process may take."""
@@ -48,13 +51,9 @@ def calc(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tm
 
     What was loaded from that folder is forgotten when the test ends.
     """
-    import sys
-
     monkeypatch.setattr(sys, "path", list(sys.path))
 
     def run(*arguments: str | Path, cwd: Path | None = None) -> Answer:
-        from truing.cli import main
-
         monkeypatch.chdir(tmp_path if cwd is None else cwd)
         capsys.readouterr()
         code = main([str(argument) for argument in arguments])
@@ -72,8 +71,6 @@ def calc_process(tmp_path: Path) -> CalcProcess:
     """Run ``calc`` as a process of its own, in an empty folder unless ``cwd`` names another."""
 
     def run(*arguments: str | Path, cwd: Path | None = None, path: Path | None = None) -> Answer:
-        import sys
-
         more = {"PYTHONPATH": str(path)} if path is not None else {}
         command = [sys.executable, "-m", "truing", *map(str, arguments)]
         return process(command, tmp_path if cwd is None else cwd, more)
@@ -83,9 +80,6 @@ def calc_process(tmp_path: Path) -> CalcProcess:
 
 def process(command: Sequence[str], cwd: Path, more: Mapping[str, str] | None = None) -> Answer:
     """Run a command that speaks UTF-8 in a folder; neither PYTHONPATH nor the width of a terminal is handed on."""
-    import os
-    import subprocess
-
     environment = {name: value for name, value in os.environ.items() if name not in {"PYTHONPATH", "COLUMNS"}}
     done = subprocess.run(
         command,

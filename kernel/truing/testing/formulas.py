@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
+
 from truing.declare.fields import InputField, ResultField
 from truing.declare.scope import formula_scope
 from truing.errors import DeclarationError, UnitError
@@ -12,6 +14,7 @@ from truing.evaluate import evaluate
 from truing.formulas import Formula, evaluate_quantities, parse
 from truing.formulas.evaluation import value_of
 from truing.testing.subject import Subject, fail
+from truing.units import from_si, pint_quantity
 
 AGREES = 1e-9
 Scope = Mapping[str, InputField | ResultField]
@@ -27,8 +30,6 @@ def formulas_of(subject: Subject) -> Iterator[tuple[ResultField, Formula, bool, 
 
 def formulas_have_the_unit(subject: Subject) -> None:
     """Every formula gives the dimension of its result, by calculation with units."""
-    from truing.units import pint_quantity
-
     values = _values(subject, {})
     for item, formula, numeric, scope in formulas_of(subject):
         if numeric:
@@ -48,10 +49,6 @@ def formulas_have_the_unit(subject: Subject) -> None:
 
 def formulas_equal_the_function(subject: Subject) -> None:
     """Every printed formula gives what the function gives, to 1e-9, at the defaults and two points beside them."""
-    import numpy as np
-
-    from truing.units import from_si
-
     for point in ({}, *subject.points(2)):
         values = _values(subject, point)
         for item, formula, numeric, scope in formulas_of(subject):
@@ -72,10 +69,6 @@ def _values(subject: Subject, point: Mapping[str, float]) -> dict[str, Any]:
 
 
 def _in_formula(formula: Formula, values: Mapping[str, Any], numeric: bool, scope: Scope) -> dict[str, Any]:
-    import numpy as np
-
-    from truing.units import from_si
-
     given = {}
     for name in formula.names:
         value = np.asarray(values[scope[name].name], dtype=float)
@@ -85,8 +78,6 @@ def _in_formula(formula: Formula, values: Mapping[str, Any], numeric: bool, scop
 
 def _difference(formula: Formula, given: Mapping[str, Any], expected: Any) -> str:
     """Say how a formula, or the two sides of an equation, differ from what they are to give; nothing if they agree."""
-    import numpy as np
-
     with np.errstate(all="ignore"):
         right = np.asarray(value_of(formula.right, given), dtype=float)
         other = np.asarray(expected if formula.left is None else value_of(formula.left, given), dtype=float)

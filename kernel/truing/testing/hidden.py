@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.model import Model
+from truing.diagnosis.engine import diagnose
+from truing.diagnosis.reading import read_records
+from truing.diagnosis.records import Records
+from truing.diagnosis.result import Diagnosis
+from truing.gauge import one_machine, read_by_gauge
+from truing.inputs_file import setup_from_text
 from truing.kernel import Offer, Origin
+from truing.runs.diagnosis_document import diagnosis_document
+from truing.runs.inputs_written import complete_inputs
 from truing.setup import Setup
 from truing.testing.subject import Subject
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from truing.diagnosis.records import Records
-    from truing.diagnosis.result import Diagnosis
 
 MEASURED, HELD_OUT, INPUTS = "measured.csv", "held_out.csv", "inputs.toml"
 
@@ -40,8 +46,6 @@ class Answered:
 
     def error_of(self, result: str) -> float:
         """Return the root mean square error on the rows held out, SI."""
-        import numpy as np
-
         return float(np.sqrt(np.nanmean((self.held[result] - self.predicted[result]) ** 2)))
 
 
@@ -71,8 +75,6 @@ class Hidden:
 
     def write(self, folder: Path) -> None:
         """Write inputs.toml, measured.csv and held_out.csv, to look at and to diagnose on the command line."""
-        from truing.runs.inputs_written import complete_inputs
-
         folder.mkdir(parents=True, exist_ok=True)
         (folder / INPUTS).write_text(complete_inputs(self.setup, folder), encoding="utf-8")
         (folder / MEASURED).write_text(self.measured, encoding="utf-8")
@@ -94,8 +96,6 @@ def recorded(
     ``inputs`` is the text of the inputs file, ``measured`` and ``held_out`` that of CSV files with units in the header,
     ``truth`` holds the unknowns of the effect in SI. Raises InputError with every fault of the inputs.
     """
-    from truing.inputs_file import setup_from_text
-
     setup = setup_from_text(inputs, Subject(model).offer, file=INPUTS, folder=Path())
     return Hidden(setup=setup, measured=measured, held_out=held_out, effect=effect, truth=truth or {})
 
@@ -108,12 +108,6 @@ def offer_of(setup: Setup) -> Offer:
 
 
 def _answered(hidden: Hidden) -> Answered:
-    import json
-    from time import perf_counter
-
-    from truing.diagnosis.engine import diagnose
-    from truing.runs.diagnosis_document import diagnosis_document
-
     records = records_of(hidden.setup, hidden.measured, MEASURED)
     start = perf_counter()
     diagnosis = diagnose(hidden.setup, records)
@@ -127,8 +121,6 @@ def _answered(hidden: Hidden) -> Answered:
 
 def records_of(setup: Setup, text: str, name: str, *, with_slips: bool = True) -> Records:
     """Read a record as the command line does; without a search for wrong units where nobody is told of them."""
-    from truing.diagnosis.reading import read_records
-
     with TemporaryDirectory() as folder:
         file = Path(folder) / name
         file.write_text(text, encoding="utf-8")
@@ -137,10 +129,6 @@ def records_of(setup: Setup, text: str, name: str, *, with_slips: bool = True) -
 
 def predicted(diagnosis: Diagnosis, setup: Setup, records: Records) -> dict[str, NDArray[np.float64]]:
     """Predict rows that were not fitted, by every cause and shape that was found on the calibrated machine; SI."""
-    import numpy as np
-
-    from truing.gauge import one_machine, read_by_gauge
-
     calibrated = {item.name: item.value for item in diagnosis.calibrated}
     machine = diagnosis.extended or replace(setup, calibrated={**setup.calibrated, **calibrated})
     shown = read_by_gauge(one_machine(machine), records.rows, diagnosis.measured).results

@@ -8,20 +8,24 @@ from dataclasses import dataclass, replace
 from io import StringIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.model import Model
 from truing.errors import Fault, InputError, TruingError
+from truing.gauge import read_by_gauge
+from truing.inputs_file import setup_from_settings
+from truing.measurements import read_rows, write_table
 from truing.setup import Setup
+from truing.studies.scatter import generator, scatter_of
 from truing.testing.designs import Design, columns_of
 from truing.testing.hidden import MEASURED, Hidden, offer_of
 from truing.testing.noises import Noise, noise_of
 from truing.testing.planted import Size, Strange, check_by, effect_of, truth_of, wrong_machine
 from truing.testing.subject import Subject
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+from truing.units import difference_unit, from_si, unit_factor
 
 HELD_OUT = 200
 
@@ -111,11 +115,6 @@ class _Plan:
 
     def recorded(self, design: Design, part: int) -> tuple[str, dict[str, float]]:
         """Return a record as CSV, and the root mean square of the noise in it by result, SI."""
-        import numpy as np
-
-        from truing.studies.scatter import generator
-        from truing.units import difference_unit, from_si, unit_factor
-
         columns = design.drawn(generator(self.seed, part, "design"))
         true = self._shown(columns)
         left: dict[str, float] = {}
@@ -132,9 +131,6 @@ class _Plan:
 
     def _shown(self, columns: Mapping[str, Any]) -> Mapping[str, NDArray[np.float64]]:
         """Return what the gauges would show without noise, SI. Raises InputError where the model has no answer."""
-        from truing.gauge import read_by_gauge
-        from truing.measurements import read_rows
-
         with TemporaryDirectory() as folder:
             file = Path(folder) / MEASURED
             file.write_text(_csv(columns), encoding="utf-8")
@@ -149,8 +145,6 @@ class _Plan:
 
 
 def _csv(columns: Mapping[str, Any]) -> str:
-    from truing.measurements import write_table
-
     text = StringIO()
     write_table(text, list(columns), list(columns.values()))
     return text.getvalue()
@@ -158,8 +152,6 @@ def _csv(columns: Mapping[str, Any]) -> str:
 
 def _correlated(rng: np.random.Generator, design: Design, correlation: float) -> NDArray[np.float64]:
     """Draw noise of unit variance for every row; that of neighbours in a run is correlated."""
-    import numpy as np
-
     drawn = rng.standard_normal((design.runs, design.rows))
     for row in range(1, design.rows if correlation else 0):
         drawn[:, row] = correlation * drawn[:, row - 1] + math.sqrt(1 - correlation**2) * drawn[:, row]
@@ -172,8 +164,6 @@ def _raise(model: Model[Any, Any], faults: Sequence[str]) -> None:
 
 
 def _setup(model: Model[Any, Any], settings: Mapping[str, str], faults: list[str]) -> Setup:
-    from truing.inputs_file import setup_from_settings
-
     subject = Subject(model)
     if settings:
         try:
@@ -193,6 +183,4 @@ def _check_counts(wish: _Wish, faults: list[str]) -> None:
 
 def _drawn(setup: Setup, seed: int) -> dict[str, float]:
     """Draw a machine from the tolerances: its inputs in SI."""
-    from truing.studies.scatter import scatter_of
-
     return {name: float(values[0]) for name, values in scatter_of(setup).draw(seed, 0, 1).items()}

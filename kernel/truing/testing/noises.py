@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.near_miss import near_miss
 from truing.declare.specs import Axis
 from truing.errors import TruingError
 from truing.setup import Setup
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+from truing.units import difference_unit, read_quantity, split_quantity
 
 
 @dataclass(frozen=True)
@@ -25,8 +25,6 @@ class Noise:
 
     def size(self, shown: NDArray[np.float64]) -> float:
         """Return the standard deviation for these readings, SI."""
-        import numpy as np
-
         return self.sd or self.share * float(np.ptp(shown))
 
 
@@ -71,8 +69,6 @@ def gauged_results(setup: Setup) -> dict[str, str]:
 
 def _fitting(gauged: Mapping[str, str], said: Any, faults: list[str]) -> list[str]:
     """Return the one result that a noise can be of; of several the only one that is in the very unit of the noise."""
-    from truing.units import split_quantity
-
     fits = [name for name, unit in gauged.items() if _is_share(said) or _fits(said, unit)]
     if isinstance(said, str) and len(fits) > 1 and not _is_share(said):
         same = [name for name in fits if gauged[name] == split_quantity(said).unit]
@@ -101,8 +97,6 @@ def _fits(said: Any, unit: str) -> bool:
 
 def _read(said: Any, unit: str) -> Noise:
     """Read a standard deviation, a difference in the unit of the result, or a share of its span."""
-    from truing.units import difference_unit, read_quantity
-
     if _is_share(said):
         noise = Noise(share=read_quantity(said, ""))
     else:

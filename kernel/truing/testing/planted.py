@@ -13,6 +13,7 @@ from truing.declare.near_miss import near_miss
 from truing.declare.sources import Effect, Unknown
 from truing.errors import TruingError, UsageError
 from truing.setup import Setup, SwitchedOn
+from truing.units import from_si, read_quantity
 
 Size: TypeAlias = str | float | Mapping[str, str | float]
 Strange: TypeAlias = Callable[..., Any]
@@ -97,8 +98,6 @@ def _half(effect: Effect[Any, Any], parts: Sequence[Sequence[Unknown]], faults: 
 
 def _value(effect: Effect[Any, Any], unknown: Unknown, said: str | float) -> float:
     """Read one unknown, SI. Raises UsageError where it is no quantity of its kind, or out of its bounds."""
-    from truing.units import from_si, read_quantity
-
     value = float(read_quantity(said if isinstance(said, str) else repr(said), unknown.unit))
     number = float(from_si(value, unknown.unit))
     slack = 1e-9 * max(abs(unknown.low), abs(unknown.high))

@@ -7,13 +7,19 @@ from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
+
 from truing.declare.specs import Given
 from truing.errors import InfeasibleError, TruingError
 from truing.evaluate import Rows, evaluate, evaluate_rows
+from truing.executors import in_order, open_executor
+from truing.inputs_file import setup_from_settings
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup
+from truing.studies.scatter import scatter_of
 from truing.testing.batches import together
 from truing.testing.subject import Subject, fail
+from truing.units import to_si, unit_factor
 
 SLOPE = 1e-6
 
@@ -26,8 +32,6 @@ def finite_at_defaults(subject: Subject) -> None:
 
 def inputs_untouched(subject: Subject) -> None:
     """A call leaves the arrays it was given as they were."""
-    import numpy as np
-
     batch = together(subject)
     columns = batch.columns
     before = {name: values.copy() for name, values in columns.items()}
@@ -42,10 +46,6 @@ def inputs_untouched(subject: Subject) -> None:
 
 def seeds_decide(subject: Subject) -> None:
     """The same inputs give the same results, the same seed the same draws, and a tolerance leaves the others alone."""
-    import numpy as np
-
-    from truing.studies.scatter import scatter_of
-
     name = subject.model.name
     one, two = (subject.model.read_results(evaluate(subject.setup)) for _ in range(2))
     for result, value in one.items():
@@ -61,10 +61,6 @@ def seeds_decide(subject: Subject) -> None:
 
 def serial_equals_parallel(subject: Subject) -> None:
     """A worker process computes the same numbers, bit for bit. Skipped where no process could find the model."""
-    import numpy as np
-
-    from truing.executors import in_order, open_executor
-
     assert subject.home is not None
     setup = replace(subject.setup, origin=subject.home)
     jobs = [(pack(setup), batch) for batch in range(2)]
@@ -77,8 +73,6 @@ def serial_equals_parallel(subject: Subject) -> None:
 
 
 def _drawn_rows(job: tuple[Packed, int]) -> Rows:
-    from truing.studies.scatter import scatter_of
-
     packed, batch = job
     setup = unpack(packed)
     return evaluate_rows(setup, scatter_of(setup).draw(setup.seed, batch, 32), 32)
@@ -96,8 +90,6 @@ def derivatives_are_exact(subject: Subject) -> None:
 
 
 def _compare_slope(subject: Subject, setup: Setup, pair: tuple[str, str], stated: float) -> None:
-    from truing.units import unit_factor
-
     result, name = pair
     if result not in subject.model.own_result_fields or name not in subject.scattering:
         fail(f"{subject.model.name}: derivatives() names '{result}' by '{name}', which is no result by an input")
@@ -119,8 +111,6 @@ def _compare_slope(subject: Subject, setup: Setup, pair: tuple[str, str], stated
 
 def _difference(setup: Setup, pair: tuple[str, str], step: float) -> float | None:
     """Return the central difference of fourth order, or None where a step is impossible."""
-    import numpy as np
-
     result, name = pair
     values = float(setup.nominal(name)) + step * np.array([-2.0, -1.0, 1.0, 2.0])
     rows = evaluate_rows(setup, {name: values}, 4, wanted={result})
@@ -155,8 +145,6 @@ def _beyond(bound: float, word: str) -> float:
 
 
 def _refused(subject: Subject, name: str, word: str, value: float) -> None:
-    from truing.inputs_file import setup_from_settings
-
     unit = subject.model.input_fields[name].unit
     try:
         setup_from_settings(subject.offer, {name: f"{value!r} {unit}".strip()})
@@ -168,8 +156,6 @@ def _refused(subject: Subject, name: str, word: str, value: float) -> None:
 
 
 def _answered(subject: Subject, name: str, bound: float) -> None:
-    from truing.units import to_si
-
     unit = subject.model.input_fields[name].unit
     try:
         evaluate(subject.at({name: to_si(bound, unit)}))

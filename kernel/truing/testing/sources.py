@@ -8,6 +8,8 @@ from dataclasses import replace
 from itertools import combinations
 from typing import Any
 
+import numpy as np
+
 from truing.declare.goals import prices_in
 from truing.declare.scope import formula_scope
 from truing.declare.sources import Effect, Unknown
@@ -16,6 +18,7 @@ from truing.evaluate import evaluate
 from truing.formulas import parse
 from truing.setup import Setup, SwitchedOn
 from truing.testing.subject import Subject, fail
+from truing.units import to_si, unit_factor
 
 SAME = 1e-12
 COMMUTES = 0.01
@@ -158,8 +161,6 @@ def order_matters(subject: Subject) -> list[str]:
 
 def _difference_by_order(orders: Sequence[Setup], base: Values) -> float:
     """Return the largest difference between two orders, as a share of what both effects do together."""
-    import numpy as np
-
     try:
         answers = [_answers(setup) for setup in orders]
     except InfeasibleError:
@@ -175,8 +176,6 @@ def _difference_by_order(orders: Sequence[Setup], base: Values) -> float:
 
 def shape(item: Unknown, share: float) -> float:
     """Return a shape within its bounds, on a logarithmic scale where it is positive, SI."""
-    from truing.units import to_si
-
     if item.low > 0:
         return float(to_si(item.low * (item.high / item.low) ** share, item.unit))
     return float(to_si(item.low + share * (item.high - item.low), item.unit))
@@ -184,8 +183,6 @@ def shape(item: Unknown, share: float) -> float:
 
 def amplitude(item: Unknown, share: float) -> float:
     """Return an amplitude, such a share of the largest that its bounds allow, SI."""
-    from truing.units import to_si
-
     return float(to_si(share * max((item.low, item.high), key=abs), item.unit))
 
 
@@ -213,8 +210,6 @@ def off_reference(setup: Setup, steps: float = 10) -> Setup:
 
     An effect of the difference of two conditions would not be seen if both moved alike.
     """
-    from truing.units import unit_factor
-
     conditions = enumerate(setup.model.conditions.values())
     moved = {item.name: item.zero + steps * (1 + 0.1 * place) * unit_factor(item.unit) for place, item in conditions}
     return replace(setup, conditions={**setup.conditions, **moved})
@@ -226,8 +221,6 @@ def _answers(setup: Setup) -> Values:
 
 
 def _changed(answers: Values, base: Values) -> list[str]:
-    import numpy as np
-
     def differs(name: str) -> bool:
         one, other = np.asarray(answers[name], dtype=float), np.asarray(base[name], dtype=float)
         if one.shape != other.shape:

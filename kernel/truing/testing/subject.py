@@ -6,18 +6,19 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
+
+import numpy as np
 
 from truing.declare.fields import InputField, with_values
 from truing.declare.model import Model
 from truing.declare.specs import Given
 from truing.errors import InfeasibleError, TruingError, UsageError
 from truing.evaluate import evaluate
+from truing.inputs_file import read_setup
 from truing.kernel import Kernel, Offer, Origin
 from truing.setup import Setup, default_setup
-
-if TYPE_CHECKING:
-    import numpy as np
+from truing.units import difference_unit, to_si, unit_factor
 
 ATTEMPTS = 12
 NARROWER = (0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-6)
@@ -65,8 +66,6 @@ class Subject:
         try:
             return default_setup(self.model)
         except UsageError:
-            from truing.inputs_file import read_setup
-
             if self.model.example is None:
                 raise
             return read_setup(self.model.example, self.offer)
@@ -107,8 +106,6 @@ class Subject:
         return {}
 
     def _new_points(self, count: int) -> list[dict[str, float]]:
-        import numpy as np
-
         rng = np.random.default_rng(20)
         found: list[dict[str, float]] = []
         for share in NARROWER:
@@ -129,8 +126,6 @@ class Subject:
 
     def near(self, item: InputField, share: float, rng: np.random.Generator) -> float:
         """Draw a value of an input within its bounds, SI, up to so large a share of its own away from that."""
-        from truing.units import to_si
-
         value, spec = float(self.setup.nominal(item.name)), item.spec
         assert isinstance(spec, Given)
         if value != value or (spec.whole and share < 0.1):
@@ -149,8 +144,6 @@ class Subject:
 
     def _span(self, item: InputField, value: float) -> float:
         """Return how far a tenth of the input reaches, times ten."""
-        from truing.units import difference_unit, unit_factor
-
         if difference_unit(item.unit) != item.unit:
             return 100 * unit_factor(item.unit)
         if value:

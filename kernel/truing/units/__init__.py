@@ -16,16 +16,15 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.errors import UnitError
 from truing.units import grammar, names
 from truing.units.grammar import Quantity, shown
 from truing.units.meaning import Dimension, Meaning, case_variants, meaning, registry, split_prefix, without_prefix
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 __all__ = [
     "Quantity", "check_unit", "demand_dimension", "difference_unit", "from_si", "human_dimension", "pint_quantity",

@@ -13,16 +13,14 @@ from fractions import Fraction
 from functools import lru_cache
 from hashlib import sha256
 from threading import Lock
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import pint
 from platformdirs import user_cache_path
 
 from truing.errors import UnitError
 from truing.units import grammar, names
 from truing.units.grammar import shown
-
-if TYPE_CHECKING:
-    import pint
 
 _BUILDING = Lock()
 Dimension = tuple[tuple[str, Fraction], ...]
@@ -53,8 +51,6 @@ def registry() -> pint.UnitRegistry[Any]:
 
 @lru_cache(maxsize=1)
 def _registry() -> pint.UnitRegistry[Any]:
-    import pint
-
     built: pint.UnitRegistry[Any]
     home = sha256(pint.__file__.encode()).hexdigest()[:16]  # a cache holds paths of the pint that wrote it
     try:

@@ -1,0 +1,34 @@
+"""Libraries that take longer to import than most calculations take, each imported when it is first used.
+
+A file that needs one imports its name from here at the top, like any other; the import itself waits.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+
+class _Later:
+    """A module by its name, imported when something of it is first asked for."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what the module calls so. Raises ImportError where it is not installed."""
+        return getattr(import_module(self._name), name)
+
+
+gaussian_process: Any = _Later("sklearn.gaussian_process")
+gaussian_kernels: Any = _Later("sklearn.gaussian_process.kernels")
+learning_exceptions: Any = _Later("sklearn.exceptions")
+stats: Any = _Later("scipy.stats")
+pymoo_config: Any = _Later("pymoo.config")
+pymoo_evaluator: Any = _Later("pymoo.core.evaluator")
+pymoo_hypervolume: Any = _Later("pymoo.indicators.hv")
+pymoo_mutation: Any = _Later("pymoo.operators.mutation.pm")
+pymoo_nsga2: Any = _Later("pymoo.algorithms.moo.nsga2")
+pymoo_problem: Any = _Later("pymoo.core.problem")
+pymoo_repair: Any = _Later("pymoo.core.repair")
+pymoo_static: Any = _Later("pymoo.problems.static")
