@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import Any
 
 
-class _Later:
+class Later:
     """A module by its name, imported when something of it is first asked for."""
 
     def __init__(self, name: str) -> None:
@@ -20,15 +20,15 @@ class _Later:
         return getattr(import_module(self._name), name)
 
 
-gaussian_process: Any = _Later("sklearn.gaussian_process")
-gaussian_kernels: Any = _Later("sklearn.gaussian_process.kernels")
-learning_exceptions: Any = _Later("sklearn.exceptions")
-stats: Any = _Later("scipy.stats")
-pymoo_config: Any = _Later("pymoo.config")
-pymoo_evaluator: Any = _Later("pymoo.core.evaluator")
-pymoo_hypervolume: Any = _Later("pymoo.indicators.hv")
-pymoo_mutation: Any = _Later("pymoo.operators.mutation.pm")
-pymoo_nsga2: Any = _Later("pymoo.algorithms.moo.nsga2")
-pymoo_problem: Any = _Later("pymoo.core.problem")
-pymoo_repair: Any = _Later("pymoo.core.repair")
-pymoo_static: Any = _Later("pymoo.problems.static")
+gaussian_process: Any = Later("sklearn.gaussian_process")
+gaussian_kernels: Any = Later("sklearn.gaussian_process.kernels")
+learning_exceptions: Any = Later("sklearn.exceptions")
+stats: Any = Later("scipy.stats")
+pymoo_config: Any = Later("pymoo.config")
+pymoo_evaluator: Any = Later("pymoo.core.evaluator")
+pymoo_hypervolume: Any = Later("pymoo.indicators.hv")
+pymoo_mutation: Any = Later("pymoo.operators.mutation.pm")
+pymoo_nsga2: Any = Later("pymoo.algorithms.moo.nsga2")
+pymoo_problem: Any = Later("pymoo.core.problem")
+pymoo_repair: Any = Later("pymoo.core.repair")
+pymoo_static: Any = Later("pymoo.problems.static")

@@ -8,8 +8,8 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 
+from truing.cli.answers import answer_the_shell
 from truing.cli.app import app
-from truing.cli.completion import answer_the_shell
 from truing.cli.console import Settings, after_output, close_stream, lose_output, ready_streams
 from truing.cli.endings import hear_endings
 

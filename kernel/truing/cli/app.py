@@ -1,27 +1,26 @@
-"""The command and its verbs, put together."""
+"""The command ``calc`` and the table of its verbs: what each takes, and the module that is loaded when it is called.
+
+A verb is declared here with its arguments and its help; the function of the same name in the module of the same name
+does the work. So help, names and completion load nothing else.
+"""
 
 from __future__ import annotations
 
-from importlib.metadata import version
+import functools
+from collections.abc import Callable
+from importlib import metadata
+from pathlib import Path
+from typing import Annotated, ParamSpec
 
 import typer
 
-from truing.cli import (
-    compare,
-    completion,
-    describe,
-    diagnose,
-    explain,
-    index,
-    init,
-    new,
-    plugins,
-    run,
-    table,
-    verify,
-    watch,
-)
-from truing.cli.console import out
+from truing.cli.candidates import names, names_inside, runs
+from truing.cli.console import out, verb
+from truing.cli.words import AsJson, Cases, Changed, Excel, Inputs, OutputFile, Pdf, Plugin, RunFolder, Shell
+from truing.entry_points import entry_points
+from truing.heavy import Later
+
+P = ParamSpec("P")
 
 app = typer.Typer(
     name="calc",
@@ -36,7 +35,7 @@ app = typer.Typer(
 
 def _version(wanted: bool) -> None:
     if wanted:
-        out(f"truing {version('truing')}")
+        out(f"truing {metadata.version('truing')}")
         raise typer.Exit
 
 
@@ -50,16 +49,191 @@ def _common(
     """Engineering calculations as plugins: checked units, studies, and a sheet to sign."""
 
 
-app.command("plugins")(plugins.plugins)
-app.command("describe")(describe.describe)
-app.command("init")(init.init)
-app.command("explain")(explain.explain)
-app.command("run")(run.run)
-app.command("watch")(watch.watch)
-app.command("table")(table.table)
-app.command("diagnose")(diagnose.diagnose)
-app.command("verify")(verify.verify)
-app.command("compare")(compare.compare)
-app.command("index")(index.index)
-app.command("new")(new.new)
-app.command("completion")(completion.completion)
+def _loaded(declared: Callable[P, None]) -> Callable[P, None]:
+    """Make a verb of a declaration: the function of its name, in the module of its name, is called with the same."""
+
+    @functools.wraps(declared)
+    def call(*args: P.args, **kwargs: P.kwargs) -> int:
+        return int(getattr(Later(f"truing.cli.{declared.__name__}"), declared.__name__)(*args, **kwargs))
+
+    return app.command(declared.__name__)(verb(call))
+
+
+@app.command()
+@verb
+def plugins(
+    context: typer.Context,
+    names: Annotated[bool, typer.Option("--names", help="Names only, from metadata; nothing is loaded.")] = False,
+    as_json: AsJson = False,
+    strict: Annotated[bool, typer.Option("--strict", help="End at the first broken plugin.")] = False,
+) -> int:
+    """List what is installed, from where, which version, and what broke while loading."""
+    if not names:
+        return int(Later("truing.cli.plugins").plugins(context=context, as_json=as_json, strict=strict))
+    for entry in entry_points():
+        out(entry.name)
+    return 0
+
+
+@_loaded
+def describe(
+    context: typer.Context,
+    plugin: Plugin,
+    as_json: AsJson = False,
+    as_schema: Annotated[
+        bool, typer.Option("--json-schema", help="The JSON Schema of the inputs file, for editors.")
+    ] = False,
+) -> None:
+    """Show inputs, results, error sources and objectives: symbols, units, bounds, sources."""
+
+
+@_loaded
+def init(
+    context: typer.Context,
+    plugin: Plugin,
+    output: OutputFile = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
+    no_schema: Annotated[bool, typer.Option("--no-schema", help="Write no schema for editors beside it.")] = False,
+) -> None:
+    """Write a commented inputs file that holds the shipped example."""
+
+
+@_loaded
+def explain(
+    context: typer.Context,
+    what: Annotated[
+        str,
+        typer.Argument(help="PLUGIN.NAME; or a plugin or Python file, and the name behind it.", autocompletion=names),
+    ],
+    name: Annotated[
+        str, typer.Argument(help="The name, where it does not stand in WHAT.", autocompletion=names_inside)
+    ] = "",
+    inputs: Inputs = None,
+    changed: Changed = None,
+    as_json: AsJson = False,
+) -> None:
+    """Explain a result: formula, what it is made from, what moves it; or an input, an effect, a tolerance."""
+
+
+@_loaded
+def run(
+    context: typer.Context,
+    plugin: Plugin,
+    inputs: Inputs = None,
+    changed: Changed = None,
+    cases: Cases = None,
+    output: RunFolder = None,
+    workers: Annotated[int | None, typer.Option("--workers", min=1, help="Processes that share the work.")] = None,
+    cluster: Annotated[
+        str, typer.Option("--cluster", metavar="ADDRESS", help="A dask scheduler, tcp://HOST:PORT, that shares it out.")
+    ] = "",
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Keep finished batches, and take up those of an interrupted run.")
+    ] = False,
+    pdf: Pdf = False,
+    excel: Excel = False,
+    as_json: AsJson = False,
+) -> None:
+    """Run the calculation and its studies and write the calculation sheet."""
+
+
+@_loaded
+def watch(
+    context: typer.Context,
+    plugin: Plugin,
+    inputs: Annotated[Path, typer.Option("--inputs", "-i", help="The inputs file that is being edited.")],
+    changed: Changed = None,
+    cases: Cases = None,
+    output: RunFolder = None,
+    excel: Excel = False,
+    workers: Annotated[int, typer.Option("--workers", min=1, help="Processes that share the work.")] = 1,
+    every: Annotated[float, typer.Option("--every", min=0.02, help="Seconds between two looks at the files.")] = 0.5,
+) -> None:
+    """Run, and run again whenever the inputs file, its data files or the plugin's code change; Ctrl-C ends it."""
+
+
+@_loaded
+def table(
+    context: typer.Context,
+    plugin: Plugin,
+    inputs: Annotated[Path, typer.Option("--inputs", "-i", help="The inputs file.")],
+    rows: Annotated[Path, typer.Option("--rows", help="A CSV file; columns replace inputs and conditions row by row.")],
+    output: OutputFile = None,
+    changed: Changed = None,
+    excel: Excel = False,
+) -> None:
+    """Print what the gauge would show at every row: the file's columns, then the results, units in the header."""
+
+
+@_loaded
+def diagnose(
+    context: typer.Context,
+    plugin: Plugin,
+    files: Annotated[list[Path] | None, typer.Argument(help="Further files of measured rows.")] = None,
+    inputs: Inputs = None,
+    data: Annotated[
+        list[Path] | None, typer.Option("--data", "-d", help="A CSV file of measured rows; may be repeated.")
+    ] = None,
+    changed: Changed = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="The folder (default runs/STEM of the first data file).")
+    ] = None,
+    pdf: Pdf = False,
+    as_json: AsJson = False,
+) -> None:
+    """Find what the simulation gets wrong, name the cause, extend the model and measure the gain."""
+
+
+@_loaded
+def verify(
+    context: typer.Context,
+    plugin: Plugin,
+    as_json: AsJson = False,
+) -> None:
+    """Print every number that the source prints beside ours; exit 0 if every row matches its stated verdict."""
+
+
+@_loaded
+def compare(
+    context: typer.Context,
+    first: Annotated[Path, typer.Argument(help="A run folder, or that of a diagnosis.", autocompletion=runs)],
+    second: Annotated[Path, typer.Argument(help="Another one of the same kind.", autocompletion=runs)],
+    as_json: AsJson = False,
+) -> None:
+    """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""
+
+
+@_loaded
+def index(
+    context: typer.Context,
+    folder: Annotated[Path, typer.Argument(help="The folder that holds runs and diagnoses, however deep.")] = Path(
+        "runs"
+    ),
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="The page to write (index.html in the folder without it).")
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Write one page that lists the runs and diagnoses of a folder, to sort and to filter, offline."""
+
+
+@_loaded
+def new(
+    context: typer.Context,
+    name: Annotated[str, typer.Argument(help="The plugin's name: lower-case words joined by _.")],
+    title: Annotated[str | None, typer.Option("--title", help="The title of its sheet (the name without it).")] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="The folder (or single file) to write (NAME without it).")
+    ] = None,
+    single: Annotated[bool, typer.Option("--single-file", help="One Python file instead of a project.")] = False,
+) -> None:
+    """Write a plugin of your own: package, tests, entry point, CI; it works as written."""
+
+
+@_loaded
+def completion(
+    context: typer.Context,
+    shell: Annotated[Shell | None, typer.Argument(help="The shell (default: the one you are in).")] = None,
+    install: Annotated[bool, typer.Option("--install", help="Put the script where your shell finds it.")] = False,
+) -> None:
+    """Print the script by which your shell completes plugins, inputs and results, or install it."""

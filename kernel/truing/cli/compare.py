@@ -4,25 +4,22 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
-from truing.cli.candidates import runs
 from truing.cli.changes import styles_of, words_of
 from truing.cli.coloured import out_table
-from truing.cli.console import one_line, out, out_json, verb
-from truing.cli.words import AsJson
+from truing.cli.console import one_line, out, out_json
 from truing.runs.comparison import Change, compared, in_order
 from truing.runs.folder import load_either
 
 
-@verb
 def compare(
     context: typer.Context,
-    first: Annotated[Path, typer.Argument(help="A run folder, or that of a diagnosis.", autocompletion=runs)],
-    second: Annotated[Path, typer.Argument(help="Another one of the same kind.", autocompletion=runs)],
-    as_json: AsJson = False,
+    *,
+    first: Path,
+    second: Path,
+    as_json: bool,
 ) -> int:
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""
     found = compared(load_either(first), load_either(second))

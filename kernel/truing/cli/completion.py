@@ -3,44 +3,21 @@
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Callable
-from contextlib import redirect_stderr, suppress
-from enum import StrEnum
 from importlib import import_module
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
 from truing.atomic import write_files
-from truing.cli.console import out, settings_of, verb
+from truing.cli.console import out, settings_of
+from truing.cli.words import Shell
 from truing.errors import UsageError
 from truing.report.templates import template_folder
-
-LINE = "_TYPER_COMPLETE_ARGS"
-"""The environment variable in which a shell hands over what was typed."""
-_FLAGS = re.compile(r"(?<=\s)(?:-q|-v|--quiet|--verbose|--traceback)(?=\s)")
-
-
-class Shell(StrEnum):
-    """A shell that can complete."""
-
-    bash = "bash"
-    zsh = "zsh"
-    fish = "fish"
-    powershell = "powershell"
-
 
 FILES = {Shell.bash: "calc.bash", Shell.zsh: "calc.zsh", Shell.fish: "calc.fish", Shell.powershell: "calc.ps1"}
 
 
-@verb
-def completion(
-    context: typer.Context,
-    shell: Annotated[Shell | None, typer.Argument(help="The shell (default: the one you are in).")] = None,
-    install: Annotated[bool, typer.Option("--install", help="Put the script where your shell finds it.")] = False,
-) -> int:
+def completion(context: typer.Context, *, shell: Shell | None, install: bool) -> int:
     """Print the script by which your shell completes plugins, inputs and results, or install it."""
     wanted = shell or _present_shell()
     text = (template_folder() / "completion" / FILES[wanted]).read_text(encoding="utf-8")
@@ -92,15 +69,3 @@ def _with_line(file: Path, line: str) -> bytes | None:
         return None
     gap = b"" if not present or present.endswith(b"\n") else b"\n"
     return present + gap + line.encode() + b"\n"
-
-
-def answer_the_shell(app: Callable[..., object]) -> int:
-    """Answer a shell that asks, through the protocol of typer; whatever goes wrong, nothing is said."""
-    os.environ["COLUMNS"] = os.environ["TERMINAL_WIDTH"] = "1000"  # a help text broken into lines would be names
-    line = os.environ.get(LINE)
-    if line is not None:
-        os.environ[LINE] = _FLAGS.sub("", line)
-    with open(os.devnull, "w", encoding="utf-8") as nowhere, redirect_stderr(nowhere), suppress(SystemExit, Exception):
-        import_module("typer.completion").completion_init()
-        app(args=[], prog_name="calc")
-    return 0

@@ -10,8 +10,8 @@ import shutil
 import sys
 import textwrap
 import traceback
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, ParamSpec, TextIO
 
@@ -19,9 +19,7 @@ import typer
 
 from truing.atomic import writings, written
 from truing.cli.endings import Terminated
-from truing.cli.progress import has_terminal, shown_progress
 from truing.errors import InputError, OutputError, TruingError
-from truing.studies.bench import Progress
 
 P = ParamSpec("P")
 NARROWEST = 60
@@ -185,16 +183,6 @@ def close_stream(stream: TextIO) -> None:
     """Write nothing more to a stream that takes nothing, so that nothing is said of it at the end."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
-
-
-@contextmanager
-def progress_bar(settings: Settings) -> Iterator[Progress]:
-    """Show a progress bar where the errors go to a terminal, once the work takes its time, and nothing elsewhere."""
-    if settings.quiet or not has_terminal():
-        yield lambda task, done, total: None
-        return
-    with shown_progress() as report:
-        yield report
 
 
 def columns(rows: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> str:

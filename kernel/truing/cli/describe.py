@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Any
+from typing import Any
 
 import typer
 
-from truing.cli.console import columns, one_line, out, out_json, settings_of, verb
+from truing.cli.console import columns, one_line, out, out_json, settings_of
 from truing.cli.load import find_offer
-from truing.cli.words import AsJson, Plugin
 from truing.describe import description
 from truing.formulas import symbol_text
 from truing.inputs_file import json_schema
@@ -21,14 +20,12 @@ WHERE_MEASURED = (
 )
 
 
-@verb
 def describe(
     context: typer.Context,
-    plugin: Plugin,
-    as_json: AsJson = False,
-    as_schema: Annotated[
-        bool, typer.Option("--json-schema", help="The JSON Schema of the inputs file, for editors.")
-    ] = False,
+    *,
+    plugin: str,
+    as_json: bool,
+    as_schema: bool,
 ) -> int:
     """Show inputs, results, error sources and objectives: symbols, units, bounds, sources."""
     offer = find_offer(plugin, settings_of(context))

@@ -3,40 +3,33 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
-from truing.cli.console import Settings, one_line, out, out_json, progress_bar, say, settings_of, verb
+from truing.cli.console import Settings, one_line, out, out_json, say, settings_of
 from truing.cli.diagnosis_printed import report
 from truing.cli.load import find_offer, read_or_example
-from truing.cli.words import AsJson, Changed, Plugin
+from truing.cli.progress import progress_bar
 from truing.errors import UsageError
 from truing.inputs_file.culprit import told_by_line
 from truing.report.diagnosis_run import Diagnosed, DiagnosisOrder, perform_diagnosis
 from truing.studies.bench import Progress
 
-Data = Annotated[list[Path] | None, typer.Option("--data", "-d", help="A CSV file of measured rows; may be repeated.")]
-
 MISSPELT = "Did you mean"
 """A note that must be seen: a column that may be misspelt changes what is found."""
 
 
-@verb
 def diagnose(
     context: typer.Context,
-    plugin: Plugin,
-    files: Annotated[list[Path] | None, typer.Argument(help="Further files of measured rows.")] = None,
-    inputs: Annotated[
-        Path | None, typer.Option("--inputs", "-i", help="The inputs file; without it the shipped example.")
-    ] = None,
-    data: Data = None,
-    changed: Changed = None,
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="The folder (default runs/STEM of the first data file).")
-    ] = None,
-    pdf: Annotated[bool, typer.Option("--pdf", help="Print the sheet to PDF with an installed browser.")] = False,
-    as_json: AsJson = False,
+    *,
+    plugin: str,
+    files: list[Path] | None,
+    inputs: Path | None,
+    data: list[Path] | None,
+    changed: list[str] | None,
+    output: Path | None,
+    pdf: bool,
+    as_json: bool,
 ) -> int:
     """Find what the simulation gets wrong, name the cause, extend the model and measure the gain."""
     settings = settings_of(context)

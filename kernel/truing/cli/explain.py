@@ -3,38 +3,27 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
-from truing.cli import candidates
-from truing.cli.console import Settings, out, out_json, progress_bar, settings_of, verb
+from truing.cli.console import Settings, out, out_json, settings_of
 from truing.cli.explain_printed import lines_of, width_of_page
 from truing.cli.load import find_offer, read_or_example
-from truing.cli.words import AsJson, Changed
+from truing.cli.progress import progress_bar
 from truing.errors import UsageError
 from truing.explain import SECTIONS, told
 from truing.inputs_file.culprit import told_by_line
 from truing.kernel import Offer
 
 
-@verb
 def explain(
     context: typer.Context,
-    what: Annotated[
-        str,
-        typer.Argument(
-            help="PLUGIN.NAME; or a plugin or Python file, and the name behind it.", autocompletion=candidates.names
-        ),
-    ],
-    name: Annotated[
-        str, typer.Argument(help="The name, where it does not stand in WHAT.", autocompletion=candidates.names_inside)
-    ] = "",
-    inputs: Annotated[
-        Path | None, typer.Option("--inputs", "-i", help="The inputs file; without it the shipped example.")
-    ] = None,
-    changed: Changed = None,
-    as_json: AsJson = False,
+    *,
+    what: str,
+    name: str,
+    inputs: Path | None,
+    changed: list[str] | None,
+    as_json: bool,
 ) -> int:
     """Explain a result: formula, what it is made from, what moves it; or an input, an effect, a tolerance."""
     settings = settings_of(context)

@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
-from truing.cli.console import one_line, out, out_json, settings_of, verb
-from truing.cli.words import AsJson
+from truing.cli.console import one_line, out, out_json, settings_of
 from truing.report.index_page import listing_document, summary_of, write_index
 from truing.runs.index import list_folder
 
 
-@verb
 def index(
     context: typer.Context,
-    folder: Annotated[Path, typer.Argument(help="The folder that holds runs and diagnoses, however deep.")] = Path(
-        "runs"
-    ),
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="The page to write (index.html in the folder without it).")
-    ] = None,
-    as_json: AsJson = False,
+    *,
+    folder: Path,
+    output: Path | None,
+    as_json: bool,
 ) -> int:
     """Write one page that lists the runs and diagnoses of a folder, to sort and to filter, offline."""
     settings = settings_of(context)

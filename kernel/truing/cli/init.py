@@ -4,26 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
 from truing.atomic import write_files
-from truing.cli.console import json_text, out, settings_of, verb
+from truing.cli.console import json_text, out, settings_of
 from truing.cli.load import find_offer
-from truing.cli.words import OutputFile, Plugin
 from truing.errors import OutputError
 from truing.example_file import example_text, schema_name, with_schema_line
 from truing.inputs_file import json_schema
 
 
-@verb
 def init(
     context: typer.Context,
-    plugin: Plugin,
-    output: OutputFile = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
-    no_schema: Annotated[bool, typer.Option("--no-schema", help="Write no schema for editors beside it.")] = False,
+    *,
+    plugin: str,
+    output: Path | None,
+    force: bool,
+    no_schema: bool,
 ) -> int:
     """Write a commented inputs file that holds the shipped example."""
     settings = settings_of(context)

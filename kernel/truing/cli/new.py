@@ -5,11 +5,10 @@ from __future__ import annotations
 import os
 import shlex
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
-from truing.cli.console import settings_of, verb
+from truing.cli.console import settings_of
 from truing.errors import UsageError
 from truing.new_project import (
     Plan,
@@ -23,15 +22,13 @@ from truing.new_project import (
 )
 
 
-@verb
 def new(
     context: typer.Context,
-    name: Annotated[str, typer.Argument(help="The plugin's name: lower-case words joined by _.")],
-    title: Annotated[str | None, typer.Option("--title", help="The title of its sheet (the name without it).")] = None,
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="The folder (or single file) to write (NAME without it).")
-    ] = None,
-    single: Annotated[bool, typer.Option("--single-file", help="One Python file instead of a project.")] = False,
+    *,
+    name: str,
+    title: str | None,
+    output: Path | None,
+    single: bool,
 ) -> int:
     """Write a plugin of your own: package, tests, entry point, CI; it works as written."""
     check_name(name)

@@ -2,27 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import typer
 
-from truing.cli.console import columns, one_line, out, out_json, settings_of, verb
-from truing.cli.words import AsJson
-from truing.kernel import Kernel, Offer, entry_points
+from truing.cli.console import columns, one_line, out, out_json, settings_of
+from truing.kernel import Kernel, Offer
 
 
-@verb
 def plugins(
     context: typer.Context,
-    names: Annotated[bool, typer.Option("--names", help="Names only, from metadata; nothing is loaded.")] = False,
-    as_json: AsJson = False,
-    strict: Annotated[bool, typer.Option("--strict", help="End at the first broken plugin.")] = False,
+    *,
+    as_json: bool,
+    strict: bool,
 ) -> int:
     """List what is installed, from where, which version, and what broke while loading."""
-    if names:
-        for entry in entry_points():
-            out(entry.name)
-        return 0
     kernel = Kernel.installed(strict=strict)
     offers = kernel.offers
     if as_json:

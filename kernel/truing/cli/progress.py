@@ -16,6 +16,7 @@ from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.table import Table
 
+from truing.cli.console import Settings
 from truing.studies.bench import Progress
 
 PATIENCE = 2.0
@@ -133,3 +134,13 @@ def shown_progress() -> Iterator[Progress]:
         yield watched.report
     finally:
         watched.end()
+
+
+@contextmanager
+def progress_bar(settings: Settings) -> Iterator[Progress]:
+    """Show a progress bar where the errors go to a terminal, once the work takes its time, and nothing elsewhere."""
+    if settings.quiet or not has_terminal():
+        yield lambda task, done, total: None
+        return
+    with shown_progress() as report:
+        yield report

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
 from truing.atomic import writings, written
-from truing.cli.console import Settings, one_line, out, out_json, progress_bar, say, settings_of, verb
+from truing.cli.console import Settings, one_line, out, out_json, say, settings_of
 from truing.cli.load import find_offer, read_or_example
+from truing.cli.progress import progress_bar
 from truing.cli.run_printed import lines_of
-from truing.cli.words import AsJson, Changed, Excel, Plugin
 from truing.errors import UsageError
 from truing.inputs_file.culprit import told_by_line
 from truing.report.run import Done, RunOrder, perform
@@ -21,26 +20,20 @@ from truing.runs.partial import is_partial, partial_folder
 from truing.studies.states import EXIT_CODES
 
 
-@verb
 def run(
     context: typer.Context,
-    plugin: Plugin,
-    inputs: Annotated[
-        Path | None, typer.Option("--inputs", "-i", help="The inputs file; without it the shipped example.")
-    ] = None,
-    changed: Changed = None,
-    cases: Annotated[Path | None, typer.Option("--cases", help="A CSV file: every row is a case.")] = None,
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")] = None,
-    workers: Annotated[int | None, typer.Option("--workers", min=1, help="Processes that share the work.")] = None,
-    cluster: Annotated[
-        str, typer.Option("--cluster", metavar="ADDRESS", help="A dask scheduler, tcp://HOST:PORT, that shares it out.")
-    ] = "",
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Keep finished batches, and take up those of an interrupted run.")
-    ] = False,
-    pdf: Annotated[bool, typer.Option("--pdf", help="Print the sheet to PDF with an installed browser.")] = False,
-    excel: Excel = False,
-    as_json: AsJson = False,
+    *,
+    plugin: str,
+    inputs: Path | None,
+    changed: list[str] | None,
+    cases: Path | None,
+    output: Path | None,
+    workers: int | None,
+    cluster: str,
+    resume: bool,
+    pdf: bool,
+    excel: bool,
+    as_json: bool,
 ) -> int:
     """Run the calculation and its studies and write the calculation sheet."""
     settings = settings_of(context)

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
-from truing.cli.console import Settings, one_line, out, say, settings_of, verb
+from truing.cli.console import Settings, one_line, out, say, settings_of
 from truing.cli.load import find_offer
-from truing.cli.words import Changed, Excel, OutputFile, Plugin
 from truing.declare.near_miss import near_miss
 from truing.errors import OutputError, UsageError
 from truing.gauge import shown_by_gauge
@@ -22,15 +20,15 @@ from truing.measurements.overriding import NAMES, REMARKS
 from truing.setup import Setup
 
 
-@verb
 def table(
     context: typer.Context,
-    plugin: Plugin,
-    inputs: Annotated[Path, typer.Option("--inputs", "-i", help="The inputs file.")],
-    rows: Annotated[Path, typer.Option("--rows", help="A CSV file; columns replace inputs and conditions row by row.")],
-    output: OutputFile = None,
-    changed: Changed = None,
-    excel: Excel = False,
+    *,
+    plugin: str,
+    inputs: Path,
+    rows: Path,
+    output: Path | None,
+    changed: list[str] | None,
+    excel: bool,
 ) -> int:
     """Print what the gauge would show at every row: the file's columns, then the results, units in the header."""
     settings = settings_of(context)

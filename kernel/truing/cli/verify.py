@@ -8,9 +8,9 @@ from typing import Any
 
 import typer
 
-from truing.cli.console import aligned, one_line, out, out_json, progress_bar, settings_of, verb
+from truing.cli.console import aligned, one_line, out, out_json, settings_of
 from truing.cli.load import find_offer
-from truing.cli.words import AsJson, Plugin
+from truing.cli.progress import progress_bar
 from truing.declare.published import rules_of
 from truing.numbers import format_number
 from truing.published import ComparedRow, compare_published
@@ -19,11 +19,11 @@ from truing.units import unit_text
 HEAD = ("quantity", "where", "unit", "paper", "ours", "ratio", "verdict", "obtained", "kind", "why")
 
 
-@verb
 def verify(
     context: typer.Context,
-    plugin: Plugin,
-    as_json: AsJson = False,
+    *,
+    plugin: str,
+    as_json: bool,
 ) -> int:
     """Print every number that the source prints beside ours; exit 0 if every row matches its stated verdict."""
     settings = settings_of(context)

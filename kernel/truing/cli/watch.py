@@ -8,15 +8,15 @@ import traceback
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import typer
 
 from truing.atomic import writings, written
 from truing.cli.changes import amount_of
-from truing.cli.console import Settings, one_line, out, progress_bar, say, sentence_of, settings_of, verb
+from truing.cli.console import Settings, one_line, out, say, sentence_of, settings_of
 from truing.cli.load import find_offer
-from truing.cli.words import Changed, Excel, Plugin
+from truing.cli.progress import progress_bar
 from truing.inputs_file import read_setup
 from truing.inputs_file.culprit import told_by_line
 from truing.inputs_file.files import refuse_file
@@ -32,17 +32,17 @@ MOST = 4
 LOOKS = 2
 
 
-@verb
 def watch(
     context: typer.Context,
-    plugin: Plugin,
-    inputs: Annotated[Path, typer.Option("--inputs", "-i", help="The inputs file that is being edited.")],
-    changed: Changed = None,
-    cases: Annotated[Path | None, typer.Option("--cases", help="A CSV file: every row is a case.")] = None,
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")] = None,
-    excel: Excel = False,
-    workers: Annotated[int, typer.Option("--workers", min=1, help="Processes that share the work.")] = 1,
-    every: Annotated[float, typer.Option("--every", min=0.02, help="Seconds between two looks at the files.")] = 0.5,
+    *,
+    plugin: str,
+    inputs: Path,
+    changed: list[str] | None,
+    cases: Path | None,
+    output: Path | None,
+    excel: bool,
+    workers: int,
+    every: float,
 ) -> int:
     """Run, and run again whenever the inputs file, its data files or the plugin's code change; Ctrl-C ends it."""
     settings = settings_of(context)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, TypeAlias
 
@@ -28,3 +29,20 @@ OutputFile: TypeAlias = Annotated[
 Excel: TypeAlias = Annotated[
     bool, typer.Option("--excel", help="Write CSV that a spreadsheet with a decimal comma opens.")
 ]
+Inputs: TypeAlias = Annotated[
+    Path | None, typer.Option("--inputs", "-i", help="The inputs file; without it the shipped example.")
+]
+Cases: TypeAlias = Annotated[Path | None, typer.Option("--cases", help="A CSV file: every row is a case.")]
+RunFolder: TypeAlias = Annotated[
+    Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")
+]
+Pdf: TypeAlias = Annotated[bool, typer.Option("--pdf", help="Print the sheet to PDF with an installed browser.")]
+
+
+class Shell(StrEnum):
+    """A shell that can complete."""
+
+    bash = "bash"
+    zsh = "zsh"
+    fish = "fish"
+    powershell = "powershell"

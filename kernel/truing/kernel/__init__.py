@@ -18,12 +18,11 @@ from truing.declare.model import Model, Section
 from truing.declare.near_miss import near_miss
 from truing.declare.quantities import unread_quantities
 from truing.declare.sources import Effect, Tolerance
+from truing.entry_points import distribution_of, entry_points
 from truing.errors import DeclarationError, PluginError, UnknownPluginError
 from truing.kernel.blame import Place, home_of, line_of, line_of_words, place_of
 from truing.kernel.loading import check_hooks, load_file
 from truing.units.grammar import shown
-
-GROUP = "truing.plugins"
 
 
 @dataclass(frozen=True)
@@ -270,19 +269,9 @@ def _with(model: Model[Any, Any], hook: str, item: Any) -> Model[Any, Any]:
     return replace(model, sheet=[*model.sheet, item])
 
 
-def entry_points() -> list[metadata.EntryPoint]:
-    """Return the entry points of all plugins from metadata alone; nothing is loaded."""
-    unique = {(entry.name, entry.value, _dist_name(entry)): entry for entry in metadata.entry_points(group=GROUP)}
-    return sorted(unique.values(), key=lambda entry: entry.name)
-
-
-def _dist_name(entry: metadata.EntryPoint) -> str:
-    return entry.dist.name if entry.dist is not None else ""
-
-
 def _origin(entry: metadata.EntryPoint) -> Origin:
     version = entry.dist.version if entry.dist is not None else ""
-    return Origin(entry.name, version, _dist_name(entry), entry.value, f"entry:{entry.name}")
+    return Origin(entry.name, version, distribution_of(entry), entry.value, f"entry:{entry.name}")
 
 
 def _homes(origin: Origin) -> list[Path]:

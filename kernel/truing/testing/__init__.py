@@ -18,14 +18,14 @@ Needs pytest (``truing[testing]``), which then knows the fixtures of ``truing.te
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from truing.testing.finding import assert_finds, assert_finds_nothing, finds_every_effect
-from truing.testing.fixtures import Answer, Calc, CalcProcess
-from truing.testing.hidden import Answered, Hidden, recorded
-from truing.testing.hiding import hide
-from truing.testing.kit import CHECKS, ConformanceCheck, conformance, failures
+if TYPE_CHECKING:
+    from truing.testing.finding import assert_finds, assert_finds_nothing, finds_every_effect
+    from truing.testing.fixtures import Answer, Calc, CalcProcess
+    from truing.testing.hidden import Answered, Hidden, recorded
+    from truing.testing.hiding import hide
+    from truing.testing.kit import CHECKS, ConformanceCheck, conformance, failures
 
 _HOMES = {
     "truing.testing.finding": ("assert_finds", "assert_finds_nothing", "finds_every_effect"),
@@ -47,6 +47,8 @@ def __getattr__(name: str) -> Any:
     """Import a name when it is first used: pytest loads the fixtures of this package wherever Truing is installed."""
     if name not in _HOME:
         raise AttributeError(f"module 'truing.testing' has no attribute '{name}'")
+    from importlib import import_module
+
     value = getattr(import_module(_HOME[name]), name)
     globals()[name] = value
     return value
