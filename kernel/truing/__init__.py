@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -81,7 +82,6 @@ def __getattr__(name: str) -> Any:
     """Import a name when it is first used, so that ``import truing`` costs nothing."""
     if name not in _HOME:
         raise AttributeError(f"module 'truing' has no attribute '{name}'")
-    from importlib import import_module
 
     value = getattr(import_module(_HOME[name]), name)
     globals()[name] = value

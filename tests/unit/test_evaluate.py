@@ -509,16 +509,3 @@ def loaded_modules(statement: str, folder: Path | None = None) -> set[str]:
 
 def test_importing_truing_costs_nothing() -> None:
     assert not {"numpy", "pint", "scipy", "pydantic", "matplotlib", "pluggy"} & loaded_modules("import truing")
-
-
-HEAVY = {"pint", "scipy", "pydantic", "matplotlib", "sklearn", "pymoo", "jinja2"}
-
-
-def test_importing_a_plugin_costs_numpy_at_most() -> None:
-    data = Path(__file__).parents[1] / "data"
-    assert not HEAVY & loaded_modules("import pin_wear", data)
-
-
-@pytest.mark.parametrize("plugin", ["press_linkage"])
-def test_importing_our_plugins_costs_numpy_at_most(plugin: str) -> None:
-    assert not HEAVY & loaded_modules(f"import {plugin}")

@@ -8,9 +8,11 @@ import sys
 import tomllib
 from collections import Counter
 from collections.abc import Iterator
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
+from grimp import build_graph
 
 import truing
 from shared import ROOT, Answer, process
@@ -145,9 +147,29 @@ def functions_of(file: Path) -> Iterator[ast.FunctionDef]:
             yield node
 
 
-def test_files_are_small() -> None:
-    long = {str(file): count for file in CODE if (count := len(file.read_text(encoding="utf-8").splitlines())) > 400}
-    assert not long
+def test_imports_stand_at_the_top_of_files() -> None:
+    """But those of optional extras, and what ``truing`` itself loads when a name of its table is used."""
+    inside = {
+        (file.name, name)
+        for file in CODE
+        for function in functions_of(file)
+        for node in ast.walk(function)
+        for name in _imported(node)
+    }
+    assert inside == {("kit.py", "pytest"), ("finding.py", "pytest"), ("surface_formats.py", "SurfaceTopography")}
+
+
+def _imported(node: ast.AST) -> list[str]:
+    if isinstance(node, ast.Import):
+        return [alias.name for alias in node.names]
+    return [str(node.module)] if isinstance(node, ast.ImportFrom) else []
+
+
+def test_no_file_imports_itself_over_others() -> None:
+    """Imports for the type checker alone count too."""
+    graph = build_graph("truing", *PACKAGES, include_external_packages=False)
+    files = {name: graph.find_modules_directly_imported_by(name) for name in graph.modules if name != "truing"}
+    TopologicalSorter(files).prepare()  # raises CycleError, which names the circle
 
 
 def test_functions_are_small() -> None:

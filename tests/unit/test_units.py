@@ -498,12 +498,6 @@ def test_one_registry():
     assert units.registry() is units.registry()
 
 
-def test_importing_costs_neither_pint_nor_numpy():
-    script = "import sys, truing.units, truing.fits; print([n for n in ('pint', 'numpy') if n in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
-
-
 def read_in_a_new_process(cache):
     script = "import truing.units as u; print(u.read_quantity('5 mm', 'mm'), u.registry().cache_folder)"
     environment = {**os.environ, "XDG_CACHE_HOME": str(cache)}

@@ -18,6 +18,7 @@ Needs pytest (``truing[testing]``), which then knows the fixtures of ``truing.te
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -47,7 +48,6 @@ def __getattr__(name: str) -> Any:
     """Import a name when it is first used: pytest loads the fixtures of this package wherever Truing is installed."""
     if name not in _HOME:
         raise AttributeError(f"module 'truing.testing' has no attribute '{name}'")
-    from importlib import import_module
 
     value = getattr(import_module(_HOME[name]), name)
     globals()[name] = value
