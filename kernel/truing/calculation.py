@@ -18,8 +18,7 @@ from truing.executors import open_executor
 from truing.prices import price_answers
 from truing.setup import Setup, SwitchedOn
 from truing.studies.bench import Bench, Outcome, Progress, silent
-from truing.studies.checks import Check
-from truing.studies.states import State
+from truing.studies.checks import Check, State
 from truing.studies.verdicts import Decided, decide
 
 

@@ -18,11 +18,10 @@ from truing.prices import price_answers
 from truing.setup import Setup
 from truing.studies.allocation import Allocation
 from truing.studies.bench import FINE, Progress, silent, within
-from truing.studies.checks import Check, requirements
+from truing.studies.checks import Check, State, requirements
 from truing.studies.optimise import Optimise
 from truing.studies.reliability import Reliability
 from truing.studies.sensitivity import Sensitivity
-from truing.studies.states import State
 from truing.studies.surrogate import Surrogate
 from truing.studies.sweep import Sweep
 from truing.studies.verdicts import Decided, decide, worst

@@ -35,7 +35,7 @@ from truing import (
     results,
 )
 from truing.calculation import calculate
-from truing.declare.promises import PROMISES
+from truing.declare.checks import PROMISES
 from truing.describe import description
 from truing.errors import DeclarationError
 from truing.report.render import html_of, markdown_of

@@ -18,7 +18,7 @@ from rv_gearing.steel import CURVES, steel_of
 from truing.declare.batch import watching
 from truing.errors import InfeasibleError
 from truing.setup import default_setup
-from truing.testing.formulas import formulas_equal_the_function, formulas_have_the_unit
+from truing.testing.declared import formulas_equal_the_function, formulas_have_the_unit
 from truing.testing.subject import Subject
 from truing.units import from_si
 

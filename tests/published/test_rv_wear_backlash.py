@@ -285,7 +285,7 @@ def test_a_wider_zone_always_costs_less(name: str, form: str) -> None:
 
 def test_a_zone_that_grows_up_keeps_its_lower_end_at_nothing() -> None:
     """Runout and pin position start at 0: doubled, their mean is what their width was."""
-    from truing.declare.widths import with_width
+    from truing.declare.spreads import with_width
 
     setup = default_setup(RV_WEAR)
     for name, (middle, width) in {"disc_runout": ZONES[9], "pin_position_error": ZONES[10]}.items():

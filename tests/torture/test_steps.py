@@ -16,7 +16,7 @@ from rv_wear.model import RV_WEAR
 from truing.evaluate import Rows, evaluate_rows
 from truing.kernel import Kernel
 from truing.setup import Setup, default_setup
-from truing.testing.steps import numerical
+from truing.testing.running import numerical
 from truing.testing.subject import Subject
 from truing.units import read_quantity
 

@@ -38,7 +38,7 @@ from truing.declare.spreads import read_spread
 from truing.errors import UsageError
 from truing.fits import GRADES, tolerance
 from truing.setup import Setup
-from truing.studies.strips import Strip, prices_at
+from truing.studies.grades import Strip, prices_at
 
 
 @inputs

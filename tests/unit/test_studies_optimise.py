@@ -40,10 +40,8 @@ from truing.studies.bench import Bench
 from truing.studies.chances import chance, straightened
 from truing.studies.checks import limits, margin_of, plain_checks
 from truing.studies.demands import demands, nominal_inputs, worst
-from truing.studies.optimise_front import REFERENCE, knee_of, volume_of
-from truing.studies.optimise_problem import ROWS, Problem, answers_of, make_problem
-from truing.studies.optimise_search import non_dominated, spread_out
-from truing.studies.optimise_space import Brief, open_space
+from truing.studies.optimise_problem import ROWS, Brief, Problem, answers_of, make_problem, open_space
+from truing.studies.optimise_search import REFERENCE, knee_of, non_dominated, spread_out, volume_of
 from truing.studies.sampling import Machines
 from truing.studies.scatter import Scatter, _gather, scatter_of
 

@@ -5,8 +5,7 @@ import math
 import pytest
 
 from truing import by_choice, drawn, grade, lognormal, normal, off, plus_minus, uniform, zone
-from truing.declare.spreads import Band, Spread, Target, read_spread
-from truing.declare.widths import width_of, with_width
+from truing.declare.spreads import Band, Spread, Target, read_spread, width_of, with_width
 from truing.errors import TruingError, UnitError, UsageError
 from truing.fits import tolerance
 

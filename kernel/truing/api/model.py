@@ -27,7 +27,7 @@ from truing.example_file import example_of
 from truing.executors import open_executor
 from truing.gauge import shown_by_gauge
 from truing.inputs_file import read_setup, setup_from_text
-from truing.inputs_file.defaults import toml_value
+from truing.inputs_file.assemble import toml_value
 from truing.kernel import Offer
 from truing.measurements import read_rows
 from truing.report.diagnosis_run import diagnosis_sheet_of, write_diagnosed

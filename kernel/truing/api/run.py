@@ -21,8 +21,7 @@ from truing.report.run import sheet_of, write_calculation
 from truing.runs.folder import demand_place
 from truing.setup import Setup
 from truing.studies.bench import Outcome
-from truing.studies.checks import Check
-from truing.studies.states import HEADLINES, SHORT, State
+from truing.studies.checks import HEADLINES, SHORT, Check, State
 from truing.studies.verdicts import sentence_of
 from truing.units import from_si
 

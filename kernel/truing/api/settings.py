@@ -10,7 +10,7 @@ import numpy as np
 
 from truing.declare.model import Model
 from truing.errors import UsageError
-from truing.inputs_file.defaults import toml_value
+from truing.inputs_file.assemble import toml_value
 from truing.units import from_si, pint_quantity
 
 

@@ -9,7 +9,7 @@ from truing.cli.coloured import BAD, GOOD, NEW, OLD
 from truing.cli.console import one_line
 from truing.numbers import format_number
 from truing.runs.comparison import Change, differing, number_in
-from truing.studies.states import EXIT_CODES, SHORT
+from truing.studies.checks import EXIT_CODES, SHORT
 from truing.units import difference_unit, unit_text
 from truing.units.names import LEVELS
 

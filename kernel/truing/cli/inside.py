@@ -11,9 +11,8 @@ import typer
 
 from truing.cli.candidates import Named
 from truing.declare.model import Model
-from truing.inputs_file.diagnose_options import diagnose_schema
 from truing.inputs_file.file_model import HEAD
-from truing.inputs_file.study_options import options_of
+from truing.inputs_file.study_options import diagnose_schema, options_of
 from truing.kernel import Kernel, Offer
 
 

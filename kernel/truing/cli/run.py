@@ -17,7 +17,7 @@ from truing.errors import UsageError
 from truing.inputs_file.culprit import told_by_line
 from truing.report.run import Done, RunOrder, perform
 from truing.runs.partial import is_partial, partial_folder
-from truing.studies.states import EXIT_CODES
+from truing.studies.checks import EXIT_CODES
 
 
 def run(

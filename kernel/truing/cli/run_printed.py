@@ -19,7 +19,7 @@ from truing.report.run import Done
 from truing.report.sheet import sentence_of_cases
 from truing.setup import Setup
 from truing.studies.bench import files_of
-from truing.studies.states import EXIT_CODES, HEADLINES, SHORT
+from truing.studies.checks import EXIT_CODES, HEADLINES, SHORT
 from truing.studies.verdicts import change_words, sentence_of
 
 MOST_CASES = 40

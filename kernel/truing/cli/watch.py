@@ -24,7 +24,7 @@ from truing.kernel import Offer
 from truing.report.run import Done, RunOrder, perform
 from truing.runs.comparison import changes, in_order
 from truing.runs.folder import demand_place
-from truing.studies.states import EXIT_CODES, SHORT
+from truing.studies.checks import EXIT_CODES, SHORT
 from truing.watching import Watched, code_files, files_named_in, forget
 
 MOST = 4

@@ -6,14 +6,12 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import is_dataclass
 from inspect import signature
-from typing import Any
+from typing import Any, Literal, get_args
 
 from truing.declare.declared import Declared
 from truing.declare.fields import InputField, ResultField, hints_of
 from truing.declare.goals import Maximise, Minimise, PriceByChoice, Require, Vary, prices_in
 from truing.declare.near_miss import near_miss
-from truing.declare.promises import PROMISES
-from truing.declare.scope import formula_scope
 from truing.declare.sources import Condition, Effect, Tolerance
 from truing.declare.specs import Axis, Found
 from truing.declare.spreads import Band, ByChoice, Drawn, Grade, Spread
@@ -295,3 +293,54 @@ def _of_formulas(model: Declared) -> Iterator[str]:
             yield f"formula of '{item.name}' names {named}"
         elif formula.left is None and any(scope[name] is item for name in formula.names):
             yield f"formula of '{item.name}' names itself; write an equation with == for what is solved"
+
+
+# Which quantity a name in a formula means: that of its own part first
+
+
+def formula_scope(model: Declared, item: ResultField) -> Mapping[str, InputField | ResultField]:
+    """Return what each name means in the formula of ``item``: own part first, then the flat names.
+
+    The function's results know each other; what a study gives knows the results of all studies besides.
+    """
+    own_result = item.name in model.own_result_fields
+    known: dict[str, InputField | ResultField] = {
+        **model.input_fields, **(model.own_result_fields if own_result else model.result_fields),
+    }  # fmt: skip
+    if not item.scope:
+        return known
+    ending = "_" + item.scope
+    own = {name.removesuffix(ending): field for name, field in known.items() if name.endswith(ending)}
+    return {**known, **own}
+
+
+# What every calculation promises, by the names that the conformance kit gives its checks
+
+
+Promise = Literal[
+    "units are known",
+    "defaults keep their bounds",
+    "finite at defaults",
+    "goals can be read",
+    "spreads resolve",
+    "printed numbers are of results",
+    "sheet is in order",
+    "formulas have the unit",
+    "formulas equal the function",
+    "batch equals loop",
+    "steps may be halved",
+    "inputs untouched",
+    "seeds decide",
+    "serial equals parallel",
+    "derivatives are exact",
+    "bounds are answered",
+    "inputs survive a file",
+    "example can be read",
+    "zero is the base",
+    "references are neutral",
+    "effects act",
+    "only last results are edited",
+    "order of effects",
+]
+"""A check of the kit, as a known exception of a model names it."""
+PROMISES: tuple[str, ...] = get_args(Promise)

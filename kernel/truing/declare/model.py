@@ -12,7 +12,7 @@ import numpy as np
 
 from truing.declare.blocks import Block
 from truing.declare.builtin import builtin_effects
-from truing.declare.checks import TOTAL_PRICE, check_model
+from truing.declare.checks import TOTAL_PRICE, Promise, check_model
 from truing.declare.fields import (
     Axis,
     InputField,
@@ -26,7 +26,6 @@ from truing.declare.fields import (
 )
 from truing.declare.goals import Objective, prices_in
 from truing.declare.near_miss import near_miss
-from truing.declare.promises import Promise
 from truing.declare.published import Finding, Published
 from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance
 from truing.declare.specs import Found

@@ -14,7 +14,7 @@ import numpy as np
 from truing.diagnosis.arrays import Mask, Matrix, Places
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.curves import LARGEST, Bundle, Curves
-from truing.diagnosis.derivatives import slopes_left
+from truing.diagnosis.exact import slopes_left
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.sweeps import BLOCK, Beside, Pass, Swept, Table, blocks_of, units_of, without_taken

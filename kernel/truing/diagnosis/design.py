@@ -18,8 +18,7 @@ from truing.diagnosis.beside import look
 from truing.diagnosis.causes import Cause
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.derivatives import slopes_at, unit_of
-from truing.diagnosis.exact import fit
+from truing.diagnosis.exact import fit, slopes_at, unit_of
 from truing.diagnosis.extended import Extended, elsewhere, parts_of
 from truing.diagnosis.fitted import STEP, WIDE, Fit, moved_by
 from truing.diagnosis.intervals import numbers_of

@@ -16,8 +16,7 @@ from scipy.special import stdtrit
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number
-from truing.diagnosis.derivatives import slopes_at, unit_of
-from truing.diagnosis.exact import CLOSELY, fit
+from truing.diagnosis.exact import CLOSELY, fit, slopes_at, unit_of
 from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import Fit, inward
 from truing.diagnosis.machine import in_blocks

@@ -14,7 +14,7 @@ from scipy.special import ndtri
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.causes import Cause, Number, failure_of, idle_of
 from truing.diagnosis.choice import Chosen
-from truing.diagnosis.derivatives import slopes_at, unit_of
+from truing.diagnosis.exact import slopes_at, unit_of
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit, inward
 from truing.diagnosis.intervals import Certainty, certainty_of, numbers_of, places_of, value_of

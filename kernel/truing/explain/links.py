@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from truing.declare.checks import formula_scope
 from truing.declare.fields import Found
 from truing.declare.model import Model
-from truing.declare.scope import formula_scope
 from truing.formulas import parse
 from truing.formulas.tree import Name, walk
 

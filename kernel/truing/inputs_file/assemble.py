@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from truing.declare.fields import InputField, make
 from truing.declare.model import Model, Study
-from truing.declare.spreads import Off, Spread, Target
+from truing.declare.sources import Effect, Unknown
+from truing.declare.specs import Given
+from truing.declare.spreads import ByChoice, Drawn, Off, Spread, Target
 from truing.errors import Fault, TruingError
 from truing.inputs_file.checks import renamed
-from truing.inputs_file.diagnose_options import diagnose_options
 from truing.inputs_file.document import Document
-from truing.inputs_file.effects_on import effects_of
-from truing.inputs_file.values import Reading
+from truing.inputs_file.study_options import diagnose_options
+from truing.inputs_file.values import Reading, plain
 from truing.kernel import Offer
 from truing.setup import DEFAULT_SEED, Setup, SwitchedOn
+from truing.units.names import PURE
 
 Values = Mapping[tuple[str, ...], Any]
 
@@ -198,3 +200,135 @@ def places_of(model: Model[Any, Any], document: Document) -> dict[str, tuple[str
 
 
 _STATED = {"inputs", "conditions", "tolerances"}
+
+
+# Declared values as an inputs file writes them
+
+
+def default_of(item: InputField) -> Any:
+    """Return the default of an input as a TOML value ("120 N", true, "a word"), or None where it has none."""
+    default: Any = item.spec.default
+    if not isinstance(item.spec, Given):
+        return None
+    return None if default is None else _stated(default, item)
+
+
+def _stated(value: Any, item: InputField) -> Any:
+    if isinstance(value, (str, bool)):
+        return value
+    if isinstance(value, (int, float)):
+        if item.kind == "choice":
+            return str(value)
+        return value if item.unit in PURE else f"{plain(value)} {item.unit}"
+    return [_stated(one.item() if hasattr(one, "item") else one, item) for one in value]
+
+
+def spread_text(spread: Spread, choose: Mapping[str, Any] | None = None) -> str:
+    """Return a spread as a file writes it; of one that follows a choice the chosen branch; nothing for a function."""
+    if isinstance(spread, Drawn):
+        return ""
+    if isinstance(spread, ByChoice):
+        branch = (choose or {}).get(spread.chooser)
+        return spread_text(spread.chosen(str(branch))) if branch is not None else ""
+    return spread.text
+
+
+def toml_value(value: Any) -> str:
+    """Write a value as TOML: texts quoted, numbers so that they read back the same."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return _quoted(value)
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        return repr(value)
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{toml_key(key)} = {toml_value(one)}" for key, one in value.items()) + " }"
+    return "[" + ", ".join(toml_value(one) for one in value) + "]"
+
+
+def toml_key(name: str) -> str:
+    """Write a name as a TOML key, quoted where it must be."""
+    plain_key = bool(name) and all(
+        character.isascii() and (character.isalnum() or character in "_-") for character in name
+    )
+    return name if plain_key else _quoted(name)
+
+
+def _quoted(text: str) -> str:
+    escapes = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\r": "\\r"}
+    return '"' + "".join(escapes.get(c, c if c >= " " and c != "\x7f" else f"\\u{ord(c):04x}") for c in text) + '"'
+
+
+# Which effects an inputs file switches on, with all unknowns or, of an effect with parts, with some
+
+
+MOST_NAMED = 4
+
+
+def names_stated(data: Mapping[str, Any], unreadable: Collection[tuple[str, ...]] = ()) -> dict[str, frozenset[str]]:
+    """Return what stands under each [effects.NAME], readable or not."""
+    effects = data.get("effects")
+    tables = effects if isinstance(effects, dict) else {}
+    found = {name: set(table) for name, table in tables.items() if isinstance(table, dict)}
+    for path in unreadable:
+        if len(path) == 3 and path[0] == "effects" and path[1] in found:
+            found[path[1]].add(path[2])
+    return {name: frozenset(names) for name, names in found.items()}
+
+
+def part_faults(model: Model[Any, Any], stated: Mapping[str, frozenset[str]]) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Say which effects with parts are on without any of them, and which parts are not stated whole."""
+    for name, names in stated.items():
+        effect = model.known_effects.get(name)
+        if effect is None or not effect.parts:
+            continue
+        if not names - {"covariance"}:
+            yield ("effects", name), f"effect '{name}' is on, but none of its unknowns is given: {_some(effect)}"
+        for part in effect.groups():
+            sentence = _unfinished(part, names)
+            if sentence:
+                first = next(unknown.name for unknown in part if unknown.name in names)
+                yield ("effects", name, first), f"effect '{name}': {sentence}"
+
+
+def _some(effect: Effect[Any, Any]) -> str:
+    names = [unknown.name for unknown in effect.unknowns]
+    more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+    return ", ".join(names[:MOST_NAMED]) + more
+
+
+def _unfinished(part: Sequence[Unknown], names: Collection[str]) -> str:
+    """Return what a part still needs that is stated at all: its shapes, and one amplitude; or nothing."""
+    given = [unknown for unknown in part if unknown.name in names]
+    missing = [unknown for unknown in part if unknown.name not in names and not unknown.is_amplitude]
+    if not given:
+        return ""
+    if missing:
+        bounds = f"from {missing[0].low:g} to {missing[0].high:g} {missing[0].unit}".strip()
+        return f"'{given[0].name}' is given, so '{missing[0].name}' must be given too ({bounds})"
+    if not any(unknown.is_amplitude for unknown in given):
+        sizes = " or ".join(f"'{unknown.name}'" for unknown in part if unknown.is_amplitude)
+        return f"'{given[0].name}' is given, but without {sizes} nothing happens; give it, or leave both out"
+    return ""
+
+
+def effects_of(model: Model[Any, Any], values: Values) -> tuple[SwitchedOn, ...]:
+    """Return the effects that are on, in the order in which they act."""
+    on = []
+    for name, effect in model.known_effects.items():
+        keys = {unknown.name: ("effects", name, unknown.name) for unknown in effect.unknowns}
+        stated = {unknown: float(values[key]) for unknown, key in keys.items() if key in values}
+        if not stated or (len(stated) < len(keys) and not effect.parts):
+            continue
+        covariance = values.get(("effects", name, "covariance"), ()) if "covariance" not in keys else ()
+        sds = {
+            unknown: values[("effects", name, unknown, "sd")]
+            for unknown in stated
+            if ("effects", name, unknown, "sd") in values
+        }
+        if covariance:
+            sds = {unknown: math.sqrt(covariance[place][place]) for place, unknown in enumerate(stated)} | sds
+        on.append(SwitchedOn(effect, stated, sds, covariance))
+    return tuple(on)

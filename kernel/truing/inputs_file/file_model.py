@@ -18,7 +18,6 @@ from truing.declare.model import Model
 from truing.declare.sources import Effect
 from truing.declare.specs import Given, Loaded
 from truing.inputs_file import checks
-from truing.inputs_file.diagnose_options import NAME, diagnose_schema, of_diagnose
 from truing.inputs_file.schema_words import (
     condition_schema,
     covariance_schema,
@@ -29,6 +28,7 @@ from truing.inputs_file.schema_words import (
     unit_schema,
     unknown_schema,
 )
+from truing.inputs_file.study_options import NAME, diagnose_schema, of_diagnose
 from truing.inputs_file.values import Reading
 from truing.setup import DEFAULT_SEED
 

@@ -7,7 +7,7 @@ from typing import Any
 from truing.declare.fields import InputField
 from truing.declare.model import Study
 from truing.declare.sources import Condition, Effect, Tolerance, Unknown
-from truing.inputs_file.defaults import default_of, spread_text
+from truing.inputs_file.assemble import default_of, spread_text
 from truing.inputs_file.study_options import option_schema, options_of
 from truing.inputs_file.values import bounds_in_words, plain
 from truing.units.names import PURE

@@ -5,14 +5,20 @@ from __future__ import annotations
 import dataclasses
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from math import inf
 from typing import Any, get_origin, get_type_hints
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 from pydantic.errors import PydanticUserError
 
-from truing.declare.model import Study
-from truing.inputs_file.values import written
+from truing.declare.model import Model, Study
+from truing.declare.near_miss import near_miss
+from truing.errors import UnitError
+from truing.inputs_file.values import Reading, SentenceError, broken_bound, read_number, written
+from truing.setup import DiagnoseOptions, column_and_word
+from truing.units import split_quantity
+from truing.units.grammar import shown
 
 
 def options_of(study: Study) -> dict[str, Any]:
@@ -85,3 +91,227 @@ def option_schema(hint: Any) -> dict[str, Any]:
         return TypeAdapter(hint, config=config).json_schema()
     except (PydanticUserError, TypeError):
         return {}
+
+
+# ``[studies.diagnose]``: what is asked of a diagnosis, checked when the file is read
+
+
+NAME = "diagnose"
+Values = Mapping[tuple[str, ...], Any]
+
+
+def of_diagnose(model: Model[Any, Any]) -> Callable[[Any, Reading], Any]:
+    """Make the check of the section; all that is wrong is said in one answer."""
+    readers = {
+        "per_file": _per_file, "hold_out": _hold_out, "box": _box, "clipped": _clipped, "lognormal": _lognormal,
+        "at_least": _marks("at_least"), "at_most": _marks("at_most"), "budget": _budget,
+    }  # fmt: skip
+
+    def check(raw: Any, reading: Reading) -> Any:
+        if not isinstance(raw, dict):
+            raise SentenceError(f"[studies.{NAME}] is a section; write its options below it")
+        for name, value in raw.items():
+            key = ("studies", NAME, name)
+            try:
+                if name not in readers:
+                    meant = near_miss(name[:80], readers)
+                    known = f" (options: {', '.join(readers)})"
+                    raise SentenceError(f"study '{NAME}' has no option {shown(name)}.{meant}{known}")
+                reading.values[key] = readers[name](value, model)
+            except ValueError as error:
+                reading.faults.append((key, str(error)))
+        return raw
+
+    return check
+
+
+def diagnose_options(model: Model[Any, Any], values: Values) -> DiagnoseOptions:
+    """Return the options that were read, the others as they are by default; a study of that name has its own."""
+    if any(study.name == NAME for study in model.studies):
+        return DiagnoseOptions()
+    return DiagnoseOptions(**{path[2]: value for path, value in values.items() if path[:2] == ("studies", NAME)})
+
+
+def diagnose_schema(model: Model[Any, Any]) -> dict[str, Any]:
+    """Return the schema of the section."""
+    effects = list(model.known_effects)
+    per_file = "Effects, single unknowns (effect.unknown) and inputs that every file has for itself."
+    box = "Where an input or condition can be set, for the next measurement."
+    budget = "How many calls of the model on all rows the search may make; 0 leaves it to how long one takes."
+    words = "Rows that only judge, by a column of the data and the word it holds there."
+    ranges = {
+        name: {"type": "string", "examples": [f"0..10 {_unit(name, model)}".strip()]} for name in _settable(model)
+    }
+    hold_out = {"type": "string", "default": "", "examples": ["record = validation"], "description": words}
+    names = {"type": "array", "items": {"type": "string"}, "default": [], "examples": [effects[:1]]}
+    spans = {"type": "object", "properties": ranges, "additionalProperties": False}
+    properties = {
+        "per_file": {**names, "description": per_file},
+        "hold_out": hold_out,
+        "box": {**spans, "description": box},
+        "budget": {"type": "integer", "minimum": 0, "default": 0, "examples": [1000], "description": budget},
+        **_of_readings(model),
+    }
+    about = "What is asked of a diagnosis."
+    return {"type": "object", "properties": properties, "additionalProperties": False, "description": about}
+
+
+def _of_readings(model: Model[Any, Any]) -> dict[str, Any]:
+    """Return the schema of what is said of readings and their noise."""
+    names = model.measurable
+    beyond = "Rows whose true value lies {} what was read, by result: a column of the data and the word it holds there."
+
+    def by_result(example: str, description: str) -> dict[str, Any]:
+        texts = {name: {"type": "string", "examples": [example]} for name in names}
+        return {"type": "object", "properties": texts, "additionalProperties": False, "description": description}
+
+    return {
+        "at_least": by_result("outcome = runout", beyond.format("above")),
+        "at_most": by_result("outcome = below detection", beyond.format("below")),
+        "clipped": by_result("0..10", "The ends of a gauge, by result, with a unit; one of them may be left out."),
+        "lognormal": {
+            "type": "array", "items": {"enum": names}, "default": [],
+            "description": "Results whose errors are in proportion: they are compared as logarithms.",
+        },
+    }  # fmt: skip
+
+
+def _settable(model: Model[Any, Any]) -> Iterator[str]:
+    yield from (name for name, item in model.input_fields.items() if item.varies)
+    yield from model.known_conditions
+
+
+def _unit(name: str, model: Model[Any, Any]) -> str:
+    item = model.input_fields.get(name)
+    return item.unit if item is not None else model.known_conditions[name].unit
+
+
+def _per_file(raw: Any, model: Model[Any, Any]) -> tuple[str, ...]:
+    """Take names of effects, of single unknowns and of inputs."""
+    if not isinstance(raw, list) or not all(isinstance(name, str) for name in raw):
+        raise SentenceError(f"study '{NAME}': per_file = {written(raw)} is no list of names; write [\"sensor_offset\"]")
+    effects = model.known_effects
+    unknowns = [f"{name}.{unknown.name}" for name, effect in effects.items() for unknown in effect.unknowns]
+    known = [*effects, *unknowns, *(name for name, item in model.input_fields.items() if item.varies)]
+    for place, name in enumerate(raw):
+        if name not in known:
+            near = near_miss(name[:80], known)
+            hint = near or f" (effects: {', '.join(effects) or 'none'})"
+            raise SentenceError(
+                f"study '{NAME}': per_file names {shown(name)}, which is no effect, unknown or number among the "
+                f"inputs of {model.name}.{hint}"
+            )
+        if name in raw[:place]:
+            raise SentenceError(f"study '{NAME}': per_file names '{name}' twice")
+    return tuple(raw)
+
+
+def _hold_out(raw: Any, _: Model[Any, Any]) -> str:
+    """Take "column = word"; nothing holds no row out."""
+    if not isinstance(raw, str):
+        raise SentenceError(f"study '{NAME}': hold_out = {written(raw)} is no text; write \"record = validation\"")
+    if raw.strip() and not all(DiagnoseOptions(hold_out=raw).held_out):
+        raise SentenceError(
+            f"study '{NAME}': hold_out = {shown(raw)} names no rows; write a column and the word it holds, "
+            'such as "record = validation"'
+        )
+    return raw.strip()
+
+
+def _budget(raw: Any, _: Model[Any, Any]) -> int:
+    """Take a number of calls."""
+    if not isinstance(raw, int) or isinstance(raw, bool) or raw < 0:
+        raise SentenceError(f"study '{NAME}': budget = {written(raw)} is no number of calls; write budget = 1000")
+    return raw
+
+
+def _box(raw: Any, model: Model[Any, Any]) -> dict[str, tuple[float, float]]:
+    """Take ranges of inputs and conditions, in SI."""
+    if not isinstance(raw, dict):
+        raise SentenceError(f"study '{NAME}': box = {written(raw)} is no table; write box = {{ NAME = \"0..10 kN\" }}")
+    known = list(_settable(model))
+    for name in raw:
+        if name not in known:
+            raise SentenceError(
+                f"study '{NAME}': box names {shown(name)}, which is no condition and no number among the inputs of "
+                f"{model.name}.{near_miss(name[:80], known)}"
+            )
+    return {name: _range(name, text, model) for name, text in raw.items()}
+
+
+def _range(name: str, raw: Any, model: Model[Any, Any]) -> tuple[float, float]:
+    """Return "low..high unit" in SI; the unit of the upper end holds for a lower one without."""
+    item = model.input_fields.get(name)
+    low, high = _ends("box", name, raw, _unit(name, model))
+    sentence = "" if item is None else broken_bound(item, low) or broken_bound(item, high)
+    if sentence:
+        raise SentenceError(f"study '{NAME}': box: {sentence}")
+    return low, high
+
+
+def _ends(option: str, name: str, raw: Any, unit: str, *, may_be_open: bool = False) -> tuple[float, float]:
+    """Return "low..high unit" in SI, infinite where an end may be, and is, left out."""
+    like = f'"0..10 {unit}"'.replace(' "', '"')
+    ends = [end.strip() for end in raw.split("..")] if isinstance(raw, str) else []
+    if len(ends) != 2 or not (any(ends) if may_be_open else all(ends)):
+        raise SentenceError(f"study '{NAME}': {option}: {name} = {written(raw)} is no range; write {name} = {like}")
+    try:
+        common = split_quantity(ends[1]).unit if ends[1] else ""
+        ends = [end if not end or split_quantity(end).unit else f"{end} {common}".strip() for end in ends]
+        low, high = (
+            read_number(name, end, unit) if end else sign * inf for end, sign in zip(ends, (-1, 1), strict=True)
+        )
+    except (UnitError, SentenceError) as error:
+        raise SentenceError(f"study '{NAME}': {option}: {error}") from None
+    if low >= high:
+        raise SentenceError(f"study '{NAME}': {option}: {name} = {written(raw)} goes from its higher end; lower first")
+    return low, high
+
+
+def _by_result(option: str, raw: Any, model: Model[Any, Any], like: str) -> dict[str, Any]:
+    """Demand a table by results that rows can hold."""
+    if not isinstance(raw, dict):
+        said = f"{option} = {written(raw)} is no table"
+        raise SentenceError(f"study '{NAME}': {said}; write {option} = {{ RESULT = \"{like}\" }}")
+    for name in raw:
+        _demand_measurable(option, name, model)
+    return raw
+
+
+def _demand_measurable(option: str, name: str, model: Model[Any, Any]) -> None:
+    known = model.measurable
+    if name not in known:
+        hint = near_miss(name[:80], known) or f" (results: {', '.join(known)})"
+        said = f"{option} names {shown(name)}, which is no result of {model.name} that can be measured in rows"
+        raise SentenceError(f"study '{NAME}': {said}.{hint}")
+
+
+def _marks(option: str) -> Callable[[Any, Model[Any, Any]], dict[str, str]]:
+    """Make the reader of the columns that mark censored readings, "column = word" by result."""
+
+    def read(raw: Any, model: Model[Any, Any]) -> dict[str, str]:
+        for name, text in _by_result(option, raw, model, "outcome = runout").items():
+            if not isinstance(text, str) or not all(column_and_word(text)):
+                raise SentenceError(
+                    f"study '{NAME}': {option}: {name} = {written(text)} marks no rows; write a column and the word it "
+                    f'holds, such as {name} = "outcome = runout"'
+                )
+        return {name: text.strip() for name, text in raw.items()}
+
+    return read
+
+
+def _clipped(raw: Any, model: Model[Any, Any]) -> dict[str, tuple[float, float]]:
+    """Take the ends of gauges, in SI."""
+    fields = model.own_result_fields
+    ends = _by_result("clipped", raw, model, "0..10 kN")
+    return {name: _ends("clipped", name, text, fields[name].unit, may_be_open=True) for name, text in ends.items()}
+
+
+def _lognormal(raw: Any, model: Model[Any, Any]) -> tuple[str, ...]:
+    """Take names of results whose errors are in proportion."""
+    if not isinstance(raw, list) or not all(isinstance(name, str) for name in raw):
+        raise SentenceError(f"study '{NAME}': lognormal = {written(raw)} is no list of results; write [\"life\"]")
+    for name in raw:
+        _demand_measurable("lognormal", name, model)
+    return tuple(dict.fromkeys(raw))

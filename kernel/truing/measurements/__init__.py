@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from truing.measurements.overriding import Case, CasesFile, RowsFile, read_cases, read_rows
 from truing.measurements.row_count import LeftOut, RowCount
-from truing.measurements.table import DataTable, read_table
-from truing.measurements.writing import EXCEL, PLAIN, Form, table_text, write_table
+from truing.measurements.table import EXCEL, PLAIN, DataTable, Form, read_table, table_text, write_table
 
 __all__ = [
     "EXCEL", "PLAIN", "Case", "CasesFile", "DataTable", "Form", "LeftOut", "RowCount", "RowsFile", "read_cases",

@@ -14,8 +14,7 @@ from truing.declare.published import Finding
 from truing.formulas import Formula
 from truing.published import ComparedRow
 from truing.runs.provenance import Provenance
-from truing.studies.checks import Proposal
-from truing.studies.states import State
+from truing.studies.checks import Proposal, State
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from truing.report.context import Head
 from truing.report.render import page
 from truing.report.templates import template_folder
 from truing.runs.index import Entry, Finding, Listing, Other
-from truing.studies.states import State
+from truing.studies.checks import State
 from truing.units import unit_text
 
 MARK = '<meta name="generator" content="calc index">'

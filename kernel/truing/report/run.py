@@ -28,7 +28,7 @@ from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
 from truing.studies.bench import Progress, silent
-from truing.studies.states import State
+from truing.studies.checks import State
 
 UNDISTURBED: Mapping[str, Any] = {"resumed": 0, "warnings": []}
 """What run.json says beside ``run_info`` of a run in one process."""

@@ -29,8 +29,7 @@ from truing.report.content import (
 from truing.report.context import Banner, Chapter, Head, InputRow, Sheet, TableView
 from truing.runs.provenance import Provenance
 from truing.setup import Setup
-from truing.studies.checks import Proposal
-from truing.studies.states import HEADLINES, SHORT
+from truing.studies.checks import HEADLINES, SHORT, Proposal
 from truing.studies.verdicts import sentence_of
 from truing.units import unit_text
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from truing.errors import UsageError
-from truing.studies.states import EXIT_CODES
+from truing.studies.checks import EXIT_CODES
 
 ROUNDING = 1e-12
 

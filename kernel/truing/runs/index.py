@@ -14,7 +14,7 @@ from typing import Any
 from truing.errors import UnknownPluginError
 from truing.runs.folder import DOCUMENTS, Kind
 from truing.runs.partial import HEADER
-from truing.studies.states import EXIT_CODES, HEADLINES, State
+from truing.studies.checks import EXIT_CODES, HEADLINES, State
 from truing.studies.verdicts import worst
 
 DEEPEST = 20

@@ -14,7 +14,7 @@ from truing.declare.fields import InputField
 from truing.declare.model import Study
 from truing.declare.spreads import ByChoice, Drawn
 from truing.formulas.symbols import printable
-from truing.inputs_file.defaults import toml_key, toml_value
+from truing.inputs_file.assemble import toml_key, toml_value
 from truing.inputs_file.study_options import options_of
 from truing.setup import Setup, SwitchedOn
 from truing.units import difference_unit, from_si, read_quantity, to_si, unit_factor

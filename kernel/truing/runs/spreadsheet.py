@@ -8,7 +8,7 @@ from typing import Any
 from truing.declare.model import Model
 from truing.formulas.symbols import printable
 from truing.measurements import EXCEL, table_text
-from truing.studies.states import SHORT
+from truing.studies.checks import SHORT
 
 HEADERS = ("part", "name", "place", "value", "unit", "limit", "margin", "verdict", "note")
 Row = dict[str, Any]

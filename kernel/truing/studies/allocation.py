@@ -21,13 +21,11 @@ from truing.studies.checks import Check, Proposal, chance_check, plain_checks
 from truing.studies.demands import Demand, as_number, demands, nominal_inputs, wilson
 from truing.studies.differences import slopes
 from truing.studies.drawings import lines
-from truing.studies.grades import Shop, open_shop, with_grades
+from truing.studies.grades import Shop, Strip, open_shop, priced_widths, with_grades, with_widths
 from truing.studies.reading import printed_step, spoken
 from truing.studies.sampling import Budget, Machines, Tally, sample
 from truing.studies.scatter import scatter_of
-from truing.studies.strips import Strip, priced_widths, with_widths
-from truing.studies.synthesis import Plan, Step, as_it_stands, by_rule, coefficients, least_cost
-from truing.studies.widths_bought import bettered, bought
+from truing.studies.synthesis import Plan, Step, as_it_stands, bettered, bought, by_rule, coefficients, least_cost
 from truing.units import from_si, unit_text
 
 BALANCED_TO = 1e-4

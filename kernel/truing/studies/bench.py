@@ -12,8 +12,8 @@ from truing.evaluate import acting_inputs, answered, evaluate_rows
 from truing.prices import price_answers
 from truing.setup import Setup
 from truing.studies.checks import Check, Proposal
+from truing.studies.grades import with_widths
 from truing.studies.scatter import scatter_of
-from truing.studies.strips import with_widths
 
 Progress = Callable[[str, int, int], None]
 

@@ -15,7 +15,6 @@ from truing.evaluate import evaluate
 from truing.executors import keepable
 from truing.numbers import STATED_DIGITS, format_value, with_unit
 from truing.setup import Setup
-from truing.studies.states import State
 from truing.units import difference_unit, from_si
 
 
@@ -220,3 +219,25 @@ def _bound_words(require: Require, setup: Setup, answers: Mapping[str, Any]) -> 
     unit = setup.print_unit(require.result)
     unit = difference_unit(unit) if require.kind == "within" else unit
     return with_unit(*format_value(limit_amount(require, setup, dict(answers)), unit, STATED_DIGITS))
+
+
+# The four verdicts and their words, apart from what calculates: the command line knows them before it loads that
+
+
+State = Literal["passes", "proposed", "undecided", "fails"]
+"""What is said of a limit and of a run: kept as stated, kept by a design that a study proposes, not decided, missed."""
+
+EXIT_CODES: Mapping[State, int] = {"passes": 0, "proposed": 0, "undecided": 1, "fails": 1}
+"""Exit codes by verdict, the best first."""
+HEADLINES: Mapping[State, str] = {
+    "passes": "Passes",
+    "proposed": "Passes with the proposed changes, not as stated",
+    "undecided": "Undecided",
+    "fails": "Fails",
+}
+SHORT: Mapping[State, str] = {
+    "passes": "pass",
+    "proposed": "not as stated",
+    "undecided": "UNDECIDED",
+    "fails": "FAILS",
+}

@@ -20,11 +20,32 @@ from truing.studies.bench import Bench
 from truing.studies.checks import Check
 from truing.studies.demands import Demand, as_number, demands, wilson
 from truing.studies.drawings import BLUE, GREY, ORANGE, WIDTH, labelled
-from truing.studies.optimise_front import REFERENCE, SETTLED, Volume, knee_of, volume_of
-from truing.studies.optimise_goals import Aim, Bound, constants, left_out
-from truing.studies.optimise_problem import Answers, Problem, StandIn, answered, answers_of, make_problem
-from truing.studies.optimise_search import Plan, Trail, search, small, violation
-from truing.studies.optimise_space import Brief, Variable
+from truing.studies.optimise_problem import (
+    Aim,
+    Answers,
+    Bound,
+    Brief,
+    Problem,
+    StandIn,
+    Variable,
+    answered,
+    answers_of,
+    constants,
+    left_out,
+    make_problem,
+)
+from truing.studies.optimise_search import (
+    REFERENCE,
+    SETTLED,
+    Plan,
+    Trail,
+    Volume,
+    knee_of,
+    search,
+    small,
+    violation,
+    volume_of,
+)
 from truing.studies.reading import printed, spoken
 from truing.studies.sampling import Budget, Machines, Tally, sample
 from truing.studies.scatter import scatter_of

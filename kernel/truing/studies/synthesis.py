@@ -7,16 +7,20 @@ goal on the probability is a bound on that sum.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from math import exp, inf
 from typing import Any
 
 import numpy as np
-from scipy.optimize import Bounds, LinearConstraint, brentq, milp
+from scipy.optimize import Bounds, LinearConstraint, brentq, milp, minimize, nnls
+from scipy.special import ndtr, ndtri
 
 from truing.fits import GRADES
 from truing.studies.demands import Demand, normal_chance
-from truing.studies.grades import Shop
+from truing.studies.grades import Shop, Values, prices_at
+from truing.studies.threads import one_thread
 
 
 @dataclass(frozen=True)
@@ -169,3 +173,245 @@ def _solve(shop: Shop, bounds: Mapping[str, float], margin: float) -> dict[str, 
     if answer.x is None:
         return None
     return {name: choice.grade for (name, choice), taken in zip(choices, answer.x, strict=True) if taken > 0.5}
+
+
+# Which widths? The least cost under all goals, where tolerances are no grades but widths with a price
+
+
+MARGINS = (0.0, 1e-10, 1e-8, 1e-6)
+ROUNDING = 1e-13
+STARTS = 4
+FEASIBLE = 1e-9
+AT_END = 1e-7
+CHEAPER = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """The widths to choose, as logarithms over those in force, with these grades; goals in standard deviations."""
+
+    shop: Shop
+    grades: Mapping[str, str]
+
+    def widths(self, x: Values) -> dict[str, float]:
+        """Return the full widths (SI)."""
+        return {
+            strip.name: float(strip.start * np.exp(value))
+            for strip, value in zip(self.shop.strips.values(), x, strict=True)
+        }
+
+    def ends(self) -> tuple[Values, Values]:
+        """Return the smallest and the largest logarithms."""
+        strips = self.shop.strips.values()
+        low = np.log([strip.low / strip.start for strip in strips])
+        return low, np.log([strip.high / strip.start for strip in strips])
+
+    def cost(self, x: Values) -> tuple[float, Values]:
+        """Return the price of the widths and its gradient, both over the price of those in force."""
+        strips = tuple(self.shop.strips.values())
+        widths = np.array(list(self.widths(x).values()))
+        prices, slopes = prices_at(strips, widths)
+        return float(prices.sum()) / self._whole, slopes * widths / self._whole
+
+    @cached_property
+    def _whole(self) -> float:
+        """The price of the widths in force."""
+        return sum(abs(strip.cost(strip.start)) for strip in self.shop.strips.values()) or 1.0
+
+    def slack(self, x: Values) -> tuple[Values, Values]:
+        """Return by goal how far it is kept (goals,), in standard deviations of the start, and the gradients."""
+        found = [self._slack(demand, x) for demand in self.shop.goals]
+        return np.array([value for value, _ in found]), np.array([gradient for _, gradient in found])
+
+    def _slack(self, demand: Demand, x: Values) -> tuple[float, Values]:
+        shop, name = self.shop, demand.name
+        widths = self.widths(x)
+        sd = max(shop.variance(name, self.grades, widths), 1e-300) ** 0.5
+        by_mean = np.array([strip.pulls[name] * widths[key] for key, strip in shop.strips.items()])
+        by_sd = np.array([strip.variance(name, widths[key]) / sd for key, strip in shop.strips.items()])
+        room, of_mean, of_sd = _room(demand, shop.mean(name, widths), sd)
+        scale = shop.variance(name, shop.start) ** 0.5 or 1.0
+        return room / scale, (of_mean * by_mean + of_sd * by_sd) / scale
+
+
+def _room(demand: Demand, mean: float, sd: float) -> tuple[float, float, float]:
+    """Return how far a goal is kept in the unit of the result, with its derivatives by mean and standard deviation."""
+    assert demand.goal is not None  # goals only
+    times = float(ndtri(demand.goal))
+    if demand.low == -inf:
+        return demand.high - mean - times * sd, -1.0, -times
+    if demand.high == inf:
+        return mean - demand.low - times * sd, 1.0, -times
+    if not demand.low < mean < demand.high:
+        beyond = mean - demand.high if mean >= demand.high else demand.low - mean
+        return -beyond - sd, -1.0 if mean >= demand.high else 1.0, -1.0
+    largest, slope = _largest_sd(demand, mean)
+    return largest - sd, slope, -1.0
+
+
+def _largest_sd(demand: Demand, mean: float) -> tuple[float, float]:
+    """Return the standard deviation up to which a goal between two limits is met, and its derivative by the mean."""
+    goal = demand.goal or 0.0
+    reach = min(demand.high - mean, mean - demand.low)
+    if goal <= 0.5:
+        sd = (largest_variance(demand, mean) or 0.0) ** 0.5
+    else:  # both limits as near as the nearer one, or that one alone: the truth lies between
+        ends = (reach / float(ndtri(0.5 + goal / 2)), reach / float(ndtri(goal)))
+        sd = brentq(
+            lambda sd: float(ndtr((demand.high - mean) / sd) - ndtr((demand.low - mean) / sd)) - goal,
+            0.999 * ends[0],
+            1.001 * ends[1],
+            xtol=1e-16 * ends[0],
+            rtol=1e-14,
+        )
+    above, below = (demand.high - mean) / sd, (demand.low - mean) / sd
+    at_high, at_low = exp(-(above**2) / 2), exp(-(below**2) / 2)
+    return sd, -(at_high - at_low) / (above * at_high - below * at_low)
+
+
+def bought(shop: Shop, plan: Plan) -> Plan:
+    """Return the plan with the widths that meet all goals at the least cost; where none do, those that come nearest."""
+    if not shop.strips or any(demand.goal is not None and demand.goal >= 1.0 for demand in shop.demands):
+        return plan
+    search = Search(shop, plan.grades)
+    starts = list(_starts(search))
+    with one_thread():
+        found = _cheapest(search, starts)
+        if found is None:
+            nearest = _nearest(search, starts)
+            found = _cheapest(search, [nearest])
+    if found is None:
+        return _with(shop, plan, search.widths(nearest), residual=None)
+    return _with(shop, plan, search.widths(found), residual=_residual(search, found))
+
+
+def bettered(shop: Shop, plan: Plan) -> Plan:
+    """Change one grade by one step, buy the widths anew, and take what is cheapest, until no such step is cheaper."""
+    with one_thread():
+        while plan.reached and shop.strips:
+            best = min(_steps_from(shop, plan), key=lambda other: other.cost, default=plan)
+            if best.cost >= plan.cost * (1 - CHEAPER):
+                break
+            plan = best
+    return plan
+
+
+def _steps_from(shop: Shop, plan: Plan) -> Iterator[Plan]:
+    """Yield the designs with one grade a step finer or coarser that meet all goals; widths start where they are."""
+    for name, part in shop.parts.items():
+        offered = list(part.choices)
+        place = offered.index(plan.grades[name])
+        for grade in offered[max(place - 1, 0) : place] + offered[place + 1 : place + 2]:
+            other = replace(plan, grades={**plan.grades, name: grade})
+            search = Search(shop, other.grades)
+            held = [np.log(plan.widths[key] / strip.start) for key, strip in shop.strips.items()]
+            low, high = search.ends()
+            found = _cheapest(search, [np.clip(held, low, high), low])
+            if found is not None:
+                yield _with(shop, other, search.widths(found), residual=_residual(search, found))
+
+
+def _with(shop: Shop, plan: Plan, widths: Mapping[str, float], *, residual: float | None) -> Plan:
+    reached = shop.reached(plan.grades, widths)
+    status = "reached"
+    if not reached:
+        status = f"not reachable: no widths from {shop.span[0]:g} to {shop.span[1]:g} times those in force meet it"
+        status += ", and every grade is at its finest" if plan.grades else ""
+    chances = shop.chances(plan.grades, widths)
+    cost = shop.cost(plan.grades, widths)
+    return replace(plan, cost=cost, chances=chances, reached=reached, status=status, widths=widths, residual=residual)
+
+
+def _starts(search: Search) -> Iterator[Values]:
+    """Yield the widths in force, the narrowest, the widest, those between, and some by chance, always the same."""
+    low, high = search.ends()
+    yield np.clip(np.zeros(len(low)), low, high)
+    yield from (low, high, (low + high) / 2)
+    rng = np.random.default_rng(0)
+    for _ in range(STARTS):
+        yield rng.uniform(low, high)
+
+
+def _cheapest(search: Search, starts: Sequence[Values]) -> Values | None:
+    """Return the least cost that was found; goals are held a little off until they are met exactly."""
+    for margin in MARGINS:
+        ends = [end for start in starts if (end := _descended(search, start, margin)) is not None]
+        if not ends:
+            return None
+        best = _exact(search, min(ends, key=lambda x: search.cost(x)[0]))
+        if search.shop.reached(search.grades, search.widths(best)):
+            return best
+    return None
+
+
+def _exact(search: Search, x: Values) -> Values:
+    """Take the last rounding out of the goals that are just missed, by the shortest way."""
+    for _ in range(4):
+        if search.shop.reached(search.grades, search.widths(x)):
+            break
+        slack, rows = search.slack(x)
+        short = slack < ROUNDING
+        x = np.clip(x + np.linalg.lstsq(rows[short], ROUNDING - slack[short], rcond=None)[0], *search.ends())
+    return x
+
+
+def _descended(search: Search, start: Values, margin: float) -> Values | None:
+    """Follow one start to its minimum; None where it ends outside the goals."""
+    x = _solved(
+        search.cost,
+        start,
+        search.ends(),
+        {"fun": lambda x: search.slack(x)[0] - margin, "jac": lambda x: search.slack(x)[1]},
+    )
+    return x if x is not None and search.slack(x)[0].min() >= margin - FEASIBLE else None
+
+
+def _nearest(search: Search, starts: Sequence[Values]) -> Values:
+    """Return the widths whose worst goal is nearest to being met: the largest slack that all goals can have."""
+    low, high = search.ends()
+    upward = np.append(np.zeros(len(low)), -1.0)
+    rising = -np.ones(len(search.shop.goals))
+    found = list(starts)
+    for start in starts:
+        ends = (np.append(low, -np.inf), np.append(high, np.inf))
+        y = _solved(
+            lambda y: (-y[-1], upward),
+            np.append(start, search.slack(start)[0].min()),
+            ends,
+            {
+                "fun": lambda y: search.slack(y[:-1])[0] - y[-1],
+                "jac": lambda y: np.column_stack([search.slack(y[:-1])[1], rising]),
+            },
+        )
+        found += [] if y is None else [y[:-1]]
+    return max(found, key=lambda x: float(search.slack(x)[0].min()))
+
+
+def _solved(objective: Any, start: Values, ends: tuple[Values, Values], constraint: Any) -> Values | None:
+    """Return where SLSQP ends, inside the bounds; None where it loses itself."""
+    held: Any = {"type": "ineq", **constraint}
+    options: Any = {"ftol": 1e-13, "maxiter": 300}
+    answer = minimize(
+        objective, start, jac=True, method="SLSQP", bounds=Bounds(*ends), constraints=held, options=options
+    )
+    x = np.clip(np.asarray(answer.x, dtype=float), *ends)
+    return x if np.isfinite(x).all() else None
+
+
+def _residual(search: Search, x: Values) -> float:
+    """Return how far the end of a search is from a minimum: what no active goal or bound balances of the gradient.
+
+    0 is a minimum of Karush, Kuhn and Tucker; 1 is no balance at all.
+    """
+    low, high = search.ends()
+    slack, rows = search.slack(x)
+    forces = [row for row, room in zip(rows, slack, strict=True) if room <= AT_END]
+    unit = np.eye(len(x))
+    forces += [unit[place] for place in np.flatnonzero(x <= low + AT_END)]
+    forces += [-unit[place] for place in np.flatnonzero(x >= high - AT_END)]
+    gradient = search.cost(x)[1]
+    size = float(np.linalg.norm(gradient))
+    if not size:
+        return 0.0
+    left = float(nnls(np.array(forces).T, gradient)[1]) if forces else size
+    return left / size

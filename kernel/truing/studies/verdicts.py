@@ -14,8 +14,10 @@ from truing.executors import keepable
 from truing.setup import Setup
 from truing.studies.bench import Outcome, proposals_of
 from truing.studies.checks import (
+    EXIT_CODES,
     Check,
     Proposal,
+    State,
     check_name,
     compared_words,
     goal_of,
@@ -26,7 +28,6 @@ from truing.studies.checks import (
 )
 from truing.studies.demands import exists
 from truing.studies.reliability import Reliability
-from truing.studies.states import EXIT_CODES, State
 from truing.units import from_si
 
 NO_STUDY = "no study of the model"

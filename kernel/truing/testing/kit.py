@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from truing.declare.checks import Promise
 from truing.declare.model import Model
-from truing.declare.promises import Promise
-from truing.testing import batches, declared, formulas, running, sources, steps
+from truing.testing import batches, declared, running, sources
 from truing.testing.subject import Subject, fail
 
 
@@ -43,10 +43,10 @@ CHECKS: tuple[ConformanceCheck, ...] = (
     ConformanceCheck("spreads resolve", sources.spreads_resolve, needs_run=False),
     ConformanceCheck("printed numbers are of results", declared.printed_numbers_are_of_results, needs_run=False),
     ConformanceCheck("sheet is in order", declared.sheet_is_in_order, needs_run=False),
-    ConformanceCheck("formulas have the unit", formulas.formulas_have_the_unit),
-    ConformanceCheck("formulas equal the function", formulas.formulas_equal_the_function),
+    ConformanceCheck("formulas have the unit", declared.formulas_have_the_unit),
+    ConformanceCheck("formulas equal the function", declared.formulas_equal_the_function),
     ConformanceCheck("batch equals loop", batches.batch_equals_loop),
-    ConformanceCheck("steps may be halved", steps.steps_may_be_halved),
+    ConformanceCheck("steps may be halved", running.steps_may_be_halved),
     ConformanceCheck("inputs untouched", running.inputs_untouched),
     ConformanceCheck("seeds decide", running.seeds_decide),
     ConformanceCheck("serial equals parallel", running.serial_equals_parallel, needs_home=True),
