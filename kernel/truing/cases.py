@@ -171,7 +171,7 @@ def _one_by_one(setup: Setup, cases: Sequence[Case], executor: Executor, progres
 
     Where cases are many, each is a job of its own; where they are few, the batches of each are shared out.
     """
-    answers: Iterable[Answer]
+    answers: Iterable[CaseAnswer]
     apart = len(cases) >= 2 * getattr(executor, "slots", 1) > 2 and travels(setup)
     if apart:
         answers = in_order(executor, _packed_case, (pack(case_setup(setup, case), studies=True) for case in cases))
@@ -188,10 +188,10 @@ def _one_by_one(setup: Setup, cases: Sequence[Case], executor: Executor, progres
     return done
 
 
-Answer = tuple[Mapping[str, Any], Decided, str | None, Mapping[str, str]]
+CaseAnswer = tuple[Mapping[str, Any], Decided, str | None, Mapping[str, str]]
 
 
-def _packed_case(packed: Packed) -> Answer:
+def _packed_case(packed: Packed) -> CaseAnswer:
     """Calculate one case in a worker, all by itself."""
     with open_executor("serial") as alone:
         return _case_answer(unpack(packed), alone)
@@ -202,7 +202,7 @@ def _of_case(setup: Setup, place: int, count: int, progress: Progress) -> Progre
     return within(progress, "cases", place / count, (place + 1) / count, [study.name for study in setup.studies])
 
 
-def _case_answer(setup: Setup, executor: Executor, progress: Progress = silent) -> Answer:
+def _case_answer(setup: Setup, executor: Executor, progress: Progress = silent) -> CaseAnswer:
     """Return what a case answers and its checks, or why it failed."""
     try:
         found = calculate(setup, executor=executor, progress=progress)
@@ -215,7 +215,7 @@ def _in_blocks(setup: Setup, cases: Sequence[Case], executor: Executor, progress
     """Calculate cases in array calls of fixed length: a block is the same wherever it is calculated."""
     blocks = [cases[start : start + BLOCK] for start in range(0, len(cases), BLOCK)]
     jobs = ([case.values for case in block] for block in blocks)
-    answers: Iterable[list[Row]]
+    answers: Iterable[list[CaseRow]]
     if len(blocks) == 1 or isinstance(executor, SerialExecutor) or not travels(setup):
         answers = (_block_answer(setup, rows) for rows in jobs)
     else:
@@ -228,15 +228,15 @@ def _in_blocks(setup: Setup, cases: Sequence[Case], executor: Executor, progress
     return done
 
 
-Row = tuple[dict[str, Any], str | None, dict[str, str]]
+CaseRow = tuple[dict[str, Any], str | None, dict[str, str]]
 
 
-def _packed_block(job: tuple[Packed, list[Mapping[str, Any]]]) -> list[Row]:
+def _packed_block(job: tuple[Packed, list[Mapping[str, Any]]]) -> list[CaseRow]:
     """Calculate one block in a worker."""
     return _block_answer(unpack(job[0]), job[1])
 
 
-def _block_answer(setup: Setup, block: list[Mapping[str, Any]]) -> list[Row]:
+def _block_answer(setup: Setup, block: list[Mapping[str, Any]]) -> list[CaseRow]:
     """Return what each case of a block answers, or why it failed, and why it lacks a result."""
     rows = evaluate_rows(setup, {name: [values[name] for values in block] for name in block[0]}, len(block))
     return [

@@ -60,7 +60,7 @@ def effect_column(effect: str, unknown: str) -> str:
 
 
 @dataclass(frozen=True)
-class Answered:
+class Evaluated:
     """What one calculation answered: the model's results, and why some of them, by flat name, do not exist (NaN)."""
 
     results: Any
@@ -72,7 +72,7 @@ def evaluate(setup: Setup, *, reading: bool = False) -> Any:
     return answered(setup, reading=reading).results
 
 
-def answered(setup: Setup, *, reading: bool = False) -> Answered:
+def answered(setup: Setup, *, reading: bool = False) -> Evaluated:
     """Run the calculation once.
 
     Raises InfeasibleError with the sentence of the plugin where something impossible is asked, and where a result is
@@ -91,7 +91,7 @@ def answered(setup: Setup, *, reading: bool = False) -> Answered:
         elif np.ndim(value) == 0:
             changed[name] = float(value)
     fields = setup.model.own_result_fields
-    return Answered(with_values(results, {fields[name].path: value for name, value in changed.items()}), absent)
+    return Evaluated(with_values(results, {fields[name].path: value for name, value in changed.items()}), absent)
 
 
 def _absent(setup: Setup, log: FailedRows, rows: int) -> dict[str, dict[int, str]]:

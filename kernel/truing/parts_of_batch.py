@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from truing.declare.fields import Axis, Kind
+from truing.declare.fields import Axis, InputKind
 from truing.errors import UsageError
 from truing.setup import Setup
 
@@ -31,7 +31,7 @@ def uniform_parts(
         yield index, {**common, **part, **{name: values[index[0]] for name, values in differing.items()}}
 
 
-def _each(values: Any, kind: Kind) -> list[Any] | None:
+def _each(values: Any, kind: InputKind) -> list[Any] | None:
     """Return the value of each row, or None where there is one for all; a series is a value itself."""
     if isinstance(values, np.ndarray):
         if kind == "series" and values.ndim == 1:

@@ -26,7 +26,7 @@ Stamp = tuple[int, int, int] | None
 
 
 @dataclass
-class Watched:
+class WatchedFiles:
     """A set of files and what was in them; a file counts as changed when its content is another.
 
     ``every`` is the time between two looks in seconds; ``sleep`` waits so long.

@@ -34,7 +34,7 @@ from hidden_effects.press_machine import Rows as Setting  # noqa: E402
 from truing import trials  # noqa: E402
 from truing.diagnosis import search  # noqa: E402
 from truing.diagnosis.engine import diagnose, laid_out  # noqa: E402
-from truing.diagnosis.machine import machine_of, predict  # noqa: E402
+from truing.diagnosis.machine import calibration_of, predict  # noqa: E402
 from truing.diagnosis.reading import read_records  # noqa: E402
 from truing.diagnosis.records import Covariate, Records, Role  # noqa: E402
 from truing.gauge import one_machine, read_by_gauge  # noqa: E402
@@ -200,7 +200,7 @@ def test_a_diagnosis_costs_at_most_eight_gaussian_processes(results: tuple[str, 
 
 
 def counted(results: tuple[str, ...]) -> str:
-    many = len(laid_out(machine_of(press_setup(), in_memory(300, results))).causes)
+    many = len(laid_out(calibration_of(press_setup(), in_memory(300, results))).causes)
     return f"300 rows, {len(results)} result(s), {many} causes"
 
 

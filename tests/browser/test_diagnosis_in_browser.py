@@ -28,7 +28,7 @@ from test_sheet import (  # noqa: F401
 )
 
 from truing.diagnosis.records import Slip
-from truing.diagnosis.result import Alternative, Diagnosis, Finding, Seen
+from truing.diagnosis.result import Alternative, DiagnosisResult, ResidualFinding, VisibleSize
 from truing.report.diagnosis_sheet import diagnosis_html, make_diagnosis_sheet
 from truing.runs.provenance import provenance_of
 
@@ -36,16 +36,16 @@ LONG = "wear_of_the_third_joint_of_the_left_knee_drive_in_micrometres_per_millio
 HOSTILE = f"<script>alert(1)</script> {{{{7*7}}}} {LONG} & \"'"
 
 
-def hostile() -> Diagnosis:
+def hostile() -> DiagnosisResult:
     """A diagnosis whose every text is long and hostile."""
     made = ambiguous()
-    wrong = replace(made.wrong[0], findings=(Finding("trend", LONG, 0.01, HOSTILE),))
+    wrong = replace(made.wrong[0], findings=(ResidualFinding("trend", LONG, 0.01, HOSTILE),))
     return replace(
         made,
         wrong=(wrong, made.wrong[1]),
         alternatives=(Alternative((LONG, HOSTILE), 1.0, 2.0, (LONG,)),),
         ranking=(*made.ranking, Alternative((LONG, HOSTILE), 7.0, 2.0)),
-        seen=(*made.seen, Seen(LONG, None, "not excited", HOSTILE)),
+        seen=(*made.seen, VisibleSize(LONG, None, "not excited", HOSTILE)),
         records=replace(made.records, notes=(HOSTILE,), slips=(Slip(LONG, 1e3, HOSTILE),), files=(LONG, HOSTILE)),
     )
 

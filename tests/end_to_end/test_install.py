@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from shared import GUESTS, ROOT, Answer, copied_guest, process
-from truing.new_project import Plan, project, write_project
+from truing.new_project import NewPlugin, project, write_project
 
 pytestmark = pytest.mark.install
 OURS = {path.name for path in (ROOT / "plugins").iterdir() if (path / "__init__.py").is_file()}
-ARM = Plan("gantry_arm", 'Arm of a gantry, 5" wide: „Übung“ \\ 1')
+ARM = NewPlugin("gantry_arm", 'Arm of a gantry, 5" wide: „Übung“ \\ 1')
 WHEELS = """
 import os, sys
 from hatchling.build import build_wheel
@@ -156,7 +156,7 @@ def _writes_a_project(fresh: Path, folder: Path) -> None:
     assert calc(fresh, folder, "new", "belt_drive").code == 0
     written = {path.relative_to(folder / "belt_drive").as_posix(): path for path in (folder / "belt_drive").rglob("*")}
     files = {name: path.read_text(encoding="utf-8") for name, path in written.items() if path.is_file()}
-    assert files == project(Plan("belt_drive", "Belt drive"))
+    assert files == project(NewPlugin("belt_drive", "Belt drive"))
 
 
 def _passes_its_own_tests(fresh: Path, folder: Path) -> None:

@@ -14,14 +14,14 @@ import pytest
 
 from shared import ROOT, Answer, Calc, process
 from truing.kernel.loading import load_file
-from truing.new_project import Plan, project, single_file, write_project, write_single_file
+from truing.new_project import NewPlugin, project, single_file, write_project, write_single_file
 from truing.new_project.names import LONGEST_NAME, WIDEST_TITLE
 
 PLANS = [
-    Plan("q", "Q"),
-    Plan("gantry_arm", 'Träger „Größe“ \\ 5" wide'),
-    Plan("a" + "_b" * 19 + "c", "'" * (WIDEST_TITLE // 2)),
-    Plan("w" * LONGEST_NAME, "梁" * (WIDEST_TITLE // 2)),
+    NewPlugin("q", "Q"),
+    NewPlugin("gantry_arm", 'Träger „Größe“ \\ 5" wide'),
+    NewPlugin("a" + "_b" * 19 + "c", "'" * (WIDEST_TITLE // 2)),
+    NewPlugin("w" * LONGEST_NAME, "梁" * (WIDEST_TITLE // 2)),
 ]
 
 

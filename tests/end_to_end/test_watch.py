@@ -22,7 +22,7 @@ import pytest
 from test_interrupt import hearing_interrupts
 
 from shared import Calc
-from truing.watching import PATIENCE, Watched
+from truing.watching import PATIENCE, WatchedFiles
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 INPUTS = '[inputs]\nload = "120 N"\n[studies]\nrun = ["reliability"]\n'
@@ -266,7 +266,7 @@ def test_a_half_written_file_is_waited_for(tmp_path: Path) -> None:
     file = tmp_path / "pin.toml"
     saved(file, "load = 1")
     clock = Clock(lambda: saved(file, ""), nothing, lambda: saved(file, "lo"), lambda: saved(file, "load = 2"))
-    watched = Watched(0.1, clock.sleep)
+    watched = WatchedFiles(0.1, clock.sleep)
     watched.add([file])
     assert watched.changed() == [file]
     assert file.read_text() == "load = 2"
@@ -277,7 +277,7 @@ def test_a_file_that_is_taken_away_for_good_has_changed(tmp_path: Path) -> None:
     file = tmp_path / "pin.toml"
     saved(file, "load = 1")
     clock = Clock(file.unlink)
-    watched = Watched(0.1, clock.sleep)
+    watched = WatchedFiles(0.1, clock.sleep)
     watched.add([file])
     assert watched.changed() == [file]
     assert clock.slept >= PATIENCE
@@ -290,6 +290,6 @@ def test_the_same_content_is_no_change(tmp_path: Path) -> None:
         lambda: os.utime(file), nothing, nothing, lambda: saved(file, "load = 1"), nothing, nothing,
         lambda: saved(other, "1"),
     )  # fmt: skip
-    watched = Watched(0.1, clock.sleep)
+    watched = WatchedFiles(0.1, clock.sleep)
     watched.add([file, other])
     assert watched.changed() == [other]

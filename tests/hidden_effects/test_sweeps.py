@@ -15,9 +15,9 @@ from truing.diagnosis.chance import law_of
 from truing.diagnosis.competition import Competition, competition_of
 from truing.diagnosis.curves import Bundle
 from truing.diagnosis.engine import laid_out
-from truing.diagnosis.machine import machine_of
+from truing.diagnosis.machine import calibration_of
 from truing.diagnosis.reading import read_records
-from truing.diagnosis.sweeps import Swept
+from truing.diagnosis.sweeps import ProjectedCurves
 from truing.inputs_file import read_setup
 
 EVERY, NONE = 0, 10**12
@@ -28,7 +28,7 @@ def competing(folder: Path) -> Competition:
     """The press on 80 rows of two results, in the noise with a memory that a fit of its cause leaves."""
     write_case(CASE, folder)
     setup = read_setup(folder / "inputs.toml", press_offer())
-    made = laid_out(machine_of(setup, read_records([folder / "measured.csv"], press_offer(), setup)))
+    made = laid_out(calibration_of(setup, read_records([folder / "measured.csv"], press_offer(), setup)))
     (heating,) = (cause for cause in made.causes if cause.tag == "link_heating")
     made.joined(made.null, heating, made.look(made.null, [heating])["link_heating"].starts)
     made.renew()
@@ -47,7 +47,7 @@ def test_a_table_gives_what_kept_curves_give(monkeypatch: pytest.MonkeyPatch, tm
     kept, through = competing(tmp_path), competing(tmp_path)
     for made, limit in ((kept, NONE), (through, EVERY)):
         monkeypatch.setattr(curves, "LARGE", limit)
-        assert {type(each.span) for each in made.look(made.null).values()} == {Spanned if limit else Swept}
+        assert {type(each.span) for each in made.look(made.null).values()} == {Spanned if limit else ProjectedCurves}
     monkeypatch.setattr(sweeps, "BLOCK", 7 * 160)  # blocks of a few points, and one that is not full
     one = next(found for found in kept.known.values() if found.causes)
     for at in (kept.null, one):

@@ -134,12 +134,12 @@ def ended(
 
 
 def _stop_watching() -> None:
-    from truing.watching import Watched
+    from truing.watching import WatchedFiles
 
-    def stop(watched: Watched) -> None:
+    def stop(watched: WatchedFiles) -> None:
         raise KeyboardInterrupt
 
-    Watched.changed = stop  # type: ignore[assignment, method-assign]
+    WatchedFiles.changed = stop  # type: ignore[assignment, method-assign]
 
 
 def test_every_verb_is_here() -> None:

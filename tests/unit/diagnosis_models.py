@@ -14,21 +14,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
-from truing.diagnosis.causes import Cause, si_bounds
+from truing.diagnosis.causes import Candidate, si_bounds
 from truing.diagnosis.chance import Law
 from truing.diagnosis.choice import Chosen, Rival, choose
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.curves import Curves
+from truing.diagnosis.curves import ResponseCurves
 from truing.diagnosis.engine import diagnose, laid_out
 from truing.diagnosis.exact import EXACTLY, nothing
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import numbers_of, value_of
 from truing.diagnosis.learning import first_noise
-from truing.diagnosis.machine import Machine, machine_of
+from truing.diagnosis.machine import Calibration, calibration_of
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.records import Records
-from truing.diagnosis.result import Diagnosis
-from truing.diagnosis.sample import Noise, sample_of
+from truing.diagnosis.result import DiagnosisResult
+from truing.diagnosis.sample import NoiseModel, sample_of
 from truing.diagnosis.search import search
 from truing.kernel import Offer, Origin
 from truing.setup import DiagnoseOptions, Setup, default_setup
@@ -260,45 +260,45 @@ class Asked:
         file = write_csv(path / "measured.csv", columns, self.units, runs)
         return read_records([file], offer_of(self.model), self.setup)
 
-    def diagnosed(self, path: Path, columns: Mapping[str, Array], runs: Sequence[str] = ()) -> Diagnosis:
+    def diagnosed(self, path: Path, columns: Mapping[str, Array], runs: Sequence[str] = ()) -> DiagnosisResult:
         """Write, read and diagnose."""
         return diagnose(self.setup, self.records(path, columns, runs))
 
 
-def names_in(found: Diagnosis) -> set[str]:
+def names_in(found: DiagnosisResult) -> set[str]:
     """Every name the verdict does not exclude: causes, what is the same curve, and the alternatives."""
     names = {name for cause in found.causes for name in (cause.effect, *cause.same_as)}
     return names | {name for rival in found.alternatives for name in rival.causes}
 
 
-def name_sets(found: Diagnosis) -> list[set[str]]:
+def name_sets(found: DiagnosisResult) -> list[set[str]]:
     """The verdict: for each cause its name and those of the same curve."""
     return [{cause.effect, *cause.same_as} for cause in found.causes]
 
 
 def decided(setup: Setup, records: Records) -> Chosen:
     """Search and choose, without the report: what a diagnosis does before it judges."""
-    made = laid_out(machine_of(setup, records))
+    made = laid_out(calibration_of(setup, records))
     search(made)
     return choose(made, seed=setup.seed)
 
 
-def white_noise(machine: Machine, scale: float) -> dict[str, Noise]:
+def white_noise(machine: Calibration, scale: float) -> dict[str, NoiseModel]:
     """White, normal noise of a known standard deviation (SI), for every result."""
     return {name: replace(own, scale=scale) for name, own in first_noise(machine).items()}
 
 
 def plain_competition(asked: Asked, records: Records, scale: float) -> Competition:
     """Lay out what competes, in white noise of a known standard deviation (SI): nothing searched, learnt or clipped."""
-    begun = laid_out(machine_of(asked.setup, records))
+    begun = laid_out(calibration_of(asked.setup, records))
     machine = begun.extended.machine
     sample = sample_of(machine, white_noise(machine, scale), ~records.held_out)
-    made = Competition(begun.extended, begun.causes, sample, Curves(begun.extended))
+    made = Competition(begun.extended, begun.causes, sample, ResponseCurves(begun.extended))
     made.keep(nothing(sample, begun.extended))
     return made
 
 
-def cause_of(made: Competition, name: str) -> Cause:
+def cause_of(made: Competition, name: str) -> Candidate:
     """The only cause of a name that somebody declared."""
     (found,) = (cause for cause in made.causes if cause.name == name and cause.is_registered)
     return found

@@ -19,18 +19,18 @@ from truing.diagnosis.result import (
     Amount,
     Calibrated,
     Cause,
-    Curves,
-    Diagnosis,
+    DiagnosisResult,
     Fact,
-    Finding,
     FittedUnknown,
     Gain,
     NextPoint,
-    Noise,
+    NoiseSummary,
     Remainder,
-    Seen,
+    ResidualFinding,
+    ResultCurves,
     ShapeTerm,
     Tie,
+    VisibleSize,
     Wrong,
 )
 from truing.kernel import Offer, Origin
@@ -134,7 +134,7 @@ def records_of(**more: Any) -> Records:
     return Records(**{**made, **more})
 
 
-def curves_of(records: Records, share: float) -> tuple[Curves, ...]:
+def curves_of(records: Records, share: float) -> tuple[ResultCurves, ...]:
     """The model before, and after the share of the expansion that was found."""
     covariates = records.covariates
     crank = SLIDE.inputs(crank_angle=covariates["crank_angle"].values)
@@ -143,17 +143,17 @@ def curves_of(records: Records, share: float) -> tuple[Curves, ...]:
     position: NDArray[np.float64] = np.asarray(before.slide_position)
     tilt: NDArray[np.float64] = np.asarray(before.slide_tilt)
     return (
-        Curves("slide_position", records.measured["slide_position"], position, position + share * grown),
-        Curves("slide_tilt", records.measured["slide_tilt"], tilt, tilt),
+        ResultCurves("slide_position", records.measured["slide_position"], position, position + share * grown),
+        ResultCurves("slide_tilt", records.measured["slide_tilt"], tilt, tilt),
     )
 
 
-def wrong_of(rmse: float, share: float, *findings: Finding) -> tuple[Wrong, ...]:
+def wrong_of(rmse: float, share: float, *findings: ResidualFinding) -> tuple[Wrong, ...]:
     """What is wrong with position (as told) and tilt (nothing)."""
-    noise = Noise(
+    noise = NoiseSummary(
         Amount(6.0 * UM, "um"), 0.45, "heavy, t with 4 degrees of freedom", "constant", (("data/second day.csv", 17),)
     )
-    quiet = Noise(Amount(2.0e-6, "urad"), 0.0, "normal", "constant")
+    quiet = NoiseSummary(Amount(2.0e-6, "urad"), 0.0, "normal", "constant")
     return (
         Wrong("slide_position", N, Amount(rmse, "um"), Amount(6.0 * UM, "um"), share, noise, findings),
         Wrong("slide_tilt", N - 1, Amount(2.02e-6, "urad"), Amount(2.0e-6, "urad"), 0.0, quiet, ()),
@@ -174,11 +174,11 @@ def gain_of(before: float, after: float, p_value: float) -> tuple[Gain, ...]:
 
 
 SEEN = (
-    Seen("rod_heating", Amount(0.4e-6, "um/(m*K)"), "visible"),
-    Seen("joint_play", Amount(9e-6, "um"), "not excited", "load never changes its sign"),
-    Seen("sensor_offset", Amount(150e-6, "um"), "hidden in the tolerances", "visible from 0.15 mm"),
-    Seen("input:radius", Amount(130e-6, "mm"), "hidden in the tolerances"),
-    Seen("sensor_drift", Amount(1.1e-9, "um/h"), "visible"),
+    VisibleSize("rod_heating", Amount(0.4e-6, "um/(m*K)"), "visible"),
+    VisibleSize("joint_play", Amount(9e-6, "um"), "not excited", "load never changes its sign"),
+    VisibleSize("sensor_offset", Amount(150e-6, "um"), "hidden in the tolerances", "visible from 0.15 mm"),
+    VisibleSize("input:radius", Amount(130e-6, "mm"), "hidden in the tolerances"),
+    VisibleSize("sensor_drift", Amount(1.1e-9, "um/h"), "visible"),
 )
 CALIBRATED = (Calibrated("radius", 0.080012, "mm", 0.6), Calibrated("rod", 0.319995, "mm", -0.2))
 HEATING = Cause(
@@ -186,8 +186,8 @@ HEATING = Cause(
     (FittedUnknown("expansion", 11.8e-6, 11.42e-6, 12.18e-6, "um/(m*K)"),),
     covariance=((3.7e-14,),),
 )
-TREND = Finding("trend", "rod_temperature", 0.0033, "rises with rod_temperature: 3.8 µm per K")
-ORDER = Finding("order", "crank_angle", 0.0033, "order 7 of crank_angle, amplitude 14 µm")
+TREND = ResidualFinding("trend", "rod_temperature", 0.0033, "rises with rod_temperature: 3.8 µm per K")
+ORDER = ResidualFinding("order", "crank_angle", 0.0033, "order 7 of crank_angle, amplitude 14 µm")
 DRIFTING = Alternative(("sensor_drift",), 2.1, 6.3, unknowns={"sensor_drift": (
     FittedUnknown("slope", 4.1e-9, 3.8e-9, None, "um/h"),
 )})  # fmt: skip
@@ -202,7 +202,7 @@ TIE = Tie(
 )
 
 
-def _diagnosis(**more: Any) -> Diagnosis:
+def _diagnosis(**more: Any) -> DiagnosisResult:
     setup = default_setup(SLIDE, SLIDE_OFFER.origin)
     records = more.pop("records", None) or records_of()
     made: dict[str, Any] = {
@@ -223,10 +223,10 @@ def _diagnosis(**more: Any) -> Diagnosis:
         "curves": curves_of(records, 0.0),
         "p_any": 0.41,
     }
-    return Diagnosis(**{**made, **more})
+    return DiagnosisResult(**{**made, **more})
 
 
-def extended(diagnosis: Diagnosis, effects: Mapping[str, Mapping[str, float]]) -> Setup:
+def extended(diagnosis: DiagnosisResult, effects: Mapping[str, Mapping[str, float]]) -> Setup:
     """The setup with effects on, calibrated, conditions as measured."""
     on = [
         SwitchedOn(SLIDE.effects[name], values, dict.fromkeys(values, 1.9e-7), ((3.7e-14,),))
@@ -240,7 +240,7 @@ def extended(diagnosis: Diagnosis, effects: Mapping[str, Mapping[str, float]]) -
     )
 
 
-def none_found() -> Diagnosis:
+def none_found() -> DiagnosisResult:
     """Verdict none: noise, and nothing else."""
     records = records_of()
     warm, cold = curves_of(records, 1.0)[0], curves_of(records, 0.0)[0]
@@ -248,7 +248,7 @@ def none_found() -> Diagnosis:
     return _diagnosis(records=replace(records, measured={**records.measured, "slide_position": position}))
 
 
-def named() -> Diagnosis:
+def named() -> DiagnosisResult:
     """Verdict named, unique: the rod grows."""
     ranking = (
         Alternative(("rod_heating",), 0.0, 0.0),
@@ -265,7 +265,7 @@ def named() -> Diagnosis:
     return replace(made, extended=extended(made, {"rod_heating": {"expansion": 11.8e-6}}))
 
 
-def ambiguous() -> Diagnosis:
+def ambiguous() -> DiagnosisResult:
     """Verdict one of three: another name of the same curve, a rival, a tie that a fact decides; and a unit slip."""
     point = NextPoint(
         {"rod_temperature": Amount(323.15, "degC"), "load": Amount(-5e4, "kN"), "crank_angle": Amount(0.5, "deg")},
@@ -282,9 +282,11 @@ def ambiguous() -> Diagnosis:
     )  # fmt: skip
 
 
-def undecided() -> Diagnosis:
+def undecided() -> DiagnosisResult:
     """Verdict undecided: nothing is named, but a wave is left, and chance is no good word for the best explanation."""
-    wave = Finding("wave", "crank_angle", 0.0002, "12 waves over the range of crank_angle, with 31 % of what is left")
+    wave = ResidualFinding(
+        "wave", "crank_angle", 0.0002, "12 waves over the range of crank_angle, with 31 % of what is left"
+    )
     best = Alternative(("sensor_drift",), 0.0, 4.2)
     return replace(
         none_found(), p_any=0.06, wrong=wrong_of(6.1 * UM, 0.02, wave), ranking=(Alternative((), 0, 0), best)
@@ -314,7 +316,7 @@ def _waved(share: float) -> dict[str, Any]:
     return {"records": records, "curves": (after, tilt)}
 
 
-def unknown() -> Diagnosis:
+def unknown() -> DiagnosisResult:
     """Verdict unknown: something of order 7 that nobody registered."""
     ranking = (
         Alternative(("unknown",), 0.0, 0.0, depends_on=("crank_angle",)),
@@ -327,7 +329,7 @@ def unknown() -> Diagnosis:
     )  # fmt: skip
 
 
-def named_with_remainder() -> Diagnosis:
+def named_with_remainder() -> DiagnosisResult:
     """Verdict named, with something unregistered beside it."""
     made = named()
     return replace(made, remainder=REMAINDER, wrong=wrong_of(42 * UM, 0.98, TREND, ORDER), **_waved(0.98))

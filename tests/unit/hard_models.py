@@ -13,7 +13,7 @@ import numpy as np
 from diagnosis_models import Array, Asked
 
 from truing import Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
-from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.result import DiagnosisResult
 from truing.setup import DiagnoseOptions
 
 ROWS, NOISE = 100, 5.0
@@ -123,6 +123,6 @@ def hardened(at: Mapping[str, Array]) -> Array:
     return at["load"] * 100 * (1 / (1 + 0.8 * np.maximum(np.abs(at["load"]) / 8 - 1, 0)) - 1)
 
 
-def of_causes(answer: Diagnosis) -> dict[str, float]:
+def of_causes(answer: DiagnosisResult) -> dict[str, float]:
     """The fitted unknowns of all causes, SI, by effect and name."""
     return {f"{cause.effect}.{each.name}": each.value for cause in answer.causes for each in cause.unknowns}

@@ -36,7 +36,7 @@ from truing import (
 from truing.calculation import calculate
 from truing.declare.builtin import may_stand
 from truing.diagnosis.causes import effects_of
-from truing.diagnosis.machine import machine_of
+from truing.diagnosis.machine import calibration_of
 from truing.diagnosis.reading import read_records
 from truing.errors import InputError, UsageError
 from truing.evaluate import effect_column, evaluate, evaluate_rows
@@ -216,7 +216,7 @@ def test_the_wave_of_an_input_is_looked_for_where_a_record_turns_it_round(
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
     setup = default_setup(SHAFT, OFFER.origin)
     records = read_records([file], OFFER, setup)
-    names = {candidate.name for candidate in effects_of(machine_of(setup, records))}
+    names = {candidate.name for candidate in effects_of(calibration_of(setup, records))}
     assert "periodic_order" in names
     assert ("periodic_order_of_pitch" in names) is offered
     assert records.covariates["turn"].is_angle

@@ -30,8 +30,8 @@ from numpy.testing import assert_allclose
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.engine import _answer
 from truing.diagnosis.halves import every_second, thinned_of
-from truing.diagnosis.noise import SETTINGS, Setting
-from truing.diagnosis.result import Amount, Contradiction, Diagnosis, Thinned, Trade
+from truing.diagnosis.noise import SETTINGS, Autocorrelation
+from truing.diagnosis.result import Amount, Contradiction, DiagnosisResult, Thinned, Trade
 from truing.diagnosis.visibility import TRADED, trades_of
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.setup import DiagnoseOptions
@@ -63,12 +63,12 @@ def taken(folder: Path, one: Asked, columns: Mapping[str, Array], name: str, *ot
     return chosen_as(made, fit_of(made, name))
 
 
-def answered(chosen: Chosen) -> Diagnosis:
+def answered(chosen: Chosen) -> DiagnosisResult:
     """What a diagnosis answers with this choice."""
     return _answer(chosen, chosen.competition.sample.machine.design, silent)
 
 
-def is_told(found: Diagnosis, words: str) -> bool:
+def is_told(found: DiagnosisResult, words: str) -> bool:
     """Whether an alarm with these words, and no other one, takes the name of a cause."""
     assert len(found.causes) == 1
     sounded = [each for each in found.warnings if words in each]
@@ -227,10 +227,10 @@ def test_rows_that_are_thinned_may_be_censored(tmp_path: Path, sign: Array, soun
 
 
 @pytest.mark.parametrize("memory", SETTINGS, ids=str)
-def test_every_second_value_of_noise_is_as_alike_as_before(memory: Setting) -> None:
+def test_every_second_value_of_noise_is_as_alike_as_before(memory: Autocorrelation) -> None:
     """Autocorrelations from the response to an impulse: those of lag 2k are those of lag k."""
 
-    def lag(setting: Setting, k: int) -> float:
+    def lag(setting: Autocorrelation, k: int) -> float:
         rho, theta = setting.rho, setting.theta
         impulse = np.array([1.0, *((rho - theta) * rho**step for step in range(400))])
         return float(impulse[k:] @ impulse[: len(impulse) - k] / (impulse @ impulse))

@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 
 from truing import Effect, Float, Model, Unknown, found, given, inputs, results
 from truing.diagnosis.beside import look
-from truing.diagnosis.causes import Cause, effects_of
-from truing.diagnosis.curves import Curves
+from truing.diagnosis.causes import Candidate, effects_of
+from truing.diagnosis.curves import ResponseCurves
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.exact import nothing
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.learning import first_noise
-from truing.diagnosis.machine import machine_of
+from truing.diagnosis.machine import calibration_of
 from truing.diagnosis.reading import read_records
-from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.result import DiagnosisResult
 from truing.diagnosis.sample import sample_of
 from truing.kernel import Offer, Origin
 from truing.setup import Setup, default_setup
@@ -103,7 +103,7 @@ def setup_and_file(
 
 def asked(
     folder: Path, film: float = 0.0, growth: float = 0.0, clog: float = 0.0, effects: Sequence[Effect] = EFFECTS
-) -> Diagnosis:
+) -> DiagnosisResult:
     offer, setup, file = setup_and_file(folder, film, growth, clog, effects)
     return diagnose(setup, read_records([file], offer, setup))
 
@@ -147,16 +147,16 @@ def test_a_film_that_is_not_there_is_not_found(tmp_path: Path) -> None:
     assert (answer.causes, answer.remainder) == ((), None)
 
 
-def curves_of(folder: Path, film: float = 0.0) -> tuple[dict[str, Cause], Curves, Fit, Array, Array]:
+def curves_of(folder: Path, film: float = 0.0) -> tuple[dict[str, Candidate], ResponseCurves, Fit, Array, Array]:
     """The effects by name, their curves, the model as it is, and path and speed of every row, SI."""
     offer, setup, file = setup_and_file(folder, film, 0.0)
     records = read_records([file], offer, setup)
-    machine = machine_of(setup, records)
+    machine = calibration_of(setup, records)
     extended = Extended(machine)
     sample = sample_of(machine, first_noise(machine), np.ones(len(records), dtype=bool))
     causes = {cause.name: cause for cause in effects_of(machine) if not cause.is_kernel}
     path, speed = (np.asarray(records.rows.columns[name], dtype=float) for name in ("path", "speed"))
-    return causes, Curves(extended), nothing(sample, extended), path, speed
+    return causes, ResponseCurves(extended), nothing(sample, extended), path, speed
 
 
 def test_curves_of_what_bends_are_those_of_the_model_at_sizes_up_to_the_bound(tmp_path: Path) -> None:

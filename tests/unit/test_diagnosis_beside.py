@@ -14,9 +14,9 @@ from truing.diagnosis.engine import diagnose
 from truing.diagnosis.exact import EXACTLY, fit
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.learning import first_noise
-from truing.diagnosis.machine import machine_of
+from truing.diagnosis.machine import calibration_of
 from truing.diagnosis.reading import read_records
-from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.result import DiagnosisResult
 from truing.diagnosis.sample import sample_of
 from truing.inputs_file import read_setup
 from truing.kernel import Kernel
@@ -107,7 +107,7 @@ def loops(noise: float, *, play: float, held: float, rigidity: float = 405.0, wa
     return "torque [N*m],direction [-],angle [mrad]\n" + rows
 
 
-def diagnosed(folder: Path, text: str, *, model: str = "shaft", effects: str = "") -> Diagnosis:
+def diagnosed(folder: Path, text: str, *, model: str = "shaft", effects: str = "") -> DiagnosisResult:
     offer = next(
         each for each in Kernel([sys.modules[__name__]], strict=True).offers.values() if each.model.name == model
     )
@@ -170,7 +170,7 @@ def test_an_amplitude_that_the_record_does_not_excite_is_zero_beside_the_others(
     (tmp_path / "measured.csv").write_text("torque [N*m],angle [mrad]\n" + rows, encoding="utf-8")
     (tmp_path / "inputs.toml").write_text("[inputs]\n", encoding="utf-8")
     setup = read_setup(tmp_path / "inputs.toml", offer)
-    machine = machine_of(setup, read_records([tmp_path / "measured.csv"], offer, setup))
+    machine = calibration_of(setup, read_records([tmp_path / "measured.csv"], offer, setup))
     cause = next(each for each in effects_of(machine) if each.name == "two_sided")
     assert [number.name for number in cause.numbers] == ["left", "right"]
     extended = Extended(machine)

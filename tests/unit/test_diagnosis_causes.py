@@ -25,9 +25,9 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Unknown
-from truing.diagnosis.causes import Cause, at_rest, effects_of, idle_of, inputs_of
+from truing.diagnosis.causes import Candidate, at_rest, effects_of, idle_of, inputs_of
 from truing.diagnosis.extended import Extended
-from truing.diagnosis.machine import Machine, machine_of
+from truing.diagnosis.machine import Calibration, calibration_of
 from truing.diagnosis.points import PLACES, first_places, placed
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.records import Records
@@ -68,11 +68,11 @@ def asked(effects: Sequence[str] = (), more: Sequence[str] = (), tolerances: Map
     return Asked(replace(model, errors=[*model.errors, *(MORE[name] for name in more)]))
 
 
-def machine(one: Asked, folder: Path, bench: Bench) -> Machine:
-    return machine_of(one.setup, one.records(folder, bench.columns(gauge(bench.load, bench.travel))))
+def machine(one: Asked, folder: Path, bench: Bench) -> Calibration:
+    return calibration_of(one.setup, one.records(folder, bench.columns(gauge(bench.load, bench.travel))))
 
 
-def cause_of(there: Machine, name: str) -> Cause:
+def cause_of(there: Calibration, name: str) -> Candidate:
     (found,) = (cause for cause in effects_of(there) if cause.name == name)
     return found
 
@@ -101,14 +101,14 @@ def test_an_unknown_of_every_file_is_a_number_for_each(tmp_path: Path, per_file:
     one = asked(["lead_error"])
     records, travel = two_files(tmp_path, one)
     setup = replace(one.setup, diagnose=DiagnoseOptions(per_file=per_file))
-    there = machine_of(setup, records)
+    there = calibration_of(setup, records)
     split = cause_of(there, "lead_error")
     assert [(number.name, number.file) for number in split.numbers] == [("lead", 0), ("lead", 1)]
     alone, both = Extended(there).at([split], [([np.array(at)], np.zeros(0)) for at in ([2e-3, 0], [2e-3, 3e-3])])
     off = [made["deflection"] - there.base["deflection"] for made in (alone, both)]
     assert_allclose(off[0], np.where(records.file_of == 0, 2e-3 * travel * 1e-3, 0), rtol=1e-9, atol=1e-18)
     assert_allclose(off[1], np.where(records.file_of == 0, 2e-3, 3e-3) * travel * 1e-3, rtol=1e-9)
-    shared = cause_of(machine_of(one.setup, records), "lead_error")
+    shared = cause_of(calibration_of(one.setup, records), "lead_error")
     assert [number.file for number in shared.numbers] == [-1]
 
 
@@ -116,7 +116,7 @@ def test_an_input_of_every_file_is_a_machine_for_each(tmp_path: Path) -> None:
     one = asked(tolerances={"contact": "3 %", "shaft": "3 %"})
     records, _ = two_files(tmp_path, one)
     setup = replace(one.setup, diagnose=DiagnoseOptions(per_file=("contact",)))
-    there = machine_of(setup, records)
+    there = calibration_of(setup, records)
     assert [(item.name, item.file) for item in there.inputs] == [("contact", 0), ("contact", 1), ("shaft", -1)]
     slopes = there.slopes["deflection"]
     assert not slopes[records.file_of == 1, 0].any()
@@ -166,7 +166,7 @@ def test_an_effect_whose_condition_nobody_measured_is_left_out(tmp_path: Path) -
     one = asked(["thermal_growth", "lead_error"])
     columns = wide(40).columns(np.zeros(40))
     del columns["temperature"]
-    there = machine_of(one.setup, one.records(tmp_path, columns))
+    there = calibration_of(one.setup, one.records(tmp_path, columns))
     names = {cause.name for cause in effects_of(there)}
     assert "lead_error" in names
     assert not {"thermal_growth", "thermal_drift"} & names

@@ -33,7 +33,7 @@ from truing.diagnosis.engine import laid_out
 from truing.diagnosis.exact import EXACTLY
 from truing.diagnosis.halves import _thinned, thinned_of
 from truing.diagnosis.learning import learnt
-from truing.diagnosis.machine import machine_of
+from truing.diagnosis.machine import calibration_of
 from truing.diagnosis.noise import beyond, difference, expected, scale_of, shares, worth
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.records import Records
@@ -116,7 +116,7 @@ def tobit() -> tuple[float, float]:
 
 def test_a_fit_and_its_noise_are_those_of_the_tobit_likelihood(tmp_path: Path) -> None:
     one, records = clipped_record(tmp_path, clipped={"deflection": (-np.inf, END * UM)})
-    made = laid_out(machine_of(one.setup, records))
+    made = laid_out(calibration_of(one.setup, records))
     found = fit_of(made, "thermal_growth")
     for _ in range(20):
         again = learnt(made.sample, found.predicted, 0)
@@ -139,7 +139,7 @@ def test_the_end_of_a_gauge_is_no_reading(tmp_path: Path) -> None:
 
     def growth(**asked: Any) -> tuple[float, float, float]:
         one, records = clipped_record(tmp_path, **asked)
-        made = laid_out(machine_of(one.setup, records))
+        made = laid_out(calibration_of(one.setup, records))
         return size_of(fit_of(made, "thermal_growth"), "growth") / UM, *tobit()
 
     naive, by_hand, _ = growth()
@@ -173,7 +173,7 @@ def test_a_diagnosis_of_a_clipped_gauge_names_the_cause_with_its_size(tmp_path: 
 
 def test_a_censored_row_cuts_the_memory_of_the_noise(tmp_path: Path) -> None:
     one, records = clipped_record(tmp_path, clipped={"deflection": (-np.inf, END * UM)})
-    (channel,) = laid_out(machine_of(one.setup, records)).sample.channels
+    (channel,) = laid_out(calibration_of(one.setup, records)).sample.channels
     is_cut = TRUE >= END
     assert_array_equal(records.sides["deflection"], is_cut)
     assert_array_equal(channel.starts, is_cut | np.append(True, is_cut[:-1]))
@@ -182,7 +182,7 @@ def test_a_censored_row_cuts_the_memory_of_the_noise(tmp_path: Path) -> None:
 
 def test_without_censored_rows_nothing_is_asked_of_them(tmp_path: Path) -> None:
     one, records = clipped_record(tmp_path, clipped={"deflection": (-1.0, 1.0)})
-    (channel,) = laid_out(machine_of(one.setup, records)).sample.channels
+    (channel,) = laid_out(calibration_of(one.setup, records)).sample.channels
     assert records.sides == {}
     assert channel.sides is None
     assert channel.at is None
@@ -279,7 +279,7 @@ def factors(folder: Path, *options: str, bench_seed: int = 44) -> tuple[Asked, R
 
 def test_lognormal_noise_is_fitted_as_logarithms_by_hand(tmp_path: Path) -> None:
     one, records, load, logs = factors(tmp_path, "deflection")
-    made = laid_out(machine_of(one.setup, records))
+    made = laid_out(calibration_of(one.setup, records))
     found = fit_of(made, "stiffness_loss")
     travel = records.covariates["travel"].values * 1e3
 
@@ -295,7 +295,7 @@ def test_lognormal_noise_is_fitted_as_logarithms_by_hand(tmp_path: Path) -> None
 
 def test_a_factor_is_found_where_errors_are_in_proportion(tmp_path: Path) -> None:
     one, records, *_ = factors(tmp_path, "deflection")
-    made = laid_out(machine_of(one.setup, records))
+    made = laid_out(calibration_of(one.setup, records))
     loss = made.look(made.null, [cause_of(made, "stiffness_loss")])["stiffness_loss"]
     assert loss.starts[0][0] > 50
     assert loss.starts[0][1] == pytest.approx([0.2], abs=0.1)
@@ -320,7 +320,7 @@ def test_rows_that_the_model_puts_below_zero_are_not_used(tmp_path: Path) -> Non
 
 def test_every_second_row_is_censored_where_it_was(tmp_path: Path) -> None:
     one, records = clipped_record(tmp_path, clipped={"deflection": (-np.inf, END * UM)})
-    made = laid_out(machine_of(one.setup, records))
+    made = laid_out(calibration_of(one.setup, records))
     best = fit_of(made, "thermal_growth")
     assert thinned_of(chosen_as(made, best)) == ()  # neither half is told by anything else
     (whole,) = made.sample.channels

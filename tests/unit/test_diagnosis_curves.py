@@ -28,7 +28,7 @@ from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Unknown
 from truing.diagnosis.beside import KEPT, Looked, beside_of, compared, independent
-from truing.diagnosis.causes import Number
+from truing.diagnosis.causes import Parameter
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.curves import Bundle
 from truing.diagnosis.points import ALIKE, FINEST, LEVELS, SPREAD, WAVES_PER_POINT, first_places, placed, spread
@@ -195,7 +195,7 @@ def test_a_sweep_is_refined_where_neighbours_differ_too_much(tmp_path: Path) -> 
 
 
 def test_a_frequency_is_swept_in_quarters_of_a_wave_over_the_record() -> None:
-    frequency = Number("frequency", 0.1, 4.0, is_amplitude=False)  # 1 to 40 waves over ten seconds
+    frequency = Parameter("frequency", 0.1, 4.0, is_amplitude=False)  # 1 to 40 waves over ten seconds
     places = placed([frequency], first_places(frequency)[:, None]).ravel()
     assert_allclose(places[[0, -1]], [0.1, 4.0])
     waves = np.diff(places) * 10

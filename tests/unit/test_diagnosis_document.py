@@ -30,7 +30,16 @@ from diagnosis_samples import (
 from truing.declare.fields import Float, axis, found, part, results
 from truing.declare.model import Model
 from truing.diagnosis.records import Covariate
-from truing.diagnosis.result import Amount, Cause, Diagnosis, FittedUnknown, Gain, Remainder, Seen, ShapeTerm
+from truing.diagnosis.result import (
+    Amount,
+    Cause,
+    DiagnosisResult,
+    FittedUnknown,
+    Gain,
+    Remainder,
+    ShapeTerm,
+    VisibleSize,
+)
 from truing.errors import OutputError
 from truing.evaluate import evaluate, evaluate_rows
 from truing.inputs_file import setup_from_text
@@ -50,13 +59,13 @@ FIELDS = {
 }  # fmt: skip
 
 
-def written(made: Diagnosis) -> Any:
+def written(made: DiagnosisResult) -> Any:
     """The document as a reader of the file gets it."""
     return json.loads(json_text(diagnosis_document(made)))
 
 
 @pytest.mark.parametrize("sample", SAMPLES.values(), ids=list(SAMPLES))
-def test_every_field_of_the_contract_is_there(sample: Callable[[], Diagnosis]) -> None:
+def test_every_field_of_the_contract_is_there(sample: Callable[[], DiagnosisResult]) -> None:
     document = written(sample())
     assert set(document) >= FIELDS
     assert document["schema"] == "truing.diagnosis/1"
@@ -97,7 +106,7 @@ def test_what_was_not_seen_is_listed_by_reason() -> None:
     assert document["not_excited"] == ["joint_play"]
     assert document["hidden_in_tolerances"] == ["sensor_offset", "input:radius"]
     assert document["not_measured"] == {"speed_swing": ["speed"]}
-    assert written(replace(named(), seen=(Seen("x", None, "not excited"),)))["smallest_visible"] == {}
+    assert written(replace(named(), seen=(VisibleSize("x", None, "not excited"),)))["smallest_visible"] == {}
 
 
 def test_files_rows_runs_and_slips_are_counted() -> None:
@@ -380,7 +389,7 @@ def test_names_in_code_can_stand_there(name: str, expected: str) -> None:
 # The folder
 
 
-def write(folder: Path, made: Diagnosis) -> dict[str, Any]:
+def write(folder: Path, made: DiagnosisResult) -> dict[str, Any]:
     sheets: dict[str, str | bytes] = {"sheet.html": "<p>sheet</p>", "sheet.md": "# sheet\n"}
     return write_diagnosis(
         folder, made, provenance=provenance_of(made.setup), run_info={"date": "2026-11-21"}, sheets=sheets

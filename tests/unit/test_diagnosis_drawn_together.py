@@ -12,7 +12,7 @@ import pytest
 from truing import Float, Model, Tolerance, drawn, found, given, inputs, normal, results
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.reading import read_records
-from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.result import DiagnosisResult
 from truing.kernel import Offer, Origin
 from truing.setup import default_setup
 
@@ -53,8 +53,8 @@ ALONE = [Tolerance(name, normal(sd=f"{SD} um")) for name in ("left", "right")]
 
 
 @pytest.fixture
-def diagnosed(tmp_path: Path) -> Callable[[list[Tolerance], str, float], Diagnosis]:
-    def diagnosed(errors: list[Tolerance], result: str, off: float) -> Diagnosis:
+def diagnosed(tmp_path: Path) -> Callable[[list[Tolerance], str, float], DiagnosisResult]:
+    def diagnosed(errors: list[Tolerance], result: str, off: float) -> DiagnosisResult:
         model = Model(name="stack", title="Stack", function=height, errors=errors)
         rng = np.random.default_rng(7)
         nominal = 20.0 if result == "both" else 15.0
@@ -68,20 +68,20 @@ def diagnosed(tmp_path: Path) -> Callable[[list[Tolerance], str, float], Diagnos
     return diagnosed
 
 
-def test_what_cancels_in_every_machine_hides_no_offset(diagnosed: Callable[..., Diagnosis]) -> None:
+def test_what_cancels_in_every_machine_hides_no_offset(diagnosed: Callable[..., DiagnosisResult]) -> None:
     said = diagnosed(TOGETHER, "both", 3.0)
     assert [cause.effect for cause in said.causes] == ["sensor_offset"]
     (offset,) = said.causes[0].unknowns
     assert offset.value == pytest.approx(3e-6, abs=3 * NOISE * 1e-6 / ROWS**0.5)
 
 
-def test_inputs_that_scatter_alone_take_the_same_offset_up(diagnosed: Callable[..., Diagnosis]) -> None:
+def test_inputs_that_scatter_alone_take_the_same_offset_up(diagnosed: Callable[..., DiagnosisResult]) -> None:
     said = diagnosed(ALONE, "both", 3.0)
     assert said.verdict == "none"
     assert sum(item.value for item in said.calibrated) == pytest.approx(23e-6, abs=0.5e-6)
 
 
-def test_calibration_moves_both_by_their_scatter(diagnosed: Callable[..., Diagnosis]) -> None:
+def test_calibration_moves_both_by_their_scatter(diagnosed: Callable[..., DiagnosisResult]) -> None:
     """Half of the deviation is read: 3 um are 6 um on the one and -6 um on the other, 1.2 standard deviations."""
     said = diagnosed(TOGETHER, "bent", 3.0)
     assert said.verdict == "none"

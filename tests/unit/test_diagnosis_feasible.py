@@ -15,7 +15,7 @@ import pytest
 from truing import Effect, Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.reading import read_records
-from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.result import DiagnosisResult
 from truing.kernel import Offer, Origin
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.setup import default_setup
@@ -64,7 +64,7 @@ MODEL = Model(
 )  # fmt: skip
 
 
-def asked(folder: Path, loss: float) -> Diagnosis:
+def asked(folder: Path, loss: float) -> DiagnosisResult:
     """Sixty readings along a gap that loses so much, in um."""
     rng = np.random.default_rng(3)
     place = np.linspace(0, LENGTH, 60)

@@ -39,7 +39,7 @@ from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import Certainty, certainty_of, interval, may_be_zero, numbers_of, shape_interval
 from truing.diagnosis.machine import predict
 from truing.diagnosis.naming import input_values
-from truing.diagnosis.noise import Setting, Tails
+from truing.diagnosis.noise import Autocorrelation, Tails
 from truing.diagnosis.sample import sample_of
 from truing.gauge import one_machine
 
@@ -236,7 +236,7 @@ def test_with_the_memory_taken_out_the_fit_is_that_of_generalised_least_squares(
     error = 0.3 * bench.time + wander(np.random.default_rng(31), 200, 0.6)
     made = drive_competition(tmp_path, error, tolerances={})
     best = fit_of(made, "sensor_drift")
-    white, certainty = in_noise(made, best, memory=Setting(0.6))
+    white, certainty = in_noise(made, best, memory=Autocorrelation(0.6))
     inverse = np.linalg.inv(toeplitz(0.6 ** np.arange(200.0)) / (1 - 0.36))
     time = bench.time
     precision = time @ inverse @ time

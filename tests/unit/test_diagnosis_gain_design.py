@@ -32,12 +32,12 @@ from scipy.stats import binom, kstest, norm
 
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.design import MOST_POINTS, POINTS, Proposal, next_points
+from truing.diagnosis.design import MOST_POINTS, POINTS, NextPoints, next_points
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import FOLDS, SHORTEST_BLOCK, Folds, carries_over, errors_left_out, folds_of
 from truing.diagnosis.gain import _log_density, nested, sign_flip_p
-from truing.diagnosis.noise import Setting
+from truing.diagnosis.noise import Autocorrelation
 from truing.diagnosis.result import APART
 from truing.diagnosis.sample import Sample, sample_of
 from truing.diagnosis.visibility import needed, smallest_visible
@@ -111,7 +111,7 @@ def ready(folder: Path, error: Array, runs: list[str] | None = None, **more: Any
 
 def remembering(sample: Sample, rho: float, *, held: NDArray[np.bool_] | None = None) -> Sample:
     """The same rows, some held out, as if their noise carried this much over."""
-    noise = {name: replace(own, memory=Setting(rho)) for name, own in white_noise(sample.machine, UM).items()}
+    noise = {name: replace(own, memory=Autocorrelation(rho)) for name, own in white_noise(sample.machine, UM).items()}
     return sample_of(sample.machine, noise, sample.mask if held is None else ~held, sample.directions)
 
 
@@ -335,7 +335,7 @@ def test_the_separation_that_is_promised_is_that_of_a_refit_with_the_points_adde
 @pytest.mark.parametrize("is_named", [True, False])
 def test_where_no_setting_separates_two_causes_none_is_proposed(tmp_path: Path, is_named: bool) -> None:
     chosen = one_sign(tmp_path, {"load": (1e3, 20e3)}, 1.0, is_named=is_named)
-    assert next_points(chosen) == Proposal((), (("sensor_offset", "clearance"),))
+    assert next_points(chosen) == NextPoints((), (("sensor_offset", "clearance"),))
 
 
 def test_rivals_are_separated_inside_the_box(tmp_path: Path) -> None:

@@ -27,8 +27,8 @@ from hard_models import (
 from truing import Effect, Float, Unknown, feasible
 from truing.diagnosis import probing
 from truing.diagnosis.engine import diagnose
-from truing.diagnosis.extended import Budget, Extended
-from truing.diagnosis.machine import machine_of
+from truing.diagnosis.extended import CallBudget, Extended
+from truing.diagnosis.machine import calibration_of
 from truing.diagnosis.probing import budget_of, step_of
 from truing.runs.diagnosis_document import diagnosis_document
 
@@ -62,8 +62,8 @@ def test_how_long_a_call_takes_says_how_many_there_are(
 
 def test_a_budget_counts_what_it_leaves_out(tmp_path: Path) -> None:
     few = asked(Shop(), rows=20)
-    extended = Extended(machine_of(few.setup, few.records(tmp_path, record(leaning, rows=20))))
-    extended.budget, allowed = Budget(100, 1.0, share=0.5), []
+    extended = Extended(calibration_of(few.setup, few.records(tmp_path, record(leaning, rows=20))))
+    extended.budget, allowed = CallBudget(100, 1.0, share=0.5), []
     for extended.calls in (0, 49, 50, 51):
         allowed.append(extended.allows("pairs"))
     assert allowed == [True, True, False, False]
@@ -71,7 +71,7 @@ def test_a_budget_counts_what_it_leaves_out(tmp_path: Path) -> None:
         "the search ended after 100 calls of the model, of which one takes about 1 s, and left out: pairs (2); another "
         "explanation may lie there; look further with [studies.diagnose] budget = 400",
     )
-    assert Budget(100).told() == ()
+    assert CallBudget(100).told() == ()
 
 
 def test_a_model_of_a_second_a_call_is_diagnosed_in_minutes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

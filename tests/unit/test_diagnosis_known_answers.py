@@ -39,7 +39,7 @@ from truing.diagnosis.beside import beside_of
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.design import _Duel
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.noise import Setting, colour, whiten
+from truing.diagnosis.noise import Autocorrelation, colour, whiten
 from truing.diagnosis.sample import sample_of
 from truing.diagnosis.visibility import inseparable, needed, separation
 
@@ -72,7 +72,7 @@ def believed(made: Competition, name: str, *numbers: float) -> Fit:
 
 def test_the_exact_likelihood_of_six_values_of_an_autoregression() -> None:
     values = np.array([0.3, -0.1, 0.4, 1.2, 0.7, -0.5])
-    ours = norm.logpdf(whiten(values, one_run(6), Setting(0.6)), scale=0.8).sum() + np.log(1 - 0.6**2) / 2
+    ours = norm.logpdf(whiten(values, one_run(6), Autocorrelation(0.6)), scale=0.8).sum() + np.log(1 - 0.6**2) / 2
     lag = np.abs(np.subtract.outer(np.arange(6), np.arange(6)))
     dense = multivariate_normal(cov=0.8**2 / (1 - 0.6**2) * 0.6**lag).logpdf(values)
     assert_allclose(ours, dense, rtol=0, atol=1e-9)
@@ -167,7 +167,7 @@ def test_a_gain_and_a_loss_of_stiffness_are_three_degrees_apart(tmp_path: Path) 
 
 
 def test_three_hundred_rows_that_carry_over_say_of_an_offset_what_seventy_five_do(tmp_path: Path) -> None:
-    setting = Setting(0.6)
+    setting = Autocorrelation(0.6)
     made = colour(np.eye(4000), one_run(4000), setting)  # columns: the answer to one innovation each
     variance_of_mean = float(np.sum(made.sum(axis=0) ** 2)) / 4000**2
     assert_allclose(setting.variance_ratio / variance_of_mean / 4000, 0.25, rtol=1e-3)
@@ -187,7 +187,7 @@ def test_three_hundred_rows_that_carry_over_say_of_an_offset_what_seventy_five_d
 
 @pytest.mark.parametrize(("rho", "seen"), [(0.3, 0.837), (0.6, 0.632), (0.9, 0.316)])
 def test_first_differences_of_noise_that_carries_over_show_too_little(rho: float, seen: float) -> None:
-    made = colour(np.eye(50), one_run(50), Setting(rho)) * np.sqrt(1 - rho**2)
+    made = colour(np.eye(50), one_run(50), Autocorrelation(rho)) * np.sqrt(1 - rho**2)
     covariance = made @ made.T
     assert_allclose(np.diag(covariance), 1, rtol=1e-12)
     of_differences = covariance[20, 20] - covariance[20, 21]  # half the variance of their difference

@@ -26,13 +26,13 @@ from diagnosis_nothing import nothing_wrong
 from numpy.testing import assert_allclose
 
 from truing.diagnosis.noise import SMALLEST_SHARE
-from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.result import DiagnosisResult
 
 ZERO = {**TOLERANCES, "zero": "5 um"}
 PROPER = Asked(drive_model())
 
 
-def named(found: Diagnosis) -> list[str]:
+def named(found: DiagnosisResult) -> list[str]:
     return [cause.effect for cause in found.causes]
 
 
@@ -144,7 +144,7 @@ def warm_and_worn() -> dict[str, Array]:
     return bench.columns(gauge(bench.load, bench.travel) + error + np.random.default_rng(15).normal(0, 1, len(bench)))
 
 
-def assert_same(one: Diagnosis, other: Diagnosis) -> None:
+def assert_same(one: DiagnosisResult, other: DiagnosisResult) -> None:
     """The same verdict with the same probabilities and, in SI, the same sizes."""
     assert (one.verdict, one.unique, name_sets(one)) == (other.verdict, other.unique, name_sets(other))
     assert (one.p_any, one.p_second) == (other.p_any, other.p_second)

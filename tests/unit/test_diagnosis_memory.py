@@ -58,7 +58,7 @@ def test_the_first_idea_of_the_noise_is_what_least_squares_leave(
     bench, rng = wide(400), np.random.default_rng(5)
     measured = gauge(bench.load, bench.travel, 3.3) + 0.01 * bench.temperature**2 + rng.normal(0, 2, 400)
     asked = Asked(drive_model())
-    there = machine.machine_of(asked.setup, asked.records(tmp_path, bench.columns(measured)))
+    there = machine.calibration_of(asked.setup, asked.records(tmp_path, bench.columns(measured)))
     powers = [np.asarray(values) ** power for values in vars(bench).values() for power in (1, 2)]
     loads = [np.sign(bench.load) * np.cbrt(bench.load) ** 2, bench.load * bench.travel]
     design = np.column_stack([np.ones(400), *powers, *loads])
@@ -119,7 +119,7 @@ def test_a_decision_on_some_rows_is_kept_and_its_rivals_are_fitted_to_all(
     bench, asked = wide(400), Asked(drive_model(("lead_error", "thermal_growth"), {}))
     error = 0.3 * (bench.temperature - 20) + np.random.default_rng(9).normal(size=400)
     records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
-    whole = machine.machine_of(asked.setup, records)
+    whole = machine.calibration_of(asked.setup, records)
     few = laid_out(long_records.machine_for_search(whole, seed=1))
     search.search(few)
     chosen = choose(few, seed=1)

@@ -18,8 +18,8 @@ from truing.diagnosis.noise import (
     LARGEST_EXPONENT,
     SETTINGS,
     TAILS,
-    Setting,
-    Spread,
+    Autocorrelation,
+    SpreadTrend,
     Tails,
     carried_over,
     clipped,
@@ -50,7 +50,7 @@ def covariance(rho: float, theta: float, n: int) -> Array:
 
 @pytest.mark.parametrize("setting", SETTINGS, ids=str)
 @pytest.mark.parametrize("columns", [(), (3,)], ids=["vector", "matrix"])
-def test_colour_undoes_whiten_over_several_runs(setting: Setting, columns: tuple[int, ...]) -> None:
+def test_colour_undoes_whiten_over_several_runs(setting: Autocorrelation, columns: tuple[int, ...]) -> None:
     values = np.random.default_rng(1).normal(size=(sum(RUNS), *columns))
     starts = starts_of(RUNS)
     white = whiten(values, starts, setting)
@@ -61,7 +61,7 @@ def test_colour_undoes_whiten_over_several_runs(setting: Setting, columns: tuple
 
 def test_whiten_leaves_what_it_is_given_alone() -> None:
     values = np.ones(5)
-    for setting in (Setting(), Setting(0.6), Setting(0.9, 0.5)):
+    for setting in (Autocorrelation(), Autocorrelation(0.6), Autocorrelation(0.9, 0.5)):
         whiten(values, starts_of((5,)), setting)[:] = 7
         colour(values, starts_of((5,)), setting)[:] = 7
     assert_array_equal(values, 1)
@@ -72,7 +72,7 @@ def test_whitening_an_autoregression_is_the_inverse_root_of_its_covariance(rho: 
     dense = block_diag(*(covariance(rho, 0, n) for n in RUNS))
     root = np.linalg.cholesky(dense)
     values = np.random.default_rng(2).normal(size=(sum(RUNS), 2))
-    ours = whiten(values, starts_of(RUNS), Setting(rho))
+    ours = whiten(values, starts_of(RUNS), Autocorrelation(rho))
     assert_allclose(ours, solve_triangular(root, values, lower=True), rtol=0, atol=1e-11)
 
 
@@ -80,14 +80,14 @@ def test_whitening_an_autoregression_is_the_inverse_root_of_its_covariance(rho: 
 def test_the_likelihood_of_an_autoregression_over_runs_is_the_dense_one(rho: float) -> None:
     values = np.random.default_rng(3).normal(size=sum(RUNS))
     dense = block_diag(*(covariance(rho, 0, n) for n in RUNS)) * 1.7**2
-    white = whiten(values, starts_of(RUNS), Setting(rho))
+    white = whiten(values, starts_of(RUNS), Autocorrelation(rho))
     ours = norm.logpdf(white, scale=1.7).sum() + len(RUNS) * np.log(1 - rho**2) / 2
     assert_allclose(ours, multivariate_normal(cov=dense).logpdf(values), rtol=1e-12)
 
 
 @pytest.mark.parametrize(("rho", "theta"), [(0.8, 0.4), (0.9, 0.7), (0.96, 0.8)])
 def test_a_wander_beside_white_noise_has_the_variance_of_the_formula(rho: float, theta: float) -> None:
-    setting = Setting(rho, theta)
+    setting = Autocorrelation(rho, theta)
     dense = covariance(rho, theta, 3)
     assert_allclose(setting.variance_ratio, dense[0, 0], rtol=1e-12)
     assert_allclose(setting.neighbours, dense[0, 1] / dense[0, 0], rtol=1e-12)
@@ -99,7 +99,7 @@ def test_a_wander_beside_white_noise_has_the_variance_of_the_formula(rho: float,
 def test_whitening_a_wander_beside_white_noise_leaves_nothing_alike_after_a_transient(rho: float, theta: float) -> None:
     n = 60
     dense = covariance(rho, theta, n)
-    filter_ = whiten(np.eye(n), starts_of((n,)), Setting(rho, theta))
+    filter_ = whiten(np.eye(n), starts_of((n,)), Autocorrelation(rho, theta))
     left = filter_ @ dense @ filter_.T
     assert_allclose(np.diag(left)[0], 1, rtol=1e-12)
     settled = slice(int(np.ceil(log(1e-3) / log(theta))) if theta < 0.75 else 31, n)
@@ -110,10 +110,10 @@ def test_whitening_a_wander_beside_white_noise_leaves_nothing_alike_after_a_tran
 def test_a_slow_wander_plus_white_noise_is_one_of_these_filters() -> None:
     """Half the variance wanders with 0.92 from row to row, half is white: theta follows from the first two lags."""
     rho, wandering = 0.92, 0.5
-    theta = brentq(lambda theta: Setting(rho, theta).neighbours - wandering * rho, 0.01, 0.91)
+    theta = brentq(lambda theta: Autocorrelation(rho, theta).neighbours - wandering * rho, 0.01, 0.91)
     summed = wandering * toeplitz(rho ** np.arange(40.0)) + (1 - wandering) * np.eye(40)
-    white = whiten(np.linalg.cholesky(summed), starts_of((40,)), Setting(rho, theta))
-    left = (white @ white.T)[25:, 25:] * Setting(rho, theta).variance_ratio
+    white = whiten(np.linalg.cholesky(summed), starts_of((40,)), Autocorrelation(rho, theta))
+    left = (white @ white.T)[25:, 25:] * Autocorrelation(rho, theta).variance_ratio
     assert_allclose(left, np.eye(15), rtol=0, atol=2e-3)
     assert any(abs(item.rho - rho) < 0.05 and abs(item.theta - theta) < 0.1 for item in SETTINGS if item.theta)
 
@@ -182,7 +182,7 @@ def test_a_constant_spread_stays_silent() -> None:
         drivers = {name: rng.uniform(-1, 1, 120) for name in ("load", "speed", "time")}
         alarms += bool(spread_of(rng.normal(size=120), drivers).driver)
     assert alarms <= 7  # 1 % each: eight or more of 200 come in one of 1000 such samples
-    assert Spread().words == "constant"
+    assert SpreadTrend().words == "constant"
 
 
 def test_a_tenfold_spread_is_seen_in_fifty_rows() -> None:
@@ -196,14 +196,14 @@ def test_a_tenfold_spread_is_seen_in_fifty_rows() -> None:
 
 
 def test_sizes_that_are_equal_show_no_spread_whatever_their_order() -> None:
-    assert spread_of(np.tile([1.0, -1.0], 30), {"load": np.arange(60.0)}) == Spread()
+    assert spread_of(np.tile([1.0, -1.0], 30), {"load": np.arange(60.0)}) == SpreadTrend()
 
 
 def test_a_spread_is_not_looked_for_where_nothing_drives_it_or_rows_are_few() -> None:
     values = np.random.default_rng(13).normal(size=100)
-    assert spread_of(values, {}) == Spread()
-    assert spread_of(values, {"load": np.ones(100)}) == Spread()
-    assert spread_of(values[:19], {"load": np.arange(19.0)}) == Spread()
+    assert spread_of(values, {}) == SpreadTrend()
+    assert spread_of(values, {"load": np.ones(100)}) == SpreadTrend()
+    assert spread_of(values[:19], {"load": np.arange(19.0)}) == SpreadTrend()
 
 
 def test_a_driver_is_standardised_and_what_is_missing_lies_at_its_mean() -> None:
@@ -215,18 +215,18 @@ def test_a_driver_is_standardised_and_what_is_missing_lies_at_its_mean() -> None
 def test_weights_undo_the_spread_they_were_learnt_from() -> None:
     driver = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 100.0, np.nan])
     learnt = np.arange(5)
-    weights = weights_of(Spread("load", 0.7, 1e-6), driver, learnt, 7)
+    weights = weights_of(SpreadTrend("load", 0.7, 1e-6), driver, learnt, 7)
     z = (driver - 2) / np.sqrt(2)
     assert_allclose(weights[:5], np.exp(-0.7 * z[:5]))
     assert_allclose(weights[5], np.exp(-LARGEST_EXPONENT))
     assert_allclose(weights[6], 1)
-    assert_array_equal(weights_of(Spread(), driver, learnt, 7), np.ones(7))
-    assert_array_equal(weights_of(Spread("load", 0.7, 1e-6), None, learnt, 7), np.ones(7))
+    assert_array_equal(weights_of(SpreadTrend(), driver, learnt, 7), np.ones(7))
+    assert_array_equal(weights_of(SpreadTrend("load", 0.7, 1e-6), None, learnt, 7), np.ones(7))
 
 
 def test_weights_scale_a_driver_with_gaps_as_its_spread_was_learnt() -> None:
     driver = np.array([0.0, 1.0, np.nan, 3.0, np.nan, 4.0])
-    weights = weights_of(Spread("load", 0.7, 1e-6), driver, np.arange(6), 6)
+    weights = weights_of(SpreadTrend("load", 0.7, 1e-6), driver, np.arange(6), 6)
     assert_allclose(weights, np.exp(-0.7 * standardised(driver)))
 
 

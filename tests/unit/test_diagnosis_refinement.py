@@ -13,7 +13,7 @@ from scipy.optimize import least_squares
 from scipy.stats import t
 
 from truing.diagnosis.engine import laid_out
-from truing.diagnosis.machine import machine_of
+from truing.diagnosis.machine import calibration_of
 
 BENCH = wide(150, seed=31)
 PROPER = Asked(drive_model())
@@ -100,7 +100,7 @@ def test_a_second_cause_whose_interval_contains_zero_is_not_named(tmp_path: Path
 def test_a_gauge_that_is_off_by_millimetres_does_not_drive_inputs_out_of_their_tolerances(tmp_path: Path) -> None:
     """A load of one sign makes an offset look like a soft contact: by least squares one off by dozens."""
     records = PROPER.records(tmp_path, read(5000, replace(BENCH, load=np.abs(BENCH.load) + 1)))
-    made = laid_out(machine_of(PROPER.setup, records))
+    made = laid_out(calibration_of(PROPER.setup, records))
     machine = made.extended.machine
     off = records.measured["deflection"] - machine.base["deflection"]
     freely = np.linalg.lstsq(machine.slopes["deflection"], off)[0]

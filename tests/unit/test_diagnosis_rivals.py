@@ -27,7 +27,7 @@ from truing.diagnosis.choice import (
 )
 from truing.diagnosis.competition import MARGIN, Competition
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.noise import Setting
+from truing.diagnosis.noise import Autocorrelation
 from truing.diagnosis.sample import sample_of
 
 ROWS = 90
@@ -101,7 +101,7 @@ def test_where_what_is_left_is_noise_a_difference_d_is_unsure_by_two_roots_of_d(
     bench = wide(4000, seed=21)
     asked = Asked(drive_model(("clearance",), {}))
     made = plain_competition(asked, asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel))), UM)
-    noise = {name: replace(own, memory=Setting(rho)) for name, own in made.sample.noise.items()}
+    noise = {name: replace(own, memory=Autocorrelation(rho)) for name, own in made.sample.noise.items()}
     sample = sample_of(made.sample.machine, noise, made.sample.mask)
     curve = np.sin(np.arange(4000) / 50)
     curve *= np.sqrt(apart) / np.linalg.norm(curve)

@@ -11,7 +11,7 @@ import pytest
 from truing import Effect, Float, Model, Unknown, found, given, inputs, results
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.reading import read_records
-from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.result import DiagnosisResult
 from truing.kernel import Offer, Origin
 from truing.setup import default_setup
 
@@ -82,7 +82,7 @@ MODEL = Model(
 )
 
 
-def asked(folder: Path, truth: str, size: float, *, low: float, gauge: float = 1.0) -> Diagnosis:
+def asked(folder: Path, truth: str, size: float, *, low: float, gauge: float = 1.0) -> DiagnosisResult:
     """Ask about beams under forces from ``low`` on, with one thing wrong; ``gauge`` scales the noise of some rows."""
     rng = np.random.default_rng(4)
     force, speed = rng.uniform(low, 12.0, ROWS), rng.uniform(1.0, 100.0, ROWS)
@@ -100,7 +100,7 @@ def asked(folder: Path, truth: str, size: float, *, low: float, gauge: float = 1
     return diagnose(setup, read_records([file], offer, setup))
 
 
-def named(answer: Diagnosis) -> set[str]:
+def named(answer: DiagnosisResult) -> set[str]:
     (cause,) = answer.causes
     return {cause.effect, *cause.same_as}
 

@@ -16,34 +16,34 @@ from scipy.optimize import approx_fprime, minimize_scalar
 from scipy.stats import multivariate_normal, norm, t
 
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.curves import Curves
+from truing.diagnosis.curves import ResponseCurves
 from truing.diagnosis.exact import nothing
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.learning import FEWEST_OF_MEMORY, learnt, memory_cost, memory_of
-from truing.diagnosis.machine import Machine, directions_of, machine_of
-from truing.diagnosis.noise import SETTINGS, Setting, Tails, robust_sd
-from truing.diagnosis.sample import Noise, Sample, has_order, resolution_of, sample_of, starts_of
+from truing.diagnosis.machine import Calibration, calibration_of, directions_of
+from truing.diagnosis.noise import SETTINGS, Autocorrelation, Tails, robust_sd
+from truing.diagnosis.sample import NoiseModel, Sample, has_order, resolution_of, sample_of, starts_of
 from truing.diagnosis.sweeps import Beside
 
 TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
 BENCH = wide(150, seed=31)
-AR = Setting(0.6)
+AR = Autocorrelation(0.6)
 
 
 def machine(
     folder: Path, error: Array, runs: Sequence[str] = (), *, tolerances: Mapping[str, str] = TOLERANCES
-) -> Machine:
+) -> Calibration:
     """A record of BENCH with an error in um."""
     one = Asked(drive_model((), tolerances))
     columns = BENCH.columns(gauge(BENCH.load, BENCH.travel) + error)
-    return machine_of(one.setup, one.records(folder, columns, runs))
+    return calibration_of(one.setup, one.records(folder, columns, runs))
 
 
 def noise(seed: int = 31) -> Array:
     return np.random.default_rng(seed).normal(0, 1, 150)
 
 
-def sample(there: Machine, *, scale: float = UM, **known: object) -> Sample:
+def sample(there: Calibration, *, scale: float = UM, **known: object) -> Sample:
     """All rows, in noise of a known standard deviation and what else is known of it."""
     own = {name: replace(each, **known) for name, each in white_noise(there, scale).items()}  # type: ignore[arg-type]
     return sample_of(there, own, ~there.records.held_out)
@@ -114,7 +114,7 @@ def test_a_slow_curve_counts_for_the_few_independent_rows_that_it_has_and_a_jump
 
     C is the covariance of an autoregression with unit innovations. All rows are counted, whatever their memory.
     """
-    made = sample(machine(tmp_path, noise()), memory=Setting(rho))
+    made = sample(machine(tmp_path, noise()), memory=Autocorrelation(rho))
     assert made.rows == 150
     slow, fast = (made.curve({"deflection": each * UM}) for each in (np.ones(150), (-1.0) ** np.arange(150)))
     assert_allclose(slow @ slow, 1 - rho**2 + 149 * (1 - rho) ** 2, rtol=1e-9)
@@ -221,8 +221,8 @@ def test_directions_that_come_into_sight_are_taken_where_they_are(tmp_path: Path
 # Noise
 
 
-@pytest.mark.parametrize("setting", [Setting(), Setting(0.6), Setting(0.95)], ids=str)
-def test_the_cost_of_a_memory_is_its_likelihood_and_its_parameters(setting: Setting) -> None:
+@pytest.mark.parametrize("setting", [Autocorrelation(), Autocorrelation(0.6), Autocorrelation(0.95)], ids=str)
+def test_the_cost_of_a_memory_is_its_likelihood_and_its_parameters(setting: Autocorrelation) -> None:
     """Dense: -2 log likelihood with the covariance of each run, profiled over the size, log rows for each parameter."""
     left = wander(np.random.default_rng(8), 60, 0.5)
     starts = np.isin(np.arange(60), [0, 25])
@@ -236,17 +236,17 @@ def test_the_cost_of_a_memory_is_its_likelihood_and_its_parameters(setting: Sett
 def test_a_memory_is_found_where_there_is_one_and_enough_rows() -> None:
     starts = np.arange(400) == 0
     rng = np.random.default_rng(9)
-    assert memory_of(wander(rng, 400, 0.6), starts) in {Setting(0.6), Setting(0.45)}
-    assert memory_of(rng.normal(size=400), starts) == Setting()
+    assert memory_of(wander(rng, 400, 0.6), starts) in {Autocorrelation(0.6), Autocorrelation(0.45)}
+    assert memory_of(rng.normal(size=400), starts) == Autocorrelation()
     few = FEWEST_OF_MEMORY - 1
-    assert memory_of(np.linspace(0, 1, few), starts[:few]) == Setting()
-    assert memory_of(np.linspace(0, 1, few + 1), starts[: few + 1]) != Setting()
+    assert memory_of(np.linspace(0, 1, few), starts[:few]) == Autocorrelation()
+    assert memory_of(np.linspace(0, 1, few + 1), starts[: few + 1]) != Autocorrelation()
 
 
-def own_score(there: Machine) -> float:
+def own_score(there: Calibration) -> float:
     """How unlikely the model as it is is, where what it leaves has the memory that suits it best."""
     extended = Extended(there)
-    made = Competition(extended, (), sample(there), Curves(extended))
+    made = Competition(extended, (), sample(there), ResponseCurves(extended))
     made.keep(nothing(made.sample, extended))
     return made.own_score(made.null)
 
@@ -261,14 +261,14 @@ def test_noise_of_its_own_memory_is_only_for_rows_with_an_order(tmp_path: Path) 
     assert own_score(there) < own_score(unordered) - 100  # the logarithm of 1 - 0.87^2 is worth 211, its number 10
 
 
-def learn(there: Machine, used: float = 0.0) -> Noise:
+def learn(there: Calibration, used: float = 0.0) -> NoiseModel:
     return learnt(sample(there), there.base, used)["deflection"]
 
 
 def test_the_scale_that_is_learnt_is_that_of_what_is_left_free_numbers_counted(tmp_path: Path) -> None:
     found = learn(machine(tmp_path, noise()), used=10)
     assert_allclose(found.scale / UM, np.sqrt(noise() @ noise() / 140), rtol=1e-6)
-    assert (found.memory, found.tails.freedom) == (Setting(), inf)
+    assert (found.memory, found.tails.freedom) == (Autocorrelation(), inf)
     assert_allclose(found.weights, 1)
 
 

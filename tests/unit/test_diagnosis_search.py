@@ -25,11 +25,11 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 
 from truing.diagnosis.beside import Looked, beside_of
-from truing.diagnosis.causes import Number, are_exclusive
+from truing.diagnosis.causes import Parameter, are_exclusive
 from truing.diagnosis.chance import DRAWS, FIRST_DRAWS, HOPELESS, LARGEST_RHO, _drawn, _largest, carried, law_of
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.fitted import differ, far_inputs, is_at_bound
-from truing.diagnosis.noise import Setting
+from truing.diagnosis.noise import Autocorrelation
 from truing.diagnosis.sample import sample_of
 from truing.diagnosis.search import search
 
@@ -149,8 +149,8 @@ def test_two_explanations_differ_by_what_they_draw_apart(tmp_path: Path) -> None
     ],
 )
 def test_a_number_at_an_end_of_its_range_lies_there(value: float, low: float, high: float, is_there: bool) -> None:
-    assert is_at_bound(Number("size", low, high), value) is is_there
-    assert not is_at_bound(replace(Number("size", low, high), whole=True), value)
+    assert is_at_bound(Parameter("size", low, high), value) is is_there
+    assert not is_at_bound(replace(Parameter("size", low, high), whole=True), value)
 
 
 def test_an_input_far_outside_of_its_tolerance_is_a_sign_unless_it_is_the_cause(tmp_path: Path) -> None:
@@ -194,7 +194,7 @@ def test_simulations_carry_over_a_little_more_than_was_fitted() -> None:
 def test_noise_is_drawn_by_the_recursion_from_what_is_left(tmp_path: Path, rho: float) -> None:
     """Innovations are drawn from those of the better explanation, carried on, and freed of the memory that is known."""
     made = competing(tmp_path, 0.02 * BENCH.travel, tolerated=True)
-    noise = {name: replace(own, memory=Setting(rho)) for name, own in made.sample.noise.items()}
+    noise = {name: replace(own, memory=Autocorrelation(rho)) for name, own in made.sample.noise.items()}
     sample = sample_of(made.sample.machine, noise, made.sample.mask)
     at, more = made.null.in_sample(sample), fit_of(made, "lead_error").in_sample(sample)
     drawn = _drawn(at, more, 7, np.random.default_rng(11))

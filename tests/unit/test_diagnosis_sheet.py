@@ -20,7 +20,16 @@ from test_report_sheet import HOSTILE, Page
 from shared import Calc
 from truing.cli.diagnosis_printed import report
 from truing.diagnosis.records import Covariate, Slip
-from truing.diagnosis.result import Alternative, Amount, Cause, Diagnosis, Finding, FittedUnknown, NextPoint, Seen
+from truing.diagnosis.result import (
+    Alternative,
+    Amount,
+    Cause,
+    DiagnosisResult,
+    FittedUnknown,
+    NextPoint,
+    ResidualFinding,
+    VisibleSize,
+)
 from truing.report.context import FigureView, TableView
 from truing.report.diagnosis_figures import main_covariates, thinned
 from truing.report.diagnosis_sheet import (
@@ -47,7 +56,7 @@ from truing.report.diagnosis_words import (
 from truing.runs.provenance import provenance_of
 
 
-def sheet_of(made: Diagnosis) -> DiagnosisSheet:
+def sheet_of(made: DiagnosisResult) -> DiagnosisSheet:
     return make_diagnosis_sheet(made, provenance=provenance_of(made.setup, date="2026-11-21"))
 
 
@@ -131,13 +140,13 @@ def test_hostile_texts_are_printed_and_do_nothing() -> None:
         made.records, covariates=covariates, notes=(HOSTILE,), slips=(Slip(HOSTILE, 10.0, HOSTILE),),
         files=(HOSTILE, "b.csv"),
     )  # fmt: skip
-    wrong = replace(made.wrong[0], findings=(Finding("trend", HOSTILE, 0.01, HOSTILE),))
+    wrong = replace(made.wrong[0], findings=(ResidualFinding("trend", HOSTILE, 0.01, HOSTILE),))
     made = replace(
         made, records=records, wrong=(wrong, made.wrong[1]), inseparable=(HOSTILE,),
         alternatives=(Alternative((HOSTILE,), 1.0, 2.0, (HOSTILE,)),),
         causes=(*made.causes, Cause(f"input:{HOSTILE}", (FittedUnknown(HOSTILE, 1.0, 0.5, 1.5, ""),), (), (HOSTILE,))),
         next=(NextPoint({HOSTILE: Amount(1.0, "")}, (HOSTILE, HOSTILE), HOSTILE, 3.0),),
-        seen=(Seen(HOSTILE, None, "not excited", HOSTILE),), not_measured={HOSTILE: (HOSTILE,)},
+        seen=(VisibleSize(HOSTILE, None, "not excited", HOSTILE),), not_measured={HOSTILE: (HOSTILE,)},
     )  # fmt: skip
     sheet = sheet_of(made)
     html = diagnosis_html(sheet)
@@ -343,7 +352,9 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 
     asked: list[Any] = []
 
-    def diagnose(setup: Any, records: Any, *, progress: Callable[[str, int, int], None] | None = None) -> Diagnosis:
+    def diagnose(
+        setup: Any, records: Any, *, progress: Callable[[str, int, int], None] | None = None
+    ) -> DiagnosisResult:
         asked.append(setup)
         if progress is not None:
             progress("explanations", 1, 1)
@@ -428,7 +439,7 @@ def test_bad_words_are_answered_in_a_sentence(
 
 @pytest.mark.parametrize("sample", [none_found, unknown])
 def test_every_verdict_ends_with_exit_code_0(
-    calc: Calc, plugin: str, engine: list[Any], sample: Callable[[], Diagnosis], monkeypatch: pytest.MonkeyPatch
+    calc: Calc, plugin: str, engine: list[Any], sample: Callable[[], DiagnosisResult], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sys.modules["truing.diagnosis.engine"], "diagnose", lambda *_, **__: sample())
     assert calc("diagnose", plugin, "--data", "press record.csv", "-q").code == 0

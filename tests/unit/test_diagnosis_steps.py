@@ -14,7 +14,7 @@ from diagnosis_models import UM, Array, Asked, cause_of, drive_model, fit_of, ga
 from numpy.testing import assert_allclose
 
 from truing.diagnosis import steps
-from truing.diagnosis.causes import Cause
+from truing.diagnosis.causes import Candidate
 from truing.diagnosis.chance import Law
 from truing.diagnosis.competition import UNREGISTERED, Competition
 from truing.diagnosis.fitted import Fit
@@ -45,7 +45,7 @@ def competing(folder: Path, error: Array) -> Competition:
     )
 
 
-def shape_of(made: Competition, tag: str) -> Cause:
+def shape_of(made: Competition, tag: str) -> Candidate:
     (found,) = (cause for cause in made.causes if cause.tag == f"unknown:{tag}:deflection")
     return found
 

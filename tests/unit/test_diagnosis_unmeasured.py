@@ -15,7 +15,7 @@ import pytest
 from truing import Effect, Float, Minimise, Model, Tolerance, Unknown, found, given, inputs, normal, results
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.reading import read_records
-from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.result import DiagnosisResult
 from truing.kernel import Offer, Origin
 from truing.setup import default_setup
 
@@ -68,7 +68,9 @@ ADDS = [
 TAKES = Effect("filled", on_inputs=filled, unknowns=[Unknown("share", 0, 0.9)])
 
 
-def asked(folder: Path, *, on_disc: float, on_both: float, weighed: bool = False, goals: bool = True) -> Diagnosis:
+def asked(
+    folder: Path, *, on_disc: float, on_both: float, weighed: bool = False, goals: bool = True
+) -> DiagnosisResult:
     """The disc loses ``on_disc`` times what it should, the scar is ``on_both`` times as deep as that."""
     model = Model(
         name="scar", title="Scar", function=scar, errors=[*ADDS, TAKES, Tolerance("rate", normal(sd=f"{SD:.0%}"))],

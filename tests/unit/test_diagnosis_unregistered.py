@@ -11,18 +11,18 @@ import pytest
 from diagnosis_models import UM, Array, Asked, Bench, drive_model, gauge, name_sets, wide
 from numpy.testing import assert_allclose
 
-from truing.diagnosis.causes import Cause
+from truing.diagnosis.causes import Candidate
 from truing.diagnosis.extended import Extended
-from truing.diagnosis.machine import Machine, machine_of
+from truing.diagnosis.machine import Calibration, calibration_of
 from truing.diagnosis.unregistered import highest_order, shapes_of
 
 
-def machine(folder: Path, bench: Bench, effects: Sequence[str] = ()) -> Machine:
+def machine(folder: Path, bench: Bench, effects: Sequence[str] = ()) -> Calibration:
     one = Asked(drive_model(effects, {}))
-    return machine_of(one.setup, one.records(folder, bench.columns(gauge(bench.load, bench.travel))))
+    return calibration_of(one.setup, one.records(folder, bench.columns(gauge(bench.load, bench.travel))))
 
 
-def of_kind(found: Sequence[Cause], kind: str, *on: str) -> list[Cause]:
+def of_kind(found: Sequence[Candidate], kind: str, *on: str) -> list[Candidate]:
     """The shapes of one kind, over these covariates if any are named."""
     return [
         each for each in found if each.shape and each.shape.kind == kind and (not on or each.shape.depends_on == on)

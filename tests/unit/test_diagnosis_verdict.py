@@ -34,8 +34,8 @@ from truing.diagnosis.result import (
     Amount,
     Cause,
     Contradiction,
-    Diagnosis,
-    Finding,
+    DiagnosisResult,
+    ResidualFinding,
     Thinned,
     Trade,
     doubts,
@@ -49,13 +49,15 @@ from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.index import _of_diagnosis
 
 FINDINGS = {
-    "allowed": Finding("bias", "", None, "on average 3 um off the nominal model", is_allowed=True),
-    "bias": Finding("bias", "", None, "on average 30 um off the nominal model, more than the tolerances allow"),
-    "wave": Finding("wave", "crank_angle", 1e-4, "12 waves over the range of crank_angle, with 31 % of what is left"),
-    "trend": Finding("trend", "load", 0.03, "rises with load, by 3 um over the record"),
-    "spread": Finding("spread", "load", 0.001, "the scatter grows with load"),
-    "alike": Finding("autocorrelation", "", None, "neighbouring rows are alike (autocorrelation 0.6)"),
-    "far": Finding("outlier", "", None, "1 suspected outlier, beyond four standard deviations of the noise"),
+    "allowed": ResidualFinding("bias", "", None, "on average 3 um off the nominal model", is_allowed=True),
+    "bias": ResidualFinding("bias", "", None, "on average 30 um off the nominal model, more than the tolerances allow"),
+    "wave": ResidualFinding(
+        "wave", "crank_angle", 1e-4, "12 waves over the range of crank_angle, with 31 % of what is left"
+    ),
+    "trend": ResidualFinding("trend", "load", 0.03, "rises with load, by 3 um over the record"),
+    "spread": ResidualFinding("spread", "load", 0.001, "the scatter grows with load"),
+    "alike": ResidualFinding("autocorrelation", "", None, "neighbouring rows are alike (autocorrelation 0.6)"),
+    "far": ResidualFinding("outlier", "", None, "1 suspected outlier, beyond four standard deviations of the noise"),
 }
 HARMLESS = {"allowed", "spread", "alike", "far"}
 CAUSES = {
@@ -80,7 +82,7 @@ class NoFigures(Figures):
 
 
 @st.composite
-def states(draw: st.DrawFn) -> Diagnosis:
+def states(draw: st.DrawFn) -> DiagnosisResult:
     """A diagnosis in any state of its parts."""
     made = none_found()
     causes = [CAUSES[name] for name in draw(st.lists(st.sampled_from(list(CAUSES)), unique=True, max_size=2))]
@@ -116,7 +118,7 @@ def states(draw: st.DrawFn) -> Diagnosis:
     )  # fmt: skip
 
 
-def sheet_text(made: Diagnosis) -> str:
+def sheet_text(made: DiagnosisResult) -> str:
     """What the chapters of the sheet say, without their figures."""
     said = []
     for chapter in diagnosis_chapters(made, NoFigures()):
@@ -128,7 +130,7 @@ def sheet_text(made: Diagnosis) -> str:
     return "\n".join(said)
 
 
-def open_names(made: Diagnosis) -> set[frozenset[str]]:
+def open_names(made: DiagnosisResult) -> set[frozenset[str]]:
     """Every explanation that is left, each under all its names: worked out anew, by sets."""
     found = []
     if made.causes or made.remainder:
@@ -140,7 +142,7 @@ def open_names(made: Diagnosis) -> set[frozenset[str]]:
     return {frozenset(names) for groups in found for names in product(*groups)}
 
 
-def is_doubtful(made: Diagnosis) -> bool:
+def is_doubtful(made: DiagnosisResult) -> bool:
     """Whether something on the sheet speaks against "nothing": by the figures alone."""
     (first, _) = made.wrong
     return (
@@ -153,7 +155,7 @@ def is_doubtful(made: Diagnosis) -> bool:
     )
 
 
-def is_alarming(made: Diagnosis) -> bool:
+def is_alarming(made: DiagnosisResult) -> bool:
     """Whether something speaks against the one explanation: by the figures alone."""
     (first, _) = made.wrong
     rho = first.noise.ar_coefficient
@@ -165,7 +167,7 @@ def is_alarming(made: Diagnosis) -> bool:
     )
 
 
-def expected(made: Diagnosis) -> str:
+def expected(made: DiagnosisResult) -> str:
     """The verdict that this state asks for."""
     left = open_names(made)
     if not left:
@@ -177,7 +179,7 @@ def expected(made: Diagnosis) -> str:
     return "one_of" if len(left) > 1 else "named"
 
 
-def further(made: Diagnosis, left: set[frozenset[str]]) -> set[str]:
+def further(made: DiagnosisResult, left: set[frozenset[str]]) -> set[str]:
     """What is in some explanation beside all names of the best one, where every other one holds these."""
     own = {cause.effect for cause in made.causes}
     over = "something over " + ",".join(made.remainder.depends_on) if made.remainder else ""
@@ -188,7 +190,7 @@ def further(made: Diagnosis, left: set[frozenset[str]]) -> set[str]:
 
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(states())
-def test_headline_terminal_sheet_and_json_say_one_thing(made: Diagnosis) -> None:
+def test_headline_terminal_sheet_and_json_say_one_thing(made: DiagnosisResult) -> None:
     document, verdict, left = diagnosis_document(made), expected(made), open_names(made)
     said = f"{verdict_word(made)}. {' '.join(headline(made))}"
     terminal = re.sub(r"\s+", " ", "\n".join(report(made, Path("runs/x"))))
@@ -213,7 +215,7 @@ def test_headline_terminal_sheet_and_json_say_one_thing(made: Diagnosis) -> None
     _demand_true_proposals(made, said, everything)
 
 
-def _demand_all_named(made: Diagnosis, said: str, explanations: Sequence[Sequence[str]]) -> None:
+def _demand_all_named(made: DiagnosisResult, said: str, explanations: Sequence[Sequence[str]]) -> None:
     """Of several explanations the headline names every one, and their number; of what may be there as well each."""
     if made.verdict == "one_of":
         assert re.match(rf"One of {len(explanations)} (causes|explanations); this record cannot say which\.", said)
@@ -240,7 +242,7 @@ def _demand_shared(document: Mapping[str, Any], *texts: str) -> None:
             assert {part.strip() for part in parts} == {spoken(name).lower() for name in shared}
 
 
-def _demand_true_proposals(made: Diagnosis, said: str, everything: str) -> None:
+def _demand_true_proposals(made: DiagnosisResult, said: str, everything: str) -> None:
     """What is said to separate passes the limit with the points there are; else their number is said."""
     if made.next:
         pair = " from ".join(spoken(name) for name in made.next[0].separates)

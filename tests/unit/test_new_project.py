@@ -10,7 +10,7 @@ import pytest
 
 from truing.errors import OutputError, UsageError
 from truing.new_project import (
-    Plan,
+    NewPlugin,
     check_name,
     check_title,
     project,
@@ -101,7 +101,7 @@ def test_what_is_proposed_is_taken(name: str) -> None:
 @pytest.mark.parametrize("title", TITLES)
 def test_a_title_comes_through_whole(title: str) -> None:
     check_title(title)
-    plan = Plan("belt_drive", title)
+    plan = NewPlugin("belt_drive", title)
     files = project(plan)
     assert title_in(files["belt_drive/__init__.py"]) == title_in(single_file(plan)) == title
     assert tomllib.loads(files["pyproject.toml"])["project"]["description"] == title
@@ -130,14 +130,14 @@ def test_without_a_title_the_name_is_it() -> None:
 
 
 def test_the_distribution_has_dashes_and_the_package_underscores() -> None:
-    settings = tomllib.loads(project(Plan("belt_drive", "Belt"))["pyproject.toml"])
+    settings = tomllib.loads(project(NewPlugin("belt_drive", "Belt"))["pyproject.toml"])
     assert settings["project"]["name"] == "belt-drive"
     assert settings["project"]["entry-points"] == {"truing.plugins": {"belt_drive": "belt_drive"}}
     assert settings["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"] == ["belt_drive"]
 
 
 def test_it_needs_truing_and_pytest_only_and_has_no_licence() -> None:
-    files = project(Plan("belt_drive", "Belt"))
+    files = project(NewPlugin("belt_drive", "Belt"))
     about = tomllib.loads(files["pyproject.toml"])["project"]
     assert about["dependencies"] == ["truing>=0.1"]
     assert about["optional-dependencies"] == {"test": ["truing[testing]"]}
@@ -155,7 +155,7 @@ def test_it_needs_truing_and_pytest_only_and_has_no_licence() -> None:
 
 def test_the_made_rows_are_what_they_say() -> None:
     """A cantilever after Roark, table 8.1, case 1a, with the moment turning its clamp, and a noise of 0.01 mm."""
-    said, header, *lines = project(Plan("belt_drive", "Belt"))["measured.csv"].splitlines()
+    said, header, *lines = project(NewPlugin("belt_drive", "Belt"))["measured.csv"].splitlines()
     assert said == "# Made, not measured: bar of 5.97 mm instead of 6 mm, clamp of 0.25 mrad/(N*m), noise of 0.01 mm."
     assert header == "time [min],force [N],length [mm],deflection [mm]"
     rows = [[float(cell) for cell in line.split(",")] for line in lines]

@@ -38,7 +38,7 @@ from truing.declare.spreads import read_spread
 from truing.errors import UsageError
 from truing.fits import GRADES, tolerance
 from truing.setup import Setup
-from truing.studies.grades import Strip, prices_at
+from truing.studies.grades import ToleranceVariable, prices_at
 
 
 @inputs
@@ -329,7 +329,7 @@ def test_a_width_that_does_not_matter_becomes_the_widest() -> None:
 @pytest.mark.parametrize("formula", ["16.14 * width**-0.324 + 0.217 * exp(-0.013 * width)", "2 / (width + 0.1)", "7"])
 def test_the_slope_of_a_price_is_exact(formula: str) -> None:
     """Against a central difference of a step that suits it."""
-    strip = Strip("a", 1e-3, 1e-4, 1e-2, euro(formula), {}, {})
+    strip = ToleranceVariable("a", 1e-3, 1e-4, 1e-2, euro(formula), {}, {})
     step = 1e-7
     expected = (strip.cost(1e-3 + step) - strip.cost(1e-3 - step)) / (2 * step)
     prices, slopes = prices_at([strip, strip], np.array([1e-3, 2e-3]))

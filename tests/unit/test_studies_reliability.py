@@ -32,7 +32,7 @@ from truing.errors import UsageError
 from truing.executors import open_executor
 from truing.setup import SwitchedOn
 from truing.studies.demands import normal_chance, wilson
-from truing.studies.form import Form
+from truing.studies.form import FormResult
 from truing.studies.sampling import Moments, joined
 from truing.studies.scatter import scatter_of
 
@@ -453,7 +453,7 @@ def test_results_json_holds_what_is_promised():
 
 
 def test_a_form_without_number_writes_none():
-    assert Form({}, None, "no convergence: because").as_json() == {"status": "no convergence: because"}
+    assert FormResult({}, None, "no convergence: because").as_json() == {"status": "no convergence: because"}
 
 
 def test_nothing_required_is_said():

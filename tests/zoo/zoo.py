@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from truing import Kernel, Model
-from truing.diagnosis.result import UNKNOWN, Diagnosis, explanations_of
+from truing.diagnosis.result import UNKNOWN, DiagnosisResult, explanations_of
 from truing.testing import Hidden, recorded
 
 Array: TypeAlias = NDArray[np.float64]
@@ -200,7 +200,7 @@ def hidden_of(case: Case, rows: int = ROWS) -> Hidden:
     return recorded(model, inputs=f'plugin = "{case.family}"\n', measured=record_of(case, rows))
 
 
-def diagnosis_of(case: Case, rows: int = ROWS) -> Diagnosis:
+def diagnosis_of(case: Case, rows: int = ROWS) -> DiagnosisResult:
     """Diagnose the record of a case."""
     return hidden_of(case, rows).answered.diagnosis
 
@@ -217,7 +217,7 @@ class Verdict:
     explanations: tuple[tuple[str, ...], ...]
 
 
-def judged(case: Case, diagnosis: Diagnosis) -> Verdict:
+def judged(case: Case, diagnosis: DiagnosisResult) -> Verdict:
     """Judge a diagnosis by what is hidden."""
     explanations = explanations_of(diagnosis)
     sets = [frozenset(_plain(name) for name in names) for names in explanations]

@@ -41,7 +41,7 @@ class NamedCause:
 class Ranking:
     """The explanations that were compared, the best first."""
 
-    result: found.Diagnosis
+    result: found.DiagnosisResult
 
     def frame(self) -> Any:
         """Return them as a dataframe: explanation, how far behind in score, lambda that separates it from the best."""
@@ -63,7 +63,7 @@ class Ranking:
 class Residuals:
     """Measured minus simulated, before (calibrated within its tolerances) and after (extended), by result."""
 
-    result: found.Diagnosis
+    result: found.DiagnosisResult
 
     def frame(self, name: str = "") -> Any:
         """Return what was measured, and the model before and after, of one result in its print unit, row by row."""
@@ -79,14 +79,14 @@ class Residuals:
         asked = [over] if over else [*(self.result.remainder.depends_on if self.result.remainder else ()), *covariates]
         return over_covariate(self.result, self._curves(name), covariates[asked[0]])
 
-    def _curves(self, name: str) -> found.Curves:
+    def _curves(self, name: str) -> found.ResultCurves:
         by_name = {curves.result: curves for curves in self.result.curves}
         if name and name not in by_name:
             raise UsageError(f"'{name}' was not measured; measured are {', '.join(by_name)}")
         return by_name[name] if name else next(iter(by_name.values()))
 
 
-def causes_of(diagnosis: found.Diagnosis) -> tuple[NamedCause, ...]:
+def causes_of(diagnosis: found.DiagnosisResult) -> tuple[NamedCause, ...]:
     """Return the causes that are named, the largest first, unknowns in the units they were declared in."""
     return tuple(
         NamedCause(cause.effect, {each.name: _fitted(each) for each in cause.unknowns}, cause.share, cause.same_as)

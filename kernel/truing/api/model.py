@@ -163,7 +163,7 @@ class Diagnosis:
     """
 
     offer: Offer
-    result: found.Diagnosis
+    result: found.DiagnosisResult
     started: float
 
     @property

@@ -20,7 +20,7 @@ from truing.entry_points import entry_points
 from truing.heavy import Later
 
 P = ParamSpec("P")
-Named = tuple[str, str]
+OfferedWord = tuple[str, str]
 """A word to offer, and what it is."""
 
 LONGEST_HELP = 90
@@ -28,11 +28,11 @@ _inside: Any = Later("truing.cli.inside")
 """What lies inside a plugin: loaded when a shell asks for it."""
 
 
-def silent(function: Callable[P, Iterator[Named]]) -> Callable[P, list[Named]]:
+def silent(function: Callable[P, Iterator[OfferedWord]]) -> Callable[P, list[OfferedWord]]:
     """Turn what gives names into what a shell may ask: nothing is printed, and of what fails nothing is said."""
 
     @functools.wraps(function)
-    def asked(*args: P.args, **kwargs: P.kwargs) -> list[Named]:
+    def asked(*args: P.args, **kwargs: P.kwargs) -> list[OfferedWord]:
         with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
             try:
                 return [(name, _one_line(words)) for name, words in function(*args, **kwargs) if _is_plain(name)]
@@ -54,7 +54,7 @@ def _is_plain(name: str) -> bool:
 
 
 @silent
-def plugins(incomplete: str) -> Iterator[Named]:
+def plugins(incomplete: str) -> Iterator[OfferedWord]:
     """Offer installed plugins; behind the whole name of one, or its point, the models it offers."""
     if _is_file(incomplete):
         return
@@ -67,7 +67,7 @@ def plugins(incomplete: str) -> Iterator[Named]:
 
 
 @silent
-def names(incomplete: str) -> Iterator[Named]:
+def names(incomplete: str) -> Iterator[OfferedWord]:
     """Offer PLUGIN.NAME: plugins first, then what the one that is named answers, takes, and could have wrong."""
     if _is_file(incomplete):
         return
@@ -78,19 +78,19 @@ def names(incomplete: str) -> Iterator[Named]:
 
 
 @silent
-def names_inside(context: typer.Context, incomplete: str) -> Iterator[Named]:
+def names_inside(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
     """Offer what the calculation that is typed already answers, takes, and could have wrong."""
     yield from _inside.names_inside(context)
 
 
 @silent
-def changes(context: typer.Context, incomplete: str) -> Iterator[Named]:
+def changes(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
     """Offer what ``--set`` takes for the plugin that is typed already: NAME=, section by section, and choices."""
     yield from _inside.changes(context, incomplete)
 
 
 @silent
-def runs(incomplete: str) -> Iterator[Named]:
+def runs(incomplete: str) -> Iterator[OfferedWord]:
     """Offer folders of runs and diagnoses, and the folders on the way to them."""
     above = incomplete.rpartition("/")[0]
     place = Path(f"{above}/" if above or incomplete.startswith("/") else ".")

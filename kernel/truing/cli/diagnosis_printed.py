@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from truing.cli.console import broken, one_line
-from truing.diagnosis.result import Alternative, Amount, Diagnosis, Seen, Wrong, explanations_of
+from truing.diagnosis.result import Alternative, Amount, DiagnosisResult, VisibleSize, Wrong, explanations_of
 from truing.numbers import format_number, pretty
 from truing.report.diagnosis_sheet import data_words
 from truing.report.diagnosis_words import (
@@ -41,7 +41,7 @@ MOST_SEEN = 8
 WEAK = 10.0
 
 
-def report(diagnosis: Diagnosis, folder: Path) -> Iterator[str]:
+def report(diagnosis: DiagnosisResult, folder: Path) -> Iterator[str]:
     """Say what a diagnosis found: one block for each question, broken to the width of a terminal."""
     yield from broken(f"DIAGNOSIS  {one_line(_data(diagnosis))}", 11)
     yield ""
@@ -65,7 +65,7 @@ def report(diagnosis: Diagnosis, folder: Path) -> Iterator[str]:
         yield f"remainder as an effect: {folder / 'new_effect.py'}"
 
 
-def _data(diagnosis: Diagnosis) -> str:
+def _data(diagnosis: DiagnosisResult) -> str:
     """Say what was measured, how long it took, and which model it was held against."""
     time = next((item for item in diagnosis.records.covariates.values() if item.role == "time"), None)
     lasting = ""
@@ -78,7 +78,7 @@ def _data(diagnosis: Diagnosis) -> str:
     )
 
 
-def _wrong(diagnosis: Diagnosis) -> Iterator[str]:
+def _wrong(diagnosis: DiagnosisResult) -> Iterator[str]:
     for item in diagnosis.wrong:
         yield (
             f"{spoken(item.result)}: RMS error {amount_text(item.rmse)} against a noise floor of "
@@ -103,7 +103,7 @@ def _noise(item: Wrong) -> str:
     return f"{said}; {count} suspected outlier{'s' if count > 1 else ''} ({places}{more})"
 
 
-def _cause(diagnosis: Diagnosis) -> Iterator[str]:
+def _cause(diagnosis: DiagnosisResult) -> Iterator[str]:
     yield _named(diagnosis)
     if len(diagnosis.causes) > 1:
         shares = [f"{spoken(cause.effect)} {percent(cause.share)}" for cause in diagnosis.causes]
@@ -121,7 +121,7 @@ def _cause(diagnosis: Diagnosis) -> Iterator[str]:
     yield from _sight(diagnosis)
 
 
-def _rivals(diagnosis: Diagnosis) -> list[Alternative]:
+def _rivals(diagnosis: DiagnosisResult) -> list[Alternative]:
     """Return the explanations behind those that are not excluded, without those that only add to the named one."""
     named = {cause.effect for cause in diagnosis.causes}
     said = [item.causes for item in diagnosis.alternatives]
@@ -129,7 +129,7 @@ def _rivals(diagnosis: Diagnosis) -> list[Alternative]:
     return [item for item in rivals if item.separation >= WEAK and not (named and named <= set(item.causes))]
 
 
-def _named(diagnosis: Diagnosis) -> str:
+def _named(diagnosis: DiagnosisResult) -> str:
     if not explanations_of(diagnosis):
         said = "none" if diagnosis.verdict == "none" else f"undecided: {listed(list(reasons(diagnosis)))}"
         return f"{said} ({p_text(diagnosis.p_any)})"
@@ -146,7 +146,7 @@ def _distance(item: Alternative) -> str:
     return f", {item.behind:.1f} score units behind, λ {score_text(item.separation)}"
 
 
-def _sight(diagnosis: Diagnosis) -> Iterator[str]:
+def _sight(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Say what this data could not show, and the smallest size of what it could."""
     named = {cause.effect for cause in diagnosis.causes}
     others = [item for item in diagnosis.seen if item.name.partition(".")[0] not in named]
@@ -169,14 +169,14 @@ def _sight(diagnosis: Diagnosis) -> Iterator[str]:
         yield f"would have been seen from: {'; '.join(list(visible.values())[:MOST_SEEN])}{more}"
 
 
-def _blind(item: Seen) -> str:
+def _blind(item: VisibleSize) -> str:
     """Say what could not be seen, and from what size it would be."""
     visible = f"visible from {amount_text(readable(item.smallest))}" if item.smallest is not None else ""
     remark = item.text or (visible if item.sight == "hidden in the tolerances" else "")
     return f"{spoken(item.name)} ({remark})" if remark else spoken(item.name)
 
 
-def _model(diagnosis: Diagnosis) -> Iterator[str]:
+def _model(diagnosis: DiagnosisResult) -> Iterator[str]:
     if not diagnosis.causes:
         yield "nothing was named: the model stands as it is"
     for cause in diagnosis.causes:
@@ -191,7 +191,7 @@ def _model(diagnosis: Diagnosis) -> Iterator[str]:
         yield f"moved most within their tolerances (in standard deviations): {shifts}"
 
 
-def _gain(diagnosis: Diagnosis) -> Iterator[str]:
+def _gain(diagnosis: DiagnosisResult) -> Iterator[str]:
     for item in diagnosis.gain:
         yield (
             f"{spoken(item.result)}: RMS error {amount_text(item.rmse_before)} → {amount_text(item.rmse_after)} (noise "
@@ -206,7 +206,7 @@ def _gain(diagnosis: Diagnosis) -> Iterator[str]:
         yield f"the same causes in {percent(diagnosis.stability)} of the folds"
 
 
-def _next(diagnosis: Diagnosis) -> Iterator[str]:
+def _next(diagnosis: DiagnosisResult) -> Iterator[str]:
     for place, point in enumerate(diagnosis.next, start=1):
         yield f"{place}. {settings_text(point)}: {pair_text(point)} (λ then {score_text(point.separation)})"
     for reason in dict.fromkeys(point.why for point in diagnosis.next if point.why):

@@ -9,14 +9,14 @@ from typing import Any
 
 import typer
 
-from truing.cli.candidates import Named
+from truing.cli.candidates import OfferedWord
 from truing.declare.model import Model
 from truing.inputs_file.file_model import HEAD
 from truing.inputs_file.study_options import diagnose_schema, options_of
 from truing.kernel import Kernel, Offer
 
 
-def names_of(incomplete: str) -> Iterator[Named]:
+def names_of(incomplete: str) -> Iterator[OfferedWord]:
     """Give PLUGIN.NAME for what the plugin that is named answers, takes, and could have wrong."""
     for offer in offers(incomplete):
         if incomplete.startswith(f"{offer.name}."):
@@ -25,12 +25,12 @@ def names_of(incomplete: str) -> Iterator[Named]:
             yield f"{offer.name}.", offer.model.title
 
 
-def names_inside(context: typer.Context) -> Iterator[Named]:
+def names_inside(context: typer.Context) -> Iterator[OfferedWord]:
     """Offer what the calculation that is typed already answers, takes, and could have wrong."""
     yield from _declared(_typed_model(context))
 
 
-def changes(context: typer.Context, incomplete: str) -> Iterator[Named]:
+def changes(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
     """Offer what ``--set`` takes for the plugin that is typed already: NAME=, section by section, and choices."""
     model = _typed_model(context)
     name, equals, _ = incomplete.partition("=")
@@ -71,7 +71,7 @@ def _model(word: str) -> Model[Any, Any]:
     return known[0].model if len(known) == 1 else Kernel.installed().offer(word).model
 
 
-def _declared(model: Model[Any, Any]) -> Iterator[Named]:
+def _declared(model: Model[Any, Any]) -> Iterator[OfferedWord]:
     """Give results, inputs, effects and tolerances, each name once."""
     found: dict[str, str] = {}
     for fields in (model.result_fields, model.input_fields):
@@ -88,7 +88,7 @@ def _with_unit(note: str, unit: str) -> str:
     return ", ".join(part for part in (note, unit) if part)
 
 
-def _inputs(model: Model[Any, Any]) -> Iterator[Named]:
+def _inputs(model: Model[Any, Any]) -> Iterator[OfferedWord]:
     """Give inputs and conditions; options of its reader stand behind one that is read from a file."""
     for name, item in model.input_fields.items():
         yield f"{name}=", _with_unit(item.spec.note, " or ".join(item.choices) or item.unit)
@@ -105,7 +105,7 @@ def _sections(model: Model[Any, Any]) -> Iterator[str]:
     yield from ("calibrated", "units", "sheet")
 
 
-def _inside(model: Model[Any, Any], section: str, name: str) -> Iterator[Named]:
+def _inside(model: Model[Any, Any], section: str, name: str) -> Iterator[OfferedWord]:
     """Give the names of one section of the inputs file, or the options of a data file."""
     if section == "tolerances":
         yield from ((f"tolerances.{one.name}=", f"{one.spread.text}; {one.why}") for one in model.tolerances.values())
@@ -125,7 +125,7 @@ def _inside(model: Model[Any, Any], section: str, name: str) -> Iterator[Named]:
         yield from _reader(model, section)
 
 
-def _effects(model: Model[Any, Any], wanted: str, *, is_inside: bool) -> Iterator[Named]:
+def _effects(model: Model[Any, Any], wanted: str, *, is_inside: bool) -> Iterator[OfferedWord]:
     if not is_inside:
         for effect in model.known_effects.values():
             yield f"effects.{effect.name}.", effect.why or effect.looks_like
@@ -134,7 +134,7 @@ def _effects(model: Model[Any, Any], wanted: str, *, is_inside: bool) -> Iterato
         yield f"effects.{wanted}.{unknown.name}=", _with_unit(unknown.note, unknown.unit)
 
 
-def _studies(model: Model[Any, Any], wanted: str, *, is_inside: bool) -> Iterator[Named]:
+def _studies(model: Model[Any, Any], wanted: str, *, is_inside: bool) -> Iterator[OfferedWord]:
     if not is_inside:
         for study in model.studies:
             yield f"studies.{study.name}.", (type(study).__doc__ or "").strip().partition("\n")[0]
@@ -150,7 +150,7 @@ def _studies(model: Model[Any, Any], wanted: str, *, is_inside: bool) -> Iterato
         yield f"studies.{wanted}.{name}=", f"now {getattr(study, name)}"
 
 
-def _reader(model: Model[Any, Any], name: str) -> Iterator[Named]:
+def _reader(model: Model[Any, Any], name: str) -> Iterator[OfferedWord]:
     """Give the options of the reader of a data file."""
     reader = getattr(model.input_fields[name].spec, "reader", None)
     if reader is not None:
@@ -158,7 +158,7 @@ def _reader(model: Model[Any, Any], name: str) -> Iterator[Named]:
         yield from ((f"{name}.{option}=", "") for option in list(inspect.signature(reader).parameters)[1:])
 
 
-def _choices(model: Model[Any, Any], name: str) -> Iterator[Named]:
+def _choices(model: Model[Any, Any], name: str) -> Iterator[OfferedWord]:
     item = model.input_fields[name]
     words = ("true", "false") if item.kind == "switch" else item.choices
     yield from ((f"{name}={word}", item.spec.note) for word in words)

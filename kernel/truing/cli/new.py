@@ -11,7 +11,7 @@ import typer
 from truing.cli.console import settings_of
 from truing.errors import UsageError
 from truing.new_project import (
-    Plan,
+    NewPlugin,
     check_name,
     check_title,
     project,
@@ -34,7 +34,7 @@ def new(
     check_name(name)
     if title is not None:
         check_title(title)
-    plan = Plan(name, title.strip() if title is not None else title_of(name))
+    plan = NewPlugin(name, title.strip() if title is not None else title_of(name))
     steps = _file(plan, output) if single else _project(plan, output)
     settings_of(context).say(
         "\n".join([*steps, "the physics in it is a placeholder, a clamped bar: replace it by your own"])
@@ -42,7 +42,7 @@ def new(
     return 0
 
 
-def _project(plan: Plan, output: Path | None) -> list[str]:
+def _project(plan: NewPlugin, output: Path | None) -> list[str]:
     """Write a project; return what to type next."""
     folder = output if output is not None else Path(plan.name)
     files = project(plan)
@@ -55,7 +55,7 @@ def _project(plan: Plan, output: Path | None) -> list[str]:
     ]
 
 
-def _file(plan: Plan, output: Path | None) -> list[str]:
+def _file(plan: NewPlugin, output: Path | None) -> list[str]:
     """Write a single file; return what to type next."""
     path = output if output is not None else Path(f"{plan.name}.py")
     if path.suffix != ".py":

@@ -25,7 +25,7 @@ from truing.report.run import Done, RunOrder, perform
 from truing.runs.comparison import changes, in_order
 from truing.runs.folder import demand_place
 from truing.studies.checks import EXIT_CODES, SHORT
-from truing.watching import Watched, code_files, files_named_in, forget
+from truing.watching import WatchedFiles, code_files, files_named_in, forget
 
 MOST = 4
 """So many changed results are named."""
@@ -52,7 +52,7 @@ def watch(
     order = RunOrder(output or Path("runs") / inputs.stem, cases, workers=workers, excel=excel)
     demand_place(order.folder)
     watcher = _Watcher(plugin, inputs, tuple(changed or ()), order, settings)
-    watched = Watched(every)
+    watched = WatchedFiles(every)
     settings.say(f"watching {inputs} and the code of {offer.name}; Ctrl-C ends it")
     try:
         while True:

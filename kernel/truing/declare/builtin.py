@@ -58,7 +58,7 @@ class _Kind:
 
 
 @dataclass(frozen=True)
-class Reading:
+class BuiltinReading:
     """The function of an effect of the kernel: changes the results of which an unknown is stated, and no others.
 
     ``roles`` holds, for each result, what its unknowns are called; unknowns that are not stated are 0.
@@ -66,7 +66,7 @@ class Reading:
 
     kind: _Kind
     roles: tuple[tuple[ResultField, Mapping[str, str]], ...]
-    seen: Seen | None
+    seen: Observed | None
 
     def __call__(self, inputs: Any, results: Any, **stated: Any) -> Any:
         """Return what the gauge reads, from SI numbers or arrays (n,)."""
@@ -104,7 +104,7 @@ def builtin_effects(model: Declared) -> dict[str, Effect[Any, Any]]:
 def may_stand(effect: Effect[Any, Any]) -> bool:
     """Whether an effect follows an input of which only a record can tell that it turns, or is a temperature."""
     reading = effect.function
-    return isinstance(reading, Reading) and reading.seen is not None and reading.seen.may_stand
+    return isinstance(reading, BuiltinReading) and reading.seen is not None and reading.seen.may_stand
 
 
 def _gauged(model: Declared) -> Iterator[ResultField]:
@@ -117,7 +117,9 @@ def _gauged(model: Declared) -> Iterator[ResultField]:
             yield item
 
 
-def _made(kind: _Kind, results: Sequence[ResultField], seen_by: Sequence[Seen | None]) -> Iterator[Effect[Any, Any]]:
+def _made(
+    kind: _Kind, results: Sequence[ResultField], seen_by: Sequence[Observed | None]
+) -> Iterator[Effect[Any, Any]]:
     """Make an effect for each quantity that is seen, over the results that can be set against it."""
     fitting = [(seen, [item for item in results if seen is None or seen.by(item)]) for seen in seen_by]
     for place, (seen, items) in enumerate((seen, items) for seen, items in fitting if items):
@@ -126,7 +128,7 @@ def _made(kind: _Kind, results: Sequence[ResultField], seen_by: Sequence[Seen | 
         needs = [seen.condition] if seen is not None and seen.condition is not None else []
         yield Effect(
             f"{kind.name}_of_{seen.name}" if place and seen is not None else kind.name,
-            on_reading=Reading(kind, roles, seen),
+            on_reading=BuiltinReading(kind, roles, seen),
             unknowns=[one for _, own in unknowns for one in own.values()],
             parts=[[one.name for one in own.values()] for _, own in unknowns],
             needs=needs,
@@ -138,7 +140,7 @@ def _made(kind: _Kind, results: Sequence[ResultField], seen_by: Sequence[Seen | 
 
 
 def _named_apart(
-    kind: _Kind, items: Sequence[ResultField], seen: Seen | None
+    kind: _Kind, items: Sequence[ResultField], seen: Observed | None
 ) -> Iterator[tuple[ResultField, dict[str, Unknown]]]:
     """Give the unknowns of each result, by role; a result whose unknowns have names that are taken has none.
 
@@ -259,7 +261,7 @@ ANGLE = Condition("angle", "deg", note="of what turns")
 
 
 @dataclass(frozen=True)
-class Seen:
+class Observed:
     """A quantity that an effect of the kernel looks at: a condition, an input, a series or an axis of the results.
 
     ``zero`` is where effects vanish, SI. A series or an axis is seen by results along one of ``axes`` alone. One
@@ -290,7 +292,7 @@ def _axes_of(item: ResultField) -> set[str]:
     return {item.along, f"{item.along}_{item.scope}"} - {""}
 
 
-def time_of(model: Declared) -> list[Seen]:
+def time_of(model: Declared) -> list[Observed]:
     """Return the time: what the model calls so (condition, input or axis), else the kernel's condition.
 
     Nothing where the model calls something else by that name.
@@ -300,7 +302,7 @@ def time_of(model: Declared) -> list[Seen]:
     return [seen for seen in named if seen.name == TIME.name] or _own(model, TIME)
 
 
-def temperatures(model: Declared) -> list[Seen]:
+def temperatures(model: Declared) -> list[Observed]:
     """Return the temperatures: conditions first, then inputs (about their default), else the kernel's condition.
 
     Of an input in a unit of differences (K: a temperature, or a rise) only a record can say that it is one.
@@ -311,7 +313,7 @@ def temperatures(model: Declared) -> list[Seen]:
     return [*known, *(replace(seen, may_stand=True) for seen in numbers if seen not in levels)]
 
 
-def angles(model: Declared) -> list[Seen]:
+def angles(model: Declared) -> list[Observed]:
     """Return the angles, the likeliest to turn first.
 
     That is what a study of the model runs over, then conditions, then series and axes of results; the kernel's
@@ -329,30 +331,30 @@ def angles(model: Declared) -> list[Seen]:
     return [*{seen.name: seen for seen in turning}.values(), *(replace(seen, may_stand=True) for seen in free)]
 
 
-def _own(model: Declared, condition: Condition) -> list[Seen]:
+def _own(model: Declared, condition: Condition) -> list[Observed]:
     """Return a condition of the kernel, unless the model uses its name for something else."""
     if condition.name in {*model.conditions, *model.input_fields, *model.result_fields}:
         return []
     return [_condition(condition)]
 
 
-def _condition(condition: Condition) -> Seen:
-    return Seen(condition.name, "condition", zero=condition.zero, condition=condition)
+def _condition(condition: Condition) -> Observed:
+    return Observed(condition.name, "condition", zero=condition.zero, condition=condition)
 
 
-def _conditions(model: Declared, unit: str) -> Iterator[Seen]:
+def _conditions(model: Declared, unit: str) -> Iterator[Observed]:
     return (_condition(item) for item in model.conditions.values() if _is_like(item.unit, unit))
 
 
-def _inputs(model: Declared, unit: str) -> Iterator[Seen]:
+def _inputs(model: Declared, unit: str) -> Iterator[Observed]:
     """Give the inputs of a dimension that are always given: numbers, and series along an axis."""
     for name, item in model.input_fields.items():
         if item.is_optional or not _is_like(item.unit, unit):
             continue
         if item.varies:
-            yield Seen(name, "input", item.path, zero=float(_default(item)))
+            yield Observed(name, "input", item.path, zero=float(_default(item)))
         elif item.kind == "series":
-            yield Seen(name, "series", item.path, axes=frozenset({name, item.spec.along} - {""}))
+            yield Observed(name, "series", item.path, axes=frozenset({name, item.spec.along} - {""}))
 
 
 def _default(item: InputField) -> Any:
@@ -360,10 +362,10 @@ def _default(item: InputField) -> Any:
     return initial() if initial is not None else 0.0
 
 
-def _result_axes(model: Declared, unit: str) -> Iterator[Seen]:
+def _result_axes(model: Declared, unit: str) -> Iterator[Observed]:
     for name, item in model.own_result_fields.items():
         if isinstance(item.spec, Axis) and not item.spec.is_table and _is_like(item.unit, unit):
-            yield Seen(name, "axis", item.path, axes=frozenset({name}))
+            yield Observed(name, "axis", item.path, axes=frozenset({name}))
 
 
 def _is_like(unit: str, wanted: str) -> bool:

@@ -10,7 +10,7 @@ from truing.declare.goals import Objective
 from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance
 
 
-class Named(Protocol):
+class NamedStudy(Protocol):
     """A study, as far as a model asks: its name, and what turns its outcome into results."""
 
     @property
@@ -32,7 +32,7 @@ class Declared(Protocol):
     @property
     def objectives(self) -> Sequence[Objective]: ...  # noqa: D102
     @property
-    def studies(self) -> Sequence[Named]: ...  # noqa: D102
+    def studies(self) -> Sequence[NamedStudy]: ...  # noqa: D102
     @property
     def sheet(self) -> Sequence[Any]: ...  # noqa: D102
     @property

@@ -9,11 +9,12 @@ from dataclasses import MISSING, dataclass, field, replace
 from typing import Any, Literal, TypeVar, dataclass_transform, get_args, get_origin, get_type_hints
 
 from truing.declare.near_miss import near_miss
-from truing.declare.specs import KEY, Axis, Float, Found, Given, Kind, Loaded, Part, Spec, in_si
+from truing.declare.specs import KEY, Axis, Float, Found, Given, InputKind, Loaded, Part, Spec, in_si
 from truing.errors import DeclarationError, UsageError
 
 __all__ = [
-    "KEY", "Axis", "Float", "Found", "Given", "InputField", "Kind", "Loaded", "Part", "ResultField", "Spec", "axis",
+    "KEY", "Axis", "Float", "Found", "Given", "InputField", "InputKind", "Loaded", "Part", "ResultField", "Spec",
+    "axis",
     "found", "given", "hints_of", "in_si", "input_fields", "inputs", "loaded", "make", "part", "read",
     "result_fields", "results", "rows", "spec_of", "with_values",
 ]  # fmt: skip
@@ -200,7 +201,7 @@ class InputField:
     name: str
     path: tuple[str, ...]
     spec: Given | Loaded
-    kind: Kind
+    kind: InputKind
     symbol: str
     choices: tuple[str, ...] = ()
 
@@ -291,7 +292,7 @@ def hints_of(item: Any) -> dict[str, Any]:
         raise DeclarationError(f"{name}: {error}; annotations must name what the module itself imports") from error
 
 
-def _kind(place: _Place) -> tuple[Kind, tuple[str, ...]]:
+def _kind(place: _Place) -> tuple[InputKind, tuple[str, ...]]:
     annotation, spec = place.annotation, place.spec
     if isinstance(spec, Loaded):
         return "file", ()
@@ -301,7 +302,7 @@ def _kind(place: _Place) -> tuple[Kind, tuple[str, ...]]:
         return ("whole" if isinstance(spec, Given) and spec.whole else "float"), ()
     if get_origin(annotation) is Literal:
         return "choice", tuple(str(choice) for choice in get_args(annotation))
-    kinds: dict[Any, Kind] = {bool: "switch", int: "integer", str: "text"}
+    kinds: dict[Any, InputKind] = {bool: "switch", int: "integer", str: "text"}
     if annotation in kinds:
         return kinds[annotation], ()
     if (get_origin(annotation) or annotation) in {tuple, list, _array_type()}:

@@ -9,8 +9,8 @@ from typing import Literal
 
 from truing.errors import DeclarationError
 
-Kind = Literal["printed", "worked", "calibrated", "probability", "at_least", "at_most", "words"]
-RULES: Mapping[Kind, str] = {
+PublishedKind = Literal["printed", "worked", "calibrated", "probability", "at_least", "at_most", "words"]
+RULES: Mapping[PublishedKind, str] = {
     "printed": "a printed number: within half a unit of its last digit",
     "worked": "a number of a worked example, rounded on the way: within 0.1 % or half a unit of its last digit",
     "calibrated": "a number that an input was chosen to give: within 0.5 % or half a unit of its last digit",
@@ -43,7 +43,7 @@ class Published:
     where: str = ""
     settings: Mapping[str, str] = field(default_factory=dict)
     printed: str = ""
-    kind: Literal["", Kind] = ""
+    kind: Literal["", PublishedKind] = ""
     within: float = 0.0
     verdict: Literal["matches", "differs"] = "matches"
     obtained: Literal["predicted", "calibrated"] = "predicted"
@@ -54,7 +54,7 @@ class Published:
             raise DeclarationError(f"the published number '{self.name}' is {self.value:g}, printed as '{self.printed}'")
 
     @property
-    def rule(self) -> Kind:
+    def rule(self) -> PublishedKind:
         """The kind of figure it is, by which it is judged."""
         return self.kind or ("calibrated" if self.obtained == "calibrated" else "printed")
 
@@ -83,7 +83,7 @@ class Published:
         return max(share * abs(self.value), self.half_unit)
 
 
-def rules_of(published: Iterable[Published]) -> dict[Kind, str]:
+def rules_of(published: Iterable[Published]) -> dict[PublishedKind, str]:
     """Return the rules by which these numbers are judged, by kind."""
     kinds = {item.rule for item in published}
     return {kind: rule for kind, rule in RULES.items() if kind in kinds}

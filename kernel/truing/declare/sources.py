@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 else:
     I = TypeVar("I")  # noqa: E741
     R = TypeVar("R")
-Place = Literal["inputs", "results", "reading"]
+ActsOn = Literal["inputs", "results", "reading"]
 SINCE_START = "since_start"
 HISTORIES = ("running_maximum", "cumulative", "direction", "last_reversal")
 """What a condition may be derived by: "since_start" from its own column, these from another one."""
@@ -219,7 +219,7 @@ class Effect(Generic[I, R]):
         _check_effect(self)
 
     @property
-    def place(self) -> Place:
+    def place(self) -> ActsOn:
         """Where the effect acts: on the inputs, on the results or on the reading."""
         if self.actions.on_inputs is not None:
             return "inputs"

@@ -20,7 +20,7 @@ else:
     Float = Annotated[float, "a number or an array: may vary inside a batch"]
 
 KEY = "truing"
-Kind = Literal["float", "whole", "integer", "switch", "choice", "text", "series", "file"]
+InputKind = Literal["float", "whole", "integer", "switch", "choice", "text", "series", "file"]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -22,7 +22,7 @@ from truing.fits import tolerance
 from truing.units import difference_unit, from_si, read_quantity, same_dimension, split_quantity
 from truing.units.grammar import shown, split
 
-Shape = Literal["normal", "uniform", "lognormal"]
+DistributionShape = Literal["normal", "uniform", "lognormal"]
 SIGMAS_IN_BAND = 6.0
 FIXED_DRAWS = 2**16
 """How often a spread that is drawn by a function is drawn to know its mean and standard deviation."""
@@ -34,7 +34,7 @@ class Distribution:
 
     mean: float
     sd: float
-    shape: Shape = "normal"
+    shape: DistributionShape = "normal"
 
     @property
     def width(self) -> float:
@@ -92,7 +92,7 @@ class Band:
 
     amount: str
     says: Literal["sd", "band", "±"]
-    shape: Shape = "normal"
+    shape: DistributionShape = "normal"
     at_radius: str = ""
 
     @property
@@ -350,8 +350,8 @@ def read_spread(text: str | Mapping[str, Any], declared: Spread) -> Spread:
 
 
 def _band(words: str, text: str, declared: Spread) -> Band:
-    shape: Shape = "normal"
-    shapes: tuple[Shape, ...] = ("uniform", "lognormal", "normal")
+    shape: DistributionShape = "normal"
+    shapes: tuple[DistributionShape, ...] = ("uniform", "lognormal", "normal")
     for other in shapes:
         if words.startswith(other + " "):
             shape, words = other, words[len(other) :].strip()

@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 
 from truing.diagnosis.arrays import Mask, Matrix, Places
-from truing.diagnosis.causes import Cause
-from truing.diagnosis.curves import LARGEST, Bundle, Curves
+from truing.diagnosis.causes import Candidate
+from truing.diagnosis.curves import LARGEST, Bundle, ResponseCurves
 from truing.diagnosis.exact import slopes_left
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.sweeps import BLOCK, Beside, Pass, Swept, Table, blocks_of, units_of, without_taken
+from truing.diagnosis.sweeps import BLOCK, Beside, Pass, ProjectedCurves, TermTable, blocks_of, units_of, without_taken
 
 KEPT = 3
 """So many points of a cause begin exact fits."""
@@ -54,7 +54,7 @@ class Looked:
 
     starts: tuple[tuple[float, Matrix], ...]
     tries: float
-    span: Spanned | Swept
+    span: Spanned | ProjectedCurves
 
 
 def beside_of(found: Fit, extended: Extended) -> Beside:
@@ -70,19 +70,21 @@ def beside_of(found: Fit, extended: Extended) -> Beside:
     return Beside(sample, roots, left - taken @ (taken.T @ left), taken, found.predicted)
 
 
-def look(curves: Curves, at: Fit, causes: Sequence[Cause]) -> Mapping[str, Looked]:
+def look(curves: ResponseCurves, at: Fit, causes: Sequence[Candidate]) -> Mapping[str, Looked]:
     """Compare all causes with what an explanation leaves, by their tag."""
     beside = beside_of(at, curves.extended)
     bundles = (curves.of(cause, at) for cause in causes)  # one after another: those of effects may be large
     made = {tag: each for group in _grouped(bundles) for tag, each in compared(group, beside)}
-    passes: dict[tuple[Table, int], Pass] = {}
+    passes: dict[tuple[TermTable, int], Pass] = {}
     for bundle in (curves.of(cause, at) for cause in causes if cause.shape is not None):
         if bundle.table is not None and (each := _swept(bundle, bundle.table, beside, passes)) is not None:
             made[bundle.cause.tag] = each
     return made
 
 
-def _swept(bundle: Bundle, table: Table, beside: Beside, passes: dict[tuple[Table, int], Pass]) -> Looked | None:
+def _swept(
+    bundle: Bundle, table: TermTable, beside: Beside, passes: dict[tuple[TermTable, int], Pass]
+) -> Looked | None:
     """Compare a table with what an explanation leaves; each result is passed through once."""
     shape, names = bundle.cause.shape, [channel.name for channel in beside.sample.channels]
     places = [names.index(name) for name in (shape.results if shape is not None else ())]
@@ -95,7 +97,7 @@ def _swept(bundle: Bundle, table: Table, beside: Beside, passes: dict[tuple[Tabl
     points, is_own = np.flatnonzero(_draws(*sizes)), (sizes[0] > OWN * sizes[1]).any(axis=1)
     if not len(points):
         return None
-    right, span = np.concatenate([each.right for each in own], axis=1), Swept(own, units_of(normal), points)
+    right, span = np.concatenate([each.right for each in own], axis=1), ProjectedCurves(own, units_of(normal), points)
     inner = span.units[1:] @ following @ span.units[:-1].swapaxes(1, 2)
     tries = 1.0 + _turned(inner[is_own[1:] & is_own[:-1]], normal.shape[1])
     return Looked(_best(*_starts(bundle, points, right, normal), span, beside), tries, span)
@@ -160,7 +162,9 @@ def _weighed(curves: Matrix, beside: Beside) -> tuple[Any, Any, Matrix, Matrix, 
     return kept, is_own, basis, right, normal
 
 
-def _best(gains: Matrix, values: Matrix, span: Spanned | Swept, beside: Beside) -> tuple[tuple[float, Matrix], ...]:
+def _best(
+    gains: Matrix, values: Matrix, span: Spanned | ProjectedCurves, beside: Beside
+) -> tuple[tuple[float, Matrix], ...]:
     """Return the best points that do not draw the same, with what each is worth in score."""
     chosen: list[int] = []
     for place in np.argsort(-gains, kind="stable")[:200].tolist():

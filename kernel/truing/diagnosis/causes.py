@@ -15,10 +15,10 @@ from typing import Any, Literal
 
 import numpy as np
 
-from truing.declare.builtin import Reading, may_stand
+from truing.declare.builtin import BuiltinReading, may_stand
 from truing.declare.sources import Effect, Unknown
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.machine import Machine
+from truing.diagnosis.machine import Calibration
 from truing.diagnosis.records import Covariate
 from truing.diagnosis.tidying import is_angle
 from truing.errors import PluginError
@@ -26,7 +26,7 @@ from truing.gauge import read_by_gauge
 from truing.setup import SwitchedOn
 from truing.units import to_si
 
-Kind = Literal["trend", "product", "order", "wave", "step", "jump", "kink", "dead zone", "settling"]
+ShapeKind = Literal["trend", "product", "order", "wave", "step", "jump", "kink", "dead zone", "settling"]
 INPUT = "input:"
 UNKNOWN = "unknown"
 ENDS = 0.02
@@ -36,7 +36,7 @@ LITTLE = 1e-3
 
 
 @dataclass(frozen=True)
-class Number:
+class Parameter:
     """One number of a cause, SI: an amplitude, or a shape. ``file`` is that whose rows it acts on, -1 for all.
 
     A ``whole`` number, and a place ``along`` a covariate at which nothing is smooth, keep the value of their start.
@@ -70,13 +70,13 @@ class Term:
 
 
 @dataclass(frozen=True)
-class Shape:
+class UnregisteredShape:
     """How a shape that nobody registered is calculated: ``made`` gives its terms from covariates and shape numbers, SI.
 
     Its amplitudes are those of its terms, result after result.
     """
 
-    kind: Kind
+    kind: ShapeKind
     depends_on: tuple[str, ...]
     results: tuple[str, ...]
     made: Callable[..., list[Term]]
@@ -88,7 +88,7 @@ class Shape:
 
 
 @dataclass(frozen=True, eq=False)
-class Cause:
+class Candidate:
     """One cause that may be on. ``tag`` tells it from every other one; ``name`` is what the answer calls it.
 
     Of an effect ``effect`` holds the declaration; of an input ``tolerated`` is its place among the machine's inputs; of
@@ -97,11 +97,11 @@ class Cause:
 
     name: str
     tag: str
-    numbers: tuple[Number, ...]
+    numbers: tuple[Parameter, ...]
     order: int = 0
     effect: Effect[Any, Any] | None = None
     tolerated: int = -1
-    shape: Shape | None = None
+    shape: UnregisteredShape | None = None
     is_kernel: bool = False
 
     @property
@@ -145,12 +145,12 @@ def si_bounds(unknown: Unknown) -> tuple[float, float]:
     return float(to_si(unknown.low, unknown.unit)), float(to_si(unknown.high, unknown.unit))
 
 
-def reading_of(effect: Effect[Any, Any]) -> Reading | None:
+def reading_of(effect: Effect[Any, Any]) -> BuiltinReading | None:
     """Return the reading of a built-in effect; None for other effects."""
-    return effect.function if isinstance(effect.function, Reading) else None
+    return effect.function if isinstance(effect.function, BuiltinReading) else None
 
 
-def gauged(cause: Cause, measured: Iterable[str]) -> str:
+def gauged(cause: Candidate, measured: Iterable[str]) -> str:
     """Return the measured result whose reading a part of a built-in effect changes, or nothing."""
     reading = None if cause.effect is None else reading_of(cause.effect)
     names = {number.name for number in cause.numbers}
@@ -166,13 +166,13 @@ def followed_by(effect: Effect[Any, Any] | None) -> str:
     return reading.seen.name if reading is not None and reading.seen is not None else ""
 
 
-def effects_of(machine: Machine) -> list[Cause]:
+def effects_of(machine: Calibration) -> list[Candidate]:
     """Return every effect, or part of one, that could act: the model's in the order of declaration, the kernel's last.
 
     Effects, and parts of effects, that are on already are part of the model; an effect whose conditions nobody measured
     is left out, and so is one that follows only what never moved.
     """
-    model, made = machine.start.model, list[Cause]()
+    model, made = machine.start.model, list[Candidate]()
     for order, effect in enumerate(model.known_effects.values()):
         if any(need.name in machine.records.absent for need in effect.needs) or _stands_still(effect, machine):
             continue
@@ -182,11 +182,11 @@ def effects_of(machine: Machine) -> list[Cause]:
             if not set(part) & set(machine.on.get(effect.name, ())):
                 tag = effect.name if len(parts) == 1 else f"{effect.name}.{place}"
                 numbers = tuple(_numbers(effect, part, machine))
-                made.append(Cause(effect.name, tag, numbers, order, effect, is_kernel=is_kernel))
+                made.append(Candidate(effect.name, tag, numbers, order, effect, is_kernel=is_kernel))
     return [cause for cause in made if not cause.is_kernel or _is_offered(cause, machine)]
 
 
-def _numbers(effect: Effect[Any, Any], part: Sequence[str], machine: Machine) -> Iterator[Number]:
+def _numbers(effect: Effect[Any, Any], part: Sequence[str], machine: Calibration) -> Iterator[Parameter]:
     """Give the numbers of a part of an effect, one for every file where they are fitted file by file."""
     per_file, files = set(machine.start.diagnose.per_file), len(machine.records.files)
     for unknown in effect.unknowns:
@@ -195,10 +195,10 @@ def _numbers(effect: Effect[Any, Any], part: Sequence[str], machine: Machine) ->
         is_split = bool(per_file & {effect.name, f"{effect.name}.{unknown.name}"}) and files > 1
         ends = _within_record(unknown, machine) if unknown.along else si_bounds(unknown)
         for file in range(files) if is_split and unknown.is_amplitude else (-1,):
-            yield Number(unknown.name, *ends, unknown.is_amplitude, unknown.whole, unknown.along, file)
+            yield Parameter(unknown.name, *ends, unknown.is_amplitude, unknown.whole, unknown.along, file)
 
 
-def _within_record(unknown: Unknown, machine: Machine) -> tuple[float, float]:
+def _within_record(unknown: Unknown, machine: Calibration) -> tuple[float, float]:
     """Return between which places of the record something may begin: not at its very ends."""
     low, high = si_bounds(unknown)
     item = machine.records.covariates.get(unknown.along)
@@ -208,7 +208,7 @@ def _within_record(unknown: Unknown, machine: Machine) -> tuple[float, float]:
     return max(low, first + ENDS * (last - first)), min(high, last - ENDS * (last - first))
 
 
-def _is_offered(cause: Cause, machine: Machine) -> bool:
+def _is_offered(cause: Candidate, machine: Calibration) -> bool:
     """Whether an effect of the kernel makes sense here: its result is measured, and what is to turn goes round."""
     covariates, effect = machine.records.covariates, cause.effect
     if effect is None or not gauged(cause, machine.records.measured):
@@ -217,7 +217,7 @@ def _is_offered(cause: Cause, machine: Machine) -> bool:
     return not may_stand(effect) or any(not is_angle(item.unit) or item.goes_round for item in own)
 
 
-def _stands_still(effect: Effect[Any, Any], machine: Machine) -> bool:
+def _stands_still(effect: Effect[Any, Any], machine: Calibration) -> bool:
     """Whether nothing that an effect follows has moved; one that acts at the references follows nothing."""
     if effect.acts_at_reference:
         return False
@@ -226,16 +226,18 @@ def _stands_still(effect: Effect[Any, Any], machine: Machine) -> bool:
     return bool(names) and all(name not in covariates or covariates[name].is_constant for name in names)
 
 
-def inputs_of(machine: Machine) -> list[Cause]:
+def inputs_of(machine: Calibration) -> list[Candidate]:
     """Return every tolerated input that moves a measured result, as a cause that shifts it by standard deviations."""
     return [
-        Cause(INPUT + item.name, f"{INPUT}{item.name}.{item.file}", (Number(item.name, -inf, inf),), tolerated=place)
+        Candidate(
+            INPUT + item.name, f"{INPUT}{item.name}.{item.file}", (Parameter(item.name, -inf, inf),), tolerated=place
+        )
         for place, item in enumerate(machine.inputs)
         if any(np.any(slopes[:, place]) for slopes in machine.slopes.values())
     ]
 
 
-def idle_of(machine: Machine) -> tuple[str, ...]:
+def idle_of(machine: Calibration) -> tuple[str, ...]:
     """Return the names of effects that nothing in this record excites, and of which it is worth saying so."""
     model, names = machine.start.model, []
     for effect in model.known_effects.values():
@@ -247,7 +249,7 @@ def idle_of(machine: Machine) -> tuple[str, ...]:
     return tuple(names)
 
 
-def at_rest(cause: Cause, machine: Machine) -> dict[str, float]:
+def at_rest(cause: Candidate, machine: Calibration) -> dict[str, float]:
     """Return every unknown of the effect of a cause where it does nothing: no amplitude, any shape."""
     effect = cause.effect
     if effect is None:
@@ -259,7 +261,7 @@ def at_rest(cause: Cause, machine: Machine) -> dict[str, float]:
     return {each.name: 0.0 if each.is_amplitude else si_bounds(each)[0] for each in resting}
 
 
-def failure_of(machine: Machine, cause: Cause) -> str:
+def failure_of(machine: Calibration, cause: Candidate) -> str:
     """Return why the model fails with an effect that is hardly there, in some row that was measured; else nothing."""
     if cause.effect is None or reading_of(cause.effect) is not None:
         return ""
@@ -281,7 +283,7 @@ def failure_of(machine: Machine, cause: Cause) -> str:
     return ""
 
 
-def are_exclusive(causes: Sequence[Cause]) -> bool:
+def are_exclusive(causes: Sequence[Candidate]) -> bool:
     """Whether causes cannot stand beside one another: two shapes of one kind over the same, one effect's same part."""
     shapes = [cause.shape for cause in causes if cause.shape is not None]
     kinds = [(shape.kind, shape.depends_on) for shape in shapes if shape.kind != "wave"]

@@ -17,7 +17,7 @@ from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.beside import Looked, beside_of
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.noise import Setting, colour, shares, whiten
+from truing.diagnosis.noise import Autocorrelation, colour, shares, whiten
 from truing.diagnosis.sweeps import Pass
 
 DRAWS, FIRST_DRAWS = 299, 99
@@ -73,7 +73,7 @@ def _drawn(at: Fit, more: Fit, count: int, generator: np.random.Generator) -> Ma
         pool = pool - pool.mean()
         drawn = generator.choice(pool, size=(len(channel), count))
         if memory.rho:  # the memory is known but for its error
-            filtered = Setting(carried(memory.rho, len(pool)), memory.theta)
+            filtered = Autocorrelation(carried(memory.rho, len(pool)), memory.theta)
             drawn = whiten(colour(drawn, channel.starts, filtered), channel.starts, memory)
         if channel.sides is not None:  # a censored row says as much as it follows the prediction
             drawn = drawn * shares(channel.off(at.predicted[channel.name]), channel.sides)[:, None]

@@ -13,7 +13,7 @@ from math import sqrt
 import numpy as np
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause
+from truing.diagnosis.causes import Candidate
 from truing.diagnosis.chance import Law, law_of
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.fitted import Fit, differ
@@ -215,7 +215,7 @@ def _same(made: Competition, best: Fit) -> dict[str, tuple[str, ...]]:
     return {tag: tuple(dict.fromkeys(every)) for tag, every in names.items()}
 
 
-def _felt(found: Fit, cause: Cause) -> int:
+def _felt(found: Fit, cause: Candidate) -> int:
     """Return how many directions among the amplitudes of a cause this record feels, each moved by as much as it is."""
     places = [places_of(found, cause)[amplitude] for amplitude in cause.amplitudes]
     drawn = found.sample.curve(found.slopes, found.predicted)[:, places] * np.concatenate(found.values)[places]
@@ -323,7 +323,7 @@ def _curve_of(made: Competition, found: Fit, places: list[int]) -> Matrix:
     return np.nan_to_num(made.sample.left(without) - made.sample.left(whole))
 
 
-def _columns_of(made: Competition, found: Fit, cause: Cause) -> Iterator[Matrix]:
+def _columns_of(made: Competition, found: Fit, cause: Candidate) -> Iterator[Matrix]:
     """Give the terms of a shape as it was fitted, in units of the noise."""
     shape = cause.shape
     if shape is None:

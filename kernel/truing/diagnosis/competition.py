@@ -11,8 +11,8 @@ import numpy as np
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.beside import Looked, look
-from truing.diagnosis.causes import Cause, are_exclusive
-from truing.diagnosis.curves import Curves
+from truing.diagnosis.causes import Candidate, are_exclusive
+from truing.diagnosis.curves import ResponseCurves
 from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit, nothing, refit
 from truing.diagnosis.extended import Extended, shape_added
 from truing.diagnosis.fitted import Fit, signs_of_wrong
@@ -43,9 +43,9 @@ class Competition:
     """Everything that was fitted so far, by its causes, and the noise in which it was."""
 
     extended: Extended
-    causes: tuple[Cause, ...]
+    causes: tuple[Candidate, ...]
     sample: Sample
-    curves: Curves
+    curves: ResponseCurves
     known: dict[frozenset[str], Fit] = field(default_factory=dict)
     tries: dict[str, float] = field(default_factory=dict)
     stage: str = "causes alone"
@@ -68,7 +68,7 @@ class Competition:
             self.paid[found] = self.price_of_size(found) + MARGIN * signs_of_wrong(found)
         return choice + sum(self.price_of(cause) for cause in found.causes) + self.paid[found]
 
-    def price_of(self, cause: Cause) -> float:
+    def price_of(self, cause: Candidate) -> float:
         """Return what a cause pays for its numbers and for the choice among its independent curves."""
         own = cause.size * log(max(self.sample.rows, 2)) + 2 * log(max(self.tries.get(cause.tag, 1.0), 1.0))
         return own + (UNREGISTERED if cause.shape is not None else MARGIN if cause.tolerated >= 0 else 0.0)
@@ -130,7 +130,7 @@ class Competition:
         self.fresh.add(found.key)
         return self.known[found.key]
 
-    def fitted(self, causes: Sequence[Cause], values: Sequence[Matrix], near: Fit | None) -> Fit | None:
+    def fitted(self, causes: Sequence[Candidate], values: Sequence[Matrix], near: Fit | None) -> Fit | None:
         """Fit an explanation from a start and keep it."""
         if sum(cause.size for cause in causes) * ROWS_PER_NUMBER > self.sample.known or are_exclusive(causes):
             return None
@@ -139,14 +139,14 @@ class Competition:
         self.begun.add(_begins(causes, values))
         return self.keep(fit(self.sample, self.extended, causes, values, near, until=ROUGHLY))
 
-    def joined(self, at: Fit, cause: Cause, starts: Iterable[tuple[float, Matrix]]) -> Fit | None:
+    def joined(self, at: Fit, cause: Candidate, starts: Iterable[tuple[float, Matrix]]) -> Fit | None:
         """Fit an explanation with one more cause, from each of its starts."""
         made = None
         for _, values in starts:
             made = self.fitted((*at.causes, cause), (*at.values, values), at) or made
         return made
 
-    def look(self, at: Fit, causes: Sequence[Cause] | None = None) -> Mapping[str, Looked]:
+    def look(self, at: Fit, causes: Sequence[Candidate] | None = None) -> Mapping[str, Looked]:
         """Compare the curves of causes with what an explanation leaves, and count their independent curves."""
         wanted = [cause for cause in (self.causes if causes is None else causes) if cause.tag not in at.key]
         left, known = self.looked.get(at.key, (None, {}))
@@ -160,7 +160,7 @@ class Competition:
             self.tries[tag] = max(self.tries.get(tag, 1.0), each.tries)
         return made
 
-    def forward(self, at: Fit, count: int, accept: Callable[[Cause], bool] = lambda _: True) -> None:
+    def forward(self, at: Fit, count: int, accept: Callable[[Candidate], bool] = lambda _: True) -> None:
         """Fit the most promising causes beside an explanation; half as many beside several."""
         if len(at.causes) >= MOST_CAUSES or not self.extended.allows(self.stage):
             return
@@ -172,7 +172,7 @@ class Competition:
             elif at.cost - starts[0][0] < found.cost - MARGIN:  # it begins elsewhere
                 self.joined(at, cause, starts[:1])
 
-    def promising(self, seen: Mapping[str, Looked]) -> list[Cause]:
+    def promising(self, seen: Mapping[str, Looked]) -> list[Candidate]:
         """Return causes by what their curves promise once they are paid for, of those of one curve the weakest."""
         worth = {
             cause: seen[cause.tag].starts[0][0] - self.price_of(cause)
@@ -243,14 +243,14 @@ class Competition:
         self.again([self.null, *near])
 
 
-def _begins(causes: Sequence[Cause], values: Sequence[Matrix]) -> tuple[frozenset[str], tuple[float, ...]]:
+def _begins(causes: Sequence[Candidate], values: Sequence[Matrix]) -> tuple[frozenset[str], tuple[float, ...]]:
     """Return the tags of causes, and their whole numbers and places, which a fit leaves where they begin."""
     kept = sorted((cause.tag, each[cause.kept].tolist()) for cause, each in zip(causes, values, strict=True))
     return frozenset(tag for tag, _ in kept), tuple(chain.from_iterable(each for _, each in kept))
 
 
-def competition_of(extended: Extended, causes: Sequence[Cause], sample: Sample) -> Competition:
+def competition_of(extended: Extended, causes: Sequence[Candidate], sample: Sample) -> Competition:
     """Begin a competition with the model as it is."""
-    made = Competition(extended, tuple(causes), sample, Curves(extended))
+    made = Competition(extended, tuple(causes), sample, ResponseCurves(extended))
     made.keep(nothing(sample, extended))
     return made

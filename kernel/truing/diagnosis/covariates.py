@@ -11,7 +11,7 @@ from truing.declare.builtin import may_stand
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.arrays import Mask, Sides
 from truing.diagnosis.causes import reading_of
-from truing.diagnosis.data_file import DataRows, Part
+from truing.diagnosis.data_file import ColumnRole, DataRows
 from truing.diagnosis.records import Covariate, Role
 from truing.diagnosis.tidying import TIME, is_angle
 from truing.errors import Fault, InputError
@@ -23,7 +23,7 @@ from truing.units.grammar import shown
 from truing.units.names import PURE
 
 ORDER = "order"
-_ROLES: dict[Part, Role] = {
+_ROLES: dict[ColumnRole, Role] = {
     "input": "input", "series": "input", "word": "input", "condition": "condition", "axis": "other", "other": "other",
 }  # fmt: skip
 

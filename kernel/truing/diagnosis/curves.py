@@ -15,11 +15,11 @@ from functools import cached_property
 import numpy as np
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause, Shape
+from truing.diagnosis.causes import Candidate, UnregisteredShape
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.points import FINEST, LEVELS, SPREAD, is_known, middle, placed, places_over, refined, spread
-from truing.diagnosis.sweeps import Table
+from truing.diagnosis.sweeps import TermTable
 
 STRAIGHT = 1e-4
 """Share of its size by which chords of a cause may differ while it counts as proportional."""
@@ -40,15 +40,15 @@ class Bundle:
     The curves of a shape on a long record are in a ``table`` instead.
     """
 
-    cause: Cause
+    cause: Candidate
     points: Matrix
     curves: Matrix
     is_straight: bool
     lost: int = 0
-    table: Table | None = None
+    table: TermTable | None = None
 
 
-class Curves:
+class ResponseCurves:
     """The curves of all causes of a machine, asked for once beside nothing and anew where causes act on the inputs."""
 
     def __init__(self, extended: Extended) -> None:
@@ -57,9 +57,9 @@ class Curves:
         """By effect: at how many points the model fails with it, of how many that were tried where it fails at all."""
         self._alone: dict[str, Bundle] = {}
         self._straight: dict[str, bool] = {}
-        self._tables: dict[tuple[str, ...], Table] = {}
+        self._tables: dict[tuple[str, ...], TermTable] = {}
 
-    def of(self, cause: Cause, beside: Fit) -> Bundle:
+    def of(self, cause: Candidate, beside: Fit) -> Bundle:
         """Return the curves of a cause beside an explanation; those beside nothing where that makes no difference.
 
         So they are too where the budget of calls has ended.
@@ -73,13 +73,13 @@ class Curves:
             self._alone[cause.tag] = made
         return made
 
-    def _matters(self, cause: Cause, beside: Fit) -> bool:
+    def _matters(self, cause: Candidate, beside: Fit) -> bool:
         """Whether an effect may draw something else beside an explanation than alone."""
         on = [each for each in beside.causes if each.effect is not None]
         acts = cause.effect is not None and bool(on) and any(each.acts_on_inputs for each in (cause, *on))
         return acts and self.extended.lasts
 
-    def _first(self, cause: Cause, place: _Place) -> Bundle:
+    def _first(self, cause: Candidate, place: _Place) -> Bundle:
         """Return the curves of a cause beside nothing; none where the budget of calls does not last for them."""
         if self.extended.lasts or not self.extended.costs(cause):
             made = self._made(cause, place)
@@ -90,7 +90,7 @@ class Curves:
         self.extended.budget.unseen.append(cause.name)
         return Bundle(cause, np.zeros((0, cause.size)), np.zeros((0, 1, place.readings)), is_straight=False)
 
-    def _made(self, cause: Cause, place: _Place) -> Bundle:
+    def _made(self, cause: Candidate, place: _Place) -> Bundle:
         if cause.shape is not None:
             return self._of_shape(cause, cause.shape, place)
         if cause.tolerated >= 0:
@@ -102,7 +102,7 @@ class Curves:
             return _swept(cause, lambda values: place.slopes(cause, values), most=place.most(cause))
         return place.bent(cause)
 
-    def _of_shape(self, cause: Cause, shape: Shape, place: _Place) -> Bundle:
+    def _of_shape(self, cause: Candidate, shape: UnregisteredShape, place: _Place) -> Bundle:
         """Return the curves of a shape; of one with many, on a long record, a table that all results share."""
         records = self.extended.machine.records
         shapes = [cause.numbers[number] for number in cause.shapes]
@@ -118,7 +118,7 @@ class Curves:
         family = shape.kind, *shape.depends_on
         values = placed(shapes, u)
         if family not in self._tables:
-            self._tables[family] = Table(np.array(terms(values), dtype=np.float32))
+            self._tables[family] = TermTable(np.array(terms(values), dtype=np.float32))
         curves = np.zeros((0, len(cause.amplitudes), place.readings))
         return Bundle(cause, _points(cause, values), curves, is_straight=True, table=self._tables[family])
 
@@ -126,12 +126,12 @@ class Curves:
 class _Place:
     """An explanation beside which curves are asked for."""
 
-    def __init__(self, extended: Extended, beside: Fit, causes: tuple[Cause, ...]) -> None:
+    def __init__(self, extended: Extended, beside: Fit, causes: tuple[Candidate, ...]) -> None:
         self.extended, self.causes, self.machine = extended, causes, extended.machine
         self.values = [beside.of(cause) for cause in causes]
         self.moved = beside.moved if causes else np.zeros_like(beside.moved)
 
-    def _stacked(self, causes: tuple[Cause, ...], points: Sequence[Sequence[Matrix]]) -> Matrix:
+    def _stacked(self, causes: tuple[Candidate, ...], points: Sequence[Sequence[Matrix]]) -> Matrix:
         """Return what the gauges show with some causes on at several points, (points, readings), SI."""
         made = self.extended.at(causes, [(values, self.moved) for values in points])
         return np.array([np.concatenate([each[name] for name in self.machine.records.measured]) for each in made])
@@ -141,7 +141,7 @@ class _Place:
         """What the gauges show with the explanation alone, (1, readings), SI."""
         return self._stacked(self.causes, [self.values])
 
-    def changes(self, cause: Cause, points: Matrix) -> Matrix:
+    def changes(self, cause: Candidate, points: Matrix) -> Matrix:
         """Return what a cause changes at some points (M, numbers), (M, readings)."""
         base = self._base  # asked for first: what was shown last is where a fit goes on
         return np.asarray(self._stacked((*self.causes, cause), [[*self.values, point] for point in points]) - base)
@@ -151,13 +151,13 @@ class _Place:
         """How many values a curve has."""
         return len(self.machine.records.measured) * len(self.machine.records)
 
-    def most(self, cause: Cause) -> int:
+    def most(self, cause: Candidate) -> int:
         """Return at how many points memory and the budget of calls allow to look at a cause."""
         room = max(2 * len(LEVELS), min(FINEST, ROOM // max(self.readings, 1)))
         points = self.extended.budget.points if self.extended.costs(cause) else None
         return room if points is None else min(points, room)
 
-    def is_straight(self, cause: Cause) -> bool:
+    def is_straight(self, cause: Candidate) -> bool:
         """Whether a cause is proportional to its amplitudes, and several of them do no more than their sum."""
         still = np.array([middle(number) for number in cause.numbers])
         ends, together = cause.amplitudes, still.copy()
@@ -188,7 +188,7 @@ class _Place:
         few = STRAIGHT * max(float(np.abs(summed).max()), 1e-300) * len(ends)
         return bool(np.all(np.abs(made[-1] - summed) <= few + 2 * len(ends) * grain))
 
-    def slopes(self, cause: Cause, shapes: Matrix) -> Matrix:
+    def slopes(self, cause: Candidate, shapes: Matrix) -> Matrix:
         """Return the change per unit of every amplitude at some shapes (M, shape numbers), (M, q, readings)."""
         sizes = _largest(cause)
         points = np.repeat(_points(cause, shapes)[:, None], len(sizes), axis=1)
@@ -196,25 +196,25 @@ class _Place:
         made = self.changes(cause, points.reshape(-1, cause.size)).reshape(len(shapes), len(sizes), -1)
         return np.asarray(made / sizes[:, None])
 
-    def bent(self, cause: Cause) -> Bundle:
+    def bent(self, cause: Candidate) -> Bundle:
         """Return the curves of a cause that bends, at amplitudes of many sizes and at shapes all over."""
         points = spread(cause, SPREAD if self.causes else 4 * SPREAD, self.most(cause))
         return _bundle(cause, points, self.changes(cause, points)[:, None, :], is_straight=False)
 
 
-def _largest(cause: Cause) -> Matrix:
+def _largest(cause: Candidate) -> Matrix:
     """Return the bound of every amplitude that is farther from zero, SI."""
     return np.array([max((cause.numbers[place].low, cause.numbers[place].high), key=abs) for place in cause.amplitudes])
 
 
-def _points(cause: Cause, values: Matrix) -> Matrix:
+def _points(cause: Candidate, values: Matrix) -> Matrix:
     """Return points (M, numbers) with shape numbers of these values and no amplitude."""
     points = np.zeros((len(values), cause.size))
     points[:, cause.shapes] = values
     return points
 
 
-def _bundle(cause: Cause, points: Matrix, made: Matrix, *, is_straight: bool) -> Bundle:
+def _bundle(cause: Candidate, points: Matrix, made: Matrix, *, is_straight: bool) -> Bundle:
     """Return curves (M, q, readings) at the points at which the model shows every reading that it shows at any.
 
     Where it fails whatever the point they are 0; there is no copy without need.
@@ -226,7 +226,7 @@ def _bundle(cause: Cause, points: Matrix, made: Matrix, *, is_straight: bool) ->
     return Bundle(cause, points[works], kept, is_straight, int((~works).sum()))
 
 
-def _swept(cause: Cause, make: Callable[[Matrix], Matrix], most: int = FINEST) -> Bundle:
+def _swept(cause: Candidate, make: Callable[[Matrix], Matrix], most: int = FINEST) -> Bundle:
     """Return curves over all shapes of a cause; along one number as finely as they change."""
     shapes = [cause.numbers[place] for place in cause.shapes]
     u = places_over(shapes, most)

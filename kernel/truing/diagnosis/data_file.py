@@ -25,7 +25,7 @@ from truing.measurements.table import RUN, SIGMA, DataTable, gather_table
 from truing.units import check_unit
 from truing.units.grammar import shown
 
-Part = Literal["input", "word", "series", "condition", "axis", "measured", "sigma", "other", "label"]
+ColumnRole = Literal["input", "word", "series", "condition", "axis", "measured", "sigma", "other", "label"]
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class DataRows:
 
     files: tuple[str, ...]
     columns: Mapping[str, NDArray[Any]]
-    parts: Mapping[str, Part]
+    parts: Mapping[str, ColumnRole]
     units: Mapping[str, str]
     file_of: Places
     lines: Places
@@ -55,7 +55,7 @@ class DataRows:
     def __len__(self) -> int:
         return len(self.lines)
 
-    def named(self, *parts: Part) -> dict[str, NDArray[Any]]:
+    def named(self, *parts: ColumnRole) -> dict[str, NDArray[Any]]:
         """Return the columns that play one of these parts, by name."""
         return {name: values for name, values in self.columns.items() if self.parts[name] in parts}
 
@@ -130,7 +130,7 @@ def is_missing(values: NDArray[Any]) -> Mask:
     return np.asarray(np.isnan(values))
 
 
-def part_of(name: str, model: Model[Any, Any], *, is_number: bool = True) -> Part:
+def part_of(name: str, model: Model[Any, Any], *, is_number: bool = True) -> ColumnRole:
     """Return the part that a column of this name plays."""
     item = model.input_fields.get(name)
     if item is not None:
@@ -216,7 +216,7 @@ def _unfit(table: DataTable, model: Model[Any, Any]) -> Iterator[str]:
             yield f"{name} runs along '{axis.name}'; give the place of each row in a column '{like}'"
 
 
-def _empty(columns: Mapping[str, NDArray[Any]], parts: Mapping[str, Part], faults: Faults) -> Iterator[str]:
+def _empty(columns: Mapping[str, NDArray[Any]], parts: Mapping[str, ColumnRole], faults: Faults) -> Iterator[str]:
     """Say which columns that must hold something hold nothing, not even what cannot be read."""
     needed = {"measured", "input", "series", "word", "axis"}
     for name, values in columns.items():

@@ -15,7 +15,7 @@ import numpy as np
 
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.beside import look
-from truing.diagnosis.causes import Cause
+from truing.diagnosis.causes import Candidate
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.exact import fit, slopes_at, unit_of
@@ -90,14 +90,14 @@ class _Duel:
 
 
 @dataclass(frozen=True)
-class Proposal:
+class NextPoints:
     """Settings to measure, and the pairs of explanations that they do not tell apart, however often measured."""
 
     points: tuple[NextPoint, ...] = ()
     tied: tuple[tuple[str, str], ...] = ()
 
 
-def next_points(chosen: Chosen) -> Proposal:
+def next_points(chosen: Chosen) -> NextPoints:
     """Return up to four settings that separate the winner and its rivals, with the reason for each.
 
     Shapes that nobody registered say nothing beyond the rows they were fitted to, so they are no rivals here. Of
@@ -105,7 +105,7 @@ def next_points(chosen: Chosen) -> Proposal:
     """
     several = rival_fits(chosen)
     if len(several) < 2:
-        return Proposal()
+        return NextPoints()
     machine = chosen.competition.sample.machine
     fields = machine.start.model.own_result_fields
     is_along = any(fields[name].along for name in machine.records.measured)
@@ -116,7 +116,7 @@ def next_points(chosen: Chosen) -> Proposal:
     pairs = [(winner, name_of(found)) for found in several[1:]] if is_physical(chosen.best) else []
     apart = {frozenset(duel.names) for duel in live}
     tied = tuple(pair for pair in pairs if frozenset(pair) not in apart)
-    return Proposal(tuple(_points(chosen, settings, live)), tied)
+    return NextPoints(tuple(_points(chosen, settings, live)), tied)
 
 
 def is_physical(found: Fit) -> bool:
@@ -155,7 +155,7 @@ def _renamed(chosen: Chosen) -> Iterator[Fit]:
                 yield min(found, key=lambda each: each.cost)
 
 
-def _exchanged(made: Competition, best: Fit, place: int, other: Cause) -> Iterator[Fit]:
+def _exchanged(made: Competition, best: Fit, place: int, other: Candidate) -> Iterator[Fit]:
     """Give exact fits of an explanation with one cause exchanged for another, from where its curves say."""
     causes, values = list(best.causes), list(best.values)
     del causes[place], values[place]

@@ -18,11 +18,11 @@ from truing.diagnosis.gain import gains_of, nested
 from truing.diagnosis.halves import contradictions_of, thinned_of
 from truing.diagnosis.learning import first_noise
 from truing.diagnosis.long_records import machine_for_search, on_all_rows
-from truing.diagnosis.machine import Machine, machine_of
+from truing.diagnosis.machine import Calibration, calibration_of
 from truing.diagnosis.naming import alternative_of, by_share, calibrated_of, causes_of, extended_setup, remainder_of
 from truing.diagnosis.probing import probe
 from truing.diagnosis.records import FEWEST_READINGS, Records
-from truing.diagnosis.result import Alternative, Curves, Diagnosis, readable_unit
+from truing.diagnosis.result import Alternative, DiagnosisResult, ResultCurves, readable_unit
 from truing.diagnosis.sample import sample_of
 from truing.diagnosis.search import search
 from truing.diagnosis.shape_words import in_unit
@@ -43,7 +43,7 @@ SHARES = {"columns": 0.05, "search": 0.75, "significance": 0.85, "gain": 1.0}
 """What share of the time has passed when each stage ends, for whoever waits."""
 
 
-def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None) -> Diagnosis:
+def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None) -> DiagnosisResult:
     """Show what the model gets wrong on these records, name the cause, extend the model, measure the gain.
 
     The same records, setup and seed give the same answer. Raises UsageError where an option names what is not there.
@@ -52,7 +52,7 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
     told = progress or silent
     is_short = records.readings < FEWEST_READINGS  # what is calculated of them is not used
     with one_thread(), np.errstate(all="ignore" if is_short else None):
-        machine = machine_of(setup, records)
+        machine = calibration_of(setup, records)
         told("columns", round(FINE * SHARES["columns"]), FINE)
         competition = laid_out(machine_for_search(machine, seed=setup.seed))
         probe(competition)
@@ -64,7 +64,7 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
         return replace(answer, hindrances=(*competition.extended.budget.told(), *_too_rough(answer, chosen)))
 
 
-def laid_out(machine: Machine) -> Competition:
+def laid_out(machine: Calibration) -> Competition:
     """Lay out what competes on the records of a machine, and fit the model as it is."""
     records, effects = machine.records, effects_of(machine)
     orders = {
@@ -89,7 +89,7 @@ def _check_options(setup: Setup) -> None:
             raise UsageError(f"[studies.diagnose] per_file: '{name}' is no effect, unknown or input.{near}")
 
 
-def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> Diagnosis:
+def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> DiagnosisResult:
     best = chosen.best
     machine = best.sample.machine
     units = units_of(chosen)
@@ -97,7 +97,7 @@ def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> Diagnosis:
     judged = nested(chosen, part_of(progress, "diagnosis", SHARES["significance"], SHARES["gain"]))
     points, ties = with_results(chosen, next_points(chosen))
     progress("gain", FINE, FINE)
-    return Diagnosis(
+    return DiagnosisResult(
         setup=setup,
         records=replace(machine.records, notes=(*machine.records.notes, *_hard(chosen, units))),
         measured=tuple(machine.records.measured),
@@ -119,7 +119,7 @@ def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> Diagnosis:
         thinned=thinned_of(chosen),
         trades=trades_of(chosen),
         curves=tuple(
-            Curves(name, values, chosen.null.predicted[name], best.predicted[name])
+            ResultCurves(name, values, chosen.null.predicted[name], best.predicted[name])
             for name, values in machine.records.measured.items()
         ),
         p_any=chosen.p_any,
@@ -164,7 +164,7 @@ def _hard(chosen: Chosen, units: Mapping[str, str]) -> list[str]:
     return rough + lost
 
 
-def _too_rough(answer: Diagnosis, chosen: Chosen) -> list[str]:
+def _too_rough(answer: DiagnosisResult, chosen: Chosen) -> list[str]:
     """Say where the model itself is rougher than what is left of the readings, so that its steps may be the error."""
     grain = chosen.competition.extended.grain
     return [
@@ -175,7 +175,7 @@ def _too_rough(answer: Diagnosis, chosen: Chosen) -> list[str]:
     ]
 
 
-def _not_measured(machine: Machine) -> Mapping[str, tuple[str, ...]]:
+def _not_measured(machine: Calibration) -> Mapping[str, tuple[str, ...]]:
     absent = machine.records.absent
     effects = machine.start.model.known_effects.items()
     needs = {name: tuple(need.name for need in effect.needs if need.name in absent) for name, effect in effects}

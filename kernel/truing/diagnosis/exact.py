@@ -17,7 +17,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import least_squares
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause, Number
+from truing.diagnosis.causes import Candidate, Parameter
 from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import STEP, Fit, inward, moved_by, size_of, steps_of
 from truing.diagnosis.sample import Sample
@@ -48,12 +48,12 @@ GOOD = 0.25
 def fit(
     sample: Sample,
     extended: Extended,
-    causes: Sequence[Cause],
+    causes: Sequence[Candidate],
     values: Sequence[Matrix],
     near: Fit | None = None,
     *,
     until: float = EXACTLY,
-    held: Sequence[Number] = (),
+    held: Sequence[Parameter] = (),
 ) -> Fit | None:
     """Fit an explanation from a start: numbers of every cause, SI.
 
@@ -78,7 +78,13 @@ class Fitting:
     """One fit on its way: the numbers as the fit sees them, what is left, and its derivatives."""
 
     def __init__(
-        self, sample: Sample, extended: Extended, causes: tuple[Cause, ...], near: Fit | None, *, held: Sequence[Number]
+        self,
+        sample: Sample,
+        extended: Extended,
+        causes: tuple[Candidate, ...],
+        near: Fit | None,
+        *,
+        held: Sequence[Parameter],
     ) -> None:
         self.sample, self.extended, self.causes = sample, extended, causes
         self.numbers = [number for cause in causes for number in cause.numbers]

@@ -12,8 +12,8 @@ import numpy as np
 
 from truing.declare.sources import Effect
 from truing.diagnosis.arrays import Matrix, Places
-from truing.diagnosis.causes import Cause, at_rest
-from truing.diagnosis.machine import Machine, Tolerated, predict_each
+from truing.diagnosis.causes import Candidate, at_rest
+from truing.diagnosis.machine import Calibration, Tolerated, predict_each
 from truing.errors import PluginError
 from truing.evaluate import effect_column
 from truing.repeated import REMEMBERED as REPEATED
@@ -34,7 +34,7 @@ Point = tuple[Sequence[Matrix], Matrix]
 
 
 @dataclass
-class Budget:
+class CallBudget:
     """So many calls of the model on all rows, of which the present stage of the search may spend up to a share.
 
     ``takes`` is how long a call takes, in seconds, a power of ten; 0 where the number is stated. ``left_out`` counts
@@ -54,7 +54,7 @@ class Budget:
         """Whether calls are counted at all."""
         return self.calls < inf
 
-    def of_rows(self, ratio: float) -> Budget:
+    def of_rows(self, ratio: float) -> CallBudget:
         """Return what the same time allows on so many times as many rows; what it leaves out is told with the rest."""
         return replace(self, calls=max(self.calls / ratio, LEAST_PER_EFFECT), share=1.0, points=None)
 
@@ -79,9 +79,9 @@ class Extended:
     ``calls`` counts calls of the model on all rows: points that differ in what acts after the model are one.
     """
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: Calibration) -> None:
         self.machine = machine
-        self.calls, self.budget = 0, Budget()
+        self.calls, self.budget = 0, CallBudget()
         self.grain: dict[str, float] = {}
         """By result: by how much the answers of the model jump or scatter by themselves, SI."""
         self._asked: deque[tuple[tuple[str, ...], bytes, bytes]] = deque(maxlen=REPEATED)
@@ -89,7 +89,7 @@ class Extended:
         self._shown: dict[Key, Mapping[str, Matrix]] = {}
         self._machines: dict[Key, Setup] = {}
 
-    def at(self, causes: Sequence[Cause], points: Sequence[Point]) -> list[dict[str, Matrix]]:
+    def at(self, causes: Sequence[Candidate], points: Sequence[Point]) -> list[dict[str, Matrix]]:
         """Return what the gauges show at several points, by result, SI on all rows; NaN where the model fails.
 
         Shapes that nobody registered are added to what the model shows: points that differ in them alone are one call.
@@ -106,13 +106,13 @@ class Extended:
         return [self._with_shapes(shown[key], causes, values) for key, (values, _) in zip(keys, points, strict=True)]
 
     def _with_shapes(
-        self, shown: Mapping[str, Matrix], causes: Sequence[Cause], values: Sequence[Matrix]
+        self, shown: Mapping[str, Matrix], causes: Sequence[Candidate], values: Sequence[Matrix]
     ) -> dict[str, Matrix]:
         """Return what is shown with what unregistered shapes add to it, SI, (n,)."""
         added = [shape_added(self.machine, cause, own) for cause, own in zip(causes, values, strict=True)]
         return {name: base + sum(each[name] for each in added if name in each) for name, base in shown.items()}
 
-    def _called(self, causes: Sequence[Cause], points: Sequence[Point]) -> list[Mapping[str, Matrix]]:
+    def _called(self, causes: Sequence[Candidate], points: Sequence[Point]) -> list[Mapping[str, Matrix]]:
         """Call the model at several points, as one batch where it can be."""
         if not points:
             return []
@@ -135,7 +135,7 @@ class Extended:
                 return [self._survived(setup, [trial])[0] for trial in trials]
             return [{name: np.full(len(records), np.nan) for name in records.measured}]
 
-    def _count(self, causes: Sequence[Cause], points: Sequence[Point]) -> None:
+    def _count(self, causes: Sequence[Candidate], points: Sequence[Point]) -> None:
         """Count the calls that some points cost; records along an axis are calculated anew for every one."""
         if self.machine.records.rows.series:
             self.calls += len(points)
@@ -148,7 +148,7 @@ class Extended:
                 self.calls += 1
                 self._asked.append(key)
 
-    def costs(self, cause: Cause) -> bool:
+    def costs(self, cause: Candidate) -> bool:
         """Whether every point of a cause is a call of the model: what acts after it needs it once."""
         return cause.effect is not None and (cause.acts_on_inputs or bool(self.machine.records.rows.series))
 
@@ -163,7 +163,7 @@ class Extended:
             self.budget.left_out[what] = self.budget.left_out.get(what, 0) + 1
         return self.lasts
 
-    def _with(self, causes: Sequence[Cause]) -> Setup:
+    def _with(self, causes: Sequence[Candidate]) -> Setup:
         """Return the setup with the effects of these causes on; parts of one effect are on together."""
         tags = frozenset(cause.tag for cause in causes if cause.effect is not None)
         if tags not in self._setups:
@@ -186,7 +186,7 @@ class Extended:
         """Return a tolerated input so many standard deviations from its mean, SI."""
         return float(self.machine.start.nominal(given.name)) + given.mean + float(sds) * given.sd
 
-    def _inputs(self, causes: Sequence[Cause], values: Sequence[Matrix], moved: Matrix) -> dict[str, Any]:
+    def _inputs(self, causes: Sequence[Candidate], values: Sequence[Matrix], moved: Matrix) -> dict[str, Any]:
         """Return the columns that set every tolerated input, SI, (n,)."""
         off = np.array(moved, dtype=float)
         for cause, own in zip(causes, values, strict=True):
@@ -197,7 +197,7 @@ class Extended:
         return _columns(settings, self.machine.records.file_of)
 
 
-def _unknowns(machine: Machine, causes: Sequence[Cause], values: Sequence[Matrix]) -> dict[str, Any]:
+def _unknowns(machine: Calibration, causes: Sequence[Candidate], values: Sequence[Matrix]) -> dict[str, Any]:
     """Return the columns that set every unknown, SI, (n,)."""
     settings = (
         (effect_column(cause.name, number.name), number.file, float(value))
@@ -216,7 +216,7 @@ def _columns(settings: Iterable[tuple[str, int, float]], files: Places) -> dict[
     return made
 
 
-def shape_added(machine: Machine, cause: Cause, values: Matrix) -> dict[str, Matrix]:
+def shape_added(machine: Calibration, cause: Candidate, values: Matrix) -> dict[str, Matrix]:
     """Return what a shape that nobody registered adds, by result it acts on, SI on all rows."""
     shape = cause.shape
     if shape is None:
@@ -226,20 +226,20 @@ def shape_added(machine: Machine, cause: Cause, values: Matrix) -> dict[str, Mat
     return {name: np.asarray(sum(next(amplitudes) * term.values for term in terms)) for name in shape.results}
 
 
-def elsewhere(extended: Extended, machine: Machine) -> Extended:
+def elsewhere(extended: Extended, machine: Calibration) -> Extended:
     """Return the same extension on other rows."""
     other = Extended(machine)
     other._setups, other.grain = dict(extended._setups), extended.grain
     return other
 
 
-def parts_of(causes: Sequence[Cause], flat: Matrix) -> list[Matrix]:
+def parts_of(causes: Sequence[Candidate], flat: Matrix) -> list[Matrix]:
     """Cut the numbers of all causes, one behind another, into those of each."""
     ends = np.cumsum([cause.size for cause in causes])[:-1]
     return [np.asarray(part) for part in np.split(flat, ends)] if causes else []
 
 
-def switched_on(causes: Sequence[Cause], values: Sequence[Matrix], machine: Machine) -> Iterator[SwitchedOn]:
+def switched_on(causes: Sequence[Candidate], values: Sequence[Matrix], machine: Calibration) -> Iterator[SwitchedOn]:
     """Give the effects of an explanation as they are on, with their fitted unknowns (SI); of files, their mean."""
     merged: dict[str, tuple[Effect[Any, Any], dict[str, float], dict[str, list[float]]]] = {}
     for cause, own in zip(causes, values, strict=True):

@@ -7,14 +7,14 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause, gauged
+from truing.diagnosis.causes import Candidate, gauged
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.gain import floor_of
 from truing.diagnosis.naming import added_by
 from truing.diagnosis.noise import robust_sd
-from truing.diagnosis.result import Amount, Finding, Kind, Noise, Wrong
+from truing.diagnosis.result import Amount, NoiseSummary, ResidualFinding, ResidualPattern, Wrong
 from truing.diagnosis.sample import Channel, errors_of, residuals_of
 from truing.diagnosis.shape_words import drawn_by, in_unit, shape_in_words
 from truing.numbers import counted
@@ -42,7 +42,7 @@ def wrong_of(chosen: Chosen, units: Mapping[str, str]) -> tuple[Wrong, ...]:
     return tuple(_wrong(chosen, channel, acting, units[channel.name]) for channel in chosen.best.sample.channels)
 
 
-def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, Sequence[Cause]], unit: str) -> Wrong:
+def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, Sequence[Candidate]], unit: str) -> Wrong:
     best, name, rows = chosen.best, channel.name, channel.rows
     machine, own, records = best.sample.machine, best.sample.noise[name], best.sample.machine.records
     before, after = (errors_of(machine, name, own, found.predicted[name])[rows] for found in (chosen.null, best))
@@ -60,17 +60,19 @@ def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, Sequence[Cause
     places = rows[channel.read][far].tolist()
     outliers = tuple((records.files[int(records.file_of[row])], int(records.lines[row])) for row in places)
     memory = channel.memory
-    noise = Noise(Amount(floor, unit), memory.neighbours, own.tails.words, own.spread.words, outliers, memory.rho)
+    noise = NoiseSummary(
+        Amount(floor, unit), memory.neighbours, own.tails.words, own.spread.words, outliers, memory.rho
+    )
     if outliers:
         words = f"{counted(len(outliers), 'suspected outlier')}, beyond four standard deviations of the noise"
-        found.append(Finding("outlier", "", None, words))
+        found.append(ResidualFinding("outlier", "", None, words))
     given = records.sigma.get(name, np.zeros(len(records)))[rows]
     given = given[given > 0]
     stated = Amount(float(np.sqrt(np.mean(given**2))), unit) if len(given) else None
     return Wrong(name, len(rows), Amount(rmse, unit), Amount(floor, unit), share, noise, tuple(found), stated)
 
 
-def _bias(chosen: Chosen, channel: Channel, residual: Matrix, unit: str) -> Iterator[Finding]:
+def _bias(chosen: Chosen, channel: Channel, residual: Matrix, unit: str) -> Iterator[ResidualFinding]:
     """Say by how much the nominal model is off on average, and whether calibration within the tolerances takes it."""
     sample = chosen.null.sample
     mean = float(np.mean(residual))
@@ -81,10 +83,12 @@ def _bias(chosen: Chosen, channel: Channel, residual: Matrix, unit: str) -> Iter
     words = "more than the tolerances allow" if spread > 0 else "and no tolerance allows for it"
     if is_allowed := abs(mean) <= BIASED * spread:
         words = f"within what the tolerances allow ({in_unit(spread, unit)} standard deviation)"
-    yield Finding("bias", "", None, f"on average {in_unit(mean, unit)} off the nominal model, {words}", is_allowed)
+    yield ResidualFinding(
+        "bias", "", None, f"on average {in_unit(mean, unit)} off the nominal model, {words}", is_allowed
+    )
 
 
-def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[Finding]:
+def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[ResidualFinding]:
     """Say what the residual of the calibrated model depends on; every p-value has paid for the whole search.
 
     Shapes that explain little beside the best explanation are its shadows (a jump has waves of every order).
@@ -122,17 +126,17 @@ def _label(found: Fit, name: str) -> tuple[str, ...]:
     return drawn if not drawn or drawn[0] in {"order", "step", "wave", "product"} else ("trend", *drawn[1:])
 
 
-def _finding(found: Fit, extended: Extended, p_value: float, name: str, unit: str) -> Finding:
+def _finding(found: Fit, extended: Extended, p_value: float, name: str, unit: str) -> ResidualFinding:
     """Describe an explanation of one cause as it was fitted."""
     (cause,), (values,) = found.causes, found.values
     drawn, *names = drawn_by(cause)
-    kind: Kind = "order" if drawn == "order" else "step" if drawn == "step" else "trend"
+    kind: ResidualPattern = "order" if drawn == "order" else "step" if drawn == "step" else "trend"
     added = added_by(found, extended)[cause.name][name]
     text = shape_in_words(found.sample.machine, cause, values, added, unit)
-    return Finding(kind, " and ".join(names), p_value, text)
+    return ResidualFinding(kind, " and ".join(names), p_value, text)
 
 
-def _acting(chosen: Chosen) -> dict[str, list[Cause]]:
+def _acting(chosen: Chosen) -> dict[str, list[Candidate]]:
     """Return by result the registered effects of the explanation that add more to it than its noise would hide."""
     best = chosen.best
     added = added_by(best, chosen.competition.extended) if best.causes else {}
@@ -147,7 +151,7 @@ def _acting(chosen: Chosen) -> dict[str, list[Cause]]:
     }
 
 
-def _with_named(chosen: Chosen, acting: Sequence[Cause], found: list[Finding]) -> list[Finding]:
+def _with_named(chosen: Chosen, acting: Sequence[Candidate], found: list[ResidualFinding]) -> list[ResidualFinding]:
     """Add what the named causes follow, where no shape has shown it: a cause is a sharper eye than any shape."""
     made = chosen.competition
     gain = made.score(made.null) - made.score(made.known[chosen.best.key])
@@ -158,21 +162,23 @@ def _with_named(chosen: Chosen, acting: Sequence[Cause], found: list[Finding]) -
         for name in follows:
             is_seen = any(name in finding.covariate.split(" and ") for finding in found)
             if not is_seen and name in covariates and not covariates[name].is_constant:
-                found.append(Finding("trend", name, chosen.law.p_of(gain), f"follows {name}, as {cause.name} would"))
+                found.append(
+                    ResidualFinding("trend", name, chosen.law.p_of(gain), f"follows {name}, as {cause.name} would")
+                )
     return found
 
 
-def _of_noise(best: Fit, channel: Channel) -> Iterator[Finding]:
+def _of_noise(best: Fit, channel: Channel) -> Iterator[ResidualFinding]:
     """Say what the noise itself is like."""
     spread, neighbours = best.sample.noise[channel.name].spread, channel.memory.neighbours
     if spread.driver:
-        yield Finding("spread", spread.driver, spread.p_value, f"the scatter {spread.words}")
+        yield ResidualFinding("spread", spread.driver, spread.p_value, f"the scatter {spread.words}")
     if neighbours >= NOTICEABLE:
         words = f"neighbouring rows are alike (autocorrelation {neighbours:.2f})"
-        yield Finding("autocorrelation", "", None, words)
+        yield ResidualFinding("autocorrelation", "", None, words)
 
 
-def _wave(best: Fit, channel: Channel) -> Iterator[Finding]:
+def _wave(best: Fit, channel: Channel) -> Iterator[ResidualFinding]:
     """Say which wave is left over that no explanation drew, by Fisher's test of the largest ordinate of a periodogram.
 
     The innovations of the best explanation are put in the order of each covariate, so that a wave over it is one over
@@ -196,4 +202,4 @@ def _wave(best: Fit, channel: Channel) -> Iterator[Finding]:
     p_value, name, count, share = min(found)
     if p_value <= WAVE_LEVEL:
         words = f"{count} waves over the range of {name}, with {100 * share:.0f} % of what is left after all"
-        yield Finding("wave", name, p_value, words)
+        yield ResidualFinding("wave", name, p_value, words)

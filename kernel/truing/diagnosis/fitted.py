@@ -8,7 +8,7 @@ from math import inf, log
 import numpy as np
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause, Number
+from truing.diagnosis.causes import Candidate, Parameter
 from truing.diagnosis.result import AT_BOUND, OUTSIDE
 from truing.diagnosis.sample import Sample
 
@@ -28,7 +28,7 @@ class Fit:
     directions of the inputs draw, (n, K), SI, both as the fit left them; nothing where they were not taken.
     """
 
-    causes: tuple[Cause, ...]
+    causes: tuple[Candidate, ...]
     values: tuple[Matrix, ...]
     inputs: Matrix
     predicted: dict[str, Matrix]
@@ -58,7 +58,7 @@ class Fit:
         """How far each tolerated input is moved, in standard deviations from its mean."""
         return moved_by(self.sample, self.inputs)
 
-    def of(self, cause: Cause) -> Matrix:
+    def of(self, cause: Candidate) -> Matrix:
         """Return the numbers of one of its causes, SI."""
         return self.values[[each.tag for each in self.causes].index(cause.tag)]
 
@@ -79,14 +79,14 @@ def moved_by(sample: Sample, inputs: Matrix) -> Matrix:
     return sample.directions @ inputs if len(inputs) else np.zeros(len(sample.machine.inputs))
 
 
-def inward(number: Number, size: float) -> tuple[float, float]:
+def inward(number: Parameter, size: float) -> tuple[float, float]:
     """Return the bounds of a number as the fit sees it: a logarithm, or in units of ``size``."""
     if number.is_log:
         return log(number.low), log(number.high)
     return number.low / size, number.high / size
 
 
-def size_of(number: Number, scales: dict[str, float]) -> float:
+def size_of(number: Parameter, scales: dict[str, float]) -> float:
     """Return the unit in which a fit counts a number: its largest bound, or the noise of the result that it adds to."""
     largest = max(abs(number.low), abs(number.high))
     return largest if largest < inf else scales.get(number.name.rpartition(":")[0], 1.0)
@@ -122,7 +122,7 @@ def signs_of_wrong(found: Fit) -> int:
     return sum(is_at_bound(number, float(value)) for number, value in numbers) + len(far_inputs(found))
 
 
-def is_at_bound(number: Number, value: float) -> bool:
+def is_at_bound(number: Parameter, value: float) -> bool:
     """Whether a fitted number lies at an end of its declared range, other than at zero."""
     if not number.is_free:
         return False

@@ -18,10 +18,10 @@ from truing.diagnosis.choice import CLOSE, Chosen
 from truing.diagnosis.extended import shape_added
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import Folds, folds_of, refitted
-from truing.diagnosis.machine import Machine
+from truing.diagnosis.machine import Calibration
 from truing.diagnosis.noise import beyond, difference
 from truing.diagnosis.result import Amount, Gain
-from truing.diagnosis.sample import Channel, Noise, errors_of
+from truing.diagnosis.sample import Channel, NoiseModel, errors_of
 
 FLIPS = 999
 MOST_EXACT = 12
@@ -37,7 +37,7 @@ LEAST_REDUCIBLE = 0.03
 
 
 @dataclass(frozen=True)
-class Judged:
+class HeldOutAnswers:
     """Held-out answers of one result, shape (n,) over all rows of the records, NaN where none.
 
     ``before`` and ``after`` are errors (SI) of base and extended model, ``gain`` the difference of log densities,
@@ -54,7 +54,7 @@ class Judged:
 class Nested:
     """The cross-validation: answers by result, the folds, and the share of folds in which the same was chosen."""
 
-    judged: dict[str, Judged]
+    judged: dict[str, HeldOutAnswers]
     folds: Folds
     stability: float
 
@@ -64,7 +64,7 @@ def nested(chosen: Chosen, done: Callable[[int, int], None] = lambda count, of: 
     made = chosen.competition
     folds = folds_of(made.sample)
     size = len(made.sample.machine.records)
-    judged = {name: Judged(*(np.full(size, np.nan) for _ in range(4))) for name in made.sample.noise}
+    judged = {name: HeldOutAnswers(*(np.full(size, np.nan) for _ in range(4))) for name in made.sample.noise}
     several, same = contenders(chosen), 0
     for fold in range(folds.count):
         done(fold, folds.count)
@@ -107,7 +107,7 @@ def _chosen_again(chosen: Chosen, base: Fit, several: list[Fit], test: Mask) -> 
     return best if made.score(best) < made.score(base) else base
 
 
-def _judge(judged: Judged, place: int, fits: tuple[Fit, Fit], test: Mask) -> None:
+def _judge(judged: HeldOutAnswers, place: int, fits: tuple[Fit, Fit], test: Mask) -> None:
     """Fill in the rows of one fold for one result, from the fits of base and extension without them."""
     sample, channel, machine = fits[0].sample, fits[0].sample.channels[place], fits[0].sample.machine
     name, noise = channel.name, sample.noise[channel.name]
@@ -129,7 +129,7 @@ def _judge(judged: Judged, place: int, fits: tuple[Fit, Fit], test: Mask) -> Non
     judged.inside[test] = np.where(np.isfinite(judged.after[test]) & known[test], ~outside, np.nan)
 
 
-def _log_chance(machine: Machine, name: str, noise: Noise, found: Fit) -> Matrix:
+def _log_chance(machine: Calibration, name: str, noise: NoiseModel, found: Fit) -> Matrix:
     """Return the log probability that the true value lies beyond what was read, (n,); 0 where it was read."""
     sides = machine.records.sides.get(name, np.zeros(len(machine.records), dtype=np.int8))
     off = difference(machine.records.measured[name], found.predicted[name], noise.typical) * noise.weights / noise.scale

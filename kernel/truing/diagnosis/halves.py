@@ -18,7 +18,7 @@ from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import refitted
 from truing.diagnosis.gain import contenders
 from truing.diagnosis.intervals import certainty_of, places_of, value_of
-from truing.diagnosis.noise import Setting
+from truing.diagnosis.noise import Autocorrelation
 from truing.diagnosis.result import Amount, Contradiction, Thinned
 from truing.diagnosis.sample import Sample, has_order
 
@@ -113,7 +113,7 @@ def _thinned(sample: Sample, rows: Places) -> Sample:
     return replace(few, channels=tuple(channels))
 
 
-def every_second(memory: Setting) -> Setting:
+def every_second(memory: Autocorrelation) -> Autocorrelation:
     """Return the filter of every second value of noise: its autocorrelations are those of the even lags.
 
     With phi = rho^2 and r = rho times the autocorrelation of neighbours, theta solves
@@ -122,4 +122,4 @@ def every_second(memory: Setting) -> Setting:
     carried = memory.rho**2
     white = carried - memory.rho * memory.neighbours
     middle = (1 - carried**2 + 2 * carried * white) / 2
-    return Setting(carried, white / (middle + sqrt(max(middle**2 - white**2, 0.0))))
+    return Autocorrelation(carried, white / (middle + sqrt(max(middle**2 - white**2, 0.0))))

@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from scipy.special import stdtrit
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause, Number
+from truing.diagnosis.causes import Candidate, Parameter
 from truing.diagnosis.exact import CLOSELY, fit, slopes_at, unit_of
 from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import Fit, inward
@@ -75,12 +75,12 @@ class Certainty:
         return tuple(tuple(row) for row in part.tolist())
 
 
-def numbers_of(found: Fit) -> list[Number]:
+def numbers_of(found: Fit) -> list[Parameter]:
     """Return the numbers of all causes of a fit, one behind another: the order of places."""
     return [number for cause in found.causes for number in cause.numbers]
 
 
-def places_of(found: Fit, cause: Cause) -> range:
+def places_of(found: Fit, cause: Candidate) -> range:
     """Return the places of the numbers of a cause among those of all."""
     place = [each.tag for each in found.causes].index(cause.tag)
     begin = sum(each.size for each in found.causes[:place])
@@ -139,7 +139,7 @@ def interval(found: Fit, certainty: Certainty, place: int) -> tuple[float, float
     return max(value - reach, min(number.low, value)), min(value + reach, max(number.high, value))
 
 
-def may_be_zero(found: Fit, certainty: Certainty, cause: Cause) -> bool:
+def may_be_zero(found: Fit, certainty: Certainty, cause: Candidate) -> bool:
     """Tell whether the 95 % interval of every amplitude of a cause contains zero."""
     own = places_of(found, cause)
     ends = [interval(found, certainty, own[place]) for place in cause.amplitudes]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from truing.diagnosis.data_file import DataRows, Part, is_missing, objects
+from truing.diagnosis.data_file import ColumnRole, DataRows, is_missing, objects
 from truing.errors import Fault, InputError
 from truing.measurements import RowsFile
 from truing.numbers import counted
@@ -62,16 +62,16 @@ def _contradictions(files: Sequence[DataRows]) -> Iterator[Fault]:
                 yield Fault(words, file.files[0])
 
 
-def _parts(files: Sequence[DataRows]) -> dict[str, Part]:
+def _parts(files: Sequence[DataRows]) -> dict[str, ColumnRole]:
     """Return the part of every column; what holds words in one file is words in all."""
-    parts: dict[str, Part] = {}
+    parts: dict[str, ColumnRole] = {}
     for file in files:
         for name, part in file.parts.items():
             parts[name] = "label" if "label" in {part, parts.get(name)} else part
     return parts
 
 
-def _cells(file: DataRows, name: str, part: Part, setup: Setup) -> NDArray[Any]:
+def _cells(file: DataRows, name: str, part: ColumnRole, setup: Setup) -> NDArray[Any]:
     """Return a column of a file, as it is filled up where the file has none."""
     values = file.columns.get(name)
     if values is not None and (part != "label" or values.dtype == object):

@@ -11,10 +11,10 @@ from math import log
 import numpy as np
 
 from truing.diagnosis.arrays import Mask, Matrix
-from truing.diagnosis.machine import Machine, Predicted, in_blocks
+from truing.diagnosis.machine import Calibration, Predicted, in_blocks
 from truing.diagnosis.noise import (
     SETTINGS,
-    Setting,
+    Autocorrelation,
     beyond,
     clipped,
     difference,
@@ -28,13 +28,13 @@ from truing.diagnosis.noise import (
     weights_of,
     whiten,
 )
-from truing.diagnosis.sample import Channel, Noise, Sample, compared_slopes, has_order, residuals_of, typical_of
+from truing.diagnosis.sample import Channel, NoiseModel, Sample, compared_slopes, has_order, residuals_of, typical_of
 
 FEWEST_OF_MEMORY = 20
 """Rows from which on their memory is learnt."""
 
 
-def first_noise(machine: Machine) -> dict[str, Noise]:
+def first_noise(machine: Calibration) -> dict[str, NoiseModel]:
     """Return a first idea of the noise: what the tolerated inputs and powers of all covariates cannot explain."""
     made = {}
     moved = [item for item in machine.records.covariates.values() if not item.is_constant and item.role != "order"]
@@ -52,7 +52,7 @@ def first_noise(machine: Machine) -> dict[str, Noise]:
         scale = max(_unexplained(triangle, len(here)), rounding(values[here]), 1e-300)
         given = _stated(machine, name, typical)
         at = machine.base[name] if typical or name in machine.records.sides else None
-        made[name] = Noise(scale, given, given, typical=typical, at=at)
+        made[name] = NoiseModel(scale, given, given, typical=typical, at=at)
     return made
 
 
@@ -67,7 +67,7 @@ def _unexplained(triangle: Matrix, rows: int) -> float:
     return float(np.sqrt(rest @ rest / max(rows - left.shape[1], 1)))
 
 
-def _stated(machine: Machine, name: str, typical: float) -> Matrix:
+def _stated(machine: Calibration, name: str, typical: float) -> Matrix:
     """Return the weights that stated standard deviations ask for: 1 where none is stated, less where it is larger."""
     stated = machine.records.sigma.get(name)
     if stated is None or not (stated > 0).any():
@@ -78,7 +78,7 @@ def _stated(machine: Machine, name: str, typical: float) -> Matrix:
     return np.where(stated > 0, middle / np.where(stated > 0, stated, middle), 1.0)
 
 
-def learnt(sample: Sample, predicted: Predicted, used: float) -> dict[str, Noise]:
+def learnt(sample: Sample, predicted: Predicted, used: float) -> dict[str, NoiseModel]:
     """Learn scale, spread, tails and memory of the noise from what an explanation leaves, ``used`` its free numbers."""
     drivers, free = _drivers(sample.machine), used / len(sample.channels)
     return {
@@ -86,7 +86,9 @@ def learnt(sample: Sample, predicted: Predicted, used: float) -> dict[str, Noise
     }
 
 
-def _learnt(sample: Sample, channel: Channel, predicted: Matrix, drivers: Mapping[str, Matrix], free: float) -> Noise:
+def _learnt(
+    sample: Sample, channel: Channel, predicted: Matrix, drivers: Mapping[str, Matrix], free: float
+) -> NoiseModel:
     """Learn the noise of one result from the rows whose value was read; censored ones have their say in its scale.
 
     For the scale, readings that lie too far out count as where the tails end.
@@ -100,13 +102,13 @@ def _learnt(sample: Sample, channel: Channel, predicted: Matrix, drivers: Mappin
     weighted, starts = left * weights[rows], channel.starts[channel.read]
     floor = channel.scale * channel.least**0.5
     is_known = has_order(machine) and robust_sd(weighted) > 2 * floor
-    memory = memory_of(weighted, starts) if is_known else Setting()
+    memory = memory_of(weighted, starts) if is_known else Autocorrelation()
     innovations = whiten(weighted, starts, memory)
     is_noise = robust_sd(innovations) > 2 * floor
     tails = tails_of(innovations) if is_noise else before.tails
     kept = weighted + clipped(innovations, tails) - innovations if is_noise else weighted
     scale = scale_of(kept, _short(channel, predicted, weights[channel.rows]), free)
-    return Noise(
+    return NoiseModel(
         max(scale, floor, 1e-300), before.given, weights, memory, tails, spread, typical,
         None if before.at is None else predicted,
     )  # fmt: skip
@@ -120,7 +122,7 @@ def _short(channel: Channel, predicted: Matrix, weights: Matrix) -> Matrix:
     return np.asarray(short[channel.sides != 0])
 
 
-def _drivers(machine: Machine) -> dict[str, Matrix]:
+def _drivers(machine: Calibration) -> dict[str, Matrix]:
     """Return what the spread of noise may depend on: every covariate, and its size where it changes sign."""
     made: dict[str, Matrix] = {}
     for name, item in machine.records.covariates.items():
@@ -132,19 +134,19 @@ def _drivers(machine: Machine) -> dict[str, Matrix]:
     return made
 
 
-def memory_of(left: Matrix, starts: Mask, fewest: int = FEWEST_OF_MEMORY) -> Setting:
+def memory_of(left: Matrix, starts: Mask, fewest: int = FEWEST_OF_MEMORY) -> Autocorrelation:
     """Return the filter that makes what is left likeliest, its parameters paid for; of fewer rows none."""
-    settings = SETTINGS if len(left) >= fewest else [Setting()]
+    settings = SETTINGS if len(left) >= fewest else [Autocorrelation()]
     return min(settings, key=lambda setting: memory_cost(left, starts, setting))
 
 
-def memory_cost(left: Matrix, starts: Mask, setting: Setting) -> float:
+def memory_cost(left: Matrix, starts: Mask, setting: Autocorrelation) -> float:
     """Return -2 log likelihood of what is left as noise of this filter, its size free, its parameters paid for."""
     square = max(float(np.mean(whiten(left, starts, setting) ** 2)), 1e-300)
     return len(left) * log(square) + _paid(starts, setting)
 
 
-def _paid(starts: Mask, setting: Setting) -> float:
+def _paid(starts: Mask, setting: Autocorrelation) -> float:
     """Return what a filter costs in -2 log likelihood: its larger noise where runs begin, and its parameters."""
     return int(starts.sum()) * log(setting.variance_ratio) + setting.size * log(max(len(starts), 2))
 
@@ -159,7 +161,7 @@ def as_noise(sample: Sample, predicted: Predicted) -> float:
         left, starts = channel.off(predicted[channel.name])[channel.read], channel.starts[channel.read]
         if not np.ptp(left) > 0:
             continue
-        memory = memory_of(left, starts, 0) if has_order(sample.machine) else Setting()
+        memory = memory_of(left, starts, 0) if has_order(sample.machine) else Autocorrelation()
         total += _paid(starts, memory) - 2 * likelihood_of(whiten(left, starts, memory))
         short = _short(channel, predicted[channel.name], channel.weights / channel.scale)
         size = max(scale_of(left, short, 0.0), 1e-300)

@@ -16,7 +16,7 @@ from truing.diagnosis.choice import Chosen, Rival
 from truing.diagnosis.competition import competition_of
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.learning import first_noise
-from truing.diagnosis.machine import Machine, machine_of
+from truing.diagnosis.machine import Calibration, calibration_of
 from truing.diagnosis.records import Records
 from truing.diagnosis.sample import sample_of
 
@@ -36,7 +36,7 @@ def searched(records: Records, *, seed: int) -> Records:
     return records.part(edges[:-1] + (generator.random(LONG) * np.diff(edges)).astype(np.intp))
 
 
-def on_all_rows(chosen: Chosen, machine: Machine) -> Chosen:
+def on_all_rows(chosen: Chosen, machine: Calibration) -> Chosen:
     """Return what a search of some rows came to, fitted to all rows of a machine."""
     few = chosen.competition
     if len(few.sample.machine.records) == len(machine.records):
@@ -60,7 +60,7 @@ def on_all_rows(chosen: Chosen, machine: Machine) -> Chosen:
     return replace(chosen, competition=made, best=made.exact(best), rivals=rivals, of_some_rows=chosen)
 
 
-def machine_for_search(machine: Machine, *, seed: int) -> Machine:
+def machine_for_search(machine: Calibration, *, seed: int) -> Calibration:
     """Return the machine on the rows that a search looks at."""
     records = searched(machine.records, seed=seed)
-    return machine if records is machine.records else machine_of(machine.design, records)
+    return machine if records is machine.records else calibration_of(machine.design, records)

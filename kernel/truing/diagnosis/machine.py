@@ -46,7 +46,7 @@ class Tolerated:
 
 
 @dataclass(frozen=True)
-class Machine:
+class Calibration:
     """The start of a calibration: prediction at the start, and one column per tolerated input and measured result.
 
     ``design`` is the setup as it is given, ``start`` that at its calibrated inputs. ``slopes[result]`` has shape
@@ -124,7 +124,7 @@ def tolerated_inputs(setup: Setup, records: Records) -> list[Tolerated]:
     return found
 
 
-def machine_of(setup: Setup, records: Records) -> Machine:
+def calibration_of(setup: Setup, records: Records) -> Calibration:
     """Evaluate the model at the start and around it, twice per tolerated input."""
     start = one_machine(setup)
     base = predict(start, records)
@@ -140,7 +140,7 @@ def machine_of(setup: Setup, records: Records) -> Machine:
             here = slice(None) if item.file < 0 else records.file_of == item.file
             for name, slope in own.items():
                 slopes[name][here, place] = slope[here]
-    return Machine(setup, start, records, base, tuple(inputs), slopes)
+    return Calibration(setup, start, records, base, tuple(inputs), slopes)
 
 
 def _slopes(start: Setup, records: Records, inputs: Sequence[Tolerated]) -> Iterator[tuple[str, dict[str, Matrix]]]:

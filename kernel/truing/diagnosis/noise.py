@@ -35,7 +35,7 @@ MOST_ROUNDS, SETTLED = 500, 1e-12
 
 
 @dataclass(frozen=True)
-class Setting:
+class Autocorrelation:
     """One noise filter: ``rho`` carries over from row to row, ``theta`` is the white share on top of the wander."""
 
     rho: float = 0.0
@@ -59,8 +59,9 @@ class Setting:
 
 
 SETTINGS = (
-    *(Setting(rho) for rho in (0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.87, 0.92)),
-    Setting(0.8, 0.4), Setting(0.9, 0.5), Setting(0.9, 0.7), Setting(0.92, 0.6), Setting(0.92, 0.8),
+    *(Autocorrelation(rho) for rho in (0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.87, 0.92)),
+    Autocorrelation(0.8, 0.4), Autocorrelation(0.9, 0.5), Autocorrelation(0.9, 0.7),
+    Autocorrelation(0.92, 0.6), Autocorrelation(0.92, 0.8),
 )  # fmt: skip
 
 
@@ -77,7 +78,7 @@ def carried_over(driven: Matrix, starts: Mask, share: float) -> Matrix:
     return np.asarray(solved.reshape(driven.shape))
 
 
-def whiten(values: Matrix, starts: Mask, setting: Setting) -> Matrix:
+def whiten(values: Matrix, starts: Mask, setting: Autocorrelation) -> Matrix:
     """Turn noise of this filter into independent innovations, shape (n,) or (n, c), run by run."""
     ratio = setting.variance_ratio
     white = np.array(values, dtype=float)
@@ -91,7 +92,7 @@ def whiten(values: Matrix, starts: Mask, setting: Setting) -> Matrix:
     return white
 
 
-def colour(white: Matrix, starts: Mask, setting: Setting) -> Matrix:
+def colour(white: Matrix, starts: Mask, setting: Autocorrelation) -> Matrix:
     """Undo ``whiten``: make noise of this filter from independent innovations."""
     ratio = setting.variance_ratio
     driven = np.array(white, dtype=float)
@@ -168,7 +169,7 @@ def clipped(innovations: Matrix, tails: Tails) -> Matrix:
 
 
 @dataclass(frozen=True)
-class Spread:
+class SpreadTrend:
     """How the standard deviation of the noise depends on one driver: exp(slope * z), z standardised."""
 
     driver: str = ""
@@ -188,7 +189,7 @@ def standardised(values: Matrix) -> Matrix:
     return (filled - filled.mean()) / sd if sd > 0 else np.zeros_like(filled)
 
 
-def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> Spread:
+def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> SpreadTrend:
     """Find what the spread of the innovations depends on, if on anything (Bonferroni over the drivers).
 
     Tested is the correlation of a driver with normal scores of the ranks of their sizes, which heavy tails do not reach
@@ -200,13 +201,13 @@ def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> Spread:
     ranks = sum(np.searchsorted(ordered, np.abs(u), side) for side in ("left", "right")) + 1
     sizes = ndtri(0.5 + 0.25 * ranks / (len(u) + 1))
     if not tried or len(u) < 20 or not np.ptp(sizes) > 0:
-        return Spread()
+        return SpreadTrend()
     alike = {name: abs(float(np.corrcoef(z, sizes)[0, 1])) for name, z in tried.items()}
     name = max(alike, key=alike.__getitem__)  # of drivers that are one the first
     off = alike[name] * sqrt((len(u) - 2) / max(1 - alike[name] ** 2, 1e-300))
     p_value = min(1.0, 2 * float(stdtr(len(u) - 2, -off)) * len(tried))
     if p_value >= SPREAD_LEVEL:
-        return Spread()
+        return SpreadTrend()
     z = tried[name]
 
     def cost(slope: float) -> float:
@@ -214,10 +215,10 @@ def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> Spread:
         return 0.5 * len(u) * float(np.log(np.mean(u**2 * np.exp(-2 * exponent)))) + float(exponent.sum())
 
     slope = float(minimize_scalar(cost, bounds=(-2.0, 2.0), method="bounded").x)
-    return Spread(name, slope, p_value)
+    return SpreadTrend(name, slope, p_value)
 
 
-def weights_of(spread: Spread, driver: Matrix | None, learnt: Places, rows: int) -> Matrix:
+def weights_of(spread: SpreadTrend, driver: Matrix | None, learnt: Places, rows: int) -> Matrix:
     """Return the weight of each of ``rows`` rows: one over the relative standard deviation of its noise.
 
     ``learnt`` are the rows that the spread was learnt from: the driver is standardised over them.

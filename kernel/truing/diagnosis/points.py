@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause, Number
+from truing.diagnosis.causes import Candidate, Parameter
 
 LEVELS = (1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001)
 """Shares of its bound at which an amplitude that bends is asked for."""
@@ -34,7 +34,7 @@ def evenly(dimensions: int, count: int) -> Matrix:
     return np.asarray((0.5 + np.arange(count)[:, None] * root ** -np.arange(1.0, dimensions + 1)) % 1.0)
 
 
-def middle(number: Number) -> float:
+def middle(number: Parameter) -> float:
     """Return a number that is not looked at: no amplitude, the middle of a shape's range."""
     if number.is_amplitude:
         return 0.0
@@ -43,7 +43,7 @@ def middle(number: Number) -> float:
     return float((number.low * number.high) ** 0.5) if number.is_log else (number.low + number.high) / 2
 
 
-def _from_unit(number: Number, u: Matrix) -> Matrix:
+def _from_unit(number: Parameter, u: Matrix) -> Matrix:
     """Return values of a shape number for places from 0 to 1 in its range."""
     if number.whole:
         return np.minimum(np.floor(number.low + u * (number.high - number.low + 1)), number.high)
@@ -52,12 +52,12 @@ def _from_unit(number: Number, u: Matrix) -> Matrix:
     return np.asarray(number.low + u * (number.high - number.low))
 
 
-def placed(shapes: Sequence[Number], u: Matrix) -> Matrix:
+def placed(shapes: Sequence[Parameter], u: Matrix) -> Matrix:
     """Return the values of shape numbers (M, numbers) for places from 0 to 1 in their ranges."""
     return np.column_stack([_from_unit(number, u[:, place]) for place, number in enumerate(shapes)]) if shapes else u
 
 
-def first_places(number: Number) -> Matrix:
+def first_places(number: Parameter) -> Matrix:
     """Return where a sweep begins: every whole number, a frequency in steps that its curves are known to need."""
     if number.whole:
         count = int(number.high - number.low) + 1
@@ -70,14 +70,14 @@ def first_places(number: Number) -> Matrix:
     return np.linspace(0, 1, FIRST)
 
 
-def places_over(shapes: Sequence[Number], most: int = FINEST) -> Matrix:
+def places_over(shapes: Sequence[Parameter], most: int = FINEST) -> Matrix:
     """Return where curves over some shape numbers are asked for first, (M, numbers), from 0 to 1 in their ranges."""
     if len(shapes) > 1:
         return thinned(evenly(len(shapes), SPREAD), most)
     return thinned(first_places(shapes[0])[:, None], most) if shapes else np.zeros((1, 0))
 
 
-def is_known(number: Number) -> bool:
+def is_known(number: Parameter) -> bool:
     """Whether a sweep begins as finely as its curves change."""
     return number.whole or bool(number.along) or number.name == "frequency"
 
@@ -90,7 +90,7 @@ def thinned(points: Matrix, most: int) -> Matrix:
 
 
 def refined(
-    shapes: Sequence[Number], u: Matrix, made: Matrix, make: Callable[[Matrix], Matrix], most: int = FINEST
+    shapes: Sequence[Parameter], u: Matrix, made: Matrix, make: Callable[[Matrix], Matrix], most: int = FINEST
 ) -> tuple[Matrix, Matrix]:
     """Put points between neighbours that are no longer alike, until all are or there are enough."""
     while len(u) < most:
@@ -107,7 +107,7 @@ def refined(
     return u, made
 
 
-def spread(cause: Cause, count: int, most: int = FINEST) -> Matrix:
+def spread(cause: Candidate, count: int, most: int = FINEST) -> Matrix:
     """Return points over amplitudes of many sizes, to both sides, and over all shapes; so many over several numbers.
 
     There are at most so many, evenly from all.

@@ -15,9 +15,9 @@ from time import perf_counter
 import numpy as np
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause
+from truing.diagnosis.causes import Candidate
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.extended import LEAST_PER_EFFECT, Budget, Extended, Point
+from truing.diagnosis.extended import LEAST_PER_EFFECT, CallBudget, Extended, Point
 from truing.repeated import forget
 
 AT_ONCE = 0.03
@@ -46,7 +46,7 @@ def probe(made: Competition) -> None:
     """
     extended, machine = made.extended, made.extended.machine
     costly = [cause for cause in made.causes if extended.costs(cause)]
-    tried: list[Cause] = [] if machine.inputs else costly[:1]
+    tried: list[Candidate] = [] if machine.inputs else costly[:1]
     if not machine.inputs and not costly:
         return
     values = [np.array([each.low + 0.1 * ASIDE * (each.high - each.low) for each in cause.numbers]) for cause in tried]
@@ -57,20 +57,20 @@ def probe(made: Competition) -> None:
     extended.grain = _grain_of(extended, tried, point)
 
 
-def budget_of(stated: int, effects: int, call: Callable[[], object]) -> Budget:
+def budget_of(stated: int, effects: int, call: Callable[[], object]) -> CallBudget:
     """Return the stated budget; else, by how long one ``call`` takes, none or one of some minutes."""
     if stated:
-        return Budget(stated)
+        return CallBudget(stated)
     begin = perf_counter()
     call()
     seconds = perf_counter() - begin
     if seconds < AT_ONCE:
-        return Budget()
+        return CallBudget()
     takes = 10.0 ** round(log10(seconds))
-    return Budget(max(round(MINUTES / takes), LEAST_PER_EFFECT * max(effects, 1)), takes)
+    return CallBudget(max(round(MINUTES / takes), LEAST_PER_EFFECT * max(effects, 1)), takes)
 
 
-def _grain_of(extended: Extended, causes: list[Cause], point: Point) -> dict[str, float]:
+def _grain_of(extended: Extended, causes: list[Candidate], point: Point) -> dict[str, float]:
     """Return by result how much its answers jump or scatter, SI; results that do neither are left out."""
     (first,) = extended.at(causes, [point])
     forget()

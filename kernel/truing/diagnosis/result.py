@@ -14,8 +14,8 @@ from truing.numbers import format_number, with_unit
 from truing.setup import Setup
 from truing.units import difference_unit, from_si, same_dimension, to_si
 
-Kind = Literal["bias", "trend", "order", "step", "wave", "spread", "autocorrelation", "outlier"]
-Sight = Literal["visible", "hidden in the tolerances", "not excited", "cannot be fitted"]
+ResidualPattern = Literal["bias", "trend", "order", "step", "wave", "spread", "autocorrelation", "outlier"]
+Visibility = Literal["visible", "hidden in the tolerances", "not excited", "cannot be fitted"]
 FAMILIES = (
     ("m", "mm", "um", "nm"),
     ("rad", "mrad", "urad"),
@@ -41,13 +41,13 @@ class Amount:
 
 
 @dataclass(frozen=True)
-class Finding:
+class ResidualFinding:
     """Something that is wrong with the residuals of the calibrated model; ``p_value`` has paid for the search.
 
     ``is_allowed`` where the tolerances may have caused it: a bias inside of what they let machines differ by.
     """
 
-    kind: Kind
+    kind: ResidualPattern
     covariate: str
     p_value: float | None
     text: str
@@ -55,7 +55,7 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Noise:
+class NoiseSummary:
     """What the noise of one result is like, once everything found is taken out.
 
     ``autocorrelation`` is that of neighbouring rows (0 is none); ``ar_coefficient`` is the share of the slow part of
@@ -84,8 +84,8 @@ class Wrong:
     rmse: Amount
     noise_floor: Amount
     reducible_share: float
-    noise: Noise
-    findings: tuple[Finding, ...]
+    noise: NoiseSummary
+    findings: tuple[ResidualFinding, ...]
     stated: Amount | None = None
 
 
@@ -222,7 +222,7 @@ class Tie:
 
 
 @dataclass(frozen=True)
-class Seen:
+class VisibleSize:
     """How small an effect may be and still be seen on this data (90 % power, search paid for).
 
     ``name`` is the effect's, with ".UNKNOWN" behind it where the effect has several amplitudes.
@@ -230,7 +230,7 @@ class Seen:
 
     name: str
     smallest: Amount | None
-    sight: Sight
+    sight: Visibility
     text: str = ""
 
 
@@ -271,7 +271,7 @@ class Trade:
 
 
 @dataclass(frozen=True)
-class Curves:
+class ResultCurves:
     """What the figures show of one result, SI, shape (n,), NaN where missing: measured, and the model before and after.
 
     ``before`` is the model calibrated within its tolerances, ``after`` the extended one.
@@ -284,7 +284,7 @@ class Curves:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Diagnosis:
+class DiagnosisResult:
     """Everything one diagnosis found. ``p_any`` is the significance of the first step, ``p_second`` that of the last
     further one.
 
@@ -300,13 +300,13 @@ class Diagnosis:
     causes: tuple[Cause, ...]
     alternatives: tuple[Alternative, ...]
     remainder: Remainder | None
-    seen: tuple[Seen, ...]
+    seen: tuple[VisibleSize, ...]
     not_measured: Mapping[str, tuple[str, ...]]
     calibrated: tuple[Calibrated, ...]
     gain: tuple[Gain, ...]
     stability: float
     next: tuple[NextPoint, ...]
-    curves: tuple[Curves, ...]
+    curves: tuple[ResultCurves, ...]
     p_any: float | None = None
     p_second: float | None = None
     ranking: tuple[Alternative, ...] = ()
@@ -368,7 +368,7 @@ STABLE = 0.5
 """Less than this share of the folds that name the same causes is another verdict on parts of the record."""
 
 
-def alarms_of(diagnosis: Diagnosis) -> Iterator[str]:
+def alarms_of(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Give what speaks against the causes that are named, one sentence each; nothing where none is named."""
     if diagnosis.causes:
         yield from chain(
@@ -383,7 +383,7 @@ def alarms_of(diagnosis: Diagnosis) -> Iterator[str]:
         )
 
 
-def warnings_of(diagnosis: Diagnosis) -> Iterator[str]:
+def warnings_of(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Give the alarms, and what is left beside the causes that are named: more to be found, nothing against them."""
     yield from alarms_of(diagnosis)
     if diagnosis.causes:
@@ -392,7 +392,7 @@ def warnings_of(diagnosis: Diagnosis) -> Iterator[str]:
         yield from diagnosis.hindrances
 
 
-def _at_bounds(diagnosis: Diagnosis) -> Iterator[str]:
+def _at_bounds(diagnosis: DiagnosisResult) -> Iterator[str]:
     for cause in diagnosis.causes:
         for unknown in cause.unknowns:
             if _is_at_bound(diagnosis, cause, unknown):
@@ -403,7 +403,7 @@ def _at_bounds(diagnosis: Diagnosis) -> Iterator[str]:
                 )
 
 
-def _is_at_bound(diagnosis: Diagnosis, cause: Cause, unknown: FittedUnknown) -> bool:
+def _is_at_bound(diagnosis: DiagnosisResult, cause: Cause, unknown: FittedUnknown) -> bool:
     """Whether a fitted unknown lies at an end of its declared range, other than at zero."""
     effect = diagnosis.setup.model.known_effects.get(cause.effect)
     declared = next((each for each in effect.unknowns if each.name == unknown.name), None) if effect else None
@@ -413,7 +413,7 @@ def _is_at_bound(diagnosis: Diagnosis, cause: Cause, unknown: FittedUnknown) -> 
     return any(end and abs(unknown.value - end) <= AT_BOUND * (high - low) for end in (low, high))
 
 
-def moved_inputs(diagnosis: Diagnosis) -> Iterator[str]:
+def moved_inputs(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Give the inputs that no cause names and that were calibrated far beyond their tolerances."""
     named = {cause.effect.removeprefix("input:") for cause in diagnosis.causes}
     for moved in diagnosis.calibrated:
@@ -424,7 +424,7 @@ def moved_inputs(diagnosis: Diagnosis) -> Iterator[str]:
             )
 
 
-def _growing(diagnosis: Diagnosis) -> Iterator[str]:
+def _growing(diagnosis: DiagnosisResult) -> Iterator[str]:
     for gain in diagnosis.gain:
         if gain.held_out is not None and gain.held_out[1] > gain.held_out[0]:
             before, after = (_text(error, gain.rmse_before.unit) for error in gain.held_out)
@@ -440,7 +440,7 @@ def _growing(diagnosis: Diagnosis) -> Iterator[str]:
         )
 
 
-def _unstable(diagnosis: Diagnosis) -> Iterator[str]:
+def _unstable(diagnosis: DiagnosisResult) -> Iterator[str]:
     if diagnosis.stability < STABLE:
         yield (
             f"the same causes are named in {100 * diagnosis.stability:.0f} % of the folds only: parts of the record "
@@ -448,7 +448,7 @@ def _unstable(diagnosis: Diagnosis) -> Iterator[str]:
         )
 
 
-def _torn(diagnosis: Diagnosis) -> Iterator[str]:
+def _torn(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Give the amplitudes that parts of the record, or tolerances, do not let be what all rows say."""
     for each in diagnosis.contradictions:
         yield (
@@ -468,7 +468,7 @@ def _torn(diagnosis: Diagnosis) -> Iterator[str]:
         )
 
 
-def _overfitted(diagnosis: Diagnosis) -> Iterator[str]:
+def _overfitted(diagnosis: DiagnosisResult) -> Iterator[str]:
     for wrong in diagnosis.wrong:
         if wrong.stated is not None and wrong.noise_floor.value < OVERFITTED * wrong.stated.value:
             yield (
@@ -478,7 +478,7 @@ def _overfitted(diagnosis: Diagnosis) -> Iterator[str]:
             )
 
 
-def wandering(diagnosis: Diagnosis) -> Iterator[str]:
+def wandering(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Give the results whose noise was taken as nearly a random walk."""
     for wrong in diagnosis.wrong:
         rho = wrong.noise.ar_coefficient
@@ -491,7 +491,7 @@ def wandering(diagnosis: Diagnosis) -> Iterator[str]:
             )
 
 
-def _waves_left(diagnosis: Diagnosis) -> Iterator[str]:
+def _waves_left(diagnosis: DiagnosisResult) -> Iterator[str]:
     for wrong in diagnosis.wrong:
         for finding in wrong.findings:
             if finding.kind == "wave":
@@ -523,7 +523,7 @@ _STRUCTURE = ("bias", "trend", "order", "step", "wave")
 Explanation = tuple[str, ...]
 
 
-def explanations_of(diagnosis: Diagnosis) -> tuple[Explanation, ...]:
+def explanations_of(diagnosis: DiagnosisResult) -> tuple[Explanation, ...]:
     """Return every explanation that this record does not exclude, the best first; names of one curve count each."""
     if not diagnosis.causes and diagnosis.remainder is None:
         return ()
@@ -540,7 +540,7 @@ def explanations_of(diagnosis: Diagnosis) -> tuple[Explanation, ...]:
     return tuple(once.values())
 
 
-def shared_of(diagnosis: Diagnosis) -> tuple[str, ...]:
+def shared_of(diagnosis: DiagnosisResult) -> tuple[str, ...]:
     """Return the names that every one of several explanations holds: so much is sure where the rest is open.
 
     A shape that nobody registered is the same in two of them where it is one over the same covariates.
@@ -551,7 +551,7 @@ def shared_of(diagnosis: Diagnosis) -> tuple[str, ...]:
     return tuple(name for name, words in names.items() if others and all(words & set(each) for each in others))
 
 
-def further_of(diagnosis: Diagnosis) -> tuple[str, ...]:
+def further_of(diagnosis: DiagnosisResult) -> tuple[str, ...]:
     """Return the names of what may be there beside the best explanation, where every other one holds all of it."""
     first, *others = explanations_of(diagnosis) or ((),)
     if len(shared_of(diagnosis)) < len(first):
@@ -559,7 +559,7 @@ def further_of(diagnosis: Diagnosis) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for names in others for name in names if name.split(":")[0] not in first))
 
 
-def verdict_of(diagnosis: Diagnosis) -> Verdict:
+def verdict_of(diagnosis: DiagnosisResult) -> Verdict:
     """Return the verdict; "one_of" wherever a cause has another name or a rival is near, "none" without any doubt.
 
     One explanation that an alarm speaks against is not named, with or without what may be there as well: it is
@@ -575,7 +575,7 @@ def verdict_of(diagnosis: Diagnosis) -> Verdict:
     return "one_of" if len(explanations) > 1 else "named"
 
 
-def doubts(diagnosis: Diagnosis) -> Iterator[str]:
+def doubts(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Give the reasons for which a diagnosis may be undecided, one clause each.
 
     Where a cause would be named: what speaks against it. Where none is: why it cannot be said that nothing is wrong.
@@ -583,7 +583,7 @@ def doubts(diagnosis: Diagnosis) -> Iterator[str]:
     yield from alarms_of(diagnosis) if explanations_of(diagnosis) else _doubts_of_nothing(diagnosis)
 
 
-def _doubts_of_nothing(diagnosis: Diagnosis) -> Iterator[str]:
+def _doubts_of_nothing(diagnosis: DiagnosisResult) -> Iterator[str]:
     readings = diagnosis.records.readings
     if readings < FEWEST_READINGS:
         yield f"{readings} readings that differ are too few to tell a cause from chance"
@@ -598,7 +598,7 @@ def _doubts_of_nothing(diagnosis: Diagnosis) -> Iterator[str]:
     yield from diagnosis.hindrances
 
 
-def _nearly(diagnosis: Diagnosis) -> str:
+def _nearly(diagnosis: DiagnosisResult) -> str:
     if diagnosis.p_any is None or isnan(diagnosis.p_any):
         return "whether anything is wrong was not tested"
     best = next((rival.causes for rival in diagnosis.ranking if rival.causes), ())

@@ -17,15 +17,26 @@ from math import exp, inf, log
 import numpy as np
 
 from truing.diagnosis.arrays import Mask, Matrix, Places, Sides
-from truing.diagnosis.machine import Machine, Predicted, gram_of
-from truing.diagnosis.noise import Setting, Spread, Tails, beyond, difference, expected, rounding, shares, whiten, worth
+from truing.diagnosis.machine import Calibration, Predicted, gram_of
+from truing.diagnosis.noise import (
+    Autocorrelation,
+    SpreadTrend,
+    Tails,
+    beyond,
+    difference,
+    expected,
+    rounding,
+    shares,
+    whiten,
+    worth,
+)
 
-WITHOUT_MEMORY, NORMAL, CONSTANT = Setting(), Tails(inf, 4.5), Spread()
+WITHOUT_MEMORY, NORMAL, CONSTANT = Autocorrelation(), Tails(inf, 4.5), SpreadTrend()
 ROUNDS, SETTLED = 50, 1e-6
 
 
 @dataclass(frozen=True)
-class Noise:
+class NoiseModel:
     """What is known of the noise of one result: scale (SI), weights by row, memory, tails, spread.
 
     ``given`` are the weights that a stated standard deviation of the readings asks for, in any case; they and
@@ -37,9 +48,9 @@ class Noise:
     scale: float
     given: Matrix
     weights: Matrix
-    memory: Setting = WITHOUT_MEMORY
+    memory: Autocorrelation = WITHOUT_MEMORY
     tails: Tails = NORMAL
-    spread: Spread = CONSTANT
+    spread: SpreadTrend = CONSTANT
     typical: float = 0.0
     at: Matrix | None = None
 
@@ -61,7 +72,7 @@ class Channel:
     weights: Matrix
     scale: float
     least: float
-    memory: Setting
+    memory: Autocorrelation
     freedom: float = inf
     sides: Sides | None = None
     typical: float = 0.0
@@ -153,8 +164,8 @@ class Sample:
     their means. What is left, and what is drawn, is taken without the memory of the noise.
     """
 
-    machine: Machine
-    noise: Mapping[str, Noise]
+    machine: Calibration
+    noise: Mapping[str, NoiseModel]
     channels: tuple[Channel, ...]
     directions: Matrix
     mask: Mask
@@ -236,14 +247,16 @@ class Sample:
         return sample_of(self.machine, self.noise, self.mask & mask, self.directions)
 
 
-def has_order(machine: Machine) -> bool:
+def has_order(machine: Calibration) -> bool:
     """Whether rows follow one another in a way that means something: a time that goes on, or an axis of the model."""
     records = machine.records
     has_time = any(item.role == "time" and not item.is_constant for item in records.covariates.values())
     return has_time or bool(records.rows.series)
 
 
-def sample_of(machine: Machine, noise: Mapping[str, Noise], mask: Mask, directions: Matrix | None = None) -> Sample:
+def sample_of(
+    machine: Calibration, noise: Mapping[str, NoiseModel], mask: Mask, directions: Matrix | None = None
+) -> Sample:
     """Return the rows that are marked, where the model itself has an answer; directions are looked for if not given."""
     channels, is_again = [], np.diff(mask.astype(np.intp), prepend=0) > 0  # after a gap the noise starts anew
     pieces: Places = np.cumsum(starts_of(machine.records.run_of, np.arange(len(mask))) | is_again)
@@ -267,7 +280,7 @@ def sample_of(machine: Machine, noise: Mapping[str, Noise], mask: Mask, directio
     return Sample(machine, noise, tuple(channels), directions, mask)
 
 
-def directions_seen(machine: Machine, noise: Mapping[str, Noise], mask: Mask) -> Matrix:
+def directions_seen(machine: Calibration, noise: Mapping[str, NoiseModel], mask: Mask) -> Matrix:
     """Return the combinations of inputs that these rows can see in their noise."""
     measured = machine.records.measured
     places = {name: np.flatnonzero(mask & np.isfinite(measured[name])) for name in noise}
@@ -278,13 +291,13 @@ def directions_seen(machine: Machine, noise: Mapping[str, Noise], mask: Mask) ->
     return machine.directions(np.asarray(gram), sum(len(rows) for rows in places.values()))
 
 
-def compared_slopes(machine: Machine, name: str, typical: float) -> Matrix:
+def compared_slopes(machine: Calibration, name: str, typical: float) -> Matrix:
     """Return what tolerated inputs add to a result as it is compared, (n, inputs), SI."""
     slopes = machine.slopes[name]
     return slopes * (typical / machine.base[name])[:, None] if typical else slopes
 
 
-def _least(machine: Machine, noise: Noise, name: str, rows: Places) -> float:
+def _least(machine: Calibration, noise: NoiseModel, name: str, rows: Places) -> float:
     """Return the smallest mean square, in units of the noise, that is more than rounding or the steps of the gauge."""
     values = machine.records.measured[name][rows]
     off = difference(values, machine.base[name][rows], noise.typical)
@@ -306,7 +319,7 @@ def starts_of(run_of: Places, rows: Places) -> Mask:
     return np.asarray(np.diff(run_of[rows], prepend=-1) != 0)
 
 
-def residuals_of(machine: Machine) -> dict[str, Matrix]:
+def residuals_of(machine: Calibration) -> dict[str, Matrix]:
     """Return measured minus predicted at the mean of the tolerances, SI, NaN where missing or censored."""
     made = {}
     for name, values in machine.records.measured.items():
@@ -315,14 +328,14 @@ def residuals_of(machine: Machine) -> dict[str, Matrix]:
     return made
 
 
-def typical_of(machine: Machine, name: str) -> float:
+def typical_of(machine: Calibration, name: str) -> float:
     """Return the geometric mean of the readings of a result that is compared as logarithms; 0 of any other."""
     if name not in machine.start.diagnose.lognormal:
         return 0.0
     return float(np.exp(np.nanmean(np.log(machine.records.measured[name][~machine.records.held_out]))))
 
 
-def errors_of(machine: Machine, name: str, noise: Noise, predicted: Matrix) -> Matrix:
+def errors_of(machine: Calibration, name: str, noise: NoiseModel, predicted: Matrix) -> Matrix:
     """Return what a prediction leaves of the readings of a result as they were read, SI on all rows, NaN where missing.
 
     A censored row leaves what is to be expected beyond its end, in this noise.

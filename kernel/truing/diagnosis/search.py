@@ -13,11 +13,11 @@ from itertools import combinations
 
 import numpy as np
 
-from truing.diagnosis.causes import Cause
+from truing.diagnosis.causes import Candidate
 from truing.diagnosis.competition import MARGIN, MOST_CAUSES, RENEWED, TO_THE_END, Competition
 from truing.diagnosis.exact import CLOSELY
 from truing.diagnosis.fitted import Fit, differ
-from truing.studies.bench import Done, unheard
+from truing.studies.bench import StepProgress, unheard
 
 SINGLES = 12
 """So many of the most promising causes are fitted alone, and all registered ones that promise anything."""
@@ -31,7 +31,7 @@ STARTS = 2
 """So many of the best explanations of one size get one more cause."""
 
 
-def search(made: Competition, done: Done = unheard) -> None:
+def search(made: Competition, done: StepProgress = unheard) -> None:
     """Fit everything that may explain the record; ``done`` hears of the stages."""
     stages = (
         (_singles, 0.6, "causes alone"),
@@ -91,7 +91,7 @@ def _beside_firsts(made: Competition) -> None:
         made.forward(at, JOINED, _is_quick)
 
 
-def _is_quick(cause: Cause) -> bool:
+def _is_quick(cause: Candidate) -> bool:
     """Whether a cause has few curves: waves of any period are looked for beside the best explanation only."""
     return all(number.name != "frequency" for number in cause.numbers)
 

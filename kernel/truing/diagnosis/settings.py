@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.machine import Machine
+from truing.diagnosis.machine import Calibration
 from truing.diagnosis.points import evenly
 from truing.diagnosis.records import Covariate
 from truing.diagnosis.tidying import is_angle
@@ -21,7 +21,7 @@ TRIED, FEW = 512, 32
 FEW_VALUES = 3
 
 
-def settings_of(machine: Machine, tried: int = TRIED) -> dict[str, Matrix]:
+def settings_of(machine: Calibration, tried: int = TRIED) -> dict[str, Matrix]:
     """Return the settings that are tried, by input or condition, SI: so many corners of the box and points in it."""
     covariates = machine.records.covariates
     found = ((name, _box(machine, name, item)) for name, item in covariates.items())
@@ -41,7 +41,7 @@ def settings_of(machine: Machine, tried: int = TRIED) -> dict[str, Matrix]:
     return settings
 
 
-def _box(machine: Machine, name: str, item: Covariate) -> tuple[float, float] | None:
+def _box(machine: Calibration, name: str, item: Covariate) -> tuple[float, float] | None:
     """Return the range in which something can be set: asked for, declared, or half as wide again as measured."""
     start = machine.start
     if name in start.diagnose.box:
@@ -64,7 +64,7 @@ def _box(machine: Machine, name: str, item: Covariate) -> tuple[float, float] | 
     return max([low - reach, *lows]), min([high + reach, *highs])
 
 
-def machine_there(machine: Machine, settings: Mapping[str, Matrix]) -> Machine:
+def machine_there(machine: Calibration, settings: Mapping[str, Matrix]) -> Calibration:
     """Return the machine at the settings that are tried; what is not set has the middle of what was measured."""
     count = len(next(iter(settings.values())))
     columns = {

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause, followed_by
-from truing.diagnosis.machine import Machine
+from truing.diagnosis.causes import Candidate, followed_by
+from truing.diagnosis.machine import Calibration
 from truing.diagnosis.records import Covariate
 from truing.diagnosis.result import readable_unit
 from truing.numbers import format_number
@@ -23,7 +23,7 @@ def in_unit(value: float, unit: str, digits: int = SHOWN_DIGITS) -> str:
     return f"{format_number(float(from_si(value, unit)), digits)} {unit}".strip()
 
 
-def drawn_by(cause: Cause) -> tuple[str, ...]:
+def drawn_by(cause: Candidate) -> tuple[str, ...]:
     """Return the kind of curve that a shape, or an effect of the kernel, draws, and the covariates that it follows."""
     if cause.shape is not None:
         return cause.shape.kind, *cause.shape.depends_on
@@ -31,7 +31,7 @@ def drawn_by(cause: Cause) -> tuple[str, ...]:
     return (kind, followed_by(cause.effect)) if kind and cause.is_kernel else ()
 
 
-def shape_in_words(machine: Machine, cause: Cause, values: Matrix, added: Matrix, unit: str) -> str:
+def shape_in_words(machine: Calibration, cause: Candidate, values: Matrix, added: Matrix, unit: str) -> str:
     """Describe a fitted curve by its numbers (SI) and what it adds to a result, SI, (n,): see ``drawn_by``."""
     kind, *names = drawn_by(cause)
     item, spanned = machine.records.covariates[names[0]], float(np.ptp(added))

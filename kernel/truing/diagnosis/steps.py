@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from truing.diagnosis.causes import Cause
+from truing.diagnosis.causes import Candidate
 from truing.diagnosis.chance import Law, law_of
 from truing.diagnosis.competition import MARGIN, MOST_CAUSES, Competition
 from truing.diagnosis.fitted import Fit
@@ -115,7 +115,7 @@ def _is_own(found: Fit) -> bool:
     return all(cause.effect is not None and not cause.is_kernel for cause in found.causes)
 
 
-def draws_anything(cause: Cause) -> bool:
+def draws_anything(cause: Candidate) -> bool:
     """Whether a cause is a polynomial of covariates that nobody registered."""
     return cause.shape is not None and cause.shape.kind in {"trend", "product"}
 

@@ -53,7 +53,7 @@ class Beside:
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class TermTable:
     """Terms of a shape at many points, on all rows of the records, (M, c, n)."""
 
     terms: NDArray[np.float32]
@@ -67,7 +67,7 @@ class Pass:
     result stand among all rows of the sample.
     """
 
-    def __init__(self, table: Table, beside: Beside, place: int) -> None:
+    def __init__(self, table: TermTable, beside: Beside, place: int) -> None:
         self.table, self.beside = table, beside
         self.channel, self.part = beside.sample.channels[place], beside.sample.parts[place]
         against = np.column_stack([beside.left[self.part], beside.taken[self.part]])
@@ -98,7 +98,7 @@ class Pass:
 
 
 @dataclass(frozen=True, eq=False)
-class Swept:
+class ProjectedCurves:
     """The curves of a shape over some results, once the explanation and the inputs have taken their part.
 
     ``units`` (M, q, q) make them orthonormal within a point, ``points`` (m,) are those that draw anything.

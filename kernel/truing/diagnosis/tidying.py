@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from truing.declare.model import Model
 from truing.diagnosis.arrays import Matrix, Places, first_alike
-from truing.diagnosis.data_file import DataRows, Part, declared_units
+from truing.diagnosis.data_file import ColumnRole, DataRows, declared_units
 from truing.inputs_file.values import broken_bound
 from truing.measurements.derived import derive
 from truing.numbers import counted
@@ -144,5 +144,5 @@ def with_histories(data: DataRows, model: Model[Any, Any]) -> DataRows:
         is_measured = condition.name in data.columns and condition.made_from != condition.name
         if source is not None and source.dtype != object and not is_measured:
             made[condition.name] = derive(condition, data.columns, runs, _time(data))
-    parts: dict[str, Part] = dict.fromkeys(made, "condition")
+    parts: dict[str, ColumnRole] = dict.fromkeys(made, "condition")
     return replace(data, columns={**data.columns, **made}, parts={**data.parts, **parts})

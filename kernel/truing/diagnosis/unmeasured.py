@@ -20,10 +20,10 @@ from truing.declare.goals import Maximise, Minimise, Require
 from truing.declare.specs import Axis
 from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.choice import Chosen
-from truing.diagnosis.design import Proposal, is_physical, name_of, rival_fits
+from truing.diagnosis.design import NextPoints, is_physical, name_of, rival_fits
 from truing.diagnosis.extended import switched_on
 from truing.diagnosis.fitted import Fit, input_value
-from truing.diagnosis.machine import Machine, Predicted, machine_of, predict
+from truing.diagnosis.machine import Calibration, Predicted, calibration_of, predict
 from truing.diagnosis.result import APART, Amount, Fact, NextPoint, Tie, readable_unit
 from truing.diagnosis.shape_words import in_unit
 from truing.units import read_quantity
@@ -51,7 +51,7 @@ class _Gap:
     """The difference over the scatter of machines; a result that does not scatter is as clear as can be."""
 
 
-def with_results(chosen: Chosen, proposal: Proposal) -> tuple[list[NextPoint], list[Tie]]:
+def with_results(chosen: Chosen, proposal: NextPoints) -> tuple[list[NextPoint], list[Tie]]:
     """Return the next points with the result that separates the rivals, and what neither of them tells apart.
 
     The result comes first where settings leave something open that it does not.
@@ -109,7 +109,9 @@ def _shifted(found: Fit) -> dict[str, float]:
     return made
 
 
-def _result_to_measure(machine: Machine, explanations: Sequence[Fit]) -> tuple[NextPoint | None, set[frozenset[str]]]:
+def _result_to_measure(
+    machine: Calibration, explanations: Sequence[Fit]
+) -> tuple[NextPoint | None, set[frozenset[str]]]:
     """Return the result that separates most explanations from the first one, and the pairs that it tells apart.
 
     None where no result tells any two apart. A result with a unit or a goal comes before a pure number, for which there
@@ -123,7 +125,7 @@ def _result_to_measure(machine: Machine, explanations: Sequence[Fit]) -> tuple[N
     if not names or machine.records.rows.series or len(explanations) < 2:
         return None, set()
     few = machine.records.part(np.arange(0, len(machine.records), max(1, len(machine.records) // ROWS)))
-    there = machine_of(start, replace(few, measured={name: np.zeros(len(few)) for name in names}, sigma={}))
+    there = calibration_of(start, replace(few, measured={name: np.zeros(len(few)) for name in names}, sigma={}))
     found: list[tuple[str, Predicted]] = []
     for each in explanations:
         setup = start.with_effects(switched_on(each.causes, each.values, machine)).changed(_shifted(each))
@@ -144,7 +146,7 @@ def _result_to_measure(machine: Machine, explanations: Sequence[Fit]) -> tuple[N
     return _point(start, gaps[0]), {frozenset(gap.names) for gap in gaps}
 
 
-def _gap(there: Machine, name: str, names: tuple[str, str], apart: Matrix) -> _Gap | None:
+def _gap(there: Calibration, name: str, names: tuple[str, str], apart: Matrix) -> _Gap | None:
     """Return where two explanations are clearest apart in a result; None where they hardly are."""
     apart = np.abs(apart)
     slopes = there.slopes[name] if there.together is None else there.slopes[name] @ there.together

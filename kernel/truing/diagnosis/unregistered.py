@@ -15,7 +15,7 @@ from math import inf, pi
 import numpy as np
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import ENDS, UNKNOWN, Cause, Kind, Number, Shape, Term
+from truing.diagnosis.causes import ENDS, UNKNOWN, Candidate, Parameter, ShapeKind, Term, UnregisteredShape
 from truing.diagnosis.records import Covariate, Records
 
 DEGREES = (2, 4)
@@ -27,10 +27,10 @@ EITHER_SIDE = 0.1
 """Share of the rows on each side of zero from which on something may happen where a covariate changes its sign."""
 SHORTEST_SETTLING, LONGEST_SETTLING = 0.02, 1.0
 """Time constants that are looked for, in lengths of the record."""
-Family = tuple[Kind, tuple[str, ...], int, tuple[Number, ...], Callable[..., list[Term]]]
+Family = tuple[ShapeKind, tuple[str, ...], int, tuple[Parameter, ...], Callable[..., list[Term]]]
 
 
-def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_steps: bool) -> list[Cause]:
+def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_steps: bool) -> list[Candidate]:
     """Return the shapes over every covariate that moved, for every result alone and for all of them together.
 
     ``registered`` holds the orders of each angle that an effect looks for already; ``has_steps`` says that steps in
@@ -43,11 +43,11 @@ def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_
     made = []
     for kind, on, count, numbers, terms in _families(moved, registered, has_steps=has_steps, rows=len(records)):
         for group in groups:
-            shape = Shape(kind, on, group, terms)
-            amplitudes = [Number(f"{name}:{place}", -inf, inf) for name in group for place in range(count)]
+            shape = UnregisteredShape(kind, on, group, terms)
+            amplitudes = [Parameter(f"{name}:{place}", -inf, inf) for name in group for place in range(count)]
             detail = f".{count}" if kind in {"trend", "product"} else ""
             tag = f"{UNKNOWN}:{kind}{detail}:{','.join(on)}:{','.join(group)}"
-            made.append(Cause(UNKNOWN, tag, (*amplitudes, *numbers), 10**6, shape=shape))
+            made.append(Candidate(UNKNOWN, tag, (*amplitudes, *numbers), 10**6, shape=shape))
     return made
 
 
@@ -95,7 +95,7 @@ def _at_zero(item: Covariate) -> Iterator[Family]:
     yield "jump", on, 1, (), _jump
     yield "kink", on, 1, (), _kink
     if len(np.unique(values)) >= FEWEST_VALUES:
-        width = Number("width", 0.02 * largest, 0.9 * largest, is_amplitude=False)
+        width = Parameter("width", 0.02 * largest, 0.9 * largest, is_amplitude=False)
         yield "dead zone", on, 1, (width,), _dead_zone
 
 
@@ -107,19 +107,19 @@ def _ordered(item: Covariate, registered: Sequence[int], *, has_steps: bool, row
         low = max(registered, default=0) + 1
         high = min(HIGHEST_ORDER, highest_order(item.values))
         if high > low:
-            order = Number("order", low, high, is_amplitude=False, whole=True)
+            order = Parameter("order", low, high, is_amplitude=False, whole=True)
             yield "order", on, 2, (order,), partial(_waves, 1.0)
         return
     most = min(0.5 * len(np.unique(values)), 0.5 * rows, MOST_WAVES)
-    frequency = Number("frequency", 1.0 / span, max(most, 2.0) / span, is_amplitude=False)
+    frequency = Parameter("frequency", 1.0 / span, max(most, 2.0) / span, is_amplitude=False)
     yield "wave", on, 2, (frequency,), partial(_waves, 2 * pi)
     if item.role == "time":
         if not has_steps:
             ends = (float(values.min() + ENDS * span), float(values.max() - ENDS * span))
-            place = Number("place", *ends, is_amplitude=False, along=item.name)
+            place = Parameter("place", *ends, is_amplitude=False, along=item.name)
             yield "step", on, 1, (place,), _step
         reach = (SHORTEST_SETTLING * span, LONGEST_SETTLING * span)
-        yield "settling", on, 2, (Number("constant", *reach, is_amplitude=False),), _settling
+        yield "settling", on, 2, (Parameter("constant", *reach, is_amplitude=False),), _settling
 
 
 def highest_order(angle: Matrix) -> int:

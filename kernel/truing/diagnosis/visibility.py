@@ -12,15 +12,15 @@ from scipy.optimize import lsq_linear
 from scipy.special import ndtri
 
 from truing.diagnosis.arrays import Matrix
-from truing.diagnosis.causes import Cause, Number, failure_of, idle_of
+from truing.diagnosis.causes import Candidate, Parameter, failure_of, idle_of
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.exact import slopes_at, unit_of
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit, inward
 from truing.diagnosis.intervals import Certainty, certainty_of, numbers_of, places_of, value_of
-from truing.diagnosis.machine import Machine
+from truing.diagnosis.machine import Calibration
 from truing.diagnosis.points import LEVELS
-from truing.diagnosis.result import APART, Amount, Seen, Sight, Trade
+from truing.diagnosis.result import APART, Amount, Trade, Visibility, VisibleSize
 
 POWER = 0.9
 LEVEL = 0.05
@@ -89,7 +89,7 @@ class _Look:
     curve: Matrix
 
 
-def smallest_visible(chosen: Chosen) -> list[Seen]:
+def smallest_visible(chosen: Chosen) -> list[VisibleSize]:
     """Return for every effect how small it may be, whether the tolerances hide it, whether it was excited."""
     machine, eye = chosen.competition.extended.machine, _Eye(chosen)
     effects = [cause for cause in chosen.competition.causes if cause.effect is not None]
@@ -100,7 +100,7 @@ def smallest_visible(chosen: Chosen) -> list[Seen]:
     skipped = {*failing, *unseen}
     limit = needed(len(effects) + comb(len(effects), 2))
     names = [cause.name for cause in effects]
-    found: dict[str, list[Seen]] = {}
+    found: dict[str, list[VisibleSize]] = {}
     for cause in effects:
         amplitudes = {cause.numbers[place].name for place in cause.amplitudes}
         several = names.count(cause.name) > 1 or len(amplitudes) > 1
@@ -109,22 +109,22 @@ def smallest_visible(chosen: Chosen) -> list[Seen]:
             name = f"{cause.name}.{number.name}" if several else cause.name
             found.setdefault(name, []).append(_seen(name, cause, number, look))
     smallest = [min(each, key=lambda seen: seen.smallest.value if seen.smallest else inf) for each in found.values()]
-    still = [Seen(name, None, "not excited") for name in idle_of(machine) if name not in failing]
-    return [*smallest, *still, *(Seen(name, None, "cannot be fitted", why) for name, why in failing.items())]
+    still = [VisibleSize(name, None, "not excited") for name in idle_of(machine) if name not in failing]
+    return [*smallest, *still, *(VisibleSize(name, None, "cannot be fitted", why) for name, why in failing.items())]
 
 
-def _seen(name: str, cause: Cause, number: Number, look: _Look | None) -> Seen:
+def _seen(name: str, cause: Candidate, number: Parameter, look: _Look | None) -> VisibleSize:
     """Say how an effect is seen by one of its amplitudes."""
     if look is None or cause.effect is None:
-        return Seen(name, None, "not excited")
-    sight: Sight = "hidden in the tolerances" if look.seen < SWALLOWED * look.raw else "visible"
+        return VisibleSize(name, None, "not excited")
+    sight: Visibility = "hidden in the tolerances" if look.seen < SWALLOWED * look.raw else "visible"
     if look.size > max(abs(number.low), abs(number.high)):
         sight = "not excited"
     unit = next(unknown.unit for unknown in cause.effect.unknowns if unknown.name == number.name)
-    return Seen(name, Amount(look.size, unit), sight)
+    return VisibleSize(name, Amount(look.size, unit), sight)
 
 
-def _look(chosen: Chosen, eye: _Eye, cause: Cause, place: int, limit: float) -> _Look | None:
+def _look(chosen: Chosen, eye: _Eye, cause: Candidate, place: int, limit: float) -> _Look | None:
     """Return how an amplitude of a cause is seen best; None where nothing moves with it.
 
     A curve that bends stands for sizes from its own down and up to the next level.
@@ -148,7 +148,7 @@ def _look(chosen: Chosen, eye: _Eye, cause: Cause, place: int, limit: float) -> 
     return best
 
 
-def _curves(chosen: Chosen, cause: Cause, place: int) -> Iterator[tuple[float, Matrix]]:
+def _curves(chosen: Chosen, cause: Candidate, place: int) -> Iterator[tuple[float, Matrix]]:
     """Give the curves of one amplitude of a cause alone, (readings,), SI, with its size.
 
     Of a cause in proportion the size is 0, and the curve is the one per unit.
@@ -164,7 +164,7 @@ def _curves(chosen: Chosen, cause: Cause, place: int) -> Iterator[tuple[float, M
         yield from _one_by_one(looked, cause, place, bundle.points[:FEW_SHAPES])
 
 
-def _one_by_one(chosen: Chosen, cause: Cause, place: int, shapes: Matrix) -> Iterator[tuple[float, Matrix]]:
+def _one_by_one(chosen: Chosen, cause: Candidate, place: int, shapes: Matrix) -> Iterator[tuple[float, Matrix]]:
     """Give the curves of one amplitude of a cause that bends in several, the others at zero."""
     number, extended = cause.numbers[place], chosen.competition.extended
     sizes = [level * end for end in (number.low, number.high) if end for level in LEVELS]
@@ -205,7 +205,7 @@ def _alike(chosen: Chosen) -> Iterator[str]:
             )
 
 
-def _moved_alike(machine: Machine) -> Iterator[str]:
+def _moved_alike(machine: Calibration) -> Iterator[str]:
     """Say which covariates are tied, and which conditions that can have either sign had one sign only."""
     moved = [item for item in machine.records.covariates.values() if not item.is_constant]
     for first, second in combinations(moved, 2):

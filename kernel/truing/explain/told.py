@@ -40,26 +40,26 @@ def told(setup: Setup, offer: Offer, name: str, *, progress: Progress = silent) 
 # Which thing of a model a name means: a result, an input, an effect, a tolerance, a condition or a study
 
 
-Kind: TypeAlias = Literal["result", "input", "effect", "tolerance", "condition", "study"]
+Topic: TypeAlias = Literal["result", "input", "effect", "tolerance", "condition", "study"]
 
 
-SECTIONS: Mapping[str, Kind] = {
+SECTIONS: Mapping[str, Topic] = {
     "results": "result", "inputs": "input", "effects": "effect", "tolerances": "tolerance", "conditions": "condition",
     "studies": "study",
 }  # fmt: skip
 """Words in front of a name that say which thing is meant, where one name has several."""
 
 
-def known_names(model: Model[Any, Any]) -> Mapping[str, Kind]:
+def known_names(model: Model[Any, Any]) -> Mapping[str, Topic]:
     """Return every name that can be explained and what it means; of two meanings the first in this order."""
-    found: dict[str, Kind] = {}
+    found: dict[str, Topic] = {}
     for kind, names in _by_kind(model).items():
         for name in names:
             found.setdefault(name, kind)
     return found
 
 
-def _by_kind(model: Model[Any, Any]) -> dict[Kind, list[str]]:
+def _by_kind(model: Model[Any, Any]) -> dict[Topic, list[str]]:
     return {
         "result": list(model.result_fields),
         "input": list(model.input_fields),
@@ -70,7 +70,7 @@ def _by_kind(model: Model[Any, Any]) -> dict[Kind, list[str]]:
     }
 
 
-def kind_of(model: Model[Any, Any], name: str) -> Kind:
+def kind_of(model: Model[Any, Any], name: str) -> Topic:
     """Return what a name means, also behind the word of a section (``tolerances.load``).
 
     Raises UsageError, with what was probably meant, where nothing has it.
@@ -95,7 +95,7 @@ def kind_of(model: Model[Any, Any], name: str) -> Kind:
     raise UsageError(f"{model.name} has no {what} '{name[:80]}'.{hint}{listed}")
 
 
-def _described(model: Model[Any, Any], name: str, kind: Kind) -> str:
+def _described(model: Model[Any, Any], name: str, kind: Topic) -> str:
     item: Any = model.result_fields.get(name) or model.input_fields.get(name)
     note = item.spec.note if kind in {"result", "input"} and item is not None else ""
     return ", ".join(part for part in (kind, note) if part)

@@ -11,7 +11,7 @@ import pint
 
 from truing.errors import UnitError
 from truing.formulas.evaluation import evaluate, value_of
-from truing.formulas.tree import Binary, Call, Comparison, Formula, Logic, Name, Negative, Node, Number, source
+from truing.formulas.tree import Binary, Call, Comparison, Formula, Logic, Name, Negative, Node, NumberNode, source
 from truing.units import human_dimension
 from truing.units import registry as shared_registry
 
@@ -19,7 +19,7 @@ KEEPS_DIMENSION = frozenset({"abs", "sum", "mean"})
 OF_LIKES = frozenset({"min", "max", "hypot", "either"})
 OF_ANGLE = frozenset({"sin", "cos", "tan", "cot", "inv"})
 
-Dimension = tuple[tuple[str, Fraction], ...]
+FormulaDimension = tuple[tuple[str, Fraction], ...]
 """Base units and their exponents, sorted, without radians and counts; None where a literal zero fits any dimension."""
 
 
@@ -37,7 +37,7 @@ def evaluate_quantities(formula: Formula, values: Mapping[str, pint.Quantity[Any
     """
     registry = _registry_of(values)
     magnitudes: dict[str, Any] = {}
-    dimensions: dict[str, Dimension] = {}
+    dimensions: dict[str, FormulaDimension] = {}
     for name in formula.names & values.keys():
         quantity = registry.Quantity(values[name]).to_base_units()
         magnitudes[name] = np.asarray(quantity.magnitude, dtype=float)
@@ -59,7 +59,7 @@ def _registry_of(values: Mapping[str, Any]) -> Any:
     return shared_registry()
 
 
-def _dimension_of(quantity: Any, registry: Any) -> Dimension:
+def _dimension_of(quantity: Any, registry: Any) -> FormulaDimension:
     items = [(unit, _exact(exponent)) for unit, exponent in quantity.unit_items()]
     return _sorted({unit: exponent for unit, exponent in items if not registry.Unit(unit).dimensionless})
 
@@ -72,25 +72,25 @@ def _plain(exponent: Fraction) -> int | float:
     return int(exponent) if exponent.denominator == 1 else float(exponent)
 
 
-def _sorted(units: Mapping[str, Fraction]) -> Dimension:
+def _sorted(units: Mapping[str, Fraction]) -> FormulaDimension:
     return tuple(sorted((unit, exponent) for unit, exponent in units.items() if exponent))
 
 
-def _product(first: Dimension, second: Dimension, *, sign: int = 1) -> Dimension:
+def _product(first: FormulaDimension, second: FormulaDimension, *, sign: int = 1) -> FormulaDimension:
     total = dict(first)
     for unit, exponent in second:
         total[unit] = total.get(unit, Fraction(0)) + sign * exponent
     return _sorted(total)
 
 
-def _power(base: Dimension, exponent: Fraction) -> Dimension:
+def _power(base: FormulaDimension, exponent: Fraction) -> FormulaDimension:
     return _sorted({unit: old * exponent for unit, old in base})
 
 
 _SHORT = {"meter": "m", "kilogram": "kg", "second": "s", "ampere": "A", "kelvin": "K", "mole": "mol", "candela": "cd"}
 
 
-def _spoken(dimension: Dimension | None) -> str:
+def _spoken(dimension: FormulaDimension | None) -> str:
     """Say a dimension in the engineer's words: "a force", "a pure number"."""
     if not dimension:
         return "a pure number"
@@ -108,14 +108,16 @@ def _written(exponent: Fraction) -> str:
 class _Proof:
     """Walks a formula and finds the dimension of each part, or the sentence why there is none."""
 
-    def __init__(self, formula: Formula, dimensions: Mapping[str, Dimension], magnitudes: Mapping[str, Any]) -> None:
+    def __init__(
+        self, formula: Formula, dimensions: Mapping[str, FormulaDimension], magnitudes: Mapping[str, Any]
+    ) -> None:
         self.formula = formula
         self.dimensions = dimensions
         self.magnitudes = magnitudes
 
-    def of(self, node: Node) -> Dimension | None:
+    def of(self, node: Node) -> FormulaDimension | None:
         match node:
-            case Number(_, 0.0):
+            case NumberNode(_, 0.0):
                 return None
             case Name(name):
                 return self.dimensions[name]
@@ -140,7 +142,7 @@ class _Proof:
                     self.of(operand)
         return ()
 
-    def call(self, node: Node, function: str, arguments: tuple[Node, ...]) -> Dimension | None:
+    def call(self, node: Node, function: str, arguments: tuple[Node, ...]) -> FormulaDimension | None:
         where = f"'{source(node)}'"
         if function == "cases":
             for condition in arguments[1::2]:
@@ -167,7 +169,7 @@ class _Proof:
         if found := self.of(node):
             self.fail(f"{sentence}, not {_spoken(found)} ('{source(node)}')")
 
-    def power(self, node: Node, base: Node, exponent: Node) -> Dimension | None:
+    def power(self, node: Node, base: Node, exponent: Node) -> FormulaDimension | None:
         self.pure(exponent, f"'{source(node)}': an exponent must be a pure number")
         dimension = self.of(base)
         if not dimension:
@@ -178,9 +180,9 @@ class _Proof:
             self.fail(f"'{source(node)}': {_spoken(dimension)} is raised to a power that is not one finite number")
         return _power(dimension, _exact(float(value[0])))
 
-    def alike(self, nodes: Sequence[Node], sentence: str) -> Dimension | None:
+    def alike(self, nodes: Sequence[Node], sentence: str) -> FormulaDimension | None:
         """Return the dimension all nodes share; a literal zero shares any."""
-        first: tuple[Node, Dimension] | None = None
+        first: tuple[Node, FormulaDimension] | None = None
         for node in nodes:
             found = self.of(node)
             if found is None:

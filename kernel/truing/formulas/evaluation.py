@@ -22,7 +22,7 @@ from truing.formulas.tree import (
     Name,
     Negative,
     Node,
-    Number,
+    NumberNode,
 )
 
 
@@ -62,7 +62,7 @@ def _as_number(formula: Formula, name: str, values: Mapping[str, Any]) -> Any:
 def value_of(node: Node, values: Mapping[str, Any]) -> Any:
     """Compute one node from arrays; ``evaluate`` is the door for callers."""
     match node:
-        case Number(_, value):
+        case NumberNode(_, value):
             return np.float64(value)
         case Constant(name):
             return np.float64(CONSTANTS[name])

@@ -20,7 +20,7 @@ from truing.formulas.tree import (
     Name,
     Negative,
     Node,
-    Number,
+    NumberNode,
     simplified,
 )
 
@@ -77,7 +77,7 @@ class Writer(Protocol):
         """Write a few plain words."""
 
 
-class Level(IntEnum):
+class Binding(IntEnum):
     """How firmly a piece holds together; what is looser than its place asks gets parentheses."""
 
     CASES = 0
@@ -99,17 +99,17 @@ class Edge(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class Markup:
     """Finished markup and what its surroundings must know of it."""
 
     markup: str
-    level: Level
+    level: Binding
     negative: bool = False
     begins: Edge = Edge.OTHER
     ends: Edge = Edge.OTHER
 
 
-Leaf = Callable[[str], Piece]
+Leaf = Callable[[str], Markup]
 """Turns the name of a quantity into a piece: its symbol, or its number."""
 
 PRINTED: Final = {
@@ -140,26 +140,26 @@ class Layout:
         right = self.piece(simplified(formula.right)).markup
         if formula.left is None:
             return right
-        return self.writer.infix(self.at_least(simplified(formula.left), Level.SUM).markup, "==", right)
+        return self.writer.infix(self.at_least(simplified(formula.left), Binding.SUM).markup, "==", right)
 
-    def piece(self, node: Node, *, bare: bool = True) -> Piece:
+    def piece(self, node: Node, *, bare: bool = True) -> Markup:
         """Set one node; ``bare`` lets a function stand without parentheses (``sin x``)."""
         match node:
-            case Number(text, _):
+            case NumberNode(text, _):
                 return number_piece(text, self.writer.quantity(text, ""))
             case Constant(name):
-                return Piece(self.writer.constant(name), Level.ATOM)
+                return Markup(self.writer.constant(name), Binding.ATOM)
             case Name(name):
                 return self.leaf(name)
             case Negative(operand):
-                inner = self.at_least(operand, Level.PRODUCT, signed=False)
-                return Piece(self.writer.minus(inner.markup), Level.PRODUCT, negative=True)
+                inner = self.at_least(operand, Binding.PRODUCT, signed=False)
+                return Markup(self.writer.minus(inner.markup), Binding.PRODUCT, negative=True)
             case Binary(("+" | "-") as sign, left, right):
                 return self.sum(sign, left, right)
             case Binary("*", _, _):
                 return self.product(node)
             case Binary("/", above, below):
-                return Piece(self.writer.fraction(self.piece(above).markup, self.piece(below).markup), Level.TIGHT)
+                return Markup(self.writer.fraction(self.piece(above).markup, self.piece(below).markup), Binding.TIGHT)
             case Binary(_, base, exponent):
                 return self.power(base, exponent, bare=bare)
             case Call(function, arguments):
@@ -169,43 +169,43 @@ class Layout:
             case Logic(word, operands):
                 return self.logic(word, operands)
 
-    def at_least(self, node: Node, level: Level, *, signed: bool = True, bare: bool = True) -> Piece:
+    def at_least(self, node: Node, level: Binding, *, signed: bool = True, bare: bool = True) -> Markup:
         """Set a node, in parentheses if it is looser than ``level`` or begins with a minus where none may stand."""
         piece = self.piece(node, bare=bare)
         if piece.level >= level and (signed or not piece.negative):
             return piece
-        return Piece(self.writer.parenthesised(piece.markup), Level.ATOM)
+        return Markup(self.writer.parenthesised(piece.markup), Binding.ATOM)
 
-    def sum(self, sign: str, left: Node, right: Node) -> Piece:
+    def sum(self, sign: str, left: Node, right: Node) -> Markup:
         """Set a sum or a difference."""
-        first = self.at_least(left, Level.SUM)
-        second = self.at_least(right, Level.SUM if sign == "+" else Level.PRODUCT, signed=False)
-        return Piece(self.writer.infix(first.markup, sign, second.markup), Level.SUM, negative=first.negative)
+        first = self.at_least(left, Binding.SUM)
+        second = self.at_least(right, Binding.SUM if sign == "+" else Binding.PRODUCT, signed=False)
+        return Markup(self.writer.infix(first.markup, sign, second.markup), Binding.SUM, negative=first.negative)
 
-    def product(self, node: Node) -> Piece:
+    def product(self, node: Node) -> Markup:
         """Set all factors in a row: a thin gap where it reads well, a dot beside digits and words."""
         row = factors(node)
         pieces = []
         for place, factor in enumerate(row):
             bare = place == len(row) - 1 or begins_with_function(row[place + 1])
-            pieces.append(self.at_least(factor, Level.PRODUCT, signed=place == 0, bare=bare))
+            pieces.append(self.at_least(factor, Binding.PRODUCT, signed=place == 0, bare=bare))
         markup = pieces[0].markup
         for before, after in pairwise(pieces):
             dot = self.dots or after.begins is not Edge.OTHER or before.ends is Edge.WORD
             markup = self.writer.infix(markup, "dot" if dot else "gap", after.markup)
-        return Piece(markup, Level.PRODUCT, pieces[0].negative, begins=pieces[0].begins, ends=pieces[-1].ends)
+        return Markup(markup, Binding.PRODUCT, pieces[0].negative, begins=pieces[0].begins, ends=pieces[-1].ends)
 
-    def power(self, base: Node, exponent: Node, *, bare: bool) -> Piece:
+    def power(self, base: Node, exponent: Node, *, bare: bool) -> Markup:
         """Set a power: on the name of sin and its like, beside a subscript, or on a base in parentheses."""
         raised = self.piece(exponent).markup
         if isinstance(base, Call) and base.function in SQUARED_ON_NAME and is_small_count(exponent):
             return self.applied(self.function(base.function, raised), base.arguments[0], may_be_bare=bare)
         if isinstance(base, Name) and (symbol := self.symbols.get(base.name)) and read_symbol(symbol).is_plain:
-            return Piece(self.writer.symbol(symbol, raised), Level.TIGHT)
-        below = self.at_least(base, Level.ATOM, signed=False)
-        return Piece(self.writer.power(below.markup, raised), Level.TIGHT, begins=below.begins)
+            return Markup(self.writer.symbol(symbol, raised), Binding.TIGHT)
+        below = self.at_least(base, Binding.ATOM, signed=False)
+        return Markup(self.writer.power(below.markup, raised), Binding.TIGHT, begins=below.begins)
 
-    def call(self, function: str, arguments: tuple[Node, ...], *, bare: bool) -> Piece:
+    def call(self, function: str, arguments: tuple[Node, ...], *, bare: bool) -> Markup:
         """Set a function, a root, absolute bars, or alternatives."""
         if function == "cases":
             return self.cases(arguments)
@@ -213,51 +213,51 @@ class Layout:
             return self.either(*arguments)
         if function in ("sqrt", "cbrt"):
             inner = self.piece(arguments[0]).markup
-            return Piece(self.writer.root(inner, "" if function == "sqrt" else "3"), Level.TIGHT)
+            return Markup(self.writer.root(inner, "" if function == "sqrt" else "3"), Binding.TIGHT)
         if function == "abs":
-            return Piece(self.writer.bars(self.piece(arguments[0]).markup), Level.ATOM)
+            return Markup(self.writer.bars(self.piece(arguments[0]).markup), Binding.ATOM)
         head = self.function(function)
         if len(arguments) == 1:
             return self.applied(head, arguments[0], may_be_bare=bare and function in MAY_BE_BARE)
-        inner = self.at_least(arguments[0], Level.SUM).markup
+        inner = self.at_least(arguments[0], Binding.SUM).markup
         for argument in arguments[1:]:
-            inner = self.writer.infix(inner, ",", self.at_least(argument, Level.SUM).markup)
-        return Piece(self.writer.applied(head, self.writer.parenthesised(inner), bare=False), Level.TIGHT)
+            inner = self.writer.infix(inner, ",", self.at_least(argument, Binding.SUM).markup)
+        return Markup(self.writer.applied(head, self.writer.parenthesised(inner), bare=False), Binding.TIGHT)
 
     def function(self, name: str, exponent: str | None = None) -> str:
         """Set the name of a function."""
         return self.writer.function(PRINTED.get(name, name), exponent)
 
-    def applied(self, head: str, argument: Node, *, may_be_bare: bool) -> Piece:
+    def applied(self, head: str, argument: Node, *, may_be_bare: bool) -> Markup:
         """Set a function of one argument."""
         piece = self.piece(argument)
-        if may_be_bare and piece.level is Level.ATOM and piece.ends is not Edge.WORD:
-            return Piece(self.writer.applied(head, piece.markup, bare=True), Level.TIGHT)
-        return Piece(self.writer.applied(head, self.writer.parenthesised(piece.markup), bare=False), Level.TIGHT)
+        if may_be_bare and piece.level is Binding.ATOM and piece.ends is not Edge.WORD:
+            return Markup(self.writer.applied(head, piece.markup, bare=True), Binding.TIGHT)
+        return Markup(self.writer.applied(head, self.writer.parenthesised(piece.markup), bare=False), Binding.TIGHT)
 
-    def comparison(self, signs: tuple[str, ...], operands: tuple[Node, ...]) -> Piece:
+    def comparison(self, signs: tuple[str, ...], operands: tuple[Node, ...]) -> Markup:
         """Set a condition: a comparison or a chain of them."""
-        markup = self.at_least(operands[0], Level.SUM).markup
+        markup = self.at_least(operands[0], Binding.SUM).markup
         for sign, operand in zip(signs, operands[1:], strict=True):
-            markup = self.writer.infix(markup, sign, self.at_least(operand, Level.SUM).markup)
-        return Piece(markup, Level.COMPARISON)
+            markup = self.writer.infix(markup, sign, self.at_least(operand, Binding.SUM).markup)
+        return Markup(markup, Binding.COMPARISON)
 
-    def logic(self, word: str, operands: tuple[Node, ...]) -> Piece:
+    def logic(self, word: str, operands: tuple[Node, ...]) -> Markup:
         """Set conditions joined by and/or."""
-        level = Level.AND if word == "and" else Level.OR
+        level = Binding.AND if word == "and" else Binding.OR
         markups = [self.at_least(operand, level).markup for operand in operands]
-        return Piece(reduce(lambda left, right: self.writer.infix(left, word, right), markups), level)
+        return Markup(reduce(lambda left, right: self.writer.infix(left, word, right), markups), level)
 
-    def cases(self, arguments: tuple[Node, ...]) -> Piece:
+    def cases(self, arguments: tuple[Node, ...]) -> Markup:
         """Set alternatives behind a brace."""
         rows = [
             (self.piece(value).markup, self.writer.condition(self.piece(condition).markup))
             for value, condition in zip(arguments[:-1:2], arguments[1::2], strict=True)
         ]
         rows.append((self.piece(arguments[-1]).markup, self.writer.prose("otherwise")))
-        return Piece(self.writer.table(rows), Level.CASES)
+        return Markup(self.writer.table(rows), Binding.CASES)
 
-    def either(self, first: Node, second: Node) -> Piece:
+    def either(self, first: Node, second: Node) -> Markup:
         """Set "the first if it is given, otherwise the second"; with numbers at hand only the one that counts."""
         given = self.is_given(first.name) if isinstance(first, Name) else None
         if given is not None:
@@ -266,7 +266,7 @@ class Layout:
             (self.piece(first).markup, self.writer.prose("if given")),
             (self.piece(second).markup, self.writer.prose("otherwise")),
         ]
-        return Piece(self.writer.table(rows), Level.CASES)
+        return Markup(self.writer.table(rows), Binding.CASES)
 
 
 def factors(node: Node) -> list[Node]:
@@ -289,27 +289,27 @@ def begins_with_function(node: Node) -> bool:
 
 def is_small_count(exponent: Node) -> bool:
     """Tell whether an exponent may stand on a function's name: a whole number (-1 would be an inverse)."""
-    return isinstance(exponent, Number) and exponent.text.isdigit()
+    return isinstance(exponent, NumberNode) and exponent.text.isdigit()
 
 
-def number_piece(text: str, markup: str, *, unit: str = "") -> Piece:
+def number_piece(text: str, markup: str, *, unit: str = "") -> Markup:
     """Wrap a printed number: how firmly it holds depends on its sign, power of ten and unit."""
     number = read_number(text)
     if number is None:
-        return Piece(markup, Level.OR, begins=Edge.WORD, ends=Edge.WORD)
+        return Markup(markup, Binding.OR, begins=Edge.WORD, ends=Edge.WORD)
     loose = unit or number.negative or number.exponent
-    level = Level.PRODUCT if loose else Level.ATOM
-    return Piece(markup, level, number.negative, begins=Edge.DIGIT)
+    level = Binding.PRODUCT if loose else Binding.ATOM
+    return Markup(markup, level, number.negative, begins=Edge.DIGIT)
 
 
 def symbol_leaf(writer: Writer, symbols: Mapping[str, str]) -> Leaf:
     """Return the leaf that prints symbols, and words where there is no symbol."""
 
-    def leaf(name: str) -> Piece:
+    def leaf(name: str) -> Markup:
         symbol = symbols.get(name)
         if not symbol:
             return word_piece(writer, name)
-        return Piece(writer.symbol(symbol), Level.ATOM if read_symbol(symbol).is_plain else Level.TIGHT)
+        return Markup(writer.symbol(symbol), Binding.ATOM if read_symbol(symbol).is_plain else Binding.TIGHT)
 
     return leaf
 
@@ -317,7 +317,7 @@ def symbol_leaf(writer: Writer, symbols: Mapping[str, str]) -> Leaf:
 def number_leaf(writer: Writer, numbers: Mapping[str, tuple[str, str]]) -> Leaf:
     """Return the leaf that prints numbers with their units, and words where there is no number."""
 
-    def leaf(name: str) -> Piece:
+    def leaf(name: str) -> Markup:
         if name not in numbers:
             return word_piece(writer, name)
         number, unit = numbers[name]
@@ -326,10 +326,10 @@ def number_leaf(writer: Writer, numbers: Mapping[str, tuple[str, str]]) -> Leaf:
     return leaf
 
 
-def word_piece(writer: Writer, name: str) -> Piece:
+def word_piece(writer: Writer, name: str) -> Markup:
     """Set a name as a word."""
-    level = Level.ATOM if "_" not in name else Level.TIGHT
-    return Piece(writer.word(name), level, begins=Edge.WORD, ends=Edge.WORD)
+    level = Binding.ATOM if "_" not in name else Binding.TIGHT
+    return Markup(writer.word(name), level, begins=Edge.WORD, ends=Edge.WORD)
 
 
 def symbolic(writer: Writer, formula: Formula, symbols: Mapping[str, str]) -> str:

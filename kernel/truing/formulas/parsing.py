@@ -24,7 +24,7 @@ from truing.formulas.tree import (
     Name,
     Negative,
     Node,
-    Number,
+    NumberNode,
     walk,
 )
 
@@ -157,7 +157,7 @@ def _value(node: ast.expr) -> Node:
     return _refuse(node)
 
 
-def _number(node: ast.Constant) -> Number:
+def _number(node: ast.Constant) -> NumberNode:
     value = node.value
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise _RefusalError(f"{value!r} is not a real number")
@@ -168,7 +168,7 @@ def _number(node: ast.Constant) -> Number:
     if not math.isfinite(number):
         raise _RefusalError("a number in it is not finite (larger than about 1.8e308)")
     written = node.kind or ""
-    return Number(written if PLAIN_NUMBER.fullmatch(written) else repr(value), number)
+    return NumberNode(written if PLAIN_NUMBER.fullmatch(written) else repr(value), number)
 
 
 def _call(node: ast.Call) -> Call:

@@ -33,7 +33,7 @@ class Style(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class LetterRun:
     """One run of letters in one style."""
 
     text: str
@@ -44,8 +44,8 @@ class Piece:
 class Symbol:
     """A declared symbol: ``Delta z_2'`` has the base Δ z, the subscript 2 and one prime."""
 
-    base: tuple[Piece, ...]
-    subscript: tuple[Piece, ...]
+    base: tuple[LetterRun, ...]
+    subscript: tuple[LetterRun, ...]
     primes: int
 
     @property
@@ -71,10 +71,10 @@ def read_symbol(symbol: str) -> Symbol:
         base, subscript, subscript_primes, base_primes = printable(symbol) or "?", "", 0, 0
     bases = [_piece(word) for word in base.split()]
     if len(bases) > 1 and bases[0].text in ("Δ", "δ"):
-        bases[0] = Piece(bases[0].text, Style.UPRIGHT)
-    pieces: list[Piece] = []
+        bases[0] = LetterRun(bases[0].text, Style.UPRIGHT)
+    pieces: list[LetterRun] = []
     for word in (word for word in re.split(r"[_,]", subscript) if word.strip()):
-        pieces += [Piece(",", Style.UPRIGHT)] if pieces else []
+        pieces += [LetterRun(",", Style.UPRIGHT)] if pieces else []
         pieces += [_piece(part) for part in word.split()]
     return Symbol(tuple(bases), tuple(pieces), base_primes + subscript_primes)
 
@@ -84,14 +84,14 @@ def _without_primes(text: str) -> tuple[str, int]:
     return bare, sum(character in PRIMES for character in text[len(bare) :])
 
 
-def _piece(word: str) -> Piece:
+def _piece(word: str) -> LetterRun:
     if word in GREEK:
-        return Piece(GREEK[word], Style.ITALIC)
+        return LetterRun(GREEK[word], Style.ITALIC)
     if word.isascii() and word.isdigit():
-        return Piece(word, Style.DIGITS)
+        return LetterRun(word, Style.DIGITS)
     if len(word) == 1 and word.isalpha():
-        return Piece(word, Style.ITALIC)
-    return Piece(word, Style.UPRIGHT)
+        return LetterRun(word, Style.ITALIC)
+    return LetterRun(word, Style.UPRIGHT)
 
 
 def symbol_text(symbol: str) -> str:

@@ -9,7 +9,7 @@ from typing import Final, TypeAlias
 
 
 @dataclass(frozen=True, slots=True)
-class Number:
+class NumberNode:
     """A number written in the formula; the text is kept as its author wrote it."""
 
     text: str
@@ -70,7 +70,7 @@ class Logic:
     operands: tuple[Node, ...]
 
 
-Node: TypeAlias = Number | Name | Constant | Negative | Binary | Call | Comparison | Logic
+Node: TypeAlias = NumberNode | Name | Constant | Negative | Binary | Call | Comparison | Logic
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ def source(node: Node) -> str:
 
 def _source(node: Node) -> tuple[str, int]:
     match node:
-        case Number(text, _):
+        case NumberNode(text, _):
             return text, _ATOM
         case Name(name) | Constant(name):
             return name, _ATOM
@@ -184,7 +184,7 @@ def simplified(node: Node) -> Node:
         case Binary(operator, left, right):
             return Binary(operator, simplified(left), simplified(right))
         case Call("hypot", arguments):
-            squares = (Binary("**", simplified(argument), Number("2", 2.0)) for argument in arguments)
+            squares = (Binary("**", simplified(argument), NumberNode("2", 2.0)) for argument in arguments)
             return Call("sqrt", (reduce(lambda total, square: Binary("+", total, square), squares),))
         case Call(function, arguments):
             return Call(function, tuple(simplified(argument) for argument in arguments))

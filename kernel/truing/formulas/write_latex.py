@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
-from truing.formulas.symbols import GREEK, Piece, Style, printable, read_number, read_symbol, word_text
+from truing.formulas.symbols import GREEK, LetterRun, Style, printable, read_number, read_symbol, word_text
 
 SIGNS: Final = {
     "+": " + ",
@@ -109,7 +109,7 @@ def number_latex(text: str) -> str:
     return f"{'-' if number.negative else ''}{digits}{power}"
 
 
-def _piece(piece: Piece) -> str:
+def _piece(piece: LetterRun) -> str:
     if piece.style is Style.DIGITS or piece.text == ",":
         return piece.text
     if piece.text in LETTERS:
@@ -120,7 +120,7 @@ def _piece(piece: Piece) -> str:
     return upright(piece.text)
 
 
-def _grouped(pieces: Sequence[Piece]) -> str:
+def _grouped(pieces: Sequence[LetterRun]) -> str:
     return " ".join(_piece(piece) for piece in pieces).replace(" , ", ",")
 
 

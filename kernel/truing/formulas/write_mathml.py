@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from html import escape
 from typing import Final
 
-from truing.formulas.symbols import Piece, Style, printable, read_number, read_symbol, word_text
+from truing.formulas.symbols import LetterRun, Style, printable, read_number, read_symbol, word_text
 
 THIN_GAP: Final = '<mspace width="0.1667em"></mspace>'
 SIGNS: Final = {
@@ -60,7 +60,7 @@ def _unsigned(digits: str, negative: bool) -> str:
     return row('<mo form="prefix">−</mo>', number) if negative else number
 
 
-def _piece(piece: Piece) -> str:
+def _piece(piece: LetterRun) -> str:
     text = escape(piece.text)
     if piece.style is Style.DIGITS:
         return f"<mn>{text}</mn>"
@@ -75,7 +75,7 @@ def upright_mathml(text: str) -> str:
     return f'<mi mathvariant="normal">{text}</mi>'
 
 
-def _grouped(pieces: Sequence[Piece]) -> str:
+def _grouped(pieces: Sequence[LetterRun]) -> str:
     parts = [_piece(piece) for piece in pieces]
     return parts[0] if len(parts) == 1 else row(*parts)
 

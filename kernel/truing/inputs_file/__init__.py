@@ -16,7 +16,7 @@ from truing.inputs_file.file_model import file_model
 from truing.inputs_file.files import read_text
 from truing.inputs_file.overrides import apply_overrides
 from truing.inputs_file.sentences import each, faults_of, in_order
-from truing.inputs_file.values import Reading
+from truing.inputs_file.values import InputsRead
 from truing.kernel import Offer
 from truing.setup import Setup
 from truing.units.grammar import shown
@@ -61,7 +61,7 @@ def json_schema(offer: Offer) -> dict[str, Any]:
 
 
 def _setup(document: Document, offer: Offer, folder: Path) -> Setup:
-    reading = Reading(folder)
+    reading = InputsRead(folder)
     faults, more = document.faults, 0
     unreadable = _prune(document.data, ())
     _switch_off(document.data)

@@ -16,7 +16,7 @@ from truing.errors import Fault, TruingError
 from truing.inputs_file.checks import renamed
 from truing.inputs_file.document import Document
 from truing.inputs_file.study_options import diagnose_options
-from truing.inputs_file.values import Reading, plain
+from truing.inputs_file.values import InputsRead, plain
 from truing.kernel import Offer
 from truing.setup import DEFAULT_SEED, Setup, SwitchedOn
 from truing.units.names import PURE
@@ -38,7 +38,7 @@ def nominals_of(model: Model[Any, Any], values: Values) -> dict[str, Any]:
     return found
 
 
-def take_old_names(offer: Offer, reading: Reading) -> Iterator[tuple[tuple[str, ...], str]]:
+def take_old_names(offer: Offer, reading: InputsRead) -> Iterator[tuple[tuple[str, ...], str]]:
     """Move values under old names to the new ones; a name that is given both ways is a fault."""
     for old, new in renamed(offer.model).items():
         if ("old names", old) not in reading.values:
@@ -142,7 +142,7 @@ def _with_options(study: Study, options: Mapping[str, Any]) -> tuple[Study, dict
     return (study if wrong else changed), wrong
 
 
-def make_setup(offer: Offer, reading: Reading, studies: tuple[Study, ...], document: Document) -> Setup:
+def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], document: Document) -> Setup:
     """Put the checked values together."""
     model, values = offer.model, reading.values
     fields: Mapping[str, InputField] = model.input_fields

@@ -16,19 +16,19 @@ from truing.declare.sources import Condition, Effect, Tolerance, Unknown
 from truing.declare.spreads import read_spread
 from truing.errors import UnitError
 from truing.inputs_file.study_options import options_of, read_option
-from truing.inputs_file.values import Reading, SentenceError, plain, read_input, read_number
+from truing.inputs_file.values import InputsRead, SentenceError, plain, read_input, read_number
 from truing.units import demand_dimension, difference_unit, from_si, to_si, unit_factor
 from truing.units.grammar import shown
 from truing.units.names import PURE
 
-Check = Callable[[Any, Reading], Any]
+ValueCheck = Callable[[Any, InputsRead], Any]
 
 
-def stored(path: str | tuple[str, ...], read: Callable[[Any], Any]) -> Check:
+def stored(path: str | tuple[str, ...], read: Callable[[Any], Any]) -> ValueCheck:
     """Make a check that keeps what ``read`` returns under ``path``."""
     key = (path,) if isinstance(path, str) else path
 
-    def check(raw: Any, reading: Reading) -> Any:
+    def check(raw: Any, reading: InputsRead) -> Any:
         try:
             value = read(raw)
         except SentenceError as error:
@@ -72,10 +72,10 @@ def one_of(choices: Sequence[str]) -> Callable[[Any], str]:
     return read
 
 
-def of_input(item: InputField, section: str) -> Check:
+def of_input(item: InputField, section: str) -> ValueCheck:
     """Make the check of an input."""
 
-    def check(raw: Any, reading: Reading) -> Any:
+    def check(raw: Any, reading: InputsRead) -> Any:
         value = read_input(item, raw, reading)
         reading.values[section, item.name] = value
         return value
@@ -89,10 +89,10 @@ def renamed(model: Model[Any, Any]) -> Mapping[str, str]:
     return found if isinstance(found, dict) else {}
 
 
-def of_old_name(old: str, item: InputField) -> Check:
+def of_old_name(old: str, item: InputField) -> ValueCheck:
     """Make the check of an input under its old name."""
 
-    def check(raw: Any, reading: Reading) -> Any:
+    def check(raw: Any, reading: InputsRead) -> Any:
         value = read_input(item, raw, reading)
         reading.values["old names", old] = value
         return value
@@ -100,10 +100,10 @@ def of_old_name(old: str, item: InputField) -> Check:
     return check
 
 
-def of_tolerance(tolerance: Tolerance) -> Check:
+def of_tolerance(tolerance: Tolerance) -> ValueCheck:
     """Make the check of a tolerance; what it resolves to is checked when the nominals are known."""
 
-    def check(raw: Any, reading: Reading) -> Any:
+    def check(raw: Any, reading: InputsRead) -> Any:
         if not isinstance(raw, (str, dict)):
             raise SentenceError(f"{tolerance.name}: a tolerance is a text such as '±0.05 mm', 'sd 3 %', 'IT6' or 'off'")
         try:
@@ -116,10 +116,10 @@ def of_tolerance(tolerance: Tolerance) -> Check:
     return check
 
 
-def of_condition(condition: Condition) -> Check:
+def of_condition(condition: Condition) -> ValueCheck:
     """Make the check of a condition."""
 
-    def check(raw: Any, reading: Reading) -> Any:
+    def check(raw: Any, reading: InputsRead) -> Any:
         value = read_number(condition.name, raw, condition.unit)
         reading.values["conditions", condition.name] = value
         return value
@@ -127,10 +127,10 @@ def of_condition(condition: Condition) -> Check:
     return check
 
 
-def of_unknown(effect: Effect[Any, Any], unknown: Unknown) -> Check:
+def of_unknown(effect: Effect[Any, Any], unknown: Unknown) -> ValueCheck:
     """Make the check of an unknown: "5 um" or {value = "5 um", sd = "0.3 um"}; its bounds must hold."""
 
-    def check(raw: Any, reading: Reading) -> Any:
+    def check(raw: Any, reading: InputsRead) -> Any:
         table = raw if isinstance(raw, dict) else {"value": raw}
         if "value" not in table or set(table) - {"value", "sd"}:
             raise SentenceError(f'{unknown.name} is written "value unit" or {{ value = "...", sd = "..." }}')
@@ -168,10 +168,10 @@ def _sd(unknown: Unknown, raw: Any) -> float:
     return value
 
 
-def of_covariance(effect: Effect[Any, Any]) -> Check:
+def of_covariance(effect: Effect[Any, Any]) -> ValueCheck:
     """Make the check of a covariance: a symmetric matrix over the unknowns that are given, in their declared units."""
 
-    def check(raw: Any, reading: Reading) -> Any:
+    def check(raw: Any, reading: InputsRead) -> Any:
         given = reading.stated.get(effect.name, frozenset()) if effect.parts else None
         unknowns = [unknown for unknown in effect.unknowns if given is None or unknown.name in given]
         size = len(unknowns)
@@ -215,10 +215,10 @@ def _keep_possible(rows: list[list[float]]) -> None:
         raise SentenceError("covariance gives some combination of the unknowns a negative variance")
 
 
-def of_run(names: Sequence[str]) -> Check:
+def of_run(names: Sequence[str]) -> ValueCheck:
     """Make the check of the list of studies."""
 
-    def check(raw: Any, reading: Reading) -> Any:
+    def check(raw: Any, reading: InputsRead) -> Any:
         if not isinstance(raw, list) or not all(isinstance(name, str) for name in raw):
             raise SentenceError(f'run is a list of studies; write run = ["{names[0] if names else ""}"]')
         offered = f"studies of this model: {', '.join(names) or 'none'}"
@@ -235,10 +235,10 @@ def of_run(names: Sequence[str]) -> Check:
     return check
 
 
-def of_study(study: Study) -> Check:
+def of_study(study: Study) -> ValueCheck:
     """Make the check of the options of a study; all that are wrong are said in one answer."""
 
-    def check(raw: Any, reading: Reading) -> Any:
+    def check(raw: Any, reading: InputsRead) -> Any:
         if not isinstance(raw, dict):
             raise SentenceError(f"[studies.{study.name}] is a section; write its options below it")
         options = options_of(study)
@@ -257,10 +257,10 @@ def of_study(study: Study) -> Check:
     return check
 
 
-def of_unit(name: str, declared: str) -> Check:
+def of_unit(name: str, declared: str) -> ValueCheck:
     """Make the check of a unit in which something is printed."""
 
-    def check(raw: Any, reading: Reading) -> Any:
+    def check(raw: Any, reading: InputsRead) -> Any:
         try:
             demand_dimension(text(raw), declared)
         except (UnitError, SentenceError) as error:

@@ -1,6 +1,6 @@
 """The pydantic model of an inputs file, made from the declaration of a calculation when a file is read.
 
-Every check reads one value to SI and puts it into the ``Reading`` that travels as pydantic's context, so that values
+Every check reads one value to SI and puts it into the ``InputsRead`` that travels as pydantic's context, so that values
 that are right are known even where others are wrong. The JSON Schema for editors comes from the same model.
 """
 
@@ -29,10 +29,10 @@ from truing.inputs_file.schema_words import (
     unknown_schema,
 )
 from truing.inputs_file.study_options import NAME, diagnose_schema, of_diagnose
-from truing.inputs_file.values import Reading
+from truing.inputs_file.values import InputsRead
 from truing.setup import DEFAULT_SEED
 
-Check = Callable[[Any, Reading], Any]
+ValueCheck = Callable[[Any, InputsRead], Any]
 HEAD = (
     "project", "drawing", "revision", "prepared_by", "checked_by", "approved_by", "date", "company", "logo",
 )  # fmt: skip
@@ -40,10 +40,10 @@ DETAILS = ("short", "normal", "full")
 
 
 @dataclass(frozen=True)
-class Entry:
+class SectionEntry:
     """One name of a section: its check, its JSON Schema, and whether it must be there."""
 
-    check: Check
+    check: ValueCheck
     schema: Mapping[str, Any]
     required: bool = False
 
@@ -69,7 +69,7 @@ def file_model(model: Model[Any, Any]) -> type[BaseModel]:
         for place, (name, (section, words)) in enumerate(sections.items())
     }
     plugin = {"type": "string", "description": "The calculation this file is for."}
-    fields["part_plugin"] = _field("plugin", Entry(checks.stored("plugin", checks.text), plugin))
+    fields["part_plugin"] = _field("plugin", SectionEntry(checks.stored("plugin", checks.text), plugin))
     return create_model("InputsFile", __config__=_config(), __doc__=f"Inputs of {model.name}: {model.title}", **fields)
 
 
@@ -77,7 +77,7 @@ def _config() -> Any:
     return ConfigDict(extra="forbid", arbitrary_types_allowed=True)
 
 
-def _field(name: str, entry: Entry) -> tuple[Any, Any]:
+def _field(name: str, entry: SectionEntry) -> tuple[Any, Any]:
     def check(value: Any, info: ValidationInfo[Any]) -> Any:
         return entry.check(value, info.context)
 
@@ -87,52 +87,55 @@ def _field(name: str, entry: Entry) -> tuple[Any, Any]:
     return kind, Field(default_factory=lambda: None, alias=name, title=name)
 
 
-def _section(title: str, entries: Mapping[str, Entry]) -> type[BaseModel]:
+def _section(title: str, entries: Mapping[str, SectionEntry]) -> type[BaseModel]:
     """Make the model of one section; fields have neutral names inside, so that no input can clash with pydantic's."""
     fields: dict[str, Any] = {f"entry_{place}": _field(name, one) for place, (name, one) in enumerate(entries.items())}
     return create_model(title, __config__=_config(), **fields)
 
 
-def _sheet() -> dict[str, Entry]:
+def _sheet() -> dict[str, SectionEntry]:
     entries = {
-        name: Entry(checks.stored(("sheet", name), checks.head_text), {"type": ["string", "number"]}) for name in HEAD
+        name: SectionEntry(checks.stored(("sheet", name), checks.head_text), {"type": ["string", "number"]})
+        for name in HEAD
     }
     schema = {"enum": list(DETAILS), "default": "normal", "description": "How much the sheet shows."}
     check = checks.one_of(DETAILS)
-    return {**entries, "detail": Entry(checks.stored(("sheet", "detail"), check), schema)}
+    return {**entries, "detail": SectionEntry(checks.stored(("sheet", "detail"), check), schema)}
 
 
 def _is_required(item: InputField) -> bool:
     return isinstance(item.spec, Loaded) and item.spec.default is MISSING
 
 
-def _inputs(model: Model[Any, Any]) -> dict[str, Entry]:
+def _inputs(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     entries = {
-        name: Entry(checks.of_input(item, "inputs"), input_schema(item), _is_required(item))
+        name: SectionEntry(checks.of_input(item, "inputs"), input_schema(item), _is_required(item))
         for name, item in model.input_fields.items()
     }
     for old, new in checks.renamed(model).items():
         if old not in entries and new in model.input_fields:
             schema = {**input_schema(model.input_fields[new]), "deprecated": True, "description": f"Now called {new}."}
-            entries[old] = Entry(checks.of_old_name(old, model.input_fields[new]), schema)
+            entries[old] = SectionEntry(checks.of_old_name(old, model.input_fields[new]), schema)
     return entries
 
 
-def _calibrated(model: Model[Any, Any]) -> dict[str, Entry]:
+def _calibrated(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     varying = {name: item for name, item in model.input_fields.items() if item.varies}
-    return {name: Entry(checks.of_input(item, "calibrated"), input_schema(item)) for name, item in varying.items()}
-
-
-def _tolerances(model: Model[Any, Any]) -> dict[str, Entry]:
     return {
-        name: Entry(checks.of_tolerance(tolerance), tolerance_schema(tolerance))
+        name: SectionEntry(checks.of_input(item, "calibrated"), input_schema(item)) for name, item in varying.items()
+    }
+
+
+def _tolerances(model: Model[Any, Any]) -> dict[str, SectionEntry]:
+    return {
+        name: SectionEntry(checks.of_tolerance(tolerance), tolerance_schema(tolerance))
         for name, tolerance in model.tolerances.items()
     }
 
 
-def _conditions(model: Model[Any, Any]) -> dict[str, Entry]:
+def _conditions(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     known = model.known_conditions
-    return {name: Entry(checks.of_condition(item), condition_schema(item)) for name, item in known.items()}
+    return {name: SectionEntry(checks.of_condition(item), condition_schema(item)) for name, item in known.items()}
 
 
 def _effects(model: Model[Any, Any]) -> type[BaseModel]:
@@ -144,32 +147,34 @@ def _effects(model: Model[Any, Any]) -> type[BaseModel]:
     return create_model("Effects", __config__=_config(), **fields)
 
 
-def _effect(effect: Effect[Any, Any]) -> dict[str, Entry]:
+def _effect(effect: Effect[Any, Any]) -> dict[str, SectionEntry]:
     entries = {
-        unknown.name: Entry(checks.of_unknown(effect, unknown), unknown_schema(unknown), required=not effect.parts)
+        unknown.name: SectionEntry(
+            checks.of_unknown(effect, unknown), unknown_schema(unknown), required=not effect.parts
+        )
         for unknown in effect.unknowns
     }
-    entries.setdefault("covariance", Entry(checks.of_covariance(effect), covariance_schema(effect)))
+    entries.setdefault("covariance", SectionEntry(checks.of_covariance(effect), covariance_schema(effect)))
     return entries
 
 
-def _studies(model: Model[Any, Any]) -> dict[str, Entry]:
+def _studies(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     names = [study.name for study in model.studies]
     run = {"type": "array", "items": {"enum": names} if names else {}, "uniqueItems": True}
     seed = {"type": "integer", "minimum": 0, "default": DEFAULT_SEED, "description": "Where the random numbers begin."}
     entries = {
-        "run": Entry(checks.of_run(names), {**run, "description": "The studies that run, in this order."}),
-        "seed": Entry(checks.stored(("studies", "seed"), checks.seed), seed),
+        "run": SectionEntry(checks.of_run(names), {**run, "description": "The studies that run, in this order."}),
+        "seed": SectionEntry(checks.stored(("studies", "seed"), checks.seed), seed),
     }
     for study in model.studies:
-        entries[study.name] = Entry(checks.of_study(study), study_schema(study))
-    entries.setdefault(NAME, Entry(of_diagnose(model), diagnose_schema(model)))
+        entries[study.name] = SectionEntry(checks.of_study(study), study_schema(study))
+    entries.setdefault(NAME, SectionEntry(of_diagnose(model), diagnose_schema(model)))
     return entries
 
 
-def _units(model: Model[Any, Any]) -> dict[str, Entry]:
+def _units(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     declared = {name: item.unit for name, item in model.result_fields.items()}
     for name, item in model.input_fields.items():
         if isinstance(item.spec, Given) and item.spec.unit is not None:
             declared[name] = item.unit
-    return {name: Entry(checks.of_unit(name, unit), unit_schema(unit)) for name, unit in declared.items()}
+    return {name: SectionEntry(checks.of_unit(name, unit), unit_schema(unit)) for name, unit in declared.items()}

@@ -15,7 +15,7 @@ from pydantic.errors import PydanticUserError
 from truing.declare.model import Model, Study
 from truing.declare.near_miss import near_miss
 from truing.errors import UnitError
-from truing.inputs_file.values import Reading, SentenceError, broken_bound, read_number, written
+from truing.inputs_file.values import InputsRead, SentenceError, broken_bound, read_number, written
 from truing.setup import DiagnoseOptions, column_and_word
 from truing.units import split_quantity
 from truing.units.grammar import shown
@@ -100,14 +100,14 @@ NAME = "diagnose"
 Values = Mapping[tuple[str, ...], Any]
 
 
-def of_diagnose(model: Model[Any, Any]) -> Callable[[Any, Reading], Any]:
+def of_diagnose(model: Model[Any, Any]) -> Callable[[Any, InputsRead], Any]:
     """Make the check of the section; all that is wrong is said in one answer."""
     readers = {
         "per_file": _per_file, "hold_out": _hold_out, "box": _box, "clipped": _clipped, "lognormal": _lognormal,
         "at_least": _marks("at_least"), "at_most": _marks("at_most"), "budget": _budget,
     }  # fmt: skip
 
-    def check(raw: Any, reading: Reading) -> Any:
+    def check(raw: Any, reading: InputsRead) -> Any:
         if not isinstance(raw, dict):
             raise SentenceError(f"[studies.{NAME}] is a section; write its options below it")
         for name, value in raw.items():

@@ -26,7 +26,7 @@ class SentenceError(ValueError):
 
 
 @dataclass
-class Reading:
+class InputsRead:
     """What was read so far: values in SI by section and name, data files with their hashes and their folder.
 
     ``stated`` holds the names that stand under each [effects.NAME].
@@ -40,7 +40,7 @@ class Reading:
     stated: dict[str, frozenset[str]] = field(default_factory=dict)
 
 
-def read_input(item: InputField, raw: Any, reading: Reading) -> Any:
+def read_input(item: InputField, raw: Any, reading: InputsRead) -> Any:
     """Return an input as the function sees it. Raises ValueError with one sentence."""
     if item.kind in {"float", "whole"}:
         value = read_number(item.name, raw, item.unit)
@@ -240,7 +240,7 @@ def _plain_series(item: InputField, given: list[Any]) -> tuple[Any, ...]:
     return tuple(given)
 
 
-def _loaded(item: InputField, raw: Any, reading: Reading) -> Any:
+def _loaded(item: InputField, raw: Any, reading: InputsRead) -> Any:
     """Read a data file once, through the reader the input declares; remember its hash."""
     spec = item.spec
     assert isinstance(spec, Loaded)

@@ -20,7 +20,7 @@ from truing.declare.quantities import unread_quantities
 from truing.declare.sources import Effect, Tolerance
 from truing.entry_points import distribution_of, entry_points
 from truing.errors import DeclarationError, PluginError, UnknownPluginError
-from truing.kernel.blame import Place, home_of, line_of, line_of_words, place_of
+from truing.kernel.blame import SourceLine, home_of, line_of, line_of_words, place_of
 from truing.kernel.loading import check_hooks, load_file
 from truing.units.grammar import shown
 
@@ -163,7 +163,7 @@ class Kernel:
         known = ", ".join(sorted(offers)) or "none"
         raise UnknownPluginError(f"no plugin offers {shown(name)}.{near_miss(name[:80], offers)} Installed: {known}.")
 
-    def _note(self, where: list[Broken], origin: Origin, error: BaseException, place: Place | None = None) -> None:
+    def _note(self, where: list[Broken], origin: Origin, error: BaseException, place: SourceLine | None = None) -> None:
         reason = f"{type(error).__name__}: {error}"
         file, line = place or getattr(error, "place", None) or place_of(error, _homes(origin))
         broken = Broken(origin.name, origin.version, file or _file_of(origin), line if file else None, reason)

@@ -9,12 +9,12 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-Place = tuple[str, int | None]
+SourceLine = tuple[str, int | None]
 _HOUSE = Path(__file__).parents[1]
 _MACHINERY = {"pluggy", "importlib", "importlib_metadata", "matplotlib", "numpy", "scipy"}
 
 
-def place_of(error: BaseException, homes: Iterable[Path] = ()) -> Place:
+def place_of(error: BaseException, homes: Iterable[Path] = ()) -> SourceLine:
     """Return file and line of the innermost frame inside ``homes``, else of the innermost that is not machinery.
 
     A syntax error names its own place. Returns ("", None) where no frame belongs to anybody.
@@ -42,13 +42,13 @@ def home_of(function: Callable[..., Any]) -> Path | None:
     return file.parent if (file.parent / "__init__.py").is_file() else file
 
 
-def line_of(function: Callable[..., Any]) -> Place:
+def line_of(function: Callable[..., Any]) -> SourceLine:
     """Return file and line where a function is written."""
     code = getattr(inspect.unwrap(function), "__code__", None)
     return (code.co_filename, code.co_firstlineno) if code is not None else ("", None)
 
 
-def line_of_words(homes: Iterable[Path], owner: str, written: Any) -> Place:
+def line_of_words(homes: Iterable[Path], owner: str, written: Any) -> SourceLine:
     """Return file and line where *owner* is declared with the text or number *written*; ("", None) where nowhere is.
 
     The innermost call or field that names both decides.

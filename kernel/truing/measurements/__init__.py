@@ -4,9 +4,21 @@ from __future__ import annotations
 
 from truing.measurements.overriding import Case, CasesFile, RowsFile, read_cases, read_rows
 from truing.measurements.row_count import LeftOut, RowCount
-from truing.measurements.table import EXCEL, PLAIN, DataTable, Form, read_table, table_text, write_table
+from truing.measurements.table import EXCEL, PLAIN, DataTable, TableStyle, read_table, table_text, write_table
 
 __all__ = [
-    "EXCEL", "PLAIN", "Case", "CasesFile", "DataTable", "Form", "LeftOut", "RowCount", "RowsFile", "read_cases",
-    "read_rows", "read_table", "table_text", "write_table",
+    "EXCEL",
+    "PLAIN",
+    "Case",
+    "CasesFile",
+    "DataTable",
+    "LeftOut",
+    "RowCount",
+    "RowsFile",
+    "TableStyle",
+    "read_cases",
+    "read_rows",
+    "read_table",
+    "table_text",
+    "write_table",
 ]  # fmt: skip

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from truing.declare.fields import Axis, InputField
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import SINCE_START, Condition
-from truing.inputs_file.values import Reading, broken_bound, read_input
+from truing.inputs_file.values import InputsRead, broken_bound, read_input
 from truing.kernel import Offer
 from truing.measurements.cells import column_in_si, header_fault, read_cell, read_cells
 from truing.measurements.csv_text import CsvFile, Header, opened
@@ -346,7 +346,7 @@ def read_word(item: InputField, cell: str, *, decimal_comma: bool) -> Any:
         raw = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}.get(raw.lower(), raw)
     elif item.kind == "integer":
         raw = read_cell(raw, decimal_comma=decimal_comma)
-    return read_input(item, raw, Reading(Path()))
+    return read_input(item, raw, InputsRead(Path()))
 
 
 def _value(cell: str, header: Header, item: InputField | None, texts: _Texts, setup: Setup) -> Any:

@@ -187,7 +187,7 @@ def in_si(values: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
 
 
 @dataclass(frozen=True)
-class Form:
+class TableStyle:
     """How a table is written: the mark before it, what parts cells and lines, and the decimal mark."""
 
     mark: str = ""
@@ -197,13 +197,13 @@ class Form:
     is_guarded: bool = False
 
 
-PLAIN = Form()
-EXCEL = Form(MARK, ";", ",", "\r\n", is_guarded=True)
+PLAIN = TableStyle()
+EXCEL = TableStyle(MARK, ";", ",", "\r\n", is_guarded=True)
 """What a spreadsheet with a decimal comma opens by a double click."""
 
 
 def write_table(
-    target: Path | TextIO, headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form: Form = PLAIN
+    target: Path | TextIO, headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form: TableStyle = PLAIN
 ) -> None:
     """Write columns under headers such as "depth [um]"; the numbers are in these units already.
 
@@ -216,14 +216,14 @@ def write_table(
         _write(target, headers, columns, form)
 
 
-def table_text(headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form: Form = PLAIN) -> str:
+def table_text(headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form: TableStyle = PLAIN) -> str:
     """Return a table as the text of its file."""
     stream = StringIO(newline="")
     _write(stream, headers, columns, form)
     return stream.getvalue()
 
 
-def _write(stream: TextIO, headers: Sequence[str], columns: Sequence[Iterable[Any]], form: Form) -> None:
+def _write(stream: TextIO, headers: Sequence[str], columns: Sequence[Iterable[Any]], form: TableStyle) -> None:
     if len(headers) != len(columns):
         raise ValueError(f"{len(headers)} headers for {len(columns)} columns")
     stream.write(form.mark)
@@ -237,7 +237,7 @@ def _write(stream: TextIO, headers: Sequence[str], columns: Sequence[Iterable[An
         (everything if row and row[0].lstrip().startswith("#") else minimal).writerow(row + alone)
 
 
-def _rows(headers: Sequence[str], columns: Sequence[Iterable[Any]], form: Form) -> Iterator[list[str]]:
+def _rows(headers: Sequence[str], columns: Sequence[Iterable[Any]], form: TableStyle) -> Iterator[list[str]]:
     yield [_cell(header, form) for header in headers]
     for row in zip(*(_plain(column) for column in columns), strict=True):
         yield [_cell(value, form) for value in row]
@@ -249,7 +249,7 @@ def _plain(column: Any) -> Iterable[Any]:
     return plain
 
 
-def _cell(value: Any, form: Form) -> str:
+def _cell(value: Any, form: TableStyle) -> str:
     if value is None:
         return ""
     if isinstance(value, bool):

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from truing.new_project.files import Plan, project, single_file, write_project, write_single_file
+from truing.new_project.files import NewPlugin, project, single_file, write_project, write_single_file
 from truing.new_project.names import check_name, check_title, spelled, title_of
 
 __all__ = [
-    "Plan", "check_name", "check_title", "project", "single_file", "spelled", "title_of", "write_project",
+    "NewPlugin", "check_name", "check_title", "project", "single_file", "spelled", "title_of", "write_project",
     "write_single_file",
 ]  # fmt: skip

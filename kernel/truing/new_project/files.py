@@ -31,7 +31,7 @@ PROJECT = {
 
 
 @dataclass(frozen=True)
-class Plan:
+class NewPlugin:
     """What a new plugin is called: its name in Python and on the command line, and the title of its sheet."""
 
     name: str
@@ -56,7 +56,7 @@ def python_text(text: str) -> str:
     return mark + text.replace("\\", "\\\\").replace(mark, "\\" + mark) + mark
 
 
-def project(plan: Plan) -> dict[str, str]:
+def project(plan: NewPlugin) -> dict[str, str]:
     """Return the files of a project by their path inside it: package, tests, packaging, README, CI, made rows."""
     return {
         path.replace("NAME", plan.name): rendered(f"plugin/{template}", plan.words)
@@ -64,7 +64,7 @@ def project(plan: Plan) -> dict[str, str]:
     }
 
 
-def single_file(plan: Plan) -> str:
+def single_file(plan: NewPlugin) -> str:
     """Return a plugin as one Python file: physics, model, hook and tests."""
     return rendered("single/calculation.py.j2", plan.words)
 

@@ -16,7 +16,7 @@ from truing.declare.model import Section
 from truing.errors import PluginError, UnitError
 from truing.kernel.blame import spoken_place
 from truing.numbers import format_value, pretty
-from truing.report.context import BlockView, Chapter, Entry, FigureView, TableView, Value
+from truing.report.context import BlockView, Chapter, FigureView, ResultEntry, TableView, Value
 from truing.report.equations import equation_of, value_text
 from truing.report.figures import draw
 from truing.setup import Setup
@@ -124,7 +124,7 @@ def _is_scalar(value: Any) -> bool:
     return value is not None and getattr(value, "ndim", 0) == 0
 
 
-def _results(writing: Writing, names: Sequence[str]) -> tuple[tuple[Entry, ...], tuple[BlockView, ...]]:
+def _results(writing: Writing, names: Sequence[str]) -> tuple[tuple[ResultEntry, ...], tuple[BlockView, ...]]:
     """Write single results as entries, short axes as tables, long ones as entries with their range."""
     answers, fields = writing.calculation.answers, writing.setup.model.result_fields
     tables = list(_axis_tables(writing, names))
@@ -140,11 +140,11 @@ def _results(writing: Writing, names: Sequence[str]) -> tuple[tuple[Entry, ...],
     return tuple(entries), tuple(tables)
 
 
-def _entry(writing: Writing, name: str, *, with_formula: bool) -> Entry:
+def _entry(writing: Writing, name: str, *, with_formula: bool) -> ResultEntry:
     item = writing.setup.model.result_fields[name]
     answers = writing.calculation.answers
     absent = writing.calculation.absent.get(name, "")
-    return Entry(
+    return ResultEntry(
         name=name,
         symbol=item.symbol,
         note=item.spec.note,
@@ -156,7 +156,7 @@ def _entry(writing: Writing, name: str, *, with_formula: bool) -> Entry:
     )
 
 
-def _range_entry(writing: Writing, item: ResultField) -> Entry:
+def _range_entry(writing: Writing, item: ResultField) -> ResultEntry:
     """Say a result along an axis by its ends."""
     values = np.asarray(writing.calculation.answers[item.name], dtype=float)
     finite = values[np.isfinite(values)]
@@ -168,7 +168,7 @@ def _range_entry(writing: Writing, item: ResultField) -> Entry:
         extent, text = "no finite value", ""
     along = item.along if isinstance(item.spec, Found) else ""
     words = f"{values.size} values" + (f" along {along}" if along and along != item.name else "")
-    return Entry(
+    return ResultEntry(
         name=item.name,
         symbol=item.symbol,
         note=item.spec.note,

@@ -129,7 +129,7 @@ class Equation:
 
 
 @dataclass(frozen=True)
-class Entry:
+class ResultEntry:
     """One result: its value, or its range along an axis, with its formula or how it was found."""
 
     name: str
@@ -180,7 +180,7 @@ class Chapter:
     title: str
     kind: str
     text: str = ""
-    entries: tuple[Entry, ...] = ()
+    entries: tuple[ResultEntry, ...] = ()
     blocks: tuple[BlockView, ...] = ()
 
 

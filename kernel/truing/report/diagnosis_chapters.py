@@ -13,9 +13,9 @@ from truing.diagnosis.result import (
     UNKNOWN,
     Alternative,
     Amount,
-    Diagnosis,
+    DiagnosisResult,
     FittedUnknown,
-    Noise,
+    NoiseSummary,
     explanations_of,
 )
 from truing.numbers import ABSENT, STATED_DIGITS, format_number, pretty
@@ -46,7 +46,7 @@ FITTED_DIGITS = 7
 EVERYTHING = "extended.toml"
 
 
-def diagnosis_chapters(diagnosis: Diagnosis, drawn: Figures) -> Iterator[Chapter]:
+def diagnosis_chapters(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
     """Write the chapters in the order in which they are asked for."""
     yield _chapter("wrong", "What is wrong", _wrong(diagnosis, drawn))
     yield _chapter("cause", "Cause", _cause(diagnosis, drawn))
@@ -63,7 +63,7 @@ def _chapter(ident: str, title: str, blocks: Iterator[BlockView]) -> Chapter:
 # What is wrong
 
 
-def _wrong(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
+def _wrong(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
     rows = [
         (
             spoken(item.result), str(item.rows), amount_text(item.rmse), amount_text(item.noise_floor),
@@ -98,7 +98,7 @@ def _wrong(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
         yield drawn.view(title, partial(figures.against_simulated, diagnosis, curves), caption)
 
 
-def _noise(noise: Noise) -> tuple[str, ...]:
+def _noise(noise: NoiseSummary) -> tuple[str, ...]:
     places = [f"{label}:{line}" for label, line in _labelled(noise.outliers)]
     shown = ", ".join(places[:MOST_OUTLIERS])
     more = f" and {len(places) - MOST_OUTLIERS} more" if len(places) > MOST_OUTLIERS else ""
@@ -115,7 +115,7 @@ def _labelled(outliers: Sequence[tuple[str, int]]) -> Iterator[tuple[str, int]]:
 # Cause
 
 
-def _cause(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
+def _cause(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
     yield Words(" ".join(_significance(diagnosis)))
     if diagnosis.causes:
         yield _named_table(diagnosis)
@@ -131,7 +131,7 @@ def _cause(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
                      [(prose(sentence).rstrip("."),) for sentence in diagnosis.inseparable])  # fmt: skip
 
 
-def _named_table(diagnosis: Diagnosis) -> TableView:
+def _named_table(diagnosis: DiagnosisResult) -> TableView:
     heads, rows = ("Cause", "What it is", "The same curve on this data"), list(_named(diagnosis))
     if len(rows) < 2:
         return table_of("Named", heads, rows)
@@ -141,7 +141,7 @@ def _named_table(diagnosis: Diagnosis) -> TableView:
     return table_of("Named", (*heads, "Share"), with_shares, (3,), note)
 
 
-def _significance(diagnosis: Diagnosis) -> Iterator[str]:
+def _significance(diagnosis: DiagnosisResult) -> Iterator[str]:
     if not explanations_of(diagnosis):
         yield f"Nothing is named: the best of all explanations may be chance ({p_text(diagnosis.p_any)})."
         if diagnosis.verdict == "undecided":
@@ -168,7 +168,7 @@ def _significance(diagnosis: Diagnosis) -> Iterator[str]:
         yield f"The verdict is one of {len(names)}, and this record cannot say which: {which}."
 
 
-def _named(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
+def _named(diagnosis: DiagnosisResult) -> Iterator[tuple[str, ...]]:
     for cause in diagnosis.causes:
         effect = diagnosis.setup.model.known_effects.get(cause.effect)
         about = "an input that must lie outside of its tolerance" if cause.effect.startswith("input:") else ""
@@ -176,7 +176,7 @@ def _named(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
         yield spoken(cause.effect), about or ABSENT, ", ".join(map(spoken, cause.same_as)) or "none"
 
 
-def _ranking(diagnosis: Diagnosis) -> TableView:
+def _ranking(diagnosis: DiagnosisResult) -> TableView:
     items = figures.shown_ranking(diagnosis)
     rows = [
         (explanation(item), pretty(f"{item.behind:.1f}"), score_text(item.separation), _judged(item, diagnosis))
@@ -189,7 +189,7 @@ def _ranking(diagnosis: Diagnosis) -> TableView:
     return table_of("Explanations, best first", ("Explanation", "Behind", "λ", "On this data"), rows, (1, 2), note)
 
 
-def _judged(item: Alternative, diagnosis: Diagnosis) -> str:
+def _judged(item: Alternative, diagnosis: DiagnosisResult) -> str:
     """Say what this data makes of an explanation beside the best one."""
     best = diagnosis.ranking[0]
     if item == best:
@@ -201,7 +201,7 @@ def _judged(item: Alternative, diagnosis: Diagnosis) -> str:
     return "excluded" if item.behind >= figures.NEAR else "needs more for the same"
 
 
-def _residuals(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
+def _residuals(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
     for covariate in figures.main_covariates(diagnosis):
         for curves in figures.shown_curves(diagnosis):
             when = ", before and after" if figures.has_changed(curves) else ""
@@ -210,7 +210,7 @@ def _residuals(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
             yield drawn.view(title, partial(figures.over_covariate, diagnosis, curves, covariate), caption)
 
 
-def _sight(diagnosis: Diagnosis) -> Iterator[BlockView]:
+def _sight(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     """Say what this data could show: how small each effect may be, what is hidden, what was not excited or measured."""
     rows = [
         *(
@@ -230,7 +230,7 @@ def _sight(diagnosis: Diagnosis) -> Iterator[BlockView]:
 # Extended model
 
 
-def _model(diagnosis: Diagnosis) -> Iterator[BlockView]:
+def _model(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     fitted = [
         row
         for cause in diagnosis.causes
@@ -277,7 +277,7 @@ def _fitted(cause: str, unknown: FittedUnknown) -> Iterator[tuple[str, ...]]:
         yield cause, unknown.name.replace("_", " ") + suffix, value, f"{low} … {high}", unit or ABSENT
 
 
-def _calibrated(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
+def _calibrated(diagnosis: DiagnosisResult) -> Iterator[tuple[str, ...]]:
     setup = diagnosis.setup
     for item in diagnosis.calibrated:
         nominal = float(setup.nominal(item.name))
@@ -288,7 +288,7 @@ def _calibrated(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
         yield spoken(item.name), stated, fitted, score_text(item.of_its_sd)
 
 
-def _remainder(diagnosis: Diagnosis) -> Iterator[BlockView]:
+def _remainder(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     remainder = diagnosis.remainder
     if remainder is None:
         return
@@ -301,7 +301,7 @@ def _remainder(diagnosis: Diagnosis) -> Iterator[BlockView]:
 # Gain
 
 
-def _gain(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
+def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
     if not diagnosis.gain:
         yield Words("No gain was estimated.")
         return
@@ -340,7 +340,7 @@ def _gain(diagnosis: Diagnosis, drawn: Figures) -> Iterator[BlockView]:
 # Next measurement and data
 
 
-def _data(diagnosis: Diagnosis) -> Iterator[BlockView]:
+def _data(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     records = diagnosis.records
     rows = []
     for place, label in enumerate(file_labels(records.files)):
@@ -358,7 +358,7 @@ def _data(diagnosis: Diagnosis) -> Iterator[BlockView]:
         yield Words(sentence.rstrip(".") + ".")
 
 
-def _covariates(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
+def _covariates(diagnosis: DiagnosisResult) -> Iterator[tuple[str, ...]]:
     for item in diagnosis.records.covariates.values():
         finite = item.values[np.isfinite(item.values)]
         ends = (float(finite.min()), float(finite.max())) if finite.size else (None, None)

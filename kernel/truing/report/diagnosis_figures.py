@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from truing.diagnosis.records import Covariate
-from truing.diagnosis.result import Alternative, Curves, Diagnosis, Gain
+from truing.diagnosis.result import Alternative, DiagnosisResult, Gain, ResultCurves
 from truing.report.diagnosis_words import amount_text, explanation, spoken, wrong_results
 from truing.units import from_si, unit_factor, unit_text
 
@@ -40,7 +40,7 @@ class _Residuals:
     floor: float
 
 
-def main_covariates(diagnosis: Diagnosis) -> list[Covariate]:
+def main_covariates(diagnosis: DiagnosisResult) -> list[Covariate]:
     """Return what residuals are drawn over: the covariate of every cause and of the remainder, else the main one."""
     found = [_guilty(diagnosis, cause.effect) for cause in diagnosis.causes]
     covariates = diagnosis.records.covariates
@@ -52,7 +52,7 @@ def main_covariates(diagnosis: Diagnosis) -> list[Covariate]:
     return list(unique.values())[:3]
 
 
-def _guilty(diagnosis: Diagnosis, cause: str) -> Covariate | None:
+def _guilty(diagnosis: DiagnosisResult, cause: str) -> Covariate | None:
     """Return the covariate that a cause follows: the condition it needs that takes most values, else the main one."""
     effect = diagnosis.setup.model.known_effects.get(cause)
     covariates = diagnosis.records.covariates
@@ -61,7 +61,7 @@ def _guilty(diagnosis: Diagnosis, cause: str) -> Covariate | None:
     return rich[0] if rich else _main(diagnosis)
 
 
-def _main(diagnosis: Diagnosis) -> Covariate | None:
+def _main(diagnosis: DiagnosisResult) -> Covariate | None:
     """Return the covariate to look over first: an angle, else another input, else the time, else the order."""
     rank = {"input": 1, "time": 2, "condition": 3, "other": 4, "order": 5}
     able = [item for item in diagnosis.records.covariates.values() if _places(item) >= MOST_PLACES]
@@ -72,18 +72,18 @@ def _places(covariate: Covariate) -> int:
     return len(np.unique(covariate.values[np.isfinite(covariate.values)]))
 
 
-def shown_curves(diagnosis: Diagnosis) -> list[Curves]:
+def shown_curves(diagnosis: DiagnosisResult) -> list[ResultCurves]:
     """Return what is drawn: the results that are wrong, or all where nothing is."""
     wrong = wrong_results(diagnosis)
     return [item for item in diagnosis.curves if item.result in wrong]
 
 
-def has_changed(curves: Curves) -> bool:
+def has_changed(curves: ResultCurves) -> bool:
     """Tell whether the extension changes a result at all."""
     return not np.array_equal(curves.before, curves.after, equal_nan=True)
 
 
-def residuals_of(diagnosis: Diagnosis, curves: Curves) -> _Residuals:
+def residuals_of(diagnosis: DiagnosisResult, curves: ResultCurves) -> _Residuals:
     """Return the residuals of one result in the unit for its differences."""
     unit = diagnosis.units.get(curves.result) or diagnosis.setup.print_unit(curves.result)
     factor = unit_factor(unit)
@@ -99,7 +99,7 @@ def thinned(rows: int) -> slice:
     return slice(None, None, -(-rows // MOST_POINTS) if rows > MOST_POINTS else 1)
 
 
-def thinning_words(diagnosis: Diagnosis, curves: Curves) -> str:
+def thinning_words(diagnosis: DiagnosisResult, curves: ResultCurves) -> str:
     """Say what is left out of a figure with very many rows, and what its triangles are."""
     step = thinned(len(diagnosis.records)).step
     thinning = f" Every {step}th row is drawn." if step > 1 else ""
@@ -107,7 +107,9 @@ def thinning_words(diagnosis: Diagnosis, curves: Curves) -> str:
     return thinning + (" A triangle is a censored reading: the true value lies where it points." if is_cut else "")
 
 
-def _mark_censored(diagnosis: Diagnosis, result: str, axes: Axes, *, places: Any, values: Any, colour: str) -> None:
+def _mark_censored(
+    diagnosis: DiagnosisResult, result: str, axes: Axes, *, places: Any, values: Any, colour: str
+) -> None:
     """Draw a triangle around each censored reading that points to where the true value lies; (n,) as drawn."""
     if result not in diagnosis.records.sides:
         return
@@ -122,7 +124,7 @@ def _label(name: str, unit: str) -> str:
     return f"{words} [{unit_text(unit)}]" if unit else words
 
 
-def over_covariate(diagnosis: Diagnosis, curves: Curves, covariate: Covariate) -> Figure:
+def over_covariate(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: Covariate) -> Figure:
     """Draw the residuals of one result over a covariate, before and after, with the noise floor as a band."""
     shown = residuals_of(diagnosis, curves)
     kept = thinned(len(shown.before))
@@ -151,7 +153,7 @@ def _span(values: NDArray[np.float64]) -> float:
     return high - low
 
 
-def against_simulated(diagnosis: Diagnosis, curves: Curves) -> Figure:
+def against_simulated(diagnosis: DiagnosisResult, curves: ResultCurves) -> Figure:
     """Draw measured against simulated, and beside it their difference, where the error can be seen."""
     shown = residuals_of(diagnosis, curves)
     unit = diagnosis.setup.print_unit(curves.result)
@@ -187,7 +189,7 @@ def _extent(values: Sequence[NDArray[np.float64]]) -> tuple[float, float]:
     return (float(joined.min()), float(joined.max())) if joined.size else (0.0, 1.0)
 
 
-def shown_ranking(diagnosis: Diagnosis) -> list[Alternative]:
+def shown_ranking(diagnosis: DiagnosisResult) -> list[Alternative]:
     """Return the explanations that are listed: the best ones, one of each that reads alike."""
     unique: dict[str, Alternative] = {}
     for item in diagnosis.ranking:
@@ -195,12 +197,12 @@ def shown_ranking(diagnosis: Diagnosis) -> list[Alternative]:
     return list(unique.values())[:MOST_BARS]
 
 
-def is_open(item: Alternative, diagnosis: Diagnosis) -> bool:
+def is_open(item: Alternative, diagnosis: DiagnosisResult) -> bool:
     """Tell whether this data does not exclude an explanation: it is the best one or an alternative to it."""
     return item == diagnosis.ranking[0] or item.causes in [other.causes for other in diagnosis.alternatives]
 
 
-def ranking_bars(diagnosis: Diagnosis) -> Figure:
+def ranking_bars(diagnosis: DiagnosisResult) -> Figure:
     """Draw how far every explanation is behind the best, in blue those that are not excluded."""
     items = shown_ranking(diagnosis)
     figure = Figure(figsize=(6.4, 0.7 + 0.3 * len(items)), layout="constrained")
@@ -225,7 +227,7 @@ def _short(text: str, most: int = 46) -> str:
     return words if len(words) <= most else words[: most - 1] + "…"
 
 
-def gain_bars(diagnosis: Diagnosis) -> Figure:
+def gain_bars(diagnosis: DiagnosisResult) -> Figure:
     """Draw the error on rows that were not fitted, before and after, each as a share of what it was before."""
     gains = diagnosis.gain
     figure = Figure(figsize=(6.4, 0.7 + 0.75 * len(gains)), layout="constrained")

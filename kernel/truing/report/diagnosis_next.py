@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from truing.declare.blocks import Words
-from truing.diagnosis.result import APART, Diagnosis, NextPoint
+from truing.diagnosis.result import APART, DiagnosisResult, NextPoint
 from truing.numbers import ABSENT
 from truing.report.context import BlockView, TableView
 from truing.report.diagnosis_words import amount_text, listed, readable, score_text, spoken, together
@@ -19,7 +19,7 @@ def table_of(
     return TableView(title, tuple(columns), ("",) * len(columns), tuple(map(tuple, rows)), flags, note)
 
 
-def next_blocks(diagnosis: Diagnosis) -> Iterator[BlockView]:
+def next_blocks(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     """Write the chapter on the next measurement."""
     if not diagnosis.next and diagnosis.verdict == "one_of":
         yield Words("No setting can be proposed that tells the explanations apart.")
@@ -34,7 +34,7 @@ def next_blocks(diagnosis: Diagnosis) -> Iterator[BlockView]:
     yield from _ties(diagnosis)
 
 
-def _points(diagnosis: Diagnosis) -> Iterator[BlockView]:
+def _points(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     names = list(dict.fromkeys(name for point in diagnosis.next for name in (*point.measure, *point.settings)))
     rows = [_point(place, point, names) for place, point in enumerate(diagnosis.next, start=1)]
     heads = ("Point", *(spoken(name).capitalize() for name in names), "Separates", "λ then")
@@ -47,7 +47,7 @@ def _points(diagnosis: Diagnosis) -> Iterator[BlockView]:
         yield Words(f"{reason[:1].upper()}{reason[1:].rstrip('.')}.")
 
 
-def _ties(diagnosis: Diagnosis) -> Iterator[BlockView]:
+def _ties(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     """Say which facts decide between explanations that no measurement proposed here tells apart."""
     for tie in diagnosis.ties:
         names = listed([together([name]) for name in tie.explanations])

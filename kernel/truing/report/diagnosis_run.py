@@ -10,7 +10,7 @@ from typing import Any
 
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.reading import read_records
-from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.result import DiagnosisResult
 from truing.kernel import Offer
 from truing.report.diagnosis_sheet import DiagnosisSheet, diagnosis_html, diagnosis_markdown, make_diagnosis_sheet
 from truing.report.run import add_pdf, run_info
@@ -34,7 +34,7 @@ class DiagnosisOrder:
 class Diagnosed:
     """A finished diagnosis, diagnosis.json, and what is to be said of the printing."""
 
-    diagnosis: Diagnosis
+    diagnosis: DiagnosisResult
     document: Mapping[str, Any]
     note: str = ""
 
@@ -50,7 +50,7 @@ def perform_diagnosis(setup: Setup, offer: Offer, order: DiagnosisOrder, progres
 
 
 def write_diagnosed(
-    diagnosis: Diagnosis, folder: Path, *, started: float, pdf: bool = False
+    diagnosis: DiagnosisResult, folder: Path, *, started: float, pdf: bool = False
 ) -> tuple[dict[str, Any], str]:
     """Write sheets and folder of a diagnosis; return diagnosis.json and what became of the printing."""
     sheet = diagnosis_sheet_of(diagnosis, started)
@@ -62,7 +62,7 @@ def write_diagnosed(
     return document, note
 
 
-def diagnosis_sheet_of(diagnosis: Diagnosis, started: float) -> DiagnosisSheet:
+def diagnosis_sheet_of(diagnosis: DiagnosisResult, started: float) -> DiagnosisSheet:
     """Return the sheet of a diagnosis, with where its numbers and its data come from."""
     provenance = provenance_of(diagnosis.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
     provenance = replace(provenance, files={**provenance.files, **data_digests(diagnosis)})

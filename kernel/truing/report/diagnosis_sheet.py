@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.result import DiagnosisResult
 from truing.report.chapters import Figures, numbered
 from truing.report.context import Chapter, Head
 from truing.report.diagnosis_chapters import diagnosis_chapters
@@ -32,7 +32,7 @@ class DiagnosisSheet:
     provenance: Provenance
 
 
-def make_diagnosis_sheet(diagnosis: Diagnosis, *, provenance: Provenance) -> DiagnosisSheet:
+def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) -> DiagnosisSheet:
     """Say everything that stands on the sheet of a diagnosis."""
     drawn = Figures()
     chapters = list(diagnosis_chapters(diagnosis, drawn))
@@ -55,13 +55,13 @@ def make_diagnosis_sheet(diagnosis: Diagnosis, *, provenance: Provenance) -> Dia
     )
 
 
-def _mood(diagnosis: Diagnosis) -> str:
+def _mood(diagnosis: DiagnosisResult) -> str:
     if diagnosis.verdict == "none":
         return "calm"
     return "found" if diagnosis.verdict == "named" and diagnosis.remainder is None else "open"
 
 
-def data_words(diagnosis: Diagnosis) -> str:
+def data_words(diagnosis: DiagnosisResult) -> str:
     """Say what was measured, in a line."""
     records = diagnosis.records
     runs = len(set(records.run_of.tolist()))
@@ -71,7 +71,7 @@ def data_words(diagnosis: Diagnosis) -> str:
     return f"{', '.join(file_labels(records.files))}: {counted}"
 
 
-def _warnings(diagnosis: Diagnosis, drawn: Figures) -> Iterator[str]:
+def _warnings(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[str]:
     yield from filter(None, [logo_of(diagnosis.setup)[1]])
     yield from drawn.failures
 

@@ -13,7 +13,7 @@ from truing.diagnosis.result import (
     Alternative,
     Amount,
     Cause,
-    Diagnosis,
+    DiagnosisResult,
     Fact,
     FittedUnknown,
     Gain,
@@ -155,7 +155,7 @@ def cause_text(cause: Cause) -> str:
     return f"{spoken(cause.effect)}, {sizes}" if sizes else spoken(cause.effect)
 
 
-def verdict_word(diagnosis: Diagnosis) -> str:
+def verdict_word(diagnosis: DiagnosisResult) -> str:
     """Say the verdict in a few words."""
     count = len(explanations_of(diagnosis))
     is_single = all(len(names) == 1 for names in explanations_of(diagnosis))
@@ -170,7 +170,7 @@ def verdict_word(diagnosis: Diagnosis) -> str:
     return f"{word}, a remainder left" if has_more and diagnosis.verdict == "named" else word
 
 
-def shared_words(diagnosis: Diagnosis) -> Iterator[str]:
+def shared_words(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Say what all explanations hold, where there are several, or what may be there beside the one that all hold."""
     shared, count = shared_of(diagnosis), len(explanations_of(diagnosis))
     further = further_of(diagnosis)
@@ -182,7 +182,7 @@ def shared_words(diagnosis: Diagnosis) -> Iterator[str]:
         yield f"{names} {'is' if len(shared) == 1 else 'are'} in {'both' if count == 2 else 'all'} of them"
 
 
-def headline(diagnosis: Diagnosis) -> list[str]:
+def headline(diagnosis: DiagnosisResult) -> list[str]:
     """Say what an engineer would tell a colleague: what is wrong, why, how much, what it is worth, what to do next."""
     if diagnosis.verdict == "none":
         return list(_nothing(diagnosis))
@@ -195,25 +195,25 @@ def headline(diagnosis: Diagnosis) -> list[str]:
     return [sentence[:1].upper() + sentence[1:] for sentence in said]
 
 
-def _nothing(diagnosis: Diagnosis) -> Iterator[str]:
+def _nothing(diagnosis: DiagnosisResult) -> Iterator[str]:
     yield f"Within its tolerances the model meets the measurement: {_met(diagnosis)}."
     yield "What is left is noise; no effect, registered or not, is needed."
     yield from _blind(diagnosis)
 
 
-def _undecided(diagnosis: Diagnosis) -> Iterator[str]:
+def _undecided(diagnosis: DiagnosisResult) -> Iterator[str]:
     yield f"No cause is named, but that nothing is wrong cannot be said either: {listed(list(reasons(diagnosis)))}."
     yield f"The model as it is: {_met(diagnosis)}."
     yield from _blind(diagnosis)
     yield "More readings, of a wider range and in a changed order, would decide."
 
 
-def reasons(diagnosis: Diagnosis) -> Iterator[str]:
+def reasons(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Give the reasons for which a diagnosis is undecided, in print."""
     yield from map(prose, doubts(diagnosis))
 
 
-def _met(diagnosis: Diagnosis) -> str:
+def _met(diagnosis: DiagnosisResult) -> str:
     return listed(
         [
             f"{spoken(item.result)} to {amount_text(item.rmse)} (noise floor {amount_text(item.noise_floor)})"
@@ -222,13 +222,13 @@ def _met(diagnosis: Diagnosis) -> str:
     )
 
 
-def _blind(diagnosis: Diagnosis) -> Iterator[str]:
+def _blind(diagnosis: DiagnosisResult) -> Iterator[str]:
     blind = [spoken(item.name) for item in diagnosis.seen if item.sight == "not excited"]
     if blind:
         yield f"That says nothing of {listed(blind)}: this data does not excite {'it' if len(blind) == 1 else 'them'}."
 
 
-def wrong_results(diagnosis: Diagnosis) -> list[str]:
+def wrong_results(diagnosis: DiagnosisResult) -> list[str]:
     """Return the results that are wrong: with findings or a gain, else those of the remainder, else all."""
     found = [item.result for item in diagnosis.wrong if item.findings]
     gained = [item.result for item in diagnosis.gain if is_gain(item)]
@@ -247,7 +247,7 @@ def is_perhaps_gain(item: Gain) -> bool:
     return not is_gain(item) and item.reducible_removed >= MUCH and item.p_value < FEW_BLOCKS
 
 
-def _cause_sentences(diagnosis: Diagnosis) -> Iterator[str]:
+def _cause_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
     results = listed([spoken(name) for name in wrong_results(diagnosis)])
     has_further = bool(further_of(diagnosis))
     is_open = diagnosis.verdict == "one_of" and not has_further
@@ -274,7 +274,7 @@ def _cause_sentences(diagnosis: Diagnosis) -> Iterator[str]:
         yield from (f"{words}." for words in shared_words(diagnosis))
 
 
-def _gain_sentences(diagnosis: Diagnosis) -> Iterator[str]:
+def _gain_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
     gains = [item for item in diagnosis.gain if is_gain(item)]
     perhaps = [item for item in diagnosis.gain if is_perhaps_gain(item)]
     for item in gains:
@@ -297,7 +297,7 @@ def _falls(item: Gain) -> str:
     return f"the error of {spoken(item.result)} falls from {before} to {after}"
 
 
-def _held_out_sentences(diagnosis: Diagnosis) -> Iterator[str]:
+def _held_out_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Say what became of the error on rows that were held out on request: the strongest test there is."""
     for item in diagnosis.gain:
         if item.held_out is not None:
@@ -309,7 +309,7 @@ def _held_out_sentences(diagnosis: Diagnosis) -> Iterator[str]:
             yield f"on the rows held out the error of {spoken(item.result)} {how} from {before} to {after}{end}"
 
 
-def _next_sentences(diagnosis: Diagnosis) -> Iterator[str]:
+def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Say what tells the explanations apart; that it does only where it is predicted to pass the limit."""
     results = [point for point in diagnosis.next if point.measure]
     settings = [point for point in diagnosis.next if not point.measure]

@@ -11,8 +11,8 @@ from truing.declare.fields import Found, InputField, ResultField
 from truing.errors import DeclarationError
 from truing.evaluate import acting_inputs
 from truing.formulas import Formula, evaluate, parse, symbol_text
-from truing.formulas.layout import Layout, Level, Writer, number_leaf, symbol_leaf, symbolic
-from truing.formulas.tree import Binary, Call, Constant, Name, Node, Number, children, simplified
+from truing.formulas.layout import Binding, Layout, Writer, number_leaf, symbol_leaf, symbolic
+from truing.formulas.tree import Binary, Call, Constant, Name, Node, NumberNode, children, simplified
 from truing.numbers import ABSENT, RESULT_DIGITS, format_number, format_value
 from truing.report.context import Equation, Value
 from truing.setup import Setup
@@ -176,9 +176,9 @@ def _broken(
     (_, first), *others = _terms(formula.right)
     if width <= limit or not others:
         return [Line(layout.formula(replace(formula, left=None)), width)]
-    found = [Line(layout.at_least(simplified(first), Level.SUM).markup, _width(first, texts))]
+    found = [Line(layout.at_least(simplified(first), Binding.SUM).markup, _width(first, texts))]
     for sign, node in others:
-        piece = layout.at_least(simplified(node), Level.SUM if sign == "+" else Level.PRODUCT, signed=False)
+        piece = layout.at_least(simplified(node), Binding.SUM if sign == "+" else Binding.PRODUCT, signed=False)
         found.append(_after(writer, sign, Line(piece.markup, _width(node, texts))))
     return _packed(found, limit)
 
@@ -203,7 +203,7 @@ def _terms(node: Node) -> list[tuple[str, Node]]:
 def _width(node: Node, texts: Mapping[str, str]) -> float:
     """Estimate the width of a node in em."""
     match node:
-        case Number(text, _):
+        case NumberNode(text, _):
             return 0.55 * len(text)
         case Constant():
             return 0.6

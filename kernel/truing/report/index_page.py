@@ -17,7 +17,7 @@ from truing.numbers import ABSENT, counted, format_number, pretty, with_unit
 from truing.report.context import Head
 from truing.report.render import page
 from truing.report.templates import template_folder
-from truing.runs.index import Entry, Finding, Listing, Other
+from truing.runs.index import FolderEntry, ListedNumber, Listing, Other
 from truing.studies.checks import State
 from truing.units import unit_text
 
@@ -37,10 +37,10 @@ class FindingView:
 
 
 @dataclass(frozen=True)
-class Row:
+class IndexRow:
     """One row of the table: the entry, where its sheet is, and what is printed of its numbers."""
 
-    entry: Entry
+    entry: FolderEntry
     link: str
     state: str
     margin: str
@@ -54,7 +54,7 @@ class IndexView:
 
     head: Head
     summary: str
-    rows: tuple[Row, ...]
+    rows: tuple[IndexRow, ...]
     others: tuple[Other, ...]
 
 
@@ -85,8 +85,8 @@ def summary_of(listing: Listing) -> str:
     return ", ".join(parts)
 
 
-def _row(entry: Entry, folder: Path, place: Path) -> Row:
-    return Row(
+def _row(entry: FolderEntry, folder: Path, place: Path) -> IndexRow:
+    return IndexRow(
         entry=entry,
         link=_link(folder.absolute() / entry.sheet, place) if entry.sheet else "",
         state="found" if entry.kind == "diagnosis" else entry.state or "none",
@@ -104,7 +104,7 @@ def _link(sheet: Path, place: Path) -> str:
         return sheet.as_uri()
 
 
-def _margin(entry: Entry) -> str:
+def _margin(entry: FolderEntry) -> str:
     if entry.margin is None:
         return ABSENT
     least = next(one for one in entry.findings if one.margin is not None)
@@ -112,13 +112,13 @@ def _margin(entry: Entry) -> str:
     return f"{pretty(format_number(share, 3))}{chr(0x202F) + '%' if least.limit else ''}"
 
 
-def _findings(entry: Entry) -> Iterator[FindingView]:
+def _findings(entry: FolderEntry) -> Iterator[FindingView]:
     for one in entry.findings[:SHOWN]:
         limit = _number(one, one.limit) if one.limit is not None else ""
         yield FindingView(one.name, _number(one, one.value), f"{one.relation} {limit}" if limit else "", one.state)
 
 
-def _number(one: Finding, value: float | None) -> str:
+def _number(one: ListedNumber, value: float | None) -> str:
     try:
         unit = unit_text(one.unit) if one.unit else ""
     except UnitError:

@@ -18,7 +18,7 @@ from truing.numbers import format_number, pretty, with_unit
 from truing.published import ComparedRow
 from truing.report import equations
 from truing.report.columns import with_room
-from truing.report.context import Entry, Equation, FigureView, Sheet, TableView, Value
+from truing.report.context import Equation, FigureView, ResultEntry, Sheet, TableView, Value
 from truing.report.markdown import Raw, escaped
 from truing.report.templates import template_folder
 from truing.units import unit_text
@@ -174,7 +174,7 @@ def _is_narrow(table: TableView) -> bool:
     return len(table.columns) <= 4
 
 
-def _is_wide(entry: Entry) -> bool:
+def _is_wide(entry: ResultEntry) -> bool:
     """Tell whether the formula of an entry needs the whole width of the page."""
     return entry.equation is not None and max(line.width for line in _html_lines(entry.equation)) > COLUMN
 

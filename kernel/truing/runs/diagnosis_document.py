@@ -10,7 +10,7 @@ from truing.diagnosis.result import (
     Alternative,
     Amount,
     Cause,
-    Diagnosis,
+    DiagnosisResult,
     FittedUnknown,
     Gain,
     NextPoint,
@@ -28,7 +28,7 @@ from truing.units import from_si
 SCHEMA = "truing.diagnosis/1"
 
 
-def diagnosis_document(diagnosis: Diagnosis) -> dict[str, Any]:
+def diagnosis_document(diagnosis: DiagnosisResult) -> dict[str, Any]:
     """Return diagnosis.json as data: the same inputs, records, seed and versions give the same document.
 
     Numbers are in the unit that stands beside them; one that is not finite, and an open end of an interval, is null.
@@ -69,7 +69,7 @@ def diagnosis_document(diagnosis: Diagnosis) -> dict[str, Any]:
     }
 
 
-def _alarming(diagnosis: Diagnosis) -> dict[str, Any]:
+def _alarming(diagnosis: DiagnosisResult) -> dict[str, Any]:
     """Say where parts of the record contradict one another, and which causes trade against inputs."""
     return {
         "contradictions": [
@@ -92,7 +92,7 @@ def _alarming(diagnosis: Diagnosis) -> dict[str, Any]:
     }
 
 
-def _calibrated(diagnosis: Diagnosis) -> dict[str, Any]:
+def _calibrated(diagnosis: DiagnosisResult) -> dict[str, Any]:
     return {
         item.name: {**_value(item.value, item.unit), "of_its_sd": clean(item.of_its_sd)}
         for item in diagnosis.calibrated
@@ -105,11 +105,11 @@ def file_labels(files: Sequence[str]) -> list[str]:
     return names if len(set(names)) == len(names) else list(files)
 
 
-def _labels(diagnosis: Diagnosis) -> Mapping[str, str]:
+def _labels(diagnosis: DiagnosisResult) -> Mapping[str, str]:
     return dict(zip(diagnosis.records.files, file_labels(diagnosis.records.files), strict=True))
 
 
-def _data(diagnosis: Diagnosis) -> dict[str, Any]:
+def _data(diagnosis: DiagnosisResult) -> dict[str, Any]:
     """Say what was measured: results, files with their rows and runs, rows that only judge."""
     records = diagnosis.records
     files = []
@@ -218,7 +218,7 @@ def _remainder(remainder: Remainder) -> dict[str, Any]:
     }
 
 
-def _sight(diagnosis: Diagnosis) -> dict[str, Any]:
+def _sight(diagnosis: DiagnosisResult) -> dict[str, Any]:
     """Say what this data could show, and what it could not."""
     seen = diagnosis.seen
     return {

@@ -7,7 +7,7 @@ from hashlib import file_digest
 from pathlib import Path
 from typing import Any
 
-from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.result import DiagnosisResult
 from truing.runs.diagnosis_document import diagnosis_document, file_labels
 from truing.runs.extension import extended_text
 from truing.runs.folder import RUN_SCHEMA, json_text, npz_bytes, write_folder
@@ -19,7 +19,7 @@ from truing.units import from_si
 
 def write_diagnosis(
     folder: Path,
-    diagnosis: Diagnosis,
+    diagnosis: DiagnosisResult,
     *,
     provenance: Provenance,
     run_info: Mapping[str, Any],
@@ -60,13 +60,13 @@ def digest_of(file: str) -> str:
         return ""
 
 
-def data_digests(diagnosis: Diagnosis) -> dict[str, str]:
+def data_digests(diagnosis: DiagnosisResult) -> dict[str, str]:
     """Return the SHA-256 of every data file by the name it is given on the sheet."""
     files = diagnosis.records.files
     return {label: digest_of(file) for label, file in zip(file_labels(files), files, strict=True)}
 
 
-def curve_arrays(diagnosis: Diagnosis) -> dict[str, Any]:
+def curve_arrays(diagnosis: DiagnosisResult) -> dict[str, Any]:
     """Return what arrays.npz holds: per result measured, before and after in its printed unit; file, line and run."""
     records = diagnosis.records
     arrays: dict[str, Any] = {"file": records.file_of, "line": records.lines, "run": records.run_of}

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from truing.diagnosis.result import Calibrated, Cause, Diagnosis, FittedUnknown, explanations_of
+from truing.diagnosis.result import Calibrated, Cause, DiagnosisResult, FittedUnknown, explanations_of
 from truing.formulas.symbols import printable
 from truing.numbers import format_number
 from truing.runs.diagnosis_document import file_labels
@@ -18,7 +18,7 @@ from truing.units import from_si
 WIDTH = 116
 
 
-def extended_setup(diagnosis: Diagnosis) -> Setup | None:
+def extended_setup(diagnosis: DiagnosisResult) -> Setup | None:
     """Return the setup that the diagnosis leaves: causes on, inputs calibrated; None where neither is."""
     if diagnosis.extended is not None:
         return diagnosis.extended
@@ -28,7 +28,7 @@ def extended_setup(diagnosis: Diagnosis) -> Setup | None:
     return replace(diagnosis.setup, calibrated={**diagnosis.setup.calibrated, **fitted})
 
 
-def extended_text(diagnosis: Diagnosis, folder: Path | None = None) -> str:
+def extended_text(diagnosis: DiagnosisResult, folder: Path | None = None) -> str:
     """Write the extended model as an inputs file; nothing where nothing was named or calibrated.
 
     ``folder`` is where the text will stand: data files are named as seen from there.
@@ -50,7 +50,7 @@ def _comment(sentences: Iterator[str]) -> Iterator[str]:
         yield from (f"# {line}" for line in textwrap.wrap(printable(sentence), WIDTH))
 
 
-def _head(diagnosis: Diagnosis) -> Iterator[str]:
+def _head(diagnosis: DiagnosisResult) -> Iterator[str]:
     model = diagnosis.setup.model.name
     files = ", ".join(file_labels(diagnosis.records.files))
     yield f"{model} as measured: what calc diagnose made of {files} ({len(diagnosis.records)} rows)."
@@ -71,7 +71,7 @@ def _head(diagnosis: Diagnosis) -> Iterator[str]:
     yield f"Run it: calc run {model} --inputs THIS_FILE"
 
 
-def _of_section(name: str, diagnosis: Diagnosis) -> Iterator[str]:
+def _of_section(name: str, diagnosis: DiagnosisResult) -> Iterator[str]:
     """Say of a section what the diagnosis put there."""
     if name == "calibrated":
         yield (
@@ -90,7 +90,7 @@ def _moved(item: Calibrated) -> str:
     return f"{item.name}: moved by {item.of_its_sd:+.2f} of its standard deviation."
 
 
-def _of_cause(cause: Cause, diagnosis: Diagnosis) -> Iterator[str]:
+def _of_cause(cause: Cause, diagnosis: DiagnosisResult) -> Iterator[str]:
     effect = diagnosis.setup.model.known_effects.get(cause.effect)
     about = "" if effect is None else effect.why or effect.looks_like
     yield f"Found by diagnosis{': ' + about if about else ''}."

@@ -24,8 +24,8 @@ from truing.runs.spreadsheet import spreadsheets
 from truing.runs.study_files import study_files
 
 RUN_SCHEMA = "truing.run/1"
-Kind = Literal["run", "diagnosis"]
-DOCUMENTS: dict[Kind, tuple[str, str]] = {
+FolderKind = Literal["run", "diagnosis"]
+DOCUMENTS: dict[FolderKind, tuple[str, str]] = {
     "run": ("results.json", SCHEMA),
     "diagnosis": ("diagnosis.json", "truing.diagnosis/1"),
 }
@@ -89,7 +89,7 @@ def npz_bytes(arrays: Mapping[str, Any]) -> bytes:
     return stream.getvalue()
 
 
-def is_ours(folder: Path, kind: Kind) -> bool:
+def is_ours(folder: Path, kind: FolderKind) -> bool:
     """Tell whether a folder is a run, or a diagnosis, of ours: its document of our schema, and run.json."""
     name, schema = DOCUMENTS[kind]
     try:
@@ -104,7 +104,7 @@ def is_run(folder: Path) -> bool:
     return is_ours(folder, "run")
 
 
-def demand_place(folder: Path, kind: Kind = "run") -> None:
+def demand_place(folder: Path, kind: FolderKind = "run") -> None:
     """Raise OutputError, with one sentence, unless a run (a diagnosis) can be put at ``folder``; nothing is written.
 
     To be asked before a long calculation begins. What a death has left beside the folder is cleared up.
@@ -116,7 +116,7 @@ def demand_place(folder: Path, kind: Kind = "run") -> None:
         raise OutputError(f"{folder}: cannot be used for the {kind}: {error.strerror or error}") from None
 
 
-def _demand_place(folder: Path, kind: Kind) -> None:
+def _demand_place(folder: Path, kind: FolderKind) -> None:
     if folder.is_dir():
         if not is_ours(folder, kind):
             what = _what_is_there(folder, kind)
@@ -134,14 +134,14 @@ def _demand_place(folder: Path, kind: Kind) -> None:
             raise OutputError(f"{folder}: {parent} is a file, so there can be no folder below it; name another place")
 
 
-def _what_is_there(folder: Path, kind: Kind) -> str:
-    other: Kind = "diagnosis" if kind == "run" else "run"
+def _what_is_there(folder: Path, kind: FolderKind) -> str:
+    other: FolderKind = "diagnosis" if kind == "run" else "run"
     if is_ours(folder, other):
         return f"an existing {other} of ours but no {kind}"
     return f"an existing folder but no {kind} of ours" if any(folder.iterdir()) else "an existing empty folder"
 
 
-def write_folder(folder: Path, files: Mapping[str, str | bytes], kind: Kind = "run") -> None:
+def write_folder(folder: Path, files: Mapping[str, str | bytes], kind: FolderKind = "run") -> None:
     """Write files into a folder that appears complete or not at all; an earlier one of its kind is replaced whole."""
     demand_place(folder, kind)
     place_folder(folder, files, kind)
@@ -158,7 +158,7 @@ def load_either(folder: Path) -> dict[str, Any]:
     return _loaded(folder, "diagnosis" if folder.name == name or (folder / name).is_file() else "run")
 
 
-def _loaded(folder: Path, kind: Kind) -> dict[str, Any]:
+def _loaded(folder: Path, kind: FolderKind) -> dict[str, Any]:
     name, schema = DOCUMENTS[kind]
     path = folder if folder.name == name else folder / name
     if not path.is_file():

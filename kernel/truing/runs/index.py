@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from truing.errors import UnknownPluginError
-from truing.runs.folder import DOCUMENTS, Kind
+from truing.runs.folder import DOCUMENTS, FolderKind
 from truing.runs.partial import HEADER
 from truing.studies.checks import EXIT_CODES, HEADLINES, State
 from truing.studies.verdicts import worst
@@ -28,7 +28,7 @@ VERDICTS = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
+class ListedNumber:
     """One number of an entry: a check with its limit and margin, a result, or the size of a cause."""
 
     name: str
@@ -41,7 +41,7 @@ class Finding:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Entry:
+class FolderEntry:
     """A run or a diagnosis; ``name`` is its path below the folder, ``sheet`` that of its sheet, or nothing.
 
     ``date`` is when it was made, as in run.json, ``stamp`` the same as seconds since 1970. ``findings`` hold the checks
@@ -49,7 +49,7 @@ class Entry:
     """
 
     name: str
-    kind: Kind
+    kind: FolderKind
     model: str
     plugin: str
     version: str
@@ -61,7 +61,7 @@ class Entry:
     checks: int = 0
     failed: int = 0
     cases: int = 0
-    findings: tuple[Finding, ...] = ()
+    findings: tuple[ListedNumber, ...] = ()
     warnings: int = 0
     sheet: str = ""
 
@@ -84,7 +84,7 @@ class Listing:
     """Everything that was found, newest first, and what was left out."""
 
     folder: str
-    entries: tuple[Entry, ...]
+    entries: tuple[FolderEntry, ...]
     others: tuple[Other, ...]
 
 
@@ -100,10 +100,10 @@ def list_folder(folder: Path) -> Listing:
     if not folder.is_dir():
         what = "is a file; name the folder that holds the runs" if folder.exists() else "no such folder"
         raise UnknownPluginError(f"{folder}: {what}")
-    entries: list[Entry] = []
+    entries: list[FolderEntry] = []
     others: list[Other] = []
     for found in _walk(folder, folder, 0):
-        if isinstance(found, Entry):
+        if isinstance(found, FolderEntry):
             entries.append(found)
         else:
             others.append(found)
@@ -112,7 +112,7 @@ def list_folder(folder: Path) -> Listing:
     return Listing(str(folder), tuple(entries), tuple(sorted(others, key=lambda other: other.name)))
 
 
-def _walk(root: Path, place: Path, depth: int) -> Iterator[Entry | Other]:
+def _walk(root: Path, place: Path, depth: int) -> Iterator[FolderEntry | Other]:
     """Yield what a folder is or holds; one with neither run nor diagnosis in it is said to be foreign."""
     name = place.relative_to(root).as_posix()
     kind = next((kind for kind, (document, _) in DOCUMENTS.items() if (place / document).exists()), None)
@@ -133,7 +133,7 @@ def _walk(root: Path, place: Path, depth: int) -> Iterator[Entry | Other]:
     yield from _below(root, place, depth, inside=inside)
 
 
-def _below(root: Path, place: Path, depth: int, *, inside: Sequence[os.DirEntry[str]]) -> Iterator[Entry | Other]:
+def _below(root: Path, place: Path, depth: int, *, inside: Sequence[os.DirEntry[str]]) -> Iterator[FolderEntry | Other]:
     name = place.relative_to(root).as_posix()
     folders = [item for item in inside if item.is_dir() and not item.name.startswith(".")]
     if depth >= DEEPEST and folders:
@@ -148,7 +148,7 @@ def _below(root: Path, place: Path, depth: int, *, inside: Sequence[os.DirEntry[
         yield Other(name, "holds no run and no diagnosis" if inside else "is empty")
 
 
-def _entry(place: Path, name: str, kind: Kind) -> Entry:
+def _entry(place: Path, name: str, kind: FolderKind) -> FolderEntry:
     document_name, schema = DOCUMENTS[kind]
     document = _json(place / document_name)
     if document.get("schema") != schema:
@@ -177,7 +177,7 @@ def _json(path: Path) -> dict[str, Any]:
     return document
 
 
-def _of_run(document: Mapping[str, Any], name: str) -> Entry:
+def _of_run(document: Mapping[str, Any], name: str) -> FolderEntry:
     cases = list(document.get("cases") or [])
     checks = [_check(item) for each in (cases or [document]) for item in each["checks"]]
     impossible = any(case.get("failed") is not None for case in cases)
@@ -189,21 +189,21 @@ def _of_run(document: Mapping[str, Any], name: str) -> Entry:
     words += f": {concerned or 'a case'}" if state not in {None, "passes"} else ""
     failed = [check for check in checks if check.state != "passes"]
     ranked = sorted(checks, key=lambda one: float("-inf") if one.margin is None else one.margin)
-    return Entry(
+    return FolderEntry(
         **_made_by(document, name, "run"), verdict=words, state=state, checks=len(checks), failed=len(failed),
         cases=len(cases), findings=tuple(ranked) or tuple(_first_results(document)),
     )  # fmt: skip
 
 
-def _made_by(document: Mapping[str, Any], name: str, kind: Kind) -> dict[str, Any]:
+def _made_by(document: Mapping[str, Any], name: str, kind: FolderKind) -> dict[str, Any]:
     plugin = document["plugin"]
     named = {"model": plugin["model"], "plugin": plugin["name"], "version": plugin["version"]}
     warnings = len(document.get("warnings") or [])
     return {"name": name, "kind": kind, "warnings": warnings, "head": {}} | {key: str(v) for key, v in named.items()}
 
 
-def _check(item: Mapping[str, Any]) -> Finding:
-    return Finding(
+def _check(item: Mapping[str, Any]) -> ListedNumber:
+    return ListedNumber(
         name=str(item["name"]),
         value=_number(item["value"]),
         unit=str(item["unit"]),
@@ -229,13 +229,13 @@ def _number(value: Any) -> float | None:
     return float(value)
 
 
-def _first_results(document: Mapping[str, Any]) -> Iterator[Finding]:
+def _first_results(document: Mapping[str, Any]) -> Iterator[ListedNumber]:
     for name, item in document["results"].items():
         if isinstance(item["value"], (int, float)) and not isinstance(item["value"], bool):
-            yield Finding(name=str(name), value=float(item["value"]), unit=str(item["unit"]))
+            yield ListedNumber(name=str(name), value=float(item["value"]), unit=str(item["unit"]))
 
 
-def _of_diagnosis(document: Mapping[str, Any], name: str) -> Entry:
+def _of_diagnosis(document: Mapping[str, Any], name: str) -> FolderEntry:
     causes = document["causes"]
     words = VERDICTS[document["verdict"]]
     if document["verdict"] == "one_of":
@@ -246,11 +246,11 @@ def _of_diagnosis(document: Mapping[str, Any], name: str) -> Entry:
     if document.get("remainder") and document["verdict"] == "named":
         words += "; a remainder left"
     sizes = [
-        Finding(name=f"{cause['effect']} {unknown}", value=_number(item["value"]), unit=str(item["unit"]))
+        ListedNumber(name=f"{cause['effect']} {unknown}", value=_number(item["value"]), unit=str(item["unit"]))
         for cause in causes
         for unknown, item in cause["unknowns"].items()
     ]
-    return Entry(**_made_by(document, name, "diagnosis"), verdict=words, findings=tuple(sizes))
+    return FolderEntry(**_made_by(document, name, "diagnosis"), verdict=words, findings=tuple(sizes))
 
 
 def _date(path: Path) -> tuple[str, float | None]:

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from truing.declare.sources import Condition
-from truing.diagnosis.result import Diagnosis, ShapeTerm
+from truing.diagnosis.result import DiagnosisResult, ShapeTerm
 from truing.formulas.symbols import printable
 from truing.runs.diagnosis_document import file_labels
 
@@ -56,7 +56,7 @@ class _Source:
     condition: Condition | None = None
 
 
-def new_effect_source(diagnosis: Diagnosis) -> str:
+def new_effect_source(diagnosis: DiagnosisResult) -> str:
     """Write the file; nothing where there is no remainder.
 
     Applied with ``factor`` 1 the effect adds the fitted shape to the results it was fitted on.
@@ -70,7 +70,7 @@ def new_effect_source(diagnosis: Diagnosis) -> str:
     return "\n\n\n".join(parts) + "\n"
 
 
-def _terms(diagnosis: Diagnosis) -> Mapping[str, Sequence[ShapeTerm]]:
+def _terms(diagnosis: DiagnosisResult) -> Mapping[str, Sequence[ShapeTerm]]:
     """Return the terms of every result of the remainder that the model has."""
     assert diagnosis.remainder is not None
     return {
@@ -80,7 +80,7 @@ def _terms(diagnosis: Diagnosis) -> Mapping[str, Sequence[ShapeTerm]]:
     }
 
 
-def _sources(diagnosis: Diagnosis) -> Iterator[_Source]:
+def _sources(diagnosis: DiagnosisResult) -> Iterator[_Source]:
     """Find where each covariate of the shape comes from: an input, an axis of the results, or a condition."""
     assert diagnosis.remainder is not None
     model = diagnosis.setup.model
@@ -168,7 +168,7 @@ def _comment(text: str) -> list[str]:
     return [f"# {line}" for line in textwrap.wrap(printable(text), 116)]
 
 
-def _head(diagnosis: Diagnosis) -> str:
+def _head(diagnosis: DiagnosisResult) -> str:
     remainder = diagnosis.remainder
     assert remainder is not None
     model = diagnosis.setup.model
@@ -191,7 +191,7 @@ def _head(diagnosis: Diagnosis) -> str:
     return "\n".join(lines)
 
 
-def _imports(diagnosis: Diagnosis) -> list[str]:
+def _imports(diagnosis: DiagnosisResult) -> list[str]:
     needed = {"Effect", "Float", "Model", "Unknown", "hookimpl"}
     if any(source.condition is not None for source in _sources(diagnosis)):
         needed.add("Condition")
@@ -200,7 +200,7 @@ def _imports(diagnosis: Diagnosis) -> list[str]:
     return sorted(needed, key=lambda name: (name.islower(), name))
 
 
-def _is_curve(diagnosis: Diagnosis, result: str) -> bool:
+def _is_curve(diagnosis: DiagnosisResult, result: str) -> bool:
     """Tell whether a result runs along an axis, so that one row holds many values."""
     return bool(diagnosis.setup.model.own_result_fields[result].along)
 
@@ -252,7 +252,7 @@ def _shape(result: str, terms: Sequence[ShapeTerm], sources: Sequence[_Source]) 
     return "\n".join(lines)
 
 
-def _effect_function(diagnosis: Diagnosis, sources: Sequence[_Source]) -> str:
+def _effect_function(diagnosis: DiagnosisResult, sources: Sequence[_Source]) -> str:
     """Write the function of the effect: it adds every shape to its result."""
     conditions = "".join(f", {source.code}: Float" for source in sources if source.condition is not None)
     lines = [f"def {NAME}(inputs: Any, results: Any, *, factor: Float{conditions}) -> Any:"]
@@ -265,7 +265,7 @@ def _effect_function(diagnosis: Diagnosis, sources: Sequence[_Source]) -> str:
     return "\n".join([*lines, "    return results"])
 
 
-def _argument(diagnosis: Diagnosis, result: str, source: _Source) -> str:
+def _argument(diagnosis: DiagnosisResult, result: str, source: _Source) -> str:
     """Write one value handed to a shape; beside a result along an axis a value per row is a column."""
     value = source.path or source.code
     if _is_curve(diagnosis, result) and not value.startswith("results."):
@@ -281,7 +281,7 @@ def _replaced(path: Sequence[str]) -> str:
     return inner
 
 
-def _declaration(diagnosis: Diagnosis, sources: Sequence[_Source]) -> str:
+def _declaration(diagnosis: DiagnosisResult, sources: Sequence[_Source]) -> str:
     remainder = diagnosis.remainder
     assert remainder is not None
     needs = ", ".join(source.code.upper() for source in sources if source.condition is not None)
@@ -297,7 +297,7 @@ def _declaration(diagnosis: Diagnosis, sources: Sequence[_Source]) -> str:
     return "\n".join(lines)
 
 
-def _hook(diagnosis: Diagnosis) -> str:
+def _hook(diagnosis: DiagnosisResult) -> str:
     name = _quoted(diagnosis.setup.model.name)
     return "\n".join([
         "@hookimpl",

@@ -11,7 +11,7 @@ from truing.measurements import EXCEL, table_text
 from truing.studies.checks import SHORT
 
 HEADERS = ("part", "name", "place", "value", "unit", "limit", "margin", "verdict", "note")
-Row = dict[str, Any]
+SpreadsheetRow = dict[str, Any]
 
 
 def spreadsheets(document: Mapping[str, Any], model: Model[Any, Any]) -> dict[str, str]:
@@ -23,7 +23,7 @@ def spreadsheets(document: Mapping[str, Any], model: Model[Any, Any]) -> dict[st
     return found
 
 
-def _single(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[Row]:
+def _single(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[SpreadsheetRow]:
     """Give what is one number, or one word: results, checks, inputs, and what acts on them."""
     yield from _named("result", document["results"], _notes(model))
     for check in document["checks"]:
@@ -49,14 +49,14 @@ def _notes(model: Model[Any, Any]) -> dict[str, str]:
     return {name: printable(item.spec.note) for name, item in (model.input_fields | model.result_fields).items()}
 
 
-def _named(part: str, items: Mapping[str, Any], notes: Mapping[str, str]) -> Iterator[Row]:
+def _named(part: str, items: Mapping[str, Any], notes: Mapping[str, str]) -> Iterator[SpreadsheetRow]:
     for name, item in items.items():
         if not isinstance(item["value"], (list, dict)):
             note = f"in arrays.npz: {item['array']}" if "array" in item else notes.get(name, "")
             yield {"part": part, "name": name, "value": item["value"], "unit": item["unit"], "note": note}
 
 
-def _spread_out(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[Row]:
+def _spread_out(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[SpreadsheetRow]:
     """Give what has many numbers, one a row: results and inputs along an axis, and what the studies say."""
     for part in ("result", "input"):
         for name, item in document[f"{part}s"].items():

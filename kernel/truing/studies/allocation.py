@@ -21,11 +21,27 @@ from truing.studies.checks import Check, Proposal, chance_check, plain_checks
 from truing.studies.demands import Demand, as_number, demands, nominal_inputs, wilson
 from truing.studies.differences import slopes
 from truing.studies.drawings import lines
-from truing.studies.grades import Shop, Strip, open_shop, priced_widths, with_grades, with_widths
+from truing.studies.grades import (
+    AllocationProblem,
+    ToleranceVariable,
+    open_problem,
+    priced_widths,
+    with_grades,
+    with_widths,
+)
 from truing.studies.reading import printed_step, spoken
-from truing.studies.sampling import Budget, Machines, Tally, sample
+from truing.studies.sampling import Machines, SampleBudget, Tally, sample
 from truing.studies.scatter import scatter_of
-from truing.studies.synthesis import Plan, Step, as_it_stands, bettered, bought, by_rule, coefficients, least_cost
+from truing.studies.synthesis import (
+    AllocationPlan,
+    Step,
+    as_it_stands,
+    bettered,
+    bought,
+    by_rule,
+    coefficients,
+    least_cost,
+)
 from truing.units import from_si, unit_text
 
 BALANCED_TO = 1e-4
@@ -75,7 +91,7 @@ class Allocation:
         wanted = _goals(setup, bench.answers, self.name)
         machines = Machines(setup, scatter_of(setup))
         straight, found = straightened(machines, wanted, nominal_inputs(setup, wanted))
-        shop = open_shop(setup, wanted, straight, self.finest, loosen=self.loosen, span=(self.tightest, self.widest))
+        shop = open_problem(setup, wanted, straight, self.finest, loosen=self.loosen, span=(self.tightest, self.widest))
         order = coefficients(shop, self._slopes(machines, wanted, shop), self.weights) if shop.parts else {}
         steps, ruled = by_rule(shop, order, self.finest) if shop.parts else ([], as_it_stands(shop))
         rule = bought(shop, ruled)
@@ -96,7 +112,7 @@ class Allocation:
             inputs=acting_inputs(setup),
         )
 
-    def _slopes(self, machines: Machines, wanted: Sequence[Demand], shop: Shop) -> dict[str, float]:
+    def _slopes(self, machines: Machines, wanted: Sequence[Demand], shop: AllocationProblem) -> dict[str, float]:
         """Return by part the sum of the absolute derivatives of the ordering result."""
         of = self.of or wanted[0].result
         known = machines.setup.model.own_result_fields
@@ -107,7 +123,9 @@ class Allocation:
         found = slopes(machines.setup, (of,), columns, machines.scatter).of[of]
         return {name: sum(abs(float(found[column])) for column in tolerances[name].on) for name in shop.parts}
 
-    def _verified(self, bench: Bench, wanted: Sequence[Demand], designs: Mapping[str, Plan]) -> dict[str, Tally]:
+    def _verified(
+        self, bench: Bench, wanted: Sequence[Demand], designs: Mapping[str, AllocationPlan]
+    ) -> dict[str, Tally]:
         """Draw the same machines for every design; equal designs are drawn once."""
         found: dict[str, Tally] = {}
         for stage, (key, plan) in enumerate(designs.items()):
@@ -120,17 +138,17 @@ class Allocation:
             def done(draws: int, total: int, stage: int = stage) -> None:
                 bench.progress(self.name, stage * total + draws, len(designs) * total)
 
-            budget = Budget(self.draws, self.batch, bench.executor, done)
+            budget = SampleBudget(self.draws, self.batch, bench.executor, done)
             found[key] = sample(Machines(setup, scatter_of(setup)), wanted, bench.answers, budget)
         return found
 
 
-def with_plan(setup: Setup, plan: Plan) -> Setup:
+def with_plan(setup: Setup, plan: AllocationPlan) -> Setup:
     """Return the setup with the grades and widths of a plan."""
     return with_widths(with_grades(setup, plan.grades), plan.widths)
 
 
-def _least(shop: Shop, ruled: Plan, rule: Plan) -> Plan:
+def _least(shop: AllocationProblem, ruled: AllocationPlan, rule: AllocationPlan) -> AllocationPlan:
     """Return the cheapest design. With widths too it is sought by steps of one grade from three choices of grades."""
     if not shop.parts:
         return rule
@@ -142,19 +160,19 @@ def _least(shop: Shop, ruled: Plan, rule: Plan) -> Plan:
     return min((bettered(shop, plan) for plan in found), key=lambda plan: (not plan.reached, plan.cost))
 
 
-def _texts(setup: Setup, shop: Shop, plan: Plan) -> dict[str, str]:
+def _texts(setup: Setup, shop: AllocationProblem, plan: AllocationPlan) -> dict[str, str]:
     """Return by tolerance what an inputs file would say of this design."""
     chosen = with_plan(setup, plan)
     return {name: chosen.spread_of(name).text for name in (*shop.parts, *shop.strips)}
 
 
-def _price_checks(setup: Setup, plan: Plan) -> tuple[Check, ...]:
+def _price_checks(setup: Setup, plan: AllocationPlan) -> tuple[Check, ...]:
     """Return the limits on the price of all tolerances, with those of a plan."""
     chosen = with_plan(setup, plan)
     return tuple(plain_checks(chosen, price_answers(chosen)))
 
 
-def _left_alone(setup: Setup, shop: Shop) -> list[str]:
+def _left_alone(setup: Setup, shop: AllocationProblem) -> list[str]:
     """Say which widths with a price were not chosen, since the grades beside them have none."""
     names = [f"'{item.name}'" for item in priced_widths(setup) if item.name not in shop.strips]
     if not names:
@@ -186,10 +204,10 @@ class Allotted:
 
     name: str = "allocation"
     finest: str
-    shop: Shop
+    shop: AllocationProblem
     steps: tuple[Step, ...]
-    rule: Plan
-    least: Plan
+    rule: AllocationPlan
+    least: AllocationPlan
     coefficients: Mapping[str, float]
     sampled: Mapping[str, Tally] = field(default_factory=dict)
     texts: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
@@ -228,7 +246,7 @@ class Allotted:
         return self.rule.cost
 
     @property
-    def least_cost(self) -> Plan:
+    def least_cost(self) -> AllocationPlan:
         """The least-cost choice among the same grades and widths."""
         return self.least
 
@@ -247,7 +265,7 @@ class Allotted:
         }
 
     @property
-    def spoken(self) -> dict[str, tuple[str, Plan]]:
+    def spoken(self) -> dict[str, tuple[str, AllocationPlan]]:
         """The designs that were adjusted, by key: what they are called, and the plan. Without grades there is one."""
         if not self.shop.parts:
             return {"least": ("the widths of least cost", self.least)}
@@ -306,7 +324,7 @@ class Allotted:
         return words
 
 
-def _not_a_minimum(what: str, plan: Plan) -> str:
+def _not_a_minimum(what: str, plan: AllocationPlan) -> str:
     return f"{what} are no proven minimum of the cost: {plan.residual:.2g} of its gradient is not balanced"
 
 
@@ -356,11 +374,11 @@ def allotted_json(allotted: Allotted) -> dict[str, Any]:
 
 def _start(allotted: Allotted) -> dict[str, Any]:
     start = allotted.shop.start
-    plan = Plan(start, allotted.shop.cost(start), allotted.start, allotted.shop.reached(start))
+    plan = AllocationPlan(start, allotted.shop.cost(start), allotted.start, allotted.shop.reached(start))
     return _design(allotted, plan, "start")
 
 
-def _design(allotted: Allotted, plan: Plan, key: str) -> dict[str, Any]:
+def _design(allotted: Allotted, plan: AllocationPlan, key: str) -> dict[str, Any]:
     entry: dict[str, Any] = {
         "tolerances": dict(allotted.texts.get(key, plan.grades)),
         "cost": {"value": plan.cost, "unit": allotted.shop.unit},
@@ -376,7 +394,7 @@ def _design(allotted: Allotted, plan: Plan, key: str) -> dict[str, Any]:
     return entry
 
 
-def _width(strip: Strip, plan: Plan) -> dict[str, Any]:
+def _width(strip: ToleranceVariable, plan: AllocationPlan) -> dict[str, Any]:
     width = plan.widths.get(strip.name, strip.start)
     return {
         "from": printed_step(strip.start, strip.unit),
@@ -435,8 +453,8 @@ def _steps(allotted: Allotted) -> Table:
 def _comparison(allotted: Allotted) -> Table:
     names = list(allotted.start)
     shop = allotted.shop
-    start = Plan(shop.start, shop.cost(shop.start), allotted.start, shop.reached(shop.start))
-    designs: Mapping[str, tuple[Plan, str, int]] = {
+    start = AllocationPlan(shop.start, shop.cost(shop.start), allotted.start, shop.reached(shop.start))
+    designs: Mapping[str, tuple[AllocationPlan, str, int]] = {
         "start": (start, "start", 0),
         **({"rule": (allotted.rule, "rule", allotted.adjustments)} if shop.parts else {}),
         "least cost": (allotted.least, "least", allotted.least_steps),
@@ -491,7 +509,7 @@ def _grades(allotted: Allotted) -> Table:
     return Table("Grades", ("tolerance", "coefficient", "start", "rule", "least cost"), rows)
 
 
-def _widths(allotted: Allotted, what: str, plan: Plan) -> Table:
+def _widths(allotted: Allotted, what: str, plan: AllocationPlan) -> Table:
     """Say what became of every width that has a price."""
     rows: list[list[Any]] = []
     for strip in allotted.shop.strips.values():

@@ -18,7 +18,7 @@ from truing.studies.scatter import scatter_of
 Progress = Callable[[str, int, int], None]
 
 
-Done = Callable[[int, int], None]
+StepProgress = Callable[[int, int], None]
 FINE = 1000
 """How many steps a task has of which only parts can be counted."""
 
@@ -31,7 +31,7 @@ def unheard(step: int, steps: int) -> None:
     """Report no steps."""
 
 
-def part_of(progress: Progress, task: str, begin: float, end: float) -> Done:
+def part_of(progress: Progress, task: str, begin: float, end: float) -> StepProgress:
     """Return what reports the steps of one part of a task, which runs from one share of the whole to another."""
 
     def done(step: int, steps: int) -> None:
@@ -81,7 +81,7 @@ class Bench:
         """The inputs as the effects that are on leave them: what the calculation itself is called with."""
         return acting_inputs(self.setup)
 
-    def part(self, task: str, begin: float, end: float) -> Done:
+    def part(self, task: str, begin: float, end: float) -> StepProgress:
         """Return what reports the steps of one part of a task, from one share (0 to 1) of the whole to another."""
         return part_of(self.progress, task, begin, end)
 

@@ -43,7 +43,7 @@ class Side:
 
 
 @dataclass(frozen=True)
-class Form:
+class FormResult:
     """FORM of one demand: its sides, and the probability of meeting it (None where a search did not arrive)."""
 
     sides: Mapping[str, Side]
@@ -58,21 +58,21 @@ class Form:
         return {"status": self.status, "probability": self.probability, "beta": beta}
 
 
-def form(machines: Machines, demand: Demand, nominal: Mapping[str, float]) -> Form:
+def form(machines: Machines, demand: Demand, nominal: Mapping[str, float]) -> FormResult:
     """Find the reliability index of each side of a demand on a number."""
     if machines.setup.model.own_result_fields[demand.result].along:
-        return Form({}, None, "not done: the result runs along an axis")
+        return FormResult({}, None, "not done: the result runs along an axis")
     if not machines.scatter.dimension:
-        return Form({}, None, "not done: nothing scatters")
+        return FormResult({}, None, "not done: nothing scatters")
     sides: dict[str, Side] = {}
     for name, bound, sign in (("low", demand.low, 1.0), ("high", demand.high, -1.0)):
         if np.isfinite(bound):
             sides[name] = _search(_limit_state(machines, demand, nominal, (sign, bound)), machines)
     failed = [f"{name} limit: {side.status}" for name, side in sides.items() if not side.converged]
     if failed:
-        return Form(sides, None, "; ".join(failed))
+        return FormResult(sides, None, "; ".join(failed))
     missed = sum(float(ndtr(-side.beta)) for side in sides.values() if side.beta is not None)
-    return Form(sides, max(0.0, 1.0 - missed), "converged")
+    return FormResult(sides, max(0.0, 1.0 - missed), "converged")
 
 
 def _limit_state(

@@ -23,7 +23,7 @@ RECIPROCAL = "1/mm"
 
 
 @dataclass(frozen=True)
-class Choice:
+class GradeChoice:
     """One grade of one part: its full width (m), its cost, and its first-order variance by demand (SI)."""
 
     grade: str
@@ -33,33 +33,33 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Part:
+class GradedTolerance:
     """A tolerance that is a grade: the grade it starts at, and every grade it may take, finest first."""
 
     name: str
     start: str
-    choices: Mapping[str, Choice]
+    choices: Mapping[str, GradeChoice]
 
     @property
-    def first(self) -> Choice:
+    def first(self) -> GradeChoice:
         """The grade it starts at."""
         return self.choices[self.start]
 
 
 @dataclass(frozen=True)
-class Shop:
+class AllocationProblem:
     """All parts whose grade may be chosen, strips whose width may be, what stays as it is, and the goals to reach.
 
     ``fixed`` is the variance that no grade makes, with the widths in force. ``span`` is that of the widths over those.
     """
 
-    parts: Mapping[str, Part]
+    parts: Mapping[str, GradedTolerance]
     demands: tuple[Demand, ...]
     means: Mapping[str, float]
     fixed: Mapping[str, float]
     unit: str
     priced: bool
-    strips: Mapping[str, Strip] = field(default_factory=dict)
+    strips: Mapping[str, ToleranceVariable] = field(default_factory=dict)
     span: tuple[float, float] = (1.0, 1.0)
 
     def variance(self, name: str, grades: Mapping[str, str], widths: Mapping[str, float] | None = None) -> float:
@@ -116,7 +116,7 @@ class Shop:
         return {name: part.start for name, part in self.parts.items()}
 
 
-def open_shop(
+def open_problem(
     setup: Setup,
     wanted: Sequence[Demand],
     straight: Mapping[str, Straight],
@@ -124,7 +124,7 @@ def open_shop(
     *,
     loosen: bool,
     span: tuple[float, float] = (1.0, 1.0),
-) -> Shop:
+) -> AllocationProblem:
     """Collect parts, grades, widths and costs. Raises UsageError where no tolerance in force is a grade or has a price.
 
     Widths can be bought only where every grade has a price too; otherwise they stay.
@@ -132,7 +132,7 @@ def open_shop(
     graded = [item for item in setup.model.tolerances.values() if isinstance(setup.spread_of(item.name), Grade)]
     price_unit = _price_unit(setup, graded)
     priced = price_unit is not None
-    strips = strips_of(setup, straight, span) if priced or not graded else {}
+    strips = tolerance_variables(setup, straight, span) if priced or not graded else {}
     if not graded and not strips:
         raise UsageError(
             f'{setup.model.name} has no tolerance that is a grade, such as grade("IT7"), and none with a price whose '
@@ -147,28 +147,28 @@ def open_shop(
     means = {demand.name: float(straight[demand.name].mean) for demand in wanted}
     units = [price_unit] if price_unit is not None else [strip.price.unit for strip in strips.values()]
     unit = units[0] if units else RECIPROCAL
-    return Shop(parts, tuple(wanted), means, fixed, unit, priced or bool(strips), strips, span)
+    return AllocationProblem(parts, tuple(wanted), means, fixed, unit, priced or bool(strips), strips, span)
 
 
 def _part(
     setup: Setup, tolerance: Tolerance, straight: Mapping[str, Straight], allowed: tuple[str, bool], priced: bool
-) -> Part:
+) -> GradedTolerance:
     spread = setup.spread_of(tolerance.name)
     assert isinstance(spread, Grade)  # open_shop has chosen these
     start = GRADES.index(spread.grade)
     finest, loosen = GRADES.index(allowed[0]), allowed[1]
     last = len(GRADES) if loosen else start + 1
-    choices: dict[str, Choice] = {}
+    choices: dict[str, GradeChoice] = {}
     for grade in GRADES[min(finest, start) : last]:
         choice = _choice(setup, tolerance, replace(spread, grade=grade), straight, priced=priced)
         if choice is not None:
             choices[grade] = choice
-    return Part(tolerance.name, spread.grade, choices)
+    return GradedTolerance(tolerance.name, spread.grade, choices)
 
 
 def _choice(
     setup: Setup, tolerance: Tolerance, spread: Grade, straight: Mapping[str, Straight], *, priced: bool
-) -> Choice | None:
+) -> GradeChoice | None:
     """Return what one grade does, or None where ISO 286 has no such grade for the size."""
     try:
         width = spread.width(setup.target(tolerance.on[0]))
@@ -181,7 +181,7 @@ def _choice(
         name: sum((float(line.slopes[column]) * sd) ** 2 for column, sd in sds.items())
         for name, line in straight.items()
     }
-    return Choice(spread.grade, width, cost_of(price_of(setup, tolerance) if priced else None, width), variances)
+    return GradeChoice(spread.grade, width, cost_of(price_of(setup, tolerance) if priced else None, width), variances)
 
 
 def cost_of(price: Price | None, width: float) -> float:
@@ -216,7 +216,7 @@ Values: TypeAlias = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Strip:
+class ToleranceVariable:
     """A priced tolerance with a full width in SI that may be chosen from ``low`` to ``high``; ``start`` is in force.
 
     By demand: ``variances`` at the start, and ``pulls``, by how much the mean moves with the width.
@@ -248,7 +248,7 @@ class Strip:
         return self.pulls[demand] * (width - self.start)
 
 
-def prices_at(strips: Sequence[Strip], widths: Values) -> tuple[Values, Values]:
+def prices_at(strips: Sequence[ToleranceVariable], widths: Values) -> tuple[Values, Values]:
     """Return what these full widths (n,) in SI cost, and the exact derivatives: the formulas with an imaginary step.
 
     Every formula is computed once, for all widths that it prices.
@@ -262,7 +262,9 @@ def prices_at(strips: Sequence[Strip], widths: Values) -> tuple[Values, Values]:
     return paid.real, paid.imag / (COMPLEX_STEP * widths)
 
 
-def strips_of(setup: Setup, straight: Mapping[str, Straight], span: tuple[float, float]) -> dict[str, Strip]:
+def tolerance_variables(
+    setup: Setup, straight: Mapping[str, Straight], span: tuple[float, float]
+) -> dict[str, ToleranceVariable]:
     """Collect the priced tolerances in force that have a width of their own; ``span`` is of the present width."""
     return {tolerance.name: _strip(setup, tolerance, straight, span) for tolerance in priced_widths(setup)}
 
@@ -280,13 +282,15 @@ def priced_widths(setup: Setup) -> Iterator[Tolerance]:
             yield tolerance
 
 
-def _strip(setup: Setup, tolerance: Tolerance, straight: Mapping[str, Straight], span: tuple[float, float]) -> Strip:
+def _strip(
+    setup: Setup, tolerance: Tolerance, straight: Mapping[str, Straight], span: tuple[float, float]
+) -> ToleranceVariable:
     spread, price = setup.spread_of(tolerance.name), price_of(setup, tolerance)
     inner = setup.distributions()[tolerance.name]
     width = next(iter(inner.values())).width
     pull = shift_per_width(spread)
     assert price is not None  # priced_widths has chosen these
-    return Strip(
+    return ToleranceVariable(
         name=tolerance.name,
         start=width,
         low=span[0] * width,

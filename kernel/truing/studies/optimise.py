@@ -25,8 +25,8 @@ from truing.studies.optimise_problem import (
     Answers,
     Bound,
     Brief,
+    ModelSubstitute,
     Problem,
-    StandIn,
     Variable,
     answered,
     answers_of,
@@ -37,7 +37,7 @@ from truing.studies.optimise_problem import (
 from truing.studies.optimise_search import (
     REFERENCE,
     SETTLED,
-    Plan,
+    SearchPlan,
     Trail,
     Volume,
     knee_of,
@@ -47,7 +47,7 @@ from truing.studies.optimise_search import (
     volume_of,
 )
 from truing.studies.reading import printed, spoken
-from truing.studies.sampling import Budget, Machines, Tally, sample
+from truing.studies.sampling import Machines, SampleBudget, Tally, sample
 from truing.studies.scatter import scatter_of
 from truing.units import unit_text
 
@@ -90,7 +90,7 @@ class Optimise:
         problem = make_problem(setup, self._brief(bench))
         if self.surrogate:
             problem = replace(problem, stand_in=_stand_in(bench, self.name))
-        plan = Plan(self.population, self.generations, setup.seed)
+        plan = SearchPlan(self.population, self.generations, setup.seed)
 
         def done(generation: int, total: int) -> None:
             bench.progress(self.name, generation, total + 1)
@@ -130,7 +130,7 @@ class Optimise:
             def done(draws: int, total: int) -> None:
                 bench.progress(self.name, self.generations * total + draws, (self.generations + 1) * total)
 
-            budget = Budget(self.verify, self.batch, bench.executor, done)
+            budget = SampleBudget(self.verify, self.batch, bench.executor, done)
             tally = sample(Machines(setup, scatter_of(setup)), wanted, answers, budget)
         return replace(optimum, exact=exact, demands=tuple(wanted), tally=tally)
 
@@ -156,10 +156,10 @@ def _check_options(study: Optimise) -> None:
         raise UsageError("draws, verify, batch and parts are at least 1")
 
 
-def _stand_in(bench: Bench, study: str) -> StandIn:
+def _stand_in(bench: Bench, study: str) -> ModelSubstitute:
     """Return the outcome of the surrogate study that ran before."""
     for outcome in bench.outcomes.values():
-        if isinstance(outcome, StandIn):
+        if isinstance(outcome, ModelSubstitute):
             return outcome
     raise UsageError(f"study '{study}': surrogate = true, but no Surrogate ran before it; list it first in run = [...]")
 
@@ -228,7 +228,7 @@ def _beyond(problem: Problem, designs: NDArray[np.float64]) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Design:
+class DesignPoint:
     """One design: ``inputs`` in SI, ``tolerances`` as full widths in SI or grades, and what it is worth.
 
     ``objectives`` are in SI, ``margins`` of every limit above 0 safe, ``chances`` by check; NaN where it has no answer.
@@ -244,13 +244,13 @@ class Design:
 
 def _designs(
     problem: Problem, designs: NDArray[np.float64], answers: Answers, *, as_stated: bool = False
-) -> list[Design]:
+) -> list[DesignPoint]:
     """Return the designs (m, v) by name."""
     columns = problem.space.columns(designs, as_stated=as_stated)
     choices = problem.space.choices(designs)
     by_chance = problem.by_chance
     return [
-        Design(
+        DesignPoint(
             inputs={name: float(values[row]) for name, values in columns.items()},
             tolerances={
                 name: GRADES[round(values[row])] if variable.kind == "grade" else float(values[row])
@@ -276,8 +276,8 @@ class Optimum:
 
     study: Optimise
     problem: Problem = field(repr=False)
-    front: tuple[Design, ...]
-    start: Design
+    front: tuple[DesignPoint, ...]
+    start: DesignPoint
     knee_place: int | None
     distance: float
     status: str
@@ -296,7 +296,7 @@ class Optimum:
         return self.study.name
 
     @property
-    def knee(self) -> Design | None:
+    def knee(self) -> DesignPoint | None:
         """The design farthest from the chord of the normalised front; with one objective the best."""
         return None if self.knee_place is None else self.front[self.knee_place]
 
@@ -405,7 +405,7 @@ def _variable_json(item: Any) -> dict[str, Any]:
     }
 
 
-def _design_json(optimum: Optimum, design: Design) -> dict[str, Any]:
+def _design_json(optimum: Optimum, design: DesignPoint) -> dict[str, Any]:
     return {
         "inputs": {name: printed(value, _input_unit(optimum, name)) for name, value in design.inputs.items()},
         "tolerances": {name: _width(optimum, name, value) for name, value in design.tolerances.items()},
@@ -416,7 +416,7 @@ def _design_json(optimum: Optimum, design: Design) -> dict[str, Any]:
     }
 
 
-def _knee_json(optimum: Optimum, knee: Design) -> dict[str, Any]:
+def _knee_json(optimum: Optimum, knee: DesignPoint) -> dict[str, Any]:
     exact = {aim.name: printed(optimum.exact[aim.name], aim.unit) for aim in optimum.aims if aim.name in optimum.exact}
     tally = optimum.tally
     verified = {
@@ -500,7 +500,7 @@ def _comparison(optimum: Optimum) -> Table:
     return Table("Start and knee", columns, rows, note=_comparison_note(optimum))
 
 
-def _limit_row(bound: Any, designs: Sequence[Design]) -> list[Cell]:
+def _limit_row(bound: Any, designs: Sequence[DesignPoint]) -> list[Cell]:
     if bound.by_chance:
         return [bound.name, "chance", "%", *(_percent(item.chances[bound.name]) for item in designs)]
     return [bound.name, "margin", "", *(as_number(item.margins[bound.name]) for item in designs)]
@@ -598,7 +598,7 @@ def _drawn_front(optimum: Optimum) -> Callable[[], Figure]:
 
 
 def _panel(panel: Any, optimum: Optimum, aims: tuple[Any, Any]) -> None:
-    def places(designs: Sequence[Design]) -> list[list[Any]]:
+    def places(designs: Sequence[DesignPoint]) -> list[list[Any]]:
         return [[printed(design.objectives[aim.name], aim.unit) for design in designs] for aim in aims]
 
     line = "-" if len(optimum.aims) == 2 else ""

@@ -22,8 +22,8 @@ from truing.declare.spreads import (
     SIGMAS_IN_BAND,
     Band,
     Distribution,
+    DistributionShape,
     Grade,
-    Shape,
     Spread,
     Target,
     Zone,
@@ -42,14 +42,14 @@ from truing.setup import Setup
 from truing.studies.checks import check_name, requirements
 from truing.studies.demands import normal_chance
 from truing.studies.differences import nominal_of
-from truing.studies.scatter import Cause, Scatter, generator, scatter_of
+from truing.studies.scatter import Scatter, ScatterSource, generator, scatter_of
 from truing.units import read_quantity, to_si
 
 ROWS = 2**16  # of one call of the model, so that memory stays flat
 
 
 @runtime_checkable
-class StandIn(Protocol):
+class ModelSubstitute(Protocol):
     """What may answer in place of the model: the outcome of a surrogate study."""
 
     @property
@@ -70,7 +70,7 @@ class Problem:
     bounds: tuple[Bound, ...]
     scatter: Scatter
     cloud: Cloud | None
-    stand_in: StandIn | None = None
+    stand_in: ModelSubstitute | None = None
 
     @property
     def setup(self) -> Setup:
@@ -213,14 +213,14 @@ def _chances(problem: Problem, designs: Designs) -> NDArray[np.float64]:
 
 
 @dataclass(frozen=True)
-class Job:
+class DesignBatch:
     """Some designs, as they go to a worker: plain data, except in this process."""
 
     problem: Problem | tuple[Packed, Brief]
     designs: NDArray[np.float64]
 
 
-def run_job(job: Job) -> Answers:
+def run_job(job: DesignBatch) -> Answers:
     """Answer the designs of one job."""
     problem = job.problem if isinstance(job.problem, Problem) else _unpacked(*job.problem)
     return answers_of(problem, job.designs)
@@ -234,10 +234,10 @@ def _unpacked(packed: Packed, brief: Brief) -> Problem:
 def answered(problem: Problem, designs: NDArray[np.float64], executor: Executor) -> Answers:
     """Answer designs (m, v), cut into jobs in a way that does not depend on who computes them."""
     if isinstance(executor, SerialExecutor) or problem.stand_in is not None:
-        jobs = (Job(problem, part) for part in _parts(problem, designs))
+        jobs = (DesignBatch(problem, part) for part in _parts(problem, designs))
         return joined([run_job(job) for job in jobs])
     carried = (pack(problem.setup), problem.brief)
-    return joined(list(in_order(executor, run_job, (Job(carried, part) for part in _parts(problem, designs)))))
+    return joined(list(in_order(executor, run_job, (DesignBatch(carried, part) for part in _parts(problem, designs)))))
 
 
 def _parts(problem: Problem, designs: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
@@ -426,7 +426,7 @@ def results_needed(setup: Setup, aims: Sequence[Aim], bounds: Sequence[Bound]) -
 # What an optimisation may choose: inputs between bounds, inputs that follow a formula, the widths of what is priced
 
 
-Kind = Literal["number", "whole", "width", "grade"]
+VariableKind = Literal["number", "whole", "width", "grade"]
 SLACK = 1e-9
 
 
@@ -450,7 +450,7 @@ class Variable:
     """One thing that may be chosen, between ``low`` and ``high`` (SI, or places of grades), and where it starts."""
 
     name: str
-    kind: Kind
+    kind: VariableKind
     low: float
     high: float
     unit: str
@@ -673,7 +673,7 @@ class Scattered:
 
     mean: NDArray[np.float64]
     sd: NDArray[np.float64]
-    shape: Shape
+    shape: DistributionShape
 
     @property
     def width(self) -> NDArray[np.float64]:
@@ -809,7 +809,7 @@ class Answering(Protocol):
 class Cloud:
     """The causes of scatter, and by name standard normal values (k, n), or deviations where a function draws them."""
 
-    causes: tuple[Cause, ...]
+    causes: tuple[ScatterSource, ...]
     standard: Mapping[str, NDArray[np.float64]]
     draws: int
 
@@ -910,7 +910,7 @@ def _machines(cloud: Cloud, designs: Designs) -> dict[str, Any]:
     return columns
 
 
-def _of_cause(cause: Cause, standard: NDArray[np.float64], designs: Designs) -> list[tuple[str, Any]]:
+def _of_cause(cause: ScatterSource, standard: NDArray[np.float64], designs: Designs) -> list[tuple[str, Any]]:
     if cause.function is not None:
         return [(name, designs.nominal(name)[:, None] + standard[i]) for i, name in enumerate(cause.columns)]
     if cause.mixing is not None or cause.name not in designs.spreads:

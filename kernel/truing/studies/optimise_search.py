@@ -38,11 +38,11 @@ REACH, MOVED = (0.2, 1.0), 0.9
 
 TRIFLE, DEAR = 1e-3, 2e-2
 
-Answering = Callable[["NDArray[np.float64]"], Answers]
+DesignEvaluator = Callable[["NDArray[np.float64]"], Answers]
 
 
 @dataclass(frozen=True)
-class Plan:
+class SearchPlan:
     """How much is searched: designs per generation, generations, and the seed."""
 
     population: int
@@ -64,7 +64,7 @@ class Trail:
     failed: int
 
 
-def search(problem: Problem, plan: Plan, answer: Answering, done: Callable[[int, int], None]) -> Trail:
+def search(problem: Problem, plan: SearchPlan, answer: DesignEvaluator, done: Callable[[int, int], None]) -> Trail:
     """Look for the designs that no other beats. ``answer(designs)`` is called once per generation."""
     algorithm, shell = _algorithm(problem, plan)
     rng = np.random.default_rng([plan.seed, LED])
@@ -200,7 +200,7 @@ def _tell(algorithm: Any, shell: Any, asked: Any, problem: Problem, found: Answe
     algorithm.tell(infills=asked)
 
 
-def _algorithm(problem: Problem, plan: Plan) -> tuple[Any, Any]:
+def _algorithm(problem: Problem, plan: SearchPlan) -> tuple[Any, Any]:
     """Set up the algorithm of the literature with the first population."""
     pymoo_config.Config.warnings["not_compiled"] = False
     count = len(problem.space.variables)
@@ -219,7 +219,7 @@ def _algorithm(problem: Problem, plan: Plan) -> tuple[Any, Any]:
     return algorithm, shell
 
 
-def _first(problem: Problem, plan: Plan) -> NDArray[np.float64]:
+def _first(problem: Problem, plan: SearchPlan) -> NDArray[np.float64]:
     """Return the first population: the stated design, it with every width at its ends, and a Latin hypercube."""
     space = problem.space
     start = space.units(space.start[None, :])[0]

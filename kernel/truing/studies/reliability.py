@@ -19,9 +19,9 @@ from truing.studies.chances import chance, straightened
 from truing.studies.checks import Check, chance_check, requirements
 from truing.studies.demands import Z95, Demand, as_number, demands, nominal_inputs, wilson, worst
 from truing.studies.drawings import labelled, lines
-from truing.studies.form import Form, form
+from truing.studies.form import FormResult, form
 from truing.studies.reading import printed, printed_step, read_range, scattering_name, spoken
-from truing.studies.sampling import Budget, Machines, Moments, Tally, sample
+from truing.studies.sampling import Machines, Moments, SampleBudget, Tally, sample
 from truing.studies.scatter import scatter_of
 from truing.units import difference_unit, from_si, unit_text
 
@@ -94,9 +94,11 @@ class Reliability:
         def done(draws: int, total: int) -> None:
             bench.progress(self.name, stage * total + draws, stages * total)
 
-        return sample(machines, wanted, answers, Budget(self.draws, self.batch, bench.executor, done))
+        return sample(machines, wanted, answers, SampleBudget(self.draws, self.batch, bench.executor, done))
 
-    def _form(self, machines: Machines, wanted: Sequence[Demand], nominal: Mapping[str, float]) -> dict[str, Form]:
+    def _form(
+        self, machines: Machines, wanted: Sequence[Demand], nominal: Mapping[str, float]
+    ) -> dict[str, FormResult]:
         if "form" not in self.method:
             return {}
         return {demand.name: form(machines, demand, nominal) for demand in wanted}
@@ -223,7 +225,7 @@ class Odds:
     analytic: Mapping[str, Any]
     first_sd: Mapping[str, Any]
     first_mean: Mapping[str, Any] = field(default_factory=dict)
-    form: Mapping[str, Form] = field(default_factory=dict)
+    form: Mapping[str, FormResult] = field(default_factory=dict)
     tally: Tally | None = None
     curve: Curve | None = None
     remarks: tuple[str, ...] = ()

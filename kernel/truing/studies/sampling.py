@@ -34,7 +34,7 @@ class Machines:
 
 
 @dataclass(frozen=True)
-class Plan:
+class SamplingPlan:
     """What every batch is asked: which demands, about which centres the moments are summed."""
 
     demands: tuple[Demand, ...]
@@ -44,11 +44,11 @@ class Plan:
 
 
 @dataclass(frozen=True)
-class Job:
+class SampleBatch:
     """One batch, as it goes to a worker: plain data, except in this process."""
 
     machines: Machines | Packed
-    plan: Plan
+    plan: SamplingPlan
     seed: int
     batch: int
     rows: int
@@ -87,7 +87,7 @@ def sample(
     machines: Machines,
     wanted: Sequence[Demand],
     answers: Mapping[str, Any],
-    budget: Budget,
+    budget: SampleBudget,
 ) -> Tally:
     """Draw the machines that the budget allows and count which of them meet each demand."""
     plan = plan_of(machines.setup, wanted, answers)
@@ -100,7 +100,7 @@ def sample(
 
 
 @dataclass(frozen=True)
-class Budget:
+class SampleBudget:
     """How many machines are drawn, in which batches, where, and who hears of it."""
 
     draws: int
@@ -109,17 +109,17 @@ class Budget:
     done: Callable[[int, int], None]
 
 
-def plan_of(setup: Setup, wanted: Sequence[Demand], answers: Mapping[str, Any]) -> Plan:
+def plan_of(setup: Setup, wanted: Sequence[Demand], answers: Mapping[str, Any]) -> SamplingPlan:
     """Say what every batch is asked; ``answers`` holds the nominal results in SI."""
     needed = results_needed(setup, wanted)
     centres = {name: answers[name] for name in needed}
-    return Plan(tuple(wanted), needed, centres, nominal_inputs(setup, wanted))
+    return SamplingPlan(tuple(wanted), needed, centres, nominal_inputs(setup, wanted))
 
 
-def _jobs(machines: Machines, plan: Plan, budget: Budget) -> Iterator[Job]:
+def _jobs(machines: Machines, plan: SamplingPlan, budget: SampleBudget) -> Iterator[SampleBatch]:
     carried: Machines | Packed = machines if isinstance(budget.executor, SerialExecutor) else pack(machines.setup)
     for batch, start in enumerate(range(0, budget.draws, budget.batch)):
-        yield Job(carried, plan, machines.setup.seed, batch, min(budget.batch, budget.draws - start))
+        yield SampleBatch(carried, plan, machines.setup.seed, batch, min(budget.batch, budget.draws - start))
 
 
 @lru_cache(maxsize=4)
@@ -138,7 +138,7 @@ def _keep_freed_memory() -> None:
     np.empty(31 * 2**20, dtype=np.uint8)
 
 
-def run_batch(job: Job) -> Tally:
+def run_batch(job: SampleBatch) -> Tally:
     """Draw one batch, run the model on it, and return counts and moments."""
     _keep_freed_memory()
     machines = _unpacked(job.machines) if isinstance(job.machines, Packed) else job.machines
@@ -153,7 +153,7 @@ def run_batch(job: Job) -> Tally:
     )
 
 
-def _hits(demand: Demand, rows: Rows, columns: Mapping[str, Any], plan: Plan) -> Any:
+def _hits(demand: Demand, rows: Rows, columns: Mapping[str, Any], plan: SamplingPlan) -> Any:
     """Count the rows within the limits; NaN, as in failed rows, lies in none."""
     response = demand.response(rows.results, columns, plan.nominal)
     inside = response <= demand.high

@@ -23,7 +23,7 @@ from truing.setup import Setup, SwitchedOn
 
 
 @dataclass(frozen=True, eq=False)
-class Cause:
+class ScatterSource:
     """Columns of a batch that are drawn together: independent, or mixed from standard normals by ``mixing`` (k, k).
 
     ``function(rng, rows)`` draws deviations itself; ``mixing`` is then its normal stand-in.
@@ -67,7 +67,7 @@ class Cause:
 class Scatter:
     """All causes of scatter of one setup."""
 
-    causes: tuple[Cause, ...]
+    causes: tuple[ScatterSource, ...]
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -153,7 +153,7 @@ def scatter_of(setup: Setup) -> Scatter:
     return Scatter(tuple(causes))
 
 
-def _of_tolerance(setup: Setup, name: str, inner: Mapping[str, Distribution]) -> Cause:
+def _of_tolerance(setup: Setup, name: str, inner: Mapping[str, Distribution]) -> ScatterSource:
     columns = tuple(inner)
     nominals = tuple(float(setup.nominal(column)) for column in columns)
     missing = [column for column, nominal in zip(columns, nominals, strict=True) if nominal != nominal]
@@ -163,8 +163,8 @@ def _of_tolerance(setup: Setup, name: str, inner: Mapping[str, Distribution]) ->
         )
     spread = setup.spread_of(name)
     if not isinstance(spread, Drawn):
-        return Cause(name, columns, nominals, tuple(inner.values()))
-    return Cause(name, columns, nominals, tuple(inner.values()), _stand_in(spread, columns), spread.function)
+        return ScatterSource(name, columns, nominals, tuple(inner.values()))
+    return ScatterSource(name, columns, nominals, tuple(inner.values()), _stand_in(spread, columns), spread.function)
 
 
 def _stand_in(spread: Drawn, columns: tuple[str, ...]) -> NDArray[np.float64]:
@@ -174,7 +174,7 @@ def _stand_in(spread: Drawn, columns: tuple[str, ...]) -> NDArray[np.float64]:
     return root_of(np.atleast_2d(np.cov(joint)))
 
 
-def _of_effect(item: SwitchedOn) -> Cause | None:
+def _of_effect(item: SwitchedOn) -> ScatterSource | None:
     """Return the uncertainty with which an effect was diagnosed, or None where it is known exactly or only read."""
     if item.effect.place == "reading":
         return None
@@ -188,7 +188,7 @@ def _of_effect(item: SwitchedOn) -> Cause | None:
     spread = np.sqrt(np.diag(covariance))
     distributions = tuple(Distribution(value, float(sd)) for value, sd in zip(values, spread, strict=True))
     mixing = root_of(covariance) if item.covariance else None
-    return Cause(f"effects.{item.effect.name}", columns, values, distributions, mixing)
+    return ScatterSource(f"effects.{item.effect.name}", columns, values, distributions, mixing)
 
 
 def root_of(covariance: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -17,7 +17,7 @@ from truing.errors import UsageError
 from truing.evaluate import acting_inputs, effect_column
 from truing.heavy import stats
 from truing.setup import Setup
-from truing.studies.bench import Bench, Done
+from truing.studies.bench import Bench, StepProgress
 from truing.studies.checks import Check
 from truing.studies.differences import exact_slopes, nominal_of, slopes
 from truing.studies.drawings import MOST_BARS, bars
@@ -320,7 +320,7 @@ class _Sampled:
 
 
 def sobol_indices(
-    machines: Machines, results: Sequence[str], samples: int, progress: Done = lambda step, steps: None
+    machines: Machines, results: Sequence[str], samples: int, progress: StepProgress = lambda step, steps: None
 ) -> tuple[dict[str, dict[str, float]], dict[str, dict[str, float]], list[str]]:
     """Return first-order and total indices by result and source, and what is to be said of them.
 

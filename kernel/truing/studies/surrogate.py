@@ -26,13 +26,24 @@ from truing.executors import SerialExecutor, in_order, keepable
 from truing.heavy import gaussian_process, stats
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup
-from truing.studies.bench import Bench, Done
+from truing.studies.bench import Bench, StepProgress
 from truing.studies.checks import Check
 from truing.studies.demands import as_number
 from truing.studies.drawings import BLUE, GREY, ORANGE, WIDTH, labelled
 from truing.studies.reading import printed, printed_step, result_names, scalar_results, spoken
 from truing.studies.scatter import generator
-from truing.studies.surrogate_fit import Box, Course, Emulator, Judged, StandIn, Values, fitted, open_box, taken, usable
+from truing.studies.surrogate_fit import (
+    Box,
+    Course,
+    Emulator,
+    HeldOutComparison,
+    StandIn,
+    Values,
+    fitted,
+    open_box,
+    taken,
+    usable,
+)
 from truing.units import from_si, unit_text
 
 PROMISED = 0.95
@@ -127,7 +138,7 @@ class Surrogate:
         return self.along or next(iter(plain), "")
 
     def _learnt(
-        self, setup: Setup, box: Box, learnt: Ran, *, names: tuple[str, ...], done: Done
+        self, setup: Setup, box: Box, learnt: Ran, *, names: tuple[str, ...], done: StepProgress
     ) -> tuple[dict[str, Emulator], float]:
         """Fit every result; the clock does not count the import of scikit-learn."""
         kept = usable(learnt.rows, names, logarithmic=self.log_result)
@@ -154,12 +165,12 @@ class Surrogate:
         }
         return emulators, perf_counter() - start
 
-    def _judged(self, stand_in: StandIn, judge: Ran) -> dict[str, Judged]:
+    def _judged(self, stand_in: StandIn, judge: Ran) -> dict[str, HeldOutComparison]:
         """Compare the surrogate with the model at points it never saw."""
         kept = usable(judge.rows, tuple(stand_in.emulators), logarithmic=self.log_result)
         bands = stand_in.bands(taken(judge.columns, kept)) if kept.any() else {}
         return {
-            name: Judged(judge.rows.results[name][kept], *band, is_share=self.log_result)
+            name: HeldOutComparison(judge.rows.results[name][kept], *band, is_share=self.log_result)
             for name, band in bands.items()
         }
 
@@ -175,7 +186,7 @@ class Surrogate:
         rows = evaluate_rows(setup, {along: coarse}, len(coarse), wanted=tuple(stand_in.emulators))
         return Course(along, axis, coarse, rows.results, stand_in.bands({along: axis}), COARSE)
 
-    def _speed(self, setup: Setup, stand_in: StandIn, sample: float, fit: float, *, done: Done) -> Speed | None:
+    def _speed(self, setup: Setup, stand_in: StandIn, sample: float, fit: float, *, done: StepProgress) -> Speed | None:
         if not self.compare:
             return None
         columns = designed(setup, stand_in.box, 2, self.compare, self.name)
@@ -217,7 +228,7 @@ class Emulated:
     name: str = "surrogate"
     of: tuple[str, ...]
     stand_in: StandIn
-    judged: Mapping[str, Judged]
+    judged: Mapping[str, HeldOutComparison]
     course: Course | None
     sample: Counted
     judges: Counted
@@ -331,7 +342,7 @@ def _result(emulated: Emulated, name: str) -> dict[str, Any]:
     }
 
 
-def _accuracy(judged: Judged, unit: str) -> dict[str, Any]:
+def _accuracy(judged: HeldOutComparison, unit: str) -> dict[str, Any]:
     return {
         "coverage95": judged.coverage,
         "interval95": list(judged.interval),
@@ -458,7 +469,7 @@ def _agreement(emulated: Emulated, names: Sequence[str]) -> Callable[[], Figure]
     return draw
 
 
-def _draw_values(panel: Any, judged: Judged, name: str, unit: str) -> None:
+def _draw_values(panel: Any, judged: HeldOutComparison, name: str, unit: str) -> None:
     model, mean = from_si(judged.simulated, unit), from_si(judged.predicted, unit)
     panel.plot(model, mean, "o", color=BLUE, markersize=3, label="surrogate")
     ends = [float(model.min()), float(model.max())]
@@ -470,7 +481,7 @@ def _draw_values(panel: Any, judged: Judged, name: str, unit: str) -> None:
     panel.legend(frameon=False)
 
 
-def _draw_errors(panel: Any, judged: Judged, name: str, unit: str) -> None:
+def _draw_errors(panel: Any, judged: HeldOutComparison, name: str, unit: str) -> None:
     """Draw errors in percent of the value, or of the range of all values."""
     ends = (judged.predicted, judged.low, judged.high)
     off, low, high = (100 * (values - judged.simulated) / judged.whole for values in ends)
@@ -483,7 +494,7 @@ def _draw_errors(panel: Any, judged: Judged, name: str, unit: str) -> None:
     _finish(panel, judged, labelled(f"{name} by the model", unit_text(unit)))
 
 
-def _finish(panel: Any, judged: Judged, label: str) -> None:
+def _finish(panel: Any, judged: HeldOutComparison, label: str) -> None:
     if judged.is_share:
         panel.set_xscale("log")
     panel.set_xlabel(label)
@@ -537,7 +548,7 @@ keepable(Rows)
 
 
 @dataclass(frozen=True)
-class Job:
+class SurrogateBatch:
     """Some points, as they go to a worker: plain data, except in this process."""
 
     setup: Setup | Packed
@@ -565,7 +576,7 @@ def designed(setup: Setup, box: Box, stage: int, points: int, study: str) -> dic
     return latin(box, points, generator(setup.seed, stage, study))
 
 
-def run_points(job: Job) -> tuple[Rows, float]:
+def run_points(job: SurrogateBatch) -> tuple[Rows, float]:
     """Run the model at some points, all in one call; return the seconds too."""
     setup = _unpacked(job.setup) if isinstance(job.setup, Packed) else job.setup
     start = perf_counter()
@@ -584,14 +595,14 @@ class Work:
 
     batch: int
     executor: Executor
-    done: Done
+    done: StepProgress
 
 
 def ran(setup: Setup, columns: Mapping[str, Any], wanted: tuple[str, ...], work: Work) -> Ran:
     """Run the model at all points."""
     carried: Setup | Packed = setup if isinstance(work.executor, SerialExecutor) else pack(setup)
     points = len(next(iter(columns.values())))
-    jobs = (Job(carried, part, rows, wanted) for part, rows in _parts(columns, points, work.batch))
+    jobs = (SurrogateBatch(carried, part, rows, wanted) for part, rows in _parts(columns, points, work.batch))
     answers = []
     for answer in in_order(work.executor, run_points, jobs):
         answers.append(answer)
@@ -647,7 +658,7 @@ def clocked(
     wanted: tuple[str, ...],
     *,
     batch: int,
-    done: Done = lambda step, steps: None,
+    done: StepProgress = lambda step, steps: None,
 ) -> tuple[float, float, int]:
     """Return the seconds for all predictions, those for all runs of the model, and how many were really run."""
     points = len(next(iter(columns.values())))
@@ -657,7 +668,7 @@ def clocked(
     predictions = perf_counter() - start
     spent, run = 0.0, 0
     for part, rows in _parts(columns, points, batch):
-        spent += run_points(Job(setup, part, rows, wanted))[1]
+        spent += run_points(SurrogateBatch(setup, part, rows, wanted))[1]
         run += rows
         done(max(run, round(points * spent / LONGEST)), points)
         if spent > LONGEST:

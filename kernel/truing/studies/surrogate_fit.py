@@ -339,7 +339,7 @@ class StandIn:
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class HeldOutComparison:
     """A result at points that were held out: the model's value and the surrogate's with its band, (n,) in SI.
 
     ``is_share`` says that errors are shares of the value; otherwise they are shares of the range of the values.

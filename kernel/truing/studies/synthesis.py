@@ -19,7 +19,7 @@ from scipy.special import ndtr, ndtri
 
 from truing.fits import GRADES
 from truing.studies.demands import Demand, normal_chance
-from truing.studies.grades import Shop, Values, prices_at
+from truing.studies.grades import AllocationProblem, Values, prices_at
 from truing.studies.threads import one_thread
 
 
@@ -37,7 +37,7 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Plan:
+class AllocationPlan:
     """Grades and full widths (SI) by tolerance, what they cost, first-order chances, and whether all goals are reached.
 
     ``residual`` says how far the widths are from a minimum of the cost: 0 is one; None where none were found.
@@ -51,12 +51,14 @@ class Plan:
     widths: Mapping[str, float] = field(default_factory=dict)
     residual: float | None = 0.0
 
-    def same_as(self, other: Plan) -> bool:
+    def same_as(self, other: AllocationPlan) -> bool:
         """Say whether two plans are one design."""
         return self.grades == other.grades and self.widths == other.widths
 
 
-def coefficients(shop: Shop, slopes: Mapping[str, float], weights: tuple[float, float]) -> dict[str, float]:
+def coefficients(
+    shop: AllocationProblem, slopes: Mapping[str, float], weights: tuple[float, float]
+) -> dict[str, float]:
     """Return the adjustment coefficient of every part: small is tightened first.
 
     r = (P1 x + P2 c)/(P1 + P2), with x the sensitivity of the most sensitive part over that of this one and c the cost
@@ -72,7 +74,7 @@ def coefficients(shop: Shop, slopes: Mapping[str, float], weights: tuple[float, 
     return found
 
 
-def by_rule(shop: Shop, order: Mapping[str, float], finest: str) -> tuple[list[Step], Plan]:
+def by_rule(shop: AllocationProblem, order: Mapping[str, float], finest: str) -> tuple[list[Step], AllocationPlan]:
     """Tighten one part by one grade at a time until every goal is met or every part is at the finest grade."""
     grades = shop.start
     steps: list[Step] = []
@@ -91,15 +93,17 @@ def by_rule(shop: Shop, order: Mapping[str, float], finest: str) -> tuple[list[S
     return steps, _plan(shop, grades, f"every tolerance is at {finest}")
 
 
-def as_it_stands(shop: Shop) -> Plan:
+def as_it_stands(shop: AllocationProblem) -> AllocationPlan:
     """Return the design before anything is adjusted."""
     return _plan(shop, shop.start, "nothing is adjusted")
 
 
-def _plan(shop: Shop, grades: Mapping[str, str], shortfall: str) -> Plan:
+def _plan(shop: AllocationProblem, grades: Mapping[str, str], shortfall: str) -> AllocationPlan:
     chances = shop.chances(grades)
     reached = shop.reached(grades)
-    return Plan(grades, shop.cost(grades), chances, reached, "reached" if reached else f"not reachable: {shortfall}")
+    return AllocationPlan(
+        grades, shop.cost(grades), chances, reached, "reached" if reached else f"not reachable: {shortfall}"
+    )
 
 
 def largest_variance(demand: Demand, mean: float) -> float | None:
@@ -124,7 +128,7 @@ def largest_variance(demand: Demand, mean: float) -> float | None:
     return float((reach * 10.0**log_sd) ** 2)
 
 
-def least_cost(shop: Shop) -> Plan:
+def least_cost(shop: AllocationProblem) -> AllocationPlan:
     """Choose one grade for every part so that all goals are met to first order at the least cost there is."""
     bounds: dict[str, float] = {}
     for demand in shop.demands:
@@ -146,12 +150,12 @@ def least_cost(shop: Shop) -> Plan:
     return _plan(shop, grades, "")
 
 
-def _finest(shop: Shop, reason: str) -> Plan:
+def _finest(shop: AllocationProblem, reason: str) -> AllocationPlan:
     grades = {name: min(part.choices, key=GRADES.index) for name, part in shop.parts.items()}
     return _plan(shop, grades, reason)
 
 
-def _solve(shop: Shop, bounds: Mapping[str, float], margin: float) -> dict[str, str] | None:
+def _solve(shop: AllocationProblem, bounds: Mapping[str, float], margin: float) -> dict[str, str] | None:
     """Solve the choice of grades as a mixed-integer linear program; None where no choice meets the bounds."""
     choices = [(name, choice) for name, part in shop.parts.items() for choice in part.choices.values()]
     costs = np.array([choice.cost for _, choice in choices])
@@ -190,7 +194,7 @@ CHEAPER = 1e-9
 class Search:
     """The widths to choose, as logarithms over those in force, with these grades; goals in standard deviations."""
 
-    shop: Shop
+    shop: AllocationProblem
     grades: Mapping[str, str]
 
     def widths(self, x: Values) -> dict[str, float]:
@@ -269,7 +273,7 @@ def _largest_sd(demand: Demand, mean: float) -> tuple[float, float]:
     return sd, -(at_high - at_low) / (above * at_high - below * at_low)
 
 
-def bought(shop: Shop, plan: Plan) -> Plan:
+def bought(shop: AllocationProblem, plan: AllocationPlan) -> AllocationPlan:
     """Return the plan with the widths that meet all goals at the least cost; where none do, those that come nearest."""
     if not shop.strips or any(demand.goal is not None and demand.goal >= 1.0 for demand in shop.demands):
         return plan
@@ -285,7 +289,7 @@ def bought(shop: Shop, plan: Plan) -> Plan:
     return _with(shop, plan, search.widths(found), residual=_residual(search, found))
 
 
-def bettered(shop: Shop, plan: Plan) -> Plan:
+def bettered(shop: AllocationProblem, plan: AllocationPlan) -> AllocationPlan:
     """Change one grade by one step, buy the widths anew, and take what is cheapest, until no such step is cheaper."""
     with one_thread():
         while plan.reached and shop.strips:
@@ -296,7 +300,7 @@ def bettered(shop: Shop, plan: Plan) -> Plan:
     return plan
 
 
-def _steps_from(shop: Shop, plan: Plan) -> Iterator[Plan]:
+def _steps_from(shop: AllocationProblem, plan: AllocationPlan) -> Iterator[AllocationPlan]:
     """Yield the designs with one grade a step finer or coarser that meet all goals; widths start where they are."""
     for name, part in shop.parts.items():
         offered = list(part.choices)
@@ -311,7 +315,9 @@ def _steps_from(shop: Shop, plan: Plan) -> Iterator[Plan]:
                 yield _with(shop, other, search.widths(found), residual=_residual(search, found))
 
 
-def _with(shop: Shop, plan: Plan, widths: Mapping[str, float], *, residual: float | None) -> Plan:
+def _with(
+    shop: AllocationProblem, plan: AllocationPlan, widths: Mapping[str, float], *, residual: float | None
+) -> AllocationPlan:
     reached = shop.reached(plan.grades, widths)
     status = "reached"
     if not reached:

@@ -7,7 +7,7 @@ from typing import Any
 
 from truing.declare.model import Model
 from truing.declare.sources import Effect
-from truing.diagnosis.result import Cause, Diagnosis, Seen, explanations_of
+from truing.diagnosis.result import Cause, DiagnosisResult, VisibleSize, explanations_of
 from truing.errors import UsageError
 from truing.report.diagnosis_words import cause_text, fitted_text, listed, settings_text
 from truing.testing.hidden import Hidden
@@ -18,7 +18,7 @@ from truing.units import difference_unit, from_si, unit_factor
 WITHIN = 1.2
 
 
-def assert_finds(hidden: Hidden, *, within: float = WITHIN) -> Diagnosis:
+def assert_finds(hidden: Hidden, *, within: float = WITHIN) -> DiagnosisResult:
     """Diagnose the record and demand what was hidden: the name, the size, and the gain; return the diagnosis.
 
     The name is that of the only cause, or stands in its ``same_as`` (on this record both draw one curve). Every size
@@ -39,7 +39,7 @@ def assert_finds(hidden: Hidden, *, within: float = WITHIN) -> Diagnosis:
     return diagnosis
 
 
-def assert_finds_nothing(hidden: Hidden) -> Diagnosis:
+def assert_finds_nothing(hidden: Hidden) -> DiagnosisResult:
     """Diagnose the record and demand that nothing is named and no remainder seen; return the diagnosis.
 
     Raises AssertionError with what was found, and UsageError where something was hidden.
@@ -97,7 +97,7 @@ def finds_every_effect(
     return test
 
 
-def _demand_name(hidden: Hidden, diagnosis: Diagnosis) -> Cause:
+def _demand_name(hidden: Hidden, diagnosis: DiagnosisResult) -> Cause:
     """Return the cause that carries the name of what was hidden, and demand that it is the only one."""
     __tracebackhide__ = True
     name = hidden.effect
@@ -137,7 +137,7 @@ def _demand_sizes(hidden: Hidden, cause: Cause) -> None:
         )
 
 
-def _demand_unknown(hidden: Hidden, diagnosis: Diagnosis) -> None:
+def _demand_unknown(hidden: Hidden, diagnosis: DiagnosisResult) -> None:
     """Demand that what nobody registered is called unknown."""
     __tracebackhide__ = True
     if diagnosis.verdict == "unknown":
@@ -170,7 +170,7 @@ def _notes(hidden: Hidden) -> str:
     return "; ".join(hidden.answered.diagnosis.records.notes) or "no reason is given"
 
 
-def _found(diagnosis: Diagnosis) -> str:
+def _found(diagnosis: DiagnosisResult) -> str:
     """Say what was found, in one clause."""
     parts = [f"'{cause.effect}' was named ({cause_text(cause)})" for cause in diagnosis.causes]
     remainder = diagnosis.remainder
@@ -206,14 +206,14 @@ def advice_on(hidden: Hidden) -> str:
     return f"too small for this noise, or what was hidden is not its curve: hide more, or {_vary(hidden)}"
 
 
-def _seen(hidden: Hidden) -> Seen | None:
+def _seen(hidden: Hidden) -> VisibleSize | None:
     """Return what the diagnosis says of how small the effect may be."""
     known = {item.name: item for item in hidden.answered.diagnosis.seen}
     names = [hidden.effect, *(f"{hidden.effect}.{unknown}" for unknown in hidden.truth)]
     return next((known[name] for name in names if name in known), None)
 
 
-def _too_small(hidden: Hidden, seen: Seen, factor: float) -> str:
+def _too_small(hidden: Hidden, seen: VisibleSize, factor: float) -> str:
     """Compare what was hidden with what can be seen; ``factor`` is how often it is that."""
     assert seen.smallest is not None
     smallest = quantity_text(seen.smallest.value, seen.smallest.unit)
@@ -253,7 +253,7 @@ def _vary(hidden: Hidden) -> str:
     )  # fmt: skip
 
 
-def _next(diagnosis: Diagnosis) -> str:
+def _next(diagnosis: DiagnosisResult) -> str:
     """Say what the diagnosis asks for to tell two causes apart."""
     if not diagnosis.next:
         return "nothing that can be measured here tells them apart; measure another result"

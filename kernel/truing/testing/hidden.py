@@ -18,7 +18,7 @@ from truing.declare.model import Model
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.records import Records
-from truing.diagnosis.result import Diagnosis
+from truing.diagnosis.result import DiagnosisResult
 from truing.gauge import one_machine, read_by_gauge
 from truing.inputs_file import setup_from_text
 from truing.kernel import Offer, Origin
@@ -38,7 +38,7 @@ class Answered:
     nothing where no rows were held out. ``seconds`` is what the diagnosis took.
     """
 
-    diagnosis: Diagnosis
+    diagnosis: DiagnosisResult
     document: Mapping[str, Any]
     held: Mapping[str, NDArray[np.float64]]
     predicted: Mapping[str, NDArray[np.float64]]
@@ -127,7 +127,7 @@ def records_of(setup: Setup, text: str, name: str, *, with_slips: bool = True) -
         return read_records([file], offer_of(setup), setup, with_slips=with_slips)
 
 
-def predicted(diagnosis: Diagnosis, setup: Setup, records: Records) -> dict[str, NDArray[np.float64]]:
+def predicted(diagnosis: DiagnosisResult, setup: Setup, records: Records) -> dict[str, NDArray[np.float64]]:
     """Predict rows that were not fitted, by every cause and shape that was found on the calibrated machine; SI."""
     calibrated = {item.name: item.value for item in diagnosis.calibrated}
     machine = diagnosis.extended or replace(setup, calibrated={**setup.calibrated, **calibrated})

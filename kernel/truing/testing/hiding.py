@@ -20,9 +20,9 @@ from truing.inputs_file import setup_from_settings
 from truing.measurements import read_rows, write_table
 from truing.setup import Setup
 from truing.studies.scatter import generator, scatter_of
-from truing.testing.designs import Design, columns_of
+from truing.testing.designs import RecordDesign, columns_of
 from truing.testing.hidden import MEASURED, Hidden, offer_of
-from truing.testing.noises import Noise, noise_of
+from truing.testing.noises import RecordNoise, noise_of
 from truing.testing.planted import Size, Strange, check_by, effect_of, truth_of, wrong_machine
 from truing.testing.subject import Subject
 from truing.units import difference_unit, from_si, unit_factor
@@ -90,7 +90,7 @@ def _hidden(wish: _Wish, model: Model[Any, Any]) -> Hidden:
     _check_counts(wish, faults)
     columns, wrong = columns_of(setup, effect, list(noises), wish.over)
     _raise(model, [*faults, *wrong])
-    design = Design(tuple(columns), wish.rows, wish.runs)
+    design = RecordDesign(tuple(columns), wish.rows, wish.runs)
     off = {} if wish.machine is None else _drawn(setup, wish.machine)
     known = {column.name: setup.nominal(column.name) for column in columns if column.name in model.known_conditions}
     setup = replace(setup, conditions={**setup.conditions, **known})
@@ -109,11 +109,11 @@ class _Plan:
 
     setup: Setup
     true: Setup
-    noises: Mapping[str, Noise]
+    noises: Mapping[str, RecordNoise]
     correlation: float
     seed: int
 
-    def recorded(self, design: Design, part: int) -> tuple[str, dict[str, float]]:
+    def recorded(self, design: RecordDesign, part: int) -> tuple[str, dict[str, float]]:
         """Return a record as CSV, and the root mean square of the noise in it by result, SI."""
         columns = design.drawn(generator(self.seed, part, "design"))
         true = self._shown(columns)
@@ -150,7 +150,7 @@ def _csv(columns: Mapping[str, Any]) -> str:
     return text.getvalue()
 
 
-def _correlated(rng: np.random.Generator, design: Design, correlation: float) -> NDArray[np.float64]:
+def _correlated(rng: np.random.Generator, design: RecordDesign, correlation: float) -> NDArray[np.float64]:
     """Draw noise of unit variance for every row; that of neighbours in a run is correlated."""
     drawn = rng.standard_normal((design.runs, design.rows))
     for row in range(1, design.rows if correlation else 0):

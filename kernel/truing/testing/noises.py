@@ -17,7 +17,7 @@ from truing.units import difference_unit, read_quantity, split_quantity
 
 
 @dataclass(frozen=True)
-class Noise:
+class RecordNoise:
     """A standard deviation in SI, or a share of the span of what is shown."""
 
     sd: float = 0.0
@@ -28,7 +28,7 @@ class Noise:
         return self.sd or self.share * float(np.ptp(shown))
 
 
-def noise_of(setup: Setup, said: Any, measure: str | Sequence[str] | None, faults: list[str]) -> dict[str, Noise]:
+def noise_of(setup: Setup, said: Any, measure: str | Sequence[str] | None, faults: list[str]) -> dict[str, RecordNoise]:
     """Return the noise by measured result; what is wrong is added to ``faults``, a sentence each."""
     gauged = gauged_results(setup)
     named = [measure] if isinstance(measure, str) else list(measure or ())
@@ -95,10 +95,10 @@ def _fits(said: Any, unit: str) -> bool:
     return True
 
 
-def _read(said: Any, unit: str) -> Noise:
+def _read(said: Any, unit: str) -> RecordNoise:
     """Read a standard deviation, a difference in the unit of the result, or a share of its span."""
     if _is_share(said):
-        noise = Noise(share=read_quantity(said, ""))
+        noise = RecordNoise(share=read_quantity(said, ""))
     else:
-        noise = Noise(sd=read_quantity(said if isinstance(said, str) else repr(said), difference_unit(unit)))
+        noise = RecordNoise(sd=read_quantity(said if isinstance(said, str) else repr(said), difference_unit(unit)))
     return noise
