@@ -177,8 +177,8 @@ def _one_by_one(setup: Setup, cases: Sequence[Case], executor: Executor, progres
         answers = in_order(executor, _packed_case, (pack(case_setup(setup, case), studies=True) for case in cases))
     else:
         answers = (
-            _case_answer(case_setup(setup, case), executor, _of_case(setup, place, len(cases), progress))
-            for place, case in enumerate(cases)
+            _case_answer(case_setup(setup, case), executor, _of_case(setup, index, len(cases), progress))
+            for index, case in enumerate(cases)
         )
     done = []
     progress("cases", 0, FINE)
@@ -241,11 +241,11 @@ def _block_answer(setup: Setup, block: list[Mapping[str, Any]]) -> list[CaseRow]
     rows = evaluate_rows(setup, {name: [values[name] for values in block] for name in block[0]}, len(block))
     return [
         (
-            {name: _plain(values[place]) for name, values in rows.results.items()},
-            rows.reasons.get(place),
-            {name: lacking[place] for name, lacking in rows.absent.items() if place in lacking},
+            {name: _plain(values[index]) for name, values in rows.results.items()},
+            rows.reasons.get(index),
+            {name: lacking[index] for name, lacking in rows.absent.items() if index in lacking},
         )
-        for place in range(len(block))
+        for index in range(len(block))
     ]
 
 

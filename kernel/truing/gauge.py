@@ -207,8 +207,8 @@ def _records(rows: RowsFile) -> Sequence[NDArray[np.intp]]:
 def _places_by_run(runs: tuple[str, ...]) -> tuple[NDArray[np.intp], ...]:
     """Return the places of the rows of each run; a fit asks for the same ones again and again."""
     found: dict[str, list[int]] = {}
-    for place, name in enumerate(runs):
-        found.setdefault(name, []).append(place)
+    for index, name in enumerate(runs):
+        found.setdefault(name, []).append(index)
     return tuple(np.array(places) for places in found.values())
 
 

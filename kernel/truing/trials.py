@@ -41,7 +41,7 @@ def read_trials(
             continue
         values = _read(machine, _stacked(machine, rows, block), wanted, len(block))
         parts = {name: np.split(value, len(block)) for name, value in values.items()}
-        yield from ({name: part[place] for name, part in parts.items()} for place in range(len(block)))
+        yield from ({name: part[index] for name, part in parts.items()} for index in range(len(block)))
 
 
 def _changed(machine: Setup, rows: RowsFile, trial: Trial) -> tuple[Setup, RowsFile]:

@@ -31,10 +31,10 @@ def out_table(rows: Sequence[Sequence[str]], styles: Sequence[Sequence[str]], *,
     with console.capture() as coloured:
         for line, of_cells in zip(lines, styles, strict=True):
             text = Text(harmless(line))
-            for place, style in enumerate(of_cells):
+            for index, style in enumerate(of_cells):
                 if style:
-                    end = starts[place + 1] if place + 1 < len(of_cells) else len(line)
-                    text.stylize(style, starts[place], end)
+                    end = starts[index + 1] if index + 1 < len(of_cells) else len(line)
+                    text.stylize(style, starts[index], end)
             console.print(text)
     put(coloured.get())
 

@@ -201,7 +201,7 @@ def aligned(rows: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> list
     for row in rows:
         sized = zip(row, widths, strict=True)
         cells = [
-            cell.rjust(width) if place in right else cell.ljust(width) for place, (cell, width) in enumerate(sized)
+            cell.rjust(width) if index in right else cell.ljust(width) for index, (cell, width) in enumerate(sized)
         ]
         lines.append("\n".join(broken(GAP.join(cells).rstrip(), indent)))
     return lines

@@ -46,17 +46,17 @@ def report(diagnosis: DiagnosisResult, folder: Path) -> Iterator[str]:
     yield from broken(f"DIAGNOSIS  {one_line(_data(diagnosis))}", 11)
     yield ""
     word = f"{verdict_word(diagnosis)}."
-    for place, sentence in enumerate(headline(diagnosis)):
-        yield from broken(one_line(f"{word} {sentence}" if not place else sentence), 0)
+    for index, sentence in enumerate(headline(diagnosis)):
+        yield from broken(one_line(f"{word} {sentence}" if not index else sentence), 0)
     yield ""
     blocks = {
         "1 What is wrong": _wrong(diagnosis), "2 Cause": _cause(diagnosis), "3 Extended model": _model(diagnosis),
         "4 Gain": _gain(diagnosis), "5 Next": _next(diagnosis),
     }  # fmt: skip
     for title, lines in blocks.items():
-        for place, line in enumerate(lines):
+        for index, line in enumerate(lines):
             inner = " " * (len(line) - len(line.lstrip()))
-            yield from broken((title if not place else "").ljust(INDENT) + inner + one_line(line), INDENT + len(inner))
+            yield from broken((title if not index else "").ljust(INDENT) + inner + one_line(line), INDENT + len(inner))
     yield ""
     yield f"sheet: {folder / 'sheet.html'}"
     if diagnosis.causes:
@@ -207,8 +207,8 @@ def _gain(diagnosis: DiagnosisResult) -> Iterator[str]:
 
 
 def _next(diagnosis: DiagnosisResult) -> Iterator[str]:
-    for place, point in enumerate(diagnosis.next, start=1):
-        yield f"{place}. {settings_text(point)}: {pair_text(point)} (λ then {score_text(point.separation)})"
+    for index, point in enumerate(diagnosis.next, start=1):
+        yield f"{index}. {settings_text(point)}: {pair_text(point)} (λ then {score_text(point.separation)})"
     for reason in dict.fromkeys(point.why for point in diagnosis.next if point.why):
         yield f"   {reason}"
     yield from (tie_text(tie).rstrip(".") for tie in diagnosis.ties)

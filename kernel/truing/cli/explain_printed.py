@@ -73,8 +73,8 @@ def _formula(told: Told, width: int) -> Iterator[str]:
     indent = INDENT + " " * max(len(left) - 2, 0)
     if not left:
         indent, steps = INDENT * 2, [steps[0], *(f"{told['symbol'] or told['name']} = {one}" for one in steps[1:])]
-    for place, step in enumerate(steps):
-        head = INDENT + left if not place else indent + ("= " if left else "")
+    for index, step in enumerate(steps):
+        head = INDENT + left if not index else indent + ("= " if left else "")
         for number, line in enumerate(folded(one_line_held(step), width - len(head))):
             yield ((head if not number else " " * len(head)) + line).replace(HOLD, " ")
     if formula["departs"]:
@@ -334,11 +334,11 @@ def _plus(text: str) -> str:
 
 def table(rows: Sequence[Sequence[str]], width: int, *, right: Sequence[int] = ()) -> Iterator[str]:
     """Give rows in aligned columns, indented; the last column is broken where the line would be too wide."""
-    cells = [[cell if not place else one_line(cell) for place, cell in enumerate(row)] for row in rows]
-    kept = [place for place in range(len(cells[0]) if cells else 0) if any(row[place] for row in cells)]
-    cells = [[row[place] for place in kept] for row in cells]
+    cells = [[cell if not index else one_line(cell) for index, cell in enumerate(row)] for row in rows]
+    kept = [index for index in range(len(cells[0]) if cells else 0) if any(row[index] for row in cells)]
+    cells = [[row[index] for index in kept] for row in cells]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    flush = [place in right for place in kept]
+    flush = [index in right for index in kept]
     indent = len(INDENT) + sum(widths[:-1]) + len(GAP) * (len(widths) - 1)
     room = width - indent
     for row in cells:

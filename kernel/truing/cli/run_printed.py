@@ -58,8 +58,8 @@ def _verdict_lines(done: Done) -> Iterator[str]:
 def _cases_lines(cases: CasesTable, setup: Setup) -> Iterator[str]:
     """Say every case with what it changes and its smallest margin; the results below are the governing one's."""
     heads = [f"{name} [{unit}]" if (unit := setup.print_unit(name)) else name for name in cases.varied]
-    shown = [place for place in range(len(cases.cases)) if place < MOST_CASES or place == cases.governing]
-    rows = [_case_row(cases.cases[place], setup, governs=place == cases.governing) for place in shown]
+    shown = [index for index in range(len(cases.cases)) if index < MOST_CASES or index == cases.governing]
+    rows = [_case_row(cases.cases[index], setup, governs=index == cases.governing) for index in shown]
     yield ""
     yield columns([("row", "case", *heads, "margin", ""), *rows], right=(0, *range(2, len(heads) + 3)))
     if len(shown) < len(cases.cases):
@@ -82,10 +82,10 @@ def _result_lines(calculation: Calculation, *, with_titles: bool) -> Iterator[st
     """Give the results in the order of the sheet, under the titles of its sections where there are several."""
     groups = list(_groups(calculation))
     rows = iter(aligned([_result_row(calculation, name) for _, names in groups for name in names], right=(1,)))
-    for place, (title, names) in enumerate(groups):
+    for index, (title, names) in enumerate(groups):
         if with_titles and len(groups) > 1:
             yield from ("", one_line(title))
-        elif place == 0:
+        elif index == 0:
             yield ""
         yield from islice(rows, len(names))
 

@@ -67,7 +67,7 @@ def _lines(model: Any, rows: Sequence[ComparedRow]) -> Iterator[str]:
         yield f"{model.name} states no published numbers"
         return
     reasons = list(dict.fromkeys(one_line(row.published.why) for row in rows if row.published.why))
-    numbers = {reason: f"[{place}]" for place, reason in enumerate(reasons, start=1)}
+    numbers = {reason: f"[{index}]" for index, reason in enumerate(reasons, start=1)}
     head, *lines = aligned([HEAD, *(_cells(row, numbers) for row in rows)], right=(3, 4, 5))
     yield head
     shown: Mapping[str, str] = {}

@@ -122,12 +122,12 @@ def _made(
 ) -> Iterator[Effect[Any, Any]]:
     """Make an effect for each quantity that is seen, over the results that can be set against it."""
     fitting = [(seen, [item for item in results if seen is None or seen.by(item)]) for seen in seen_by]
-    for place, (seen, items) in enumerate((seen, items) for seen, items in fitting if items):
+    for index, (seen, items) in enumerate((seen, items) for seen, items in fitting if items):
         unknowns = list(_named_apart(kind, items, seen))
         roles = tuple((item, {role: one.name for role, one in own.items()}) for item, own in unknowns)
         needs = [seen.condition] if seen is not None and seen.condition is not None else []
         yield Effect(
-            f"{kind.name}_of_{seen.name}" if place and seen is not None else kind.name,
+            f"{kind.name}_of_{seen.name}" if index and seen is not None else kind.name,
             on_reading=BuiltinReading(kind, roles, seen),
             unknowns=[one for _, own in unknowns for one in own.values()],
             parts=[[one.name for one in own.values()] for _, own in unknowns],

@@ -112,17 +112,17 @@ class Candidate:
     @property
     def amplitudes(self) -> list[int]:
         """Places of the numbers that switch it off at zero."""
-        return [place for place, number in enumerate(self.numbers) if number.is_amplitude]
+        return [index for index, number in enumerate(self.numbers) if number.is_amplitude]
 
     @property
     def shapes(self) -> list[int]:
         """Places of the numbers that give it its shape."""
-        return [place for place, number in enumerate(self.numbers) if not number.is_amplitude]
+        return [index for index, number in enumerate(self.numbers) if not number.is_amplitude]
 
     @property
     def kept(self) -> list[int]:
         """Places of the whole numbers and of what lies along a covariate: a fit leaves them where they begin."""
-        return [place for place, number in enumerate(self.numbers) if not number.is_free]
+        return [index for index, number in enumerate(self.numbers) if not number.is_free]
 
     @property
     def acts_on_inputs(self) -> bool:
@@ -178,9 +178,9 @@ def effects_of(machine: Calibration) -> list[Candidate]:
             continue
         parts = effect.parts or (tuple(unknown.name for unknown in effect.unknowns),)
         is_kernel = effect.name not in model.effects
-        for place, part in enumerate(parts):
+        for index, part in enumerate(parts):
             if not set(part) & set(machine.on.get(effect.name, ())):
-                tag = effect.name if len(parts) == 1 else f"{effect.name}.{place}"
+                tag = effect.name if len(parts) == 1 else f"{effect.name}.{index}"
                 numbers = tuple(_numbers(effect, part, machine))
                 made.append(Candidate(effect.name, tag, numbers, order, effect, is_kernel=is_kernel))
     return [cause for cause in made if not cause.is_kernel or _is_offered(cause, machine)]
@@ -230,10 +230,10 @@ def inputs_of(machine: Calibration) -> list[Candidate]:
     """Return every tolerated input that moves a measured result, as a cause that shifts it by standard deviations."""
     return [
         Candidate(
-            INPUT + item.name, f"{INPUT}{item.name}.{item.file}", (Parameter(item.name, -inf, inf),), tolerated=place
+            INPUT + item.name, f"{INPUT}{item.name}.{item.file}", (Parameter(item.name, -inf, inf),), tolerated=index
         )
-        for place, item in enumerate(machine.inputs)
-        if any(np.any(slopes[:, place]) for slopes in machine.slopes.values())
+        for index, item in enumerate(machine.inputs)
+        if any(np.any(slopes[:, index]) for slopes in machine.slopes.values())
     ]
 
 

@@ -118,8 +118,8 @@ def _certain(made: Competition, best: Fit) -> Fit:
     while best.causes:
         best = made.exact(best)
         certainty = certainty_of(best, made.extended)
-        for place, cause in enumerate(best.causes):
-            less = made.without(best, place) if cause.effect is not None else None
+        for index, cause in enumerate(best.causes):
+            less = made.without(best, index) if cause.effect is not None else None
             if less is None or made.score(less) - made.score(best) >= SURELY:
                 continue
             if may_be_zero(best, certainty, cause):
@@ -140,8 +140,8 @@ def _exchanged(made: Competition, best: Fit) -> Fit:
     """Exchange every cause of the winner for every other one, and take what is better."""
     kinds = _kinds(best)
     for _ in range(2):
-        for place in range(len(best.causes)):
-            exchange(made, best, place)
+        for index in range(len(best.causes)):
+            exchange(made, best, index)
         top = next(iter(made.ranked(lambda found: is_sensible(found) and _kinds(found) == kinds)), best)
         if top.key == best.key:
             break
@@ -181,8 +181,8 @@ def _taking_least(made: Competition, best: Fit) -> Fit:
 
 def _worth_of_names(made: Competition, found: Fit) -> float:
     """Return what the score loses at least without one of the causes that have a name."""
-    named = (place for place, cause in enumerate(found.causes) if cause.shape is None)
-    less = (made.without(found, place) for place in named)
+    named = (index for index, cause in enumerate(found.causes) if cause.shape is None)
+    less = (made.without(found, index) for index in named)
     return min((made.score(each) - made.score(found) for each in less if each is not None), default=0.0)
 
 
@@ -293,8 +293,8 @@ def _is_vaguer(made: Competition, best: Fit, found: Fit) -> bool:
     A polynomial always fits a little better: it draws anything.
     """
     shapes = [cause for cause in found.causes if cause.shape is not None and cause.tag not in best.key]
-    gone = [place for place, cause in enumerate(best.causes) if cause.tag not in found.key]
-    if not shapes or all(best.causes[place].shape is not None for place in gone):
+    gone = [index for index, cause in enumerate(best.causes) if cause.tag not in found.key]
+    if not shapes or all(best.causes[index].shape is not None for index in gone):
         return _says_the_same(best, found)
     if found.cost < best.cost - CLOSE and not any(draws_anything(cause) for cause in shapes):
         return False
@@ -316,8 +316,8 @@ def _says_the_same(best: Fit, found: Fit) -> bool:
 
 def _curve_of(made: Competition, found: Fit, places: list[int]) -> Matrix:
     """Return what some causes of an explanation add to it, in units of the noise."""
-    kept = [place for place in range(len(found.causes)) if place not in places]
-    causes, values = [found.causes[place] for place in kept], [found.values[place] for place in kept]
+    kept = [index for index in range(len(found.causes)) if index not in places]
+    causes, values = [found.causes[index] for index in kept], [found.values[index] for index in kept]
     (without,) = made.extended.at(causes, [(values, found.moved)])
     (whole,) = made.extended.at(found.causes, [(found.values, found.moved)])
     return np.nan_to_num(made.sample.left(without) - made.sample.left(whole))

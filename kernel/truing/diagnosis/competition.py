@@ -194,7 +194,7 @@ class Competition:
 
     def backward(self, found: Fit) -> Fit:
         """Leave out what is no longer needed."""
-        less = [each for place in range(len(found.causes)) if (each := self.without(found, place)) is not None]
+        less = [each for index in range(len(found.causes)) if (each := self.without(found, index)) is not None]
         best = min(less, key=self.score, default=found)
         return self.backward(best) if len(found.causes) > 1 and self.score(best) < self.score(found) else found
 

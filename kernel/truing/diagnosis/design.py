@@ -145,12 +145,12 @@ def rival_fits(chosen: Chosen) -> list[Fit]:
 def _renamed(chosen: Chosen) -> Iterator[Fit]:
     """Give the winner with one cause exchanged for each that draws the same curve, as large as that is here."""
     best, made = chosen.best, chosen.competition
-    for place, cause in enumerate(best.causes):
+    for index, cause in enumerate(best.causes):
         for name in chosen.same.get(cause.tag, ()):
             others = [other for other in made.causes if other.name == name and other.tag not in best.key]
             keys = [(best.key - {cause.tag}) | {other.tag} for other in others]
             found = [made.known[key] for key in keys if key in made.known]
-            found = found or [each for other in others for each in _exchanged(made, best, place, other)]
+            found = found or [each for other in others for each in _exchanged(made, best, index, other)]
             if found:
                 yield min(found, key=lambda each: each.cost)
 

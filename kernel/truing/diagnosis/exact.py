@@ -342,7 +342,7 @@ class Fitting:
         """Return what the directions of the inputs draw about the anchor, (rows, K), in one call of the model."""
         k, own = len(self.anchor), parts_of(self.causes, self.outward(self.u))
         aside = 10 * ASIDE if self.extended.grain else ASIDE
-        ends = [self.anchor + sign * aside * np.eye(k)[place] for place in range(k) for sign in (1, -1)]
+        ends = [self.anchor + sign * aside * np.eye(k)[index] for index in range(k) for sign in (1, -1)]
         made = self.extended.at(self.causes, [(own, moved_by(self.sample, end)) for end in ends])
         for name, before in self.moves.items() if made else ():
             rises = zip(made[::2], made[1::2], strict=True)

@@ -94,9 +94,9 @@ class Extended:
 
         Shapes that nobody registered are added to what the model shows: points that differ in them alone are one call.
         """
-        own = [place for place, cause in enumerate(causes) if cause.shape is None]
-        bare_causes = [causes[place] for place in own]
-        bare = [([values[place] for place in own], moved) for values, moved in points]
+        own = [index for index, cause in enumerate(causes) if cause.shape is None]
+        bare_causes = [causes[index] for index in own]
+        bare = [([values[index] for index in own], moved) for values, moved in points]
         tags = frozenset(cause.tag for cause in bare_causes)
         keys = [(tags, b"".join(np.asarray(each).tobytes() for each in (*values, moved))) for values, moved in bare]
         new = {key: point for key, point in zip(keys, bare, strict=True) if key not in self._shown}

@@ -133,5 +133,5 @@ def is_at_bound(number: Parameter, value: float) -> bool:
 def far_inputs(found: Fit) -> list[int]:
     """Return the places of inputs that no cause shifts and that were moved far beyond their tolerances."""
     shifted = {cause.tolerated for cause in found.causes}
-    free = [(place, item) for place, item in enumerate(found.sample.machine.inputs) if place not in shifted]
-    return [place for place, item in free if abs((input_value(found, place) - item.design) / item.sd) > OUTSIDE]
+    free = [(index, item) for index, item in enumerate(found.sample.machine.inputs) if index not in shifted]
+    return [index for index, item in free if abs((input_value(found, index) - item.design) / item.sd) > OUTSIDE]

@@ -74,8 +74,8 @@ def nested(chosen: Chosen, done: Callable[[int, int], None] = lambda count, of: 
             continue
         best = _chosen_again(chosen, base, several, test)
         same += best.key == chosen.best.key
-        for place, channel in enumerate(base.sample.channels):
-            _judge(judged[channel.name], place, (base, best), test)
+        for index, channel in enumerate(base.sample.channels):
+            _judge(judged[channel.name], index, (base, best), test)
     return Nested(judged, folds, same / max(folds.count, 1))
 
 
@@ -148,7 +148,7 @@ def gains_of(chosen: Chosen, judged: Nested, units: Mapping[str, str]) -> tuple[
     """Say what the extension is worth for every result, on rows it has not seen."""
     made = []
     best, start = chosen.best, chosen.competition.sample.machine.start
-    for place, channel in enumerate(best.sample.channels):
+    for index, channel in enumerate(best.sample.channels):
         name, unit, answers = channel.name, units[channel.name], judged.judged[channel.name]
         floor2 = floor_of(best, channel) ** 2
         before2, after2 = (float(np.nanmean(errors**2)) for errors in (answers.before, answers.after))
@@ -162,7 +162,7 @@ def gains_of(chosen: Chosen, judged: Nested, units: Mapping[str, str]) -> tuple[
                 Amount(floor2**0.5, unit),
                 min((before2 - after2) / reducible, 1.0) if is_told else 0.0,
                 float(np.nanmean(answers.gain)),
-                sign_flip_p(answers.gain, judged.folds.block_of, seed=start.seed + place),
+                sign_flip_p(answers.gain, judged.folds.block_of, seed=start.seed + index),
                 float(np.nanmean(answers.inside)),
                 _held_out(chosen, name),
             )

@@ -79,7 +79,7 @@ class Calibration:
             if cause.function is None:
                 continue
             covariance = cause.covariance()
-            places = [(one, place) for place, item in enumerate(self.inputs)
+            places = [(one, index) for index, item in enumerate(self.inputs)
                       for one, column in enumerate(cause.columns) if column == item.name]  # fmt: skip
             for (one, here), (other, there) in permutations(places, 2):
                 first, second = self.inputs[here], self.inputs[there]

@@ -141,8 +141,8 @@ def _switched_on(best: Fit, causes: Sequence[Cause]) -> Iterator[SwitchedOn]:
 def input_values(found: Fit) -> Mapping[str, tuple[float, float]]:
     """Return every tolerated input as calibrated, SI, and how far it moved in units of its sd (the first file's)."""
     made: dict[str, tuple[float, float]] = {}
-    for place, item in enumerate(found.sample.machine.inputs):
-        value = input_value(found, place)
+    for index, item in enumerate(found.sample.machine.inputs):
+        value = input_value(found, index)
         made.setdefault(item.name, (value, (value - item.design) / item.sd))
     return made
 

@@ -151,13 +151,13 @@ def _by_freedom(innovations: Matrix) -> dict[float, float]:
     totals = np.zeros((len(TAILS), len(factors)))
     for begin in range(0, len(u), AT_ONCE):
         z2 = (u[begin : begin + AT_ONCE] / factors[:, None]) ** 2
-        for place, freedom in enumerate(TAILS):
+        for index, freedom in enumerate(TAILS):
             if freedom == inf:
                 logs = -0.5 * z2 - 0.5 * np.log(2 * np.pi)
             else:
                 norm = gammaln((freedom + 1) / 2) - gammaln(freedom / 2) - 0.5 * np.log(freedom * np.pi)
                 logs = norm - (freedom + 1) / 2 * np.log1p(z2 / freedom)
-            totals[place] += logs.sum(axis=1)
+            totals[index] += logs.sum(axis=1)
     largest = np.max(totals - len(u) * np.log(factors), axis=1)
     return dict(zip(TAILS, largest.tolist(), strict=True))
 

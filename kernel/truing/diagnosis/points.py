@@ -54,7 +54,7 @@ def _from_unit(number: Parameter, u: Matrix) -> Matrix:
 
 def placed(shapes: Sequence[Parameter], u: Matrix) -> Matrix:
     """Return the values of shape numbers (M, numbers) for places from 0 to 1 in their ranges."""
-    return np.column_stack([_from_unit(number, u[:, place]) for place, number in enumerate(shapes)]) if shapes else u
+    return np.column_stack([_from_unit(number, u[:, index]) for index, number in enumerate(shapes)]) if shapes else u
 
 
 def first_places(number: Parameter) -> Matrix:

@@ -113,8 +113,8 @@ def _more(made: Competition) -> None:
 def _exchanged(made: Competition) -> None:
     for _ in range(2):
         now = made.ranked()[0]
-        for place in range(len(now.causes)):
-            exchange(made, now, place)
+        for index in range(len(now.causes)):
+            exchange(made, now, index)
         if made.ranked()[0].key == now.key:
             return
 

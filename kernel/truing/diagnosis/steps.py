@@ -193,9 +193,9 @@ def _beats(made: Competition, at: Fit, more: Fit) -> bool:
 
 def _mends(made: Competition, at: Fit, more: Fit, gain: float) -> bool:
     """Whether what is added only mends what a shape that nobody registered leaves."""
-    shapes = [place for place, cause in enumerate(more.causes) if cause.shape is not None]
+    shapes = [index for index, cause in enumerate(more.causes) if cause.shape is not None]
     if not shapes or not at.key < more.key or not at.causes:
         return False
-    rest = [made.without(more, place) for place in shapes]
+    rest = [made.without(more, index) for index in shapes]
     worth = max((made.score(each) - made.score(more) for each in rest if each is not None), default=0.0)
     return gain < min(ROUGH * worth, MENDED)

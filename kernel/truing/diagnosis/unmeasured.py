@@ -132,14 +132,14 @@ def _result_to_measure(
         found.append((name_of(each), predict(setup, there.records)))
     goals = {goal.result for goal in start.model.objectives if isinstance(goal, (Require, Minimise, Maximise))}
     ranked: list[tuple[tuple[Any, ...], list[_Gap]]] = []
-    for place, name in enumerate(names):
+    for index, name in enumerate(names):
         pairs = (_gap(there, name, (a, b), one[name] - other[name]) for (a, one), (b, other) in combinations(found, 2))
         gaps = sorted((gap for gap in pairs if gap is not None), key=lambda gap: gap.clearness)
         if gaps:
             parted = sum(found[0][0] in gap.names for gap in gaps)
             is_goal, clearness = name in goals, float(f"{gaps[0].clearness:.2g}")
             has_gauge = is_goal or fields[name].unit not in PURE
-            ranked.append(((has_gauge, parted, is_goal, len(gaps), clearness, -place), gaps))
+            ranked.append(((has_gauge, parted, is_goal, len(gaps), clearness, -index), gaps))
     if not ranked:
         return None, set()
     _, gaps = max(ranked, key=lambda each: each[0])

@@ -44,7 +44,7 @@ def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_
     for kind, on, count, numbers, terms in _families(moved, registered, has_steps=has_steps, rows=len(records)):
         for group in groups:
             shape = UnregisteredShape(kind, on, group, terms)
-            amplitudes = [Parameter(f"{name}:{place}", -inf, inf) for name in group for place in range(count)]
+            amplitudes = [Parameter(f"{name}:{index}", -inf, inf) for name in group for index in range(count)]
             detail = f".{count}" if kind in {"trend", "product"} else ""
             tag = f"{UNKNOWN}:{kind}{detail}:{','.join(on)}:{','.join(group)}"
             made.append(Candidate(UNKNOWN, tag, (*amplitudes, *numbers), 10**6, shape=shape))

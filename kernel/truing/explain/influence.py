@@ -83,10 +83,10 @@ def _slopes(
     of: dict[str, dict[str, Any]] = {result: dict.fromkeys(columns, math.nan) for result in results}
     remarks: list[str] = []
     ends = time.monotonic() + PATIENCE
-    for place, column in enumerate(columns):
-        progress("differentiating", place, len(columns))
+    for index, column in enumerate(columns):
+        progress("differentiating", index, len(columns))
         if time.monotonic() > ends:
-            left = ", ".join(columns[place:])
+            left = ", ".join(columns[index:])
             remarks.append(f"one calculation takes so long that these were not differentiated by: {left}")
             break
         try:

@@ -87,9 +87,9 @@ def value_of(node: Node, values: Mapping[str, Any]) -> Any:
 
 def _cases(arguments: tuple[Node, ...], values: Mapping[str, Any]) -> Any:
     result = value_of(arguments[-1], values)
-    for place in range(len(arguments) - 3, -1, -2):
-        condition = value_of(arguments[place + 1], values)
-        result = np.where(condition, value_of(arguments[place], values), result)
+    for index in range(len(arguments) - 3, -1, -2):
+        condition = value_of(arguments[index + 1], values)
+        result = np.where(condition, value_of(arguments[index], values), result)
     return result
 
 

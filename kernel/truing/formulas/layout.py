@@ -186,9 +186,9 @@ class Layout:
         """Set all factors in a row: a thin gap where it reads well, a dot beside digits and words."""
         row = factors(node)
         pieces = []
-        for place, factor in enumerate(row):
-            bare = place == len(row) - 1 or begins_with_function(row[place + 1])
-            pieces.append(self.at_least(factor, Binding.PRODUCT, signed=place == 0, bare=bare))
+        for index, factor in enumerate(row):
+            bare = index == len(row) - 1 or begins_with_function(row[index + 1])
+            pieces.append(self.at_least(factor, Binding.PRODUCT, signed=index == 0, bare=bare))
         markup = pieces[0].markup
         for before, after in pairwise(pieces):
             dot = self.dots or after.begins is not Edge.OTHER or before.ends is Edge.WORD

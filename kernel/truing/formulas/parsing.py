@@ -183,7 +183,7 @@ def _call(node: ast.Call) -> Call:
         raise _RefusalError(f"{function} is called with a keyword; arguments go by their place")
     _count_arguments(function, len(node.args))
     if function == "cases":
-        return Call(function, tuple(_case_part(place, node.args) for place in range(len(node.args))))
+        return Call(function, tuple(_case_part(index, node.args) for index in range(len(node.args))))
     return Call(function, tuple(_value(argument) for argument in node.args))
 
 

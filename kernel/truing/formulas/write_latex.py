@@ -89,7 +89,7 @@ def upright(text: str) -> str:
 def upright_unit(unit: str) -> str:
     """Write a unit text upright; here "^" raises, as in mm^0.5."""
     parts = re.split(r"\^(-?\d+(?:\.\d+)?|\([-\d/]+\))", printable(unit), flags=re.ASCII)
-    raised = [f"^{{{part}}}" if place % 2 else escaped(part) for place, part in enumerate(parts)]
+    raised = [f"^{{{part}}}" if index % 2 else escaped(part) for index, part in enumerate(parts)]
     written = re.sub(r"(\^{[^{}]*})(?=\^)", r"\1{}", "".join(raised))  # LaTeX refuses a power of a power
     return rf"\mathrm{{{written}}}"
 

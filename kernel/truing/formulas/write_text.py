@@ -133,10 +133,10 @@ def folded(text: str, width: int) -> Iterator[str]:
     """Give the lines of a formula that is no wider than ``width``; broken in front of a sign where there is one."""
     words = text.split(" ")
     line = words[0]
-    for place, word in enumerate(words[1:], start=1):
-        following = words[place + 1] if place + 1 < len(words) and _is_sign(word) else ""
+    for index, word in enumerate(words[1:], start=1):
+        following = words[index + 1] if index + 1 < len(words) and _is_sign(word) else ""
         if len(line) + 1 + len(word) + (1 + len(following) if following else 0) > width and not _is_sign(
-            words[place - 1]
+            words[index - 1]
         ):
             yield line
             line = word

@@ -329,6 +329,6 @@ def effects_of(model: Model[Any, Any], values: Values) -> tuple[SwitchedOn, ...]
             if ("effects", name, unknown, "sd") in values
         }
         if covariance:
-            sds = {unknown: math.sqrt(covariance[place][place]) for place, unknown in enumerate(stated)} | sds
+            sds = {unknown: math.sqrt(covariance[index][index]) for index, unknown in enumerate(stated)} | sds
         on.append(SwitchedOn(effect, stated, sds, covariance))
     return tuple(on)

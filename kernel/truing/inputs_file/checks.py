@@ -222,12 +222,12 @@ def of_run(names: Sequence[str]) -> ValueCheck:
         if not isinstance(raw, list) or not all(isinstance(name, str) for name in raw):
             raise SentenceError(f'run is a list of studies; write run = ["{names[0] if names else ""}"]')
         offered = f"studies of this model: {', '.join(names) or 'none'}"
-        for place, name in enumerate(raw):
+        for index, name in enumerate(raw):
             if name not in names:
                 raise SentenceError(
                     f"run names {shown(name)}, which is no study.{near_miss(name[:80], names)} ({offered})"
                 )
-            if name in raw[:place]:
+            if name in raw[:index]:
                 raise SentenceError(f"run names '{name}' twice")
         reading.values["studies", "run"] = tuple(raw)
         return raw

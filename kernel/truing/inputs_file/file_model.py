@@ -65,8 +65,8 @@ def file_model(model: Model[Any, Any]) -> type[BaseModel]:
         "units": (_section("Units", _units(model)), "The unit in which a result or input is printed."),
     }
     fields: dict[str, Any] = {
-        f"part_{place}": (section, Field(default_factory=dict, alias=name, title=name, description=words))
-        for place, (name, (section, words)) in enumerate(sections.items())
+        f"part_{index}": (section, Field(default_factory=dict, alias=name, title=name, description=words))
+        for index, (name, (section, words)) in enumerate(sections.items())
     }
     plugin = {"type": "string", "description": "The calculation this file is for."}
     fields["part_plugin"] = _field("plugin", SectionEntry(checks.stored("plugin", checks.text), plugin))
@@ -89,7 +89,7 @@ def _field(name: str, entry: SectionEntry) -> tuple[Any, Any]:
 
 def _section(title: str, entries: Mapping[str, SectionEntry]) -> type[BaseModel]:
     """Make the model of one section; fields have neutral names inside, so that no input can clash with pydantic's."""
-    fields: dict[str, Any] = {f"entry_{place}": _field(name, one) for place, (name, one) in enumerate(entries.items())}
+    fields: dict[str, Any] = {f"entry_{index}": _field(name, one) for index, (name, one) in enumerate(entries.items())}
     return create_model(title, __config__=_config(), **fields)
 
 

@@ -193,7 +193,7 @@ def _per_file(raw: Any, model: Model[Any, Any]) -> tuple[str, ...]:
     effects = model.known_effects
     unknowns = [f"{name}.{unknown.name}" for name, effect in effects.items() for unknown in effect.unknowns]
     known = [*effects, *unknowns, *(name for name, item in model.input_fields.items() if item.varies)]
-    for place, name in enumerate(raw):
+    for index, name in enumerate(raw):
         if name not in known:
             near = near_miss(name[:80], known)
             hint = near or f" (effects: {', '.join(effects) or 'none'})"
@@ -201,7 +201,7 @@ def _per_file(raw: Any, model: Model[Any, Any]) -> tuple[str, ...]:
                 f"study '{NAME}': per_file names {shown(name)}, which is no effect, unknown or number among the "
                 f"inputs of {model.name}.{hint}"
             )
-        if name in raw[:place]:
+        if name in raw[:index]:
             raise SentenceError(f"study '{NAME}': per_file names '{name}' twice")
     return tuple(raw)
 

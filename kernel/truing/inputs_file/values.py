@@ -211,7 +211,7 @@ def _series(item: InputField, raw: Any) -> Any:
         )
     if unit is None:
         return _plain_series(item, given)
-    values = [read_number(f"{item.name}[{place}]", one, unit) for place, one in enumerate(given, start=1)]
+    values = [read_number(f"{item.name}[{index}]", one, unit) for index, one in enumerate(given, start=1)]
     for value in values:
         keep_bounds(item, value)
     if not item.spec.along:
@@ -232,11 +232,11 @@ def _plain_series(item: InputField, given: list[Any]) -> tuple[Any, ...]:
     default = getattr(item.spec, "default", None)
     kind = type(default[0]) if isinstance(default, (tuple, list)) and default else type(given[0])
     if kind is float and all(_is_number(value) for value in given):
-        return tuple(read_number(f"{item.name}[{place}]", value, "") for place, value in enumerate(given, start=1))
-    for place, value in enumerate(given, start=1):
+        return tuple(read_number(f"{item.name}[{index}]", value, "") for index, value in enumerate(given, start=1))
+    for index, value in enumerate(given, start=1):
         if type(value) is not kind:
             word = {int: "whole number", float: "number", str: "text", bool: "switch"}.get(kind, "value of its kind")
-            raise SentenceError(f"{item.name}[{place}] = {written(value)} is no {word}")
+            raise SentenceError(f"{item.name}[{index}] = {written(value)} is no {word}")
     return tuple(given)
 
 

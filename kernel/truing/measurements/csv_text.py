@@ -290,16 +290,16 @@ def _headers(cells: list[str], line: int, faults: Faults) -> tuple[Header, ...]:
         cells = cells[:-1]
     headers: list[Header] = []
     seen: set[str] = set()
-    for place, text in enumerate(cell.strip() for cell in cells):
+    for index, text in enumerate(cell.strip() for cell in cells):
         name, unit = _name_and_unit(text)
         if name is None:
             faults.add(f"the header {shown(text)} cannot be read; write it like 'load [N]'", line)
         elif not name:
-            faults.add(f"column {place + 1} has no name", line)
+            faults.add(f"column {index + 1} has no name", line)
         elif name in seen:
             faults.add(f"the column {shown(name)} occurs twice", line)
         seen.add(name or "")
-        headers.append(Header(name or "", unit, place, text))
+        headers.append(Header(name or "", unit, index, text))
     return tuple(headers)
 
 

@@ -242,8 +242,8 @@ def table_view(table: Table, most: int) -> TableView:
     width = len(table.columns)
     rows = tuple(tuple([*map(value_text, row), *[""] * width][:width]) for row in shown)
     numeric = tuple(
-        bool(shown) and all(_is_numeric(row[place]) for row in shown if place < len(row))
-        for place in range(len(table.columns))
+        bool(shown) and all(_is_numeric(row[index]) for row in shown if index < len(row))
+        for index in range(len(table.columns))
     )
     left = len(table.rows) - len(shown)
     note = " ".join(filter(None, [table.note, f"{left} further rows are not printed." if left else ""]))
@@ -266,7 +266,7 @@ def _known_unit(write: Callable[[str], str], unit: str) -> str:
 def numbered(chapters: Sequence[Chapter], start: int) -> Mapping[str, Chapter]:
     """Give chapters their numbers and identifiers, in order."""
     found = {}
-    for place, chapter in enumerate(chapters, start):
-        ident = chapter.ident or f"chapter-{place}"
-        found[ident] = replace(chapter, number=str(place), ident=ident)
+    for index, chapter in enumerate(chapters, start):
+        ident = chapter.ident or f"chapter-{index}"
+        found[ident] = replace(chapter, number=str(index), ident=ident)
     return found

@@ -343,9 +343,9 @@ def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
 def _data(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     records = diagnosis.records
     rows = []
-    for place, label in enumerate(file_labels(records.files)):
-        of_file = records.file_of == place
-        count, runs = records.counts[place], len(set(records.run_of[of_file].tolist()))
+    for index, label in enumerate(file_labels(records.files)):
+        of_file = records.file_of == index
+        count, runs = records.counts[index], len(set(records.run_of[of_file].tolist()))
         rows.append((label, str(count.in_file), str(count.used), str(count.unused), str(runs)))
     held = int(records.held_out.sum())
     note = f"{held} rows were held out: they judge and were not fitted." if held else ""

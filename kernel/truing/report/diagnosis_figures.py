@@ -208,12 +208,12 @@ def ranking_bars(diagnosis: DiagnosisResult) -> Figure:
     figure = Figure(figsize=(6.4, 0.7 + 0.3 * len(items)), layout="constrained")
     axes = figure.subplots()
     widest = min(max(*(item.behind for item in items), 1.0), FARTHEST)
-    for place, item in enumerate(items):
+    for index, item in enumerate(items):
         length, beyond = min(item.behind, widest), "›" if item.behind > widest else ""
         colour = AFTER if is_open(item, diagnosis) else QUIET
-        axes.barh(place, max(length, 0.003 * widest), height=0.62, color=colour)
+        axes.barh(index, max(length, 0.003 * widest), height=0.62, color=colour)
         text = f"{item.behind:.1f} {beyond}"
-        axes.text(length + 0.01 * widest, place, text, va="center", fontsize=8, color=NEUTRAL)
+        axes.text(length + 0.01 * widest, index, text, va="center", fontsize=8, color=NEUTRAL)
     axes.set_yticks(range(len(items)), [_short(explanation(item)) for item in items])
     axes.invert_yaxis()
     axes.set_xlim(0, 1.13 * widest)
@@ -232,11 +232,11 @@ def gain_bars(diagnosis: DiagnosisResult) -> Figure:
     gains = diagnosis.gain
     figure = Figure(figsize=(6.4, 0.7 + 0.75 * len(gains)), layout="constrained")
     axes = figure.subplots()
-    for place, item in enumerate(gains):
+    for index, item in enumerate(gains):
         for offset, (name, colour, value) in enumerate(_bars(item)):
             share = 100 * value.value / item.rmse_before.value if item.rmse_before.value else 0.0
-            height = place + 0.26 * (offset - 1)
-            axes.barh(height, share, height=0.24, color=colour, label=name if not place else None)
+            height = index + 0.26 * (offset - 1)
+            axes.barh(height, share, height=0.24, color=colour, label=name if not index else None)
             axes.text(share + 1, height, amount_text(value), va="center", fontsize=8, color=NEUTRAL)
     axes.set_yticks(range(len(gains)), [_short(spoken(item.result), 30) for item in gains])
     axes.invert_yaxis()

@@ -15,7 +15,7 @@ def table_of(
     title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], numeric: Sequence[int] = (), note: str = ""
 ) -> TableView:
     """Return a table of texts; ``numeric`` holds the indices of the columns that are set to the right."""
-    flags = tuple(place in numeric for place in range(len(columns)))
+    flags = tuple(index in numeric for index in range(len(columns)))
     return TableView(title, tuple(columns), ("",) * len(columns), tuple(map(tuple, rows)), flags, note)
 
 
@@ -36,7 +36,7 @@ def next_blocks(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
 
 def _points(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     names = list(dict.fromkeys(name for point in diagnosis.next for name in (*point.measure, *point.settings)))
-    rows = [_point(place, point, names) for place, point in enumerate(diagnosis.next, start=1)]
+    rows = [_point(index, point, names) for index, point in enumerate(diagnosis.next, start=1)]
     heads = ("Point", *(spoken(name).capitalize() for name in names), "Separates", "λ then")
     note = (
         "λ then is the separation to expect once all points up to this one are measured; from "

@@ -52,7 +52,7 @@ def markdown_page(template: str, sheet: Any) -> str:
     """Write Markdown from its template, no two empty lines in a row."""
     text = _markdown().get_template(template).render(sheet=sheet)
     blocks = [line.rstrip() for line in text.splitlines()]
-    kept = [line for place, line in enumerate(blocks) if line or (place and blocks[place - 1])]
+    kept = [line for index, line in enumerate(blocks) if line or (index and blocks[index - 1])]
     return "\n".join(kept).strip() + "\n"
 
 
@@ -189,10 +189,10 @@ def _equation_html(equation: Equation) -> Any:
     blocks = []
     lines = _html_lines(equation)
     room = f' style="--room: {WIDEST * max(line.width for line in lines):.0f}"'
-    for place, line in enumerate(lines):
-        label = f' alttext="{alternative}"' if place == 0 else ""
+    for index, line in enumerate(lines):
+        label = f' alttext="{alternative}"' if index == 0 else ""
         mathematics = f'<math display="block"{label}><mrow>{line.markup}</mrow></math>'
-        blocks.append(f'<div class="line{" next" if place else ""}"{room}>{mathematics}</div>')
+        blocks.append(f'<div class="line{" next" if index else ""}"{room}>{mathematics}</div>')
     return _markup("".join(blocks))
 
 
@@ -227,7 +227,7 @@ def _table_markdown(table: TableView) -> Raw:
     ]
     rule: list[str] = ["---:" if numeric else "---" for numeric in table.numeric]
     rows: list[list[str]] = [
-        [_cell(cell, place == table.marked) for cell in row] for place, row in enumerate(table.rows)
+        [_cell(cell, index == table.marked) for cell in row] for index, row in enumerate(table.rows)
     ]
     return Raw("\n".join("| " + " | ".join(cells) + " |" for cells in (titles, rule, *rows)))
 

@@ -113,10 +113,10 @@ def _data(diagnosis: DiagnosisResult) -> dict[str, Any]:
     """Say what was measured: results, files with their rows and runs, rows that only judge."""
     records = diagnosis.records
     files = []
-    for place, label in enumerate(file_labels(records.files)):
-        of_file = records.file_of == place
+    for index, label in enumerate(file_labels(records.files)):
+        of_file = records.file_of == index
         runs = len(set(records.run_of[of_file].tolist()))
-        files.append({"file": label, **records.counts[place].as_json(), "runs": runs})
+        files.append({"file": label, **records.counts[index].as_json(), "runs": runs})
     return {
         "measured": list(diagnosis.measured),
         "rows": len(records),

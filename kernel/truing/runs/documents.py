@@ -89,13 +89,13 @@ def _cases(calculation: Calculation, cases: CasesTable) -> list[dict[str, Any]]:
     """Return every case in the order of the file; one is governing."""
     setup = calculation.setup
     listed = []
-    for place, case in enumerate(cases.cases):
+    for index, case in enumerate(cases.cases):
         single = {name: value for name, value in case.answers.items() if not getattr(value, "ndim", 0)}
         listed.append(
             {
                 "row": case.row,
                 "name": case.name,
-                "governing": place == cases.governing,
+                "governing": index == cases.governing,
                 "values": {name: _case_value(setup, name, value) for name, value in case.values.items()},
                 "results": {
                     name: _known(value, setup.print_unit(name), case.absent.get(name)) for name, value in single.items()

@@ -83,7 +83,7 @@ def _leaves(value: Any, place: str = "") -> Iterator[tuple[str, Any]]:
 def _cases(cases: Sequence[Mapping[str, Any]]) -> str:
     """Return the cases, one a row: what they change and what they answer, units in the header."""
     columns: dict[str, list[Any]] = {"case": [], "row": []}
-    for place, case in enumerate(cases):
+    for index, case in enumerate(cases):
         found = {
             "case": case["name"],
             "row": case["row"],
@@ -95,7 +95,7 @@ def _cases(cases: Sequence[Mapping[str, Any]]) -> str:
             found["margin [1]"] = min(margins, key=_order)
         found["verdict"] = _verdict(case)
         for header in {**columns, **found}:
-            columns.setdefault(header, [None] * place).append(found.get(header))
+            columns.setdefault(header, [None] * index).append(found.get(header))
     return table_text(list(columns), list(columns.values()), form=EXCEL)
 
 

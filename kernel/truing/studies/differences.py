@@ -57,11 +57,11 @@ def slopes(setup: Setup, results: Sequence[str], columns: Sequence[str], scatter
     block = 2 * LEVELS
     rows = 1 + block * len(columns)
     batch: dict[str, NDArray[np.float64]] = {}
-    for place, column in enumerate(columns):
-        values = np.full(rows, nominals[place])
-        start = 1 + block * place
-        values[start : start + LEVELS] += steps[place]
-        values[start + LEVELS : start + block] -= steps[place]
+    for index, column in enumerate(columns):
+        values = np.full(rows, nominals[index])
+        start = 1 + block * index
+        values[start : start + LEVELS] += steps[index]
+        values[start + LEVELS : start + block] -= steps[index]
         batch[column] = values
     answer = evaluate_rows(setup, batch, rows, wanted=results)
     of: dict[str, dict[str, Any]] = {}
@@ -70,10 +70,10 @@ def slopes(setup: Setup, results: Sequence[str], columns: Sequence[str], scatter
         values = answer.results[result]
         of[result] = {}
         matters = DOUBTFUL * _largest(values - values[0])
-        for place, column in enumerate(columns):
-            start = 1 + block * place
-            points = batch[column][start : start + block] - nominals[place]
-            slope, remark = _slope(points, values[start : start + block], values[0], matters / widest[place])
+        for index, column in enumerate(columns):
+            start = 1 + block * index
+            points = batch[column][start : start + block] - nominals[index]
+            slope, remark = _slope(points, values[start : start + block], values[0], matters / widest[index])
             of[result][column] = slope
             if remark:
                 warnings.append(f"the derivative of '{result}' by '{column}' {remark}")

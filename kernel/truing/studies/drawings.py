@@ -47,8 +47,8 @@ def lines(
     def draw() -> Figure:
         figure = Figure(figsize=(WIDTH, 3.2), layout="constrained")
         panel: Any = figure.subplots()
-        for place, (name, values) in enumerate(series.items()):
-            colour = (BLUE, ORANGE, "#3f7f4f", "#7a4f9a")[place % 4]
+        for index, (name, values) in enumerate(series.items()):
+            colour = (BLUE, ORANGE, "#3f7f4f", "#7a4f9a")[index % 4]
             panel.plot(x, values, color=colour, marker="o", markersize=3.5, label=spoken(name))
             if name in goals:
                 panel.axhline(goals[name], color=colour, linestyle="--", linewidth=0.9)

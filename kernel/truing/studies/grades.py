@@ -257,7 +257,7 @@ def prices_at(strips: Sequence[ToleranceVariable], widths: Values) -> tuple[Valu
     paid = np.empty(len(strips), dtype=complex)
     prices = [strip.price for strip in strips]
     for price in set(prices):
-        own = [place for place, other in enumerate(prices) if other == price]
+        own = [index for index, other in enumerate(prices) if other == price]
         paid[own] = price.evaluated(widths[own] * (1 + 1j * COMPLEX_STEP))
     return paid.real, paid.imag / (COMPLEX_STEP * widths)
 

@@ -524,7 +524,7 @@ class Space:
         """Return the nominal inputs (m,) that differ; ``as_stated`` leaves followers as the file states them."""
         fields = self.setup.model.input_fields
         columns: dict[str, Any] = {
-            variable.name: designs[:, place] for place, variable in enumerate(self.variables) if variable.is_input
+            variable.name: designs[:, index] for index, variable in enumerate(self.variables) if variable.is_input
         }
         for follower in self.followers:
             held = {name: self.setup.nominal(name) for name in follower.formula.names}
@@ -539,8 +539,8 @@ class Space:
     def choices(self, designs: NDArray[np.float64]) -> dict[str, tuple[Variable, NDArray[np.float64]]]:
         """Return the tolerances that differ, by name: the variable and its values (m,)."""
         return {
-            variable.name: (variable, designs[:, place])
-            for place, variable in enumerate(self.variables)
+            variable.name: (variable, designs[:, index])
+            for index, variable in enumerate(self.variables)
             if not variable.is_input
         }
 
@@ -634,13 +634,13 @@ def _of_grade(setup: Setup, tolerance: Tolerance, spread: Grade, brief: Brief, w
     """Return a tolerance whose grade is chosen: from the finest allowed to the coarsest that is not too wide."""
     target, start = setup.target(tolerance.on[0]), GRADES.index(spread.grade)
     places = []
-    for place, name in enumerate(GRADES):
+    for index, name in enumerate(GRADES):
         try:
             size = replace(spread, grade=name).width(target)
         except TruingError:  # ISO 286 has no such grade for the size
             continue
-        if place == start or (place >= GRADES.index(brief.finest) and size <= brief.widest * width * (1 + SLACK)):
-            places.append(place)
+        if index == start or (index >= GRADES.index(brief.finest) and size <= brief.widest * width * (1 + SLACK)):
+            places.append(index)
     if len(places) < 2:
         return None
     return Variable(tolerance.name, "grade", float(min(places)), float(max(places)), "", float(start))
@@ -916,7 +916,7 @@ def _of_cause(cause: ScatterSource, standard: NDArray[np.float64], designs: Desi
     if cause.mixing is not None or cause.name not in designs.spreads:
         return [(column, values[None, :]) for column, _, values in cause.from_standard(standard)]
     own = designs.spreads[cause.name]
-    return [(column, own[column].values(standard[place])) for place, column in enumerate(cause.columns)]
+    return [(column, own[column].values(standard[index])) for index, column in enumerate(cause.columns)]
 
 
 def by_first_order(
@@ -945,10 +945,10 @@ def _moments(scatter: Scatter, designs: Designs) -> tuple[dict[str, Any], Any, d
     shifts: dict[str, Any] = {}
     for cause in scatter.causes:
         own = designs.spreads.get(cause.name) if cause.mixing is None else None
-        for place, column in enumerate(cause.columns):
-            stated = cause.distributions[place]
+        for index, column in enumerate(cause.columns):
+            stated = cause.distributions[index]
             sd = np.full(designs.rows, stated.sd) if own is None else own[column].sd
-            shift = stated.mean - cause.nominals[place] if own is None else own[column].mean - designs.nominal(column)
+            shift = stated.mean - cause.nominals[index] if own is None else own[column].mean - designs.nominal(column)
             squares[column] = squares.get(column, 0.0) + sd**2
             shifts[column] = shifts.get(column, 0.0) + shift * np.ones(designs.rows)
     steps = {column: STEP * np.sqrt(square) for column, square in squares.items()}
@@ -1002,9 +1002,9 @@ def _line(
         response = response - beside(limit, response)
     centre = response[:, 0]
     slopes: dict[str, Any] = {}
-    for place, column in enumerate(steps[0]):
+    for index, column in enumerate(steps[0]):
         step = beside(steps[1][column], centre)
-        up, down = response[:, 1 + 2 * place], response[:, 2 + 2 * place]
+        up, down = response[:, 1 + 2 * index], response[:, 2 + 2 * index]
         with np.errstate(all="ignore"):
             slope = (up - down) / (2 * step)
             slope = np.where(np.isfinite(slope), slope, np.where(np.isfinite(up), up - centre, centre - down) / step)

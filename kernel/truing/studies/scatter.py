@@ -52,9 +52,9 @@ class ScatterSource:
     def from_standard(self, standard: NDArray[np.float64]) -> Iterator[tuple[str, float, NDArray[np.float64]]]:
         """Map independent standard normal values (k, n) to the columns."""
         mixed = None if self.mixing is None else self.mixing @ standard
-        for place, distribution in enumerate(self.distributions):
-            values = distribution.from_standard(standard[place]) if mixed is None else distribution.mean + mixed[place]
-            yield self.columns[place], self.nominals[place], values
+        for index, distribution in enumerate(self.distributions):
+            values = distribution.from_standard(standard[index]) if mixed is None else distribution.mean + mixed[index]
+            yield self.columns[index], self.nominals[index], values
 
     def covariance(self) -> NDArray[np.float64]:
         """Return the covariance of the columns (k, k), SI."""

@@ -348,8 +348,8 @@ def _by_name(
 ) -> dict[str, dict[str, float]]:
     """Return indices by result and source; an input with two tolerances has the sum of both."""
     found: dict[str, dict[str, float]] = {}
-    for place, result in enumerate(results):
+    for index, result in enumerate(results):
         found[result] = {}
         for column, source in enumerate(sources):
-            found[result][source] = found[result].get(source, 0.0) + float(values[place, column])
+            found[result][source] = found[result].get(source, 0.0) + float(values[index, column])
     return found

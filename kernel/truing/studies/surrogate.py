@@ -445,10 +445,10 @@ def _speed_table(emulated: Emulated, speed: Speed) -> Table:
 def _box_table(emulated: Emulated) -> Table:
     rows: list[list[Any]] = []
     emulators = emulated.stand_in.emulators
-    for place, item in enumerate(emulated.stand_in.box.features):
+    for index, item in enumerate(emulated.stand_in.box.features):
         unit = emulated.units[item.name]
         scale = "logarithmic" if item.logarithmic else "even"
-        lengths = [emulator.lengths[place] for emulator in emulators.values()]
+        lengths = [emulator.lengths[index] for emulator in emulators.values()]
         rows.append([item.name, printed(item.low, unit), printed(item.high, unit), unit_text(unit), scale, *lengths])
     columns = ("direction", "from", "to", "unit", "scale", *(f"length of {spoken(name)}" for name in emulators))
     note = "Lengths over the side of the box: over a short one the result turns, over a long one it is straight."
@@ -608,7 +608,7 @@ def ran(setup: Setup, columns: Mapping[str, Any], wanted: tuple[str, ...], work:
         answers.append(answer)
         work.done(min(len(answers) * work.batch, points), points)
     parts = [rows for rows, _ in answers]
-    reasons = {place * work.batch + row: text for place, rows in enumerate(parts) for row, text in rows.reasons.items()}
+    reasons = {index * work.batch + row: text for index, rows in enumerate(parts) for row, text in rows.reasons.items()}
     results = {name: np.concatenate([rows.results[name] for rows in parts]) for name in wanted}
     joined = Rows(results, np.concatenate([rows.failed for rows in parts]), reasons)
     return Ran(columns, joined, sum(seconds for _, seconds in answers))

@@ -184,8 +184,8 @@ def _near(name: str) -> str:
         if bare != name and len(bare) > 1 and (bare in names.SYMBOLS or bare in names.SPELLINGS):
             return f"; {shown(bare)} takes no prefix {shown(prefix)}: write {shown(f'10^{power} {bare}')}"
     scored = [
-        (difflib.SequenceMatcher(None, name, known).ratio() - 0.001 * abs(len(known) - len(name)), -place, known)
-        for place, known in enumerate(_suggestions())
+        (difflib.SequenceMatcher(None, name, known).ratio() - 0.001 * abs(len(known) - len(name)), -index, known)
+        for index, known in enumerate(_suggestions())
     ]
     ratio, _, known = max(scored)
     return f"; did you mean {shown(known)}?" if ratio > 0.6 else ""
@@ -200,8 +200,8 @@ def case_variants(name: str) -> Iterator[str]:
 def _suggestions() -> tuple[str, ...]:
     """List every name with its prefixes, the common ones first."""
     prefixed = [
-        (rank, place, prefix + symbol)
-        for place, (symbol, (_, prefixes)) in enumerate(names.SYMBOLS.items())
+        (rank, index, prefix + symbol)
+        for index, (symbol, (_, prefixes)) in enumerate(names.SYMBOLS.items())
         for rank, prefix in enumerate(["", *prefixes.split()])
     ]
     common = ["mm", "kN", "MPa", "GPa", "Nm", "Nmm", "kNm", "kg", "um", "kW", "degC", "rpm"]
