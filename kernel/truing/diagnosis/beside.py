@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from truing.diagnosis.arrays import Mask, Matrix, Places
+from truing.arrays import Indices, Mask, Matrix
 from truing.diagnosis.causes import Candidate
 from truing.diagnosis.curves import LARGEST, Bundle, ResponseCurves
 from truing.diagnosis.exact import slopes_left
@@ -182,7 +182,7 @@ def _is_same(one: Matrix, other: Matrix) -> bool:
     return bool(np.linalg.norm(one @ other.T) ** 2 > 0.98 * min(len(one), len(other)))
 
 
-def _starts(bundle: Bundle, places: Places, right: Matrix, normal: Matrix) -> tuple[Matrix, Matrix]:
+def _starts(bundle: Bundle, places: Indices, right: Matrix, normal: Matrix) -> tuple[Matrix, Matrix]:
     """Return what each point lowers the sum of squares by within the bounds of the cause, and the numbers there."""
     points, right, normal = bundle.points[places], right[places], normal[places]
     scale = np.sqrt(np.maximum(np.einsum("mqq->mq", normal), 1e-300))

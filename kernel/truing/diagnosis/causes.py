@@ -15,9 +15,9 @@ from typing import Any, Literal
 
 import numpy as np
 
+from truing.arrays import Matrix
 from truing.declare.builtin import BuiltinReading, may_stand
 from truing.declare.sources import Effect, Unknown
-from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.machine import Calibration
 from truing.diagnosis.records import Covariate
 from truing.diagnosis.tidying import is_angle

@@ -13,7 +13,7 @@ from math import comb, log, sqrt
 
 import numpy as np
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.beside import Looked, beside_of
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.fitted import Fit

@@ -12,7 +12,7 @@ from math import sqrt
 
 import numpy as np
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate
 from truing.diagnosis.chance import Law, law_of
 from truing.diagnosis.competition import Competition

@@ -9,7 +9,7 @@ from math import lgamma, log, log1p
 
 import numpy as np
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.beside import Looked, look
 from truing.diagnosis.causes import Candidate, are_exclusive
 from truing.diagnosis.curves import ResponseCurves

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from truing.arrays import Mask, Sides
 from truing.declare.builtin import may_stand
 from truing.declare.near_miss import near_miss
-from truing.diagnosis.arrays import Mask, Sides
 from truing.diagnosis.causes import reading_of
 from truing.diagnosis.data_file import ColumnRole, DataRows
 from truing.diagnosis.records import Covariate, Role

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate, UnregisteredShape
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit

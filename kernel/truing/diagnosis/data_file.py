@@ -10,10 +10,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from truing.arrays import Indices, Mask, Matrix
 from truing.declare.fields import Axis, InputField
 from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
-from truing.diagnosis.arrays import Mask, Matrix, Places
 from truing.errors import UnitError
 from truing.gauge import axis_of
 from truing.inputs_file.values import broken_bound
@@ -43,8 +43,8 @@ class DataRows:
     columns: Mapping[str, NDArray[Any]]
     parts: Mapping[str, ColumnRole]
     units: Mapping[str, str]
-    file_of: Places
-    lines: Places
+    file_of: Indices
+    lines: Indices
     runs: NDArray[Any]
     held_out: Mask
     counts: tuple[RowCount, ...]

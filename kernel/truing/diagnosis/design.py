@@ -13,7 +13,7 @@ from itertools import permutations
 
 import numpy as np
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.beside import look
 from truing.diagnosis.causes import Candidate
 from truing.diagnosis.choice import Chosen

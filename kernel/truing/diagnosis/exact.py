@@ -16,7 +16,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import least_squares
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate, Parameter
 from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import STEP, Fit, inward, moved_by, size_of, steps_of

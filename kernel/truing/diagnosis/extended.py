@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from truing.arrays import Indices, Matrix
 from truing.declare.sources import Effect
-from truing.diagnosis.arrays import Matrix, Places
 from truing.diagnosis.causes import Candidate, at_rest
 from truing.diagnosis.machine import Calibration, Tolerated, predict_each
 from truing.errors import PluginError
@@ -208,7 +208,7 @@ def _unknowns(machine: Calibration, causes: Sequence[Candidate], values: Sequenc
     return _columns(settings, machine.records.file_of)
 
 
-def _columns(settings: Iterable[tuple[str, int, float]], files: Places) -> dict[str, Any]:
+def _columns(settings: Iterable[tuple[str, int, float]], files: Indices) -> dict[str, Any]:
     """Return columns (n,) that have each value in the rows of its file, or in all where the file is -1."""
     made: dict[str, Any] = {}
     for name, file, value in settings:

@@ -7,7 +7,7 @@ from math import inf, log
 
 import numpy as np
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate, Parameter
 from truing.diagnosis.result import AT_BOUND, OUTSIDE
 from truing.diagnosis.sample import Sample

@@ -7,7 +7,7 @@ from math import log, sqrt
 
 import numpy as np
 
-from truing.diagnosis.arrays import Mask, Matrix, Places
+from truing.arrays import Indices, Mask, Matrix
 from truing.diagnosis.exact import refit
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
@@ -24,7 +24,7 @@ BLOCKS = 20
 class Folds:
     """The block that each row of the records lies in (n,), -1 for rows that only judge, and the number of folds."""
 
-    block_of: Places
+    block_of: Indices
     count: int
 
     def test(self, fold: int) -> Mask:

@@ -13,7 +13,7 @@ from math import log, pi, sqrt
 import numpy as np
 from scipy.special import gammaln
 
-from truing.diagnosis.arrays import Mask, Matrix, Places
+from truing.arrays import Indices, Mask, Matrix
 from truing.diagnosis.choice import CLOSE, Chosen
 from truing.diagnosis.extended import shape_added
 from truing.diagnosis.fitted import Fit
@@ -196,7 +196,7 @@ def _held_out(chosen: Chosen, name: str) -> tuple[float, float] | None:
     return before, after
 
 
-def sign_flip_p(gain: Matrix, block_of: Places, *, seed: int) -> float:
+def sign_flip_p(gain: Matrix, block_of: Indices, *, seed: int) -> float:
     """Return the significance of a gain: how often random signs of the blocks give as much."""
     known = np.isfinite(gain) & (block_of >= 0)
     sums = np.bincount(block_of[known], weights=gain[known])

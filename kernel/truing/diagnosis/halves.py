@@ -11,7 +11,7 @@ from math import hypot, sqrt
 
 import numpy as np
 
-from truing.diagnosis.arrays import Places
+from truing.arrays import Indices
 from truing.diagnosis.choice import CLOSE, Chosen
 from truing.diagnosis.exact import refit
 from truing.diagnosis.fitted import Fit
@@ -63,7 +63,7 @@ def _are_few(best: Fit) -> bool:
     return not best.causes or best.sample.known < 2 * FEWEST * (best.size + len(best.inputs) ** 0.5)
 
 
-def _in_turn(sample: Sample) -> Places:
+def _in_turn(sample: Sample) -> Indices:
     """Return the rows of a sample in their order; in a random one where they have none."""
     usable = np.flatnonzero(sample.mask)
     return usable if has_order(sample.machine) else np.random.Generator(np.random.SFC64(1)).permutation(usable)
@@ -103,7 +103,7 @@ def _score(chosen: Chosen, found: Fit, sample: Sample) -> float:
     return np.inf if again is None else again.cost + (made.score(whole) - whole.cost) / 2
 
 
-def _thinned(sample: Sample, rows: Places) -> Sample:
+def _thinned(sample: Sample, rows: Indices) -> Sample:
     """Return every second row, with the memory that the noise still has from one of them to the next."""
     mask = np.isin(np.arange(len(sample.mask)), rows)
     few, channels = sample.of_rows(mask), []

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import stdtrit
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate, Parameter
 from truing.diagnosis.exact import CLOSELY, fit, slopes_at, unit_of
 from truing.diagnosis.extended import Extended, parts_of

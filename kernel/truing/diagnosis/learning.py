@@ -10,7 +10,7 @@ from math import log
 
 import numpy as np
 
-from truing.diagnosis.arrays import Mask, Matrix
+from truing.arrays import Mask, Matrix
 from truing.diagnosis.machine import Calibration, Predicted, in_blocks
 from truing.diagnosis.noise import (
     SETTINGS,

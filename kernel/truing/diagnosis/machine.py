@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from truing.diagnosis.arrays import Matrix, Places
+from truing.arrays import Indices, Matrix
 from truing.diagnosis.records import Records
 from truing.gauge import one_machine
 from truing.setup import Setup
@@ -153,7 +153,7 @@ def _slopes(start: Setup, records: Records, inputs: Sequence[Tolerated]) -> Iter
         yield name, {result: np.where(np.isfinite(slope), slope, 0.0) for result, slope in slopes.items()}
 
 
-def gram_of(slopes: Matrix, rows: Places) -> Matrix:
+def gram_of(slopes: Matrix, rows: Indices) -> Matrix:
     """Return the inner products of columns over some rows, block by block in double precision."""
     total = np.zeros((slopes.shape[1], slopes.shape[1]))
     for block in in_blocks(len(rows)):

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from truing.arrays import Matrix
 from truing.declare.sources import Effect
-from truing.diagnosis.arrays import Matrix
 from truing.diagnosis.choice import Chosen, Rival
 from truing.diagnosis.extended import Extended, shape_added, switched_on
 from truing.diagnosis.fitted import Fit, input_value

@@ -18,7 +18,7 @@ from scipy.linalg.lapack import dtbtrs
 from scipy.optimize import minimize_scalar
 from scipy.special import erfcx, gammaln, log_ndtr, ndtri, stdtr
 
-from truing.diagnosis.arrays import Mask, Matrix, Places, Sides
+from truing.arrays import Indices, Mask, Matrix, Sides
 
 TAILS = {3.0: 1.9, 4.0: 2.1, 6.0: 2.5, 10.0: 3.0, inf: 4.5}
 """Degrees of freedom of Student's t, and where innovations are clipped, in standard deviations."""
@@ -218,7 +218,7 @@ def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> SpreadTrend:
     return SpreadTrend(name, slope, p_value)
 
 
-def weights_of(spread: SpreadTrend, driver: Matrix | None, learnt: Places, rows: int) -> Matrix:
+def weights_of(spread: SpreadTrend, driver: Matrix | None, learnt: Indices, rows: int) -> Matrix:
     """Return the weight of each of ``rows`` rows: one over the relative standard deviation of its noise.
 
     ``learnt`` are the rows that the spread was learnt from: the driver is standardised over them.

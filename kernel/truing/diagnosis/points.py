@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate, Parameter
 
 LEVELS = (1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001)

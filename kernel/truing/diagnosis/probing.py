@@ -14,7 +14,7 @@ from time import perf_counter
 
 import numpy as np
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.extended import LEAST_PER_EFFECT, CallBudget, Extended, Point

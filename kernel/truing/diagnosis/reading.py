@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.covariates import censored_rows, covariates_of, held_out_rows
 from truing.diagnosis.data_file import DataRows, objects, read_data_file
 from truing.diagnosis.joining import complete_rows, join, measured_rows, rows_of, settle_conditions

@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from truing.diagnosis.arrays import Mask, Matrix, Places, Sides, first_alike
+from truing.arrays import Indices, Mask, Matrix, Sides, first_alike
 from truing.measurements import RowCount, RowsFile
 
 Role = Literal["input", "condition", "time", "other", "order"]
@@ -74,9 +74,9 @@ class Records:
 
     files: tuple[str, ...]
     rows: RowsFile
-    file_of: Places
-    run_of: Places
-    lines: Places
+    file_of: Indices
+    run_of: Indices
+    lines: Indices
     measured: Mapping[str, Matrix]
     sigma: Mapping[str, Matrix]
     covariates: Mapping[str, Covariate]
@@ -106,7 +106,7 @@ class Records:
     def __len__(self) -> int:
         return len(self.run_of)
 
-    def part(self, places: Places) -> Records:
+    def part(self, places: Indices) -> Records:
         """Return some of the rows, by their places in order."""
         return replace(
             self,

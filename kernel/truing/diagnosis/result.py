@@ -8,7 +8,7 @@ from itertools import chain, product
 from math import isnan, sqrt
 from typing import Literal
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.numbers import format_number, with_unit
 from truing.setup import Setup

@@ -16,7 +16,7 @@ from math import exp, inf, log
 
 import numpy as np
 
-from truing.diagnosis.arrays import Mask, Matrix, Places, Sides
+from truing.arrays import Indices, Mask, Matrix, Sides
 from truing.diagnosis.machine import Calibration, Predicted, gram_of
 from truing.diagnosis.noise import (
     Autocorrelation,
@@ -66,7 +66,7 @@ class Channel:
     """
 
     name: str
-    rows: Places
+    rows: Indices
     starts: Mask
     values: Matrix
     weights: Matrix
@@ -82,7 +82,7 @@ class Channel:
         return len(self.rows)
 
     @cached_property
-    def read(self) -> Places | slice:
+    def read(self) -> Indices | slice:
         """Where the rows stand whose value was read: all that are not censored."""
         return slice(None) if self.sides is None else np.flatnonzero(self.sides == 0)
 
@@ -259,7 +259,7 @@ def sample_of(
 ) -> Sample:
     """Return the rows that are marked, where the model itself has an answer; directions are looked for if not given."""
     channels, is_again = [], np.diff(mask.astype(np.intp), prepend=0) > 0  # after a gap the noise starts anew
-    pieces: Places = np.cumsum(starts_of(machine.records.run_of, np.arange(len(mask))) | is_again)
+    pieces: Indices = np.cumsum(starts_of(machine.records.run_of, np.arange(len(mask))) | is_again)
     for name, own in noise.items():
         values = machine.records.measured[name]
         rows = np.flatnonzero(mask & np.isfinite(values) & np.isfinite(machine.base[name]))
@@ -297,7 +297,7 @@ def compared_slopes(machine: Calibration, name: str, typical: float) -> Matrix:
     return slopes * (typical / machine.base[name])[:, None] if typical else slopes
 
 
-def _least(machine: Calibration, noise: NoiseModel, name: str, rows: Places) -> float:
+def _least(machine: Calibration, noise: NoiseModel, name: str, rows: Indices) -> float:
     """Return the smallest mean square, in units of the noise, that is more than rounding or the steps of the gauge."""
     values = machine.records.measured[name][rows]
     off = difference(values, machine.base[name][rows], noise.typical)
@@ -314,7 +314,7 @@ def resolution_of(values: Matrix) -> float:
     return float(gaps.min()) if np.all(np.abs(steps - np.round(steps)) < 1e-3 * steps) else 0.0
 
 
-def starts_of(run_of: Places, rows: Places) -> Mask:
+def starts_of(run_of: Indices, rows: Indices) -> Mask:
     """Mark the first row of every run."""
     return np.asarray(np.diff(run_of[rows], prepend=-1) != 0)
 

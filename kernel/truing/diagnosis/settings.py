@@ -8,7 +8,7 @@ from math import pi
 
 import numpy as np
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.machine import Calibration
 from truing.diagnosis.points import evenly
 from truing.diagnosis.records import Covariate

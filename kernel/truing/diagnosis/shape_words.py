@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate, followed_by
 from truing.diagnosis.machine import Calibration
 from truing.diagnosis.records import Covariate

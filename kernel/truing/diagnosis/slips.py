@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from truing.diagnosis.arrays import Matrix, Places
+from truing.arrays import Indices, Matrix
 from truing.diagnosis.data_file import DataRows, declared_units
 from truing.diagnosis.joining import rows_of
 from truing.diagnosis.records import Slip
@@ -96,7 +96,7 @@ def _is_far(measured: Matrix, answer: Matrix) -> bool:
     return len(values) > 0 and any(_size(errors, mode) > FAR * _size(values, mode) for mode in (0, 1))
 
 
-def _some_rows(joined: DataRows) -> Places:
+def _some_rows(joined: DataRows) -> Indices:
     """Return rows spread over the whole record; where series make records, the first whole ones."""
     if not joined.named("series"):
         return np.unique(np.linspace(0, len(joined) - 1, MOST_ROWS).astype(np.intp))

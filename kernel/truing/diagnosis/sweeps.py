@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from truing.diagnosis.arrays import Matrix, Places
+from truing.arrays import Indices, Matrix
 from truing.diagnosis.machine import Predicted, in_blocks
 from truing.diagnosis.sample import Sample
 
@@ -106,7 +106,7 @@ class ProjectedCurves:
 
     passes: tuple[Pass, ...]
     units: Matrix
-    points: Places
+    points: Indices
 
     def inner(self, drawn: Matrix, known: dict[Pass, Matrix]) -> Matrix:
         """Return what they share with draws that the explanation has no part in, (m, q, draws); each pass made once."""

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from truing.arrays import Indices, Matrix, first_alike
 from truing.declare.model import Model
-from truing.diagnosis.arrays import Matrix, Places, first_alike
 from truing.diagnosis.data_file import ColumnRole, DataRows, declared_units
 from truing.inputs_file.values import broken_bound
 from truing.measurements.derived import derive
@@ -35,7 +35,7 @@ def tidy(data: DataRows, model: Model[Any, Any]) -> DataRows:
     return with_histories(in_one_piece(in_time_order(each_block_once(data)), model), model)
 
 
-def numbered(labels: NDArray[Any]) -> Places:
+def numbered(labels: NDArray[Any]) -> Indices:
     """Return the number of each label (n,), from 0 in the order they first appear."""
     known: dict[Any, int] = {}
     return np.array([known.setdefault(label, len(known)) for label in labels.tolist()], dtype=np.intp)

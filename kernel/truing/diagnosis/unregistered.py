@@ -14,7 +14,7 @@ from math import inf, pi
 
 import numpy as np
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.causes import ENDS, UNKNOWN, Candidate, Parameter, ShapeKind, Term, UnregisteredShape
 from truing.diagnosis.records import Covariate, Records
 

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 from scipy.special import ndtri
 
-from truing.diagnosis.arrays import Matrix
+from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate, Parameter, failure_of, idle_of
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.exact import slopes_at, unit_of

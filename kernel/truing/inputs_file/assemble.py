@@ -16,15 +16,13 @@ from truing.errors import Fault, TruingError
 from truing.inputs_file.checks import renamed
 from truing.inputs_file.document import Document
 from truing.inputs_file.study_options import diagnose_options
-from truing.inputs_file.values import InputsRead, plain
+from truing.inputs_file.values import InputsRead, StatedValues, plain
 from truing.kernel import Offer
 from truing.setup import DEFAULT_SEED, Setup, SwitchedOn
 from truing.units.names import PURE
 
-Values = Mapping[tuple[str, ...], Any]
 
-
-def nominals_of(model: Model[Any, Any], values: Values) -> dict[str, Any]:
+def nominals_of(model: Model[Any, Any], values: StatedValues) -> dict[str, Any]:
     """Return every input and condition in SI: as stated, else as declared; files without a default are left out."""
     found: dict[str, Any] = {name: condition.zero for name, condition in model.conditions.items()}
     for name, item in model.input_fields.items():
@@ -68,7 +66,7 @@ def _next_major(plugin: str, version: str) -> str:
     return f"{plugin} {int(major) + 1}.0" if major.isdigit() else f"the next major release of {plugin}"
 
 
-def spread_faults(model: Model[Any, Any], document: Document, values: Values) -> Iterator[Fault]:
+def spread_faults(model: Model[Any, Any], document: Document, values: StatedValues) -> Iterator[Fault]:
     """Resolve every tolerance against the nominals, so that a wrong unit or grade is known by its line."""
     nominals = nominals_of(model, values)
     for tolerance in model.tolerances.values():
@@ -101,7 +99,7 @@ def _unresolved(spread: Spread, name: str, model: Model[Any, Any], nominals: Map
     return ""
 
 
-def spreads_of(model: Model[Any, Any], values: Values) -> dict[str, Spread]:
+def spreads_of(model: Model[Any, Any], values: StatedValues) -> dict[str, Spread]:
     """Return the tolerances in force; one on inputs that are not given is off."""
     nominals = nominals_of(model, values)
     found: dict[str, Spread] = {}
@@ -116,7 +114,9 @@ def _is_nan(value: Any) -> bool:
     return isinstance(value, float) and math.isnan(value)
 
 
-def studies_of(model: Model[Any, Any], values: Values, faults: list[tuple[tuple[str, ...], str]]) -> tuple[Study, ...]:
+def studies_of(
+    model: Model[Any, Any], values: StatedValues, faults: list[tuple[tuple[str, ...], str]]
+) -> tuple[Study, ...]:
     """Return the studies that run, in order, with the options the file sets."""
     studies: dict[str, Study] = {}
     for study in model.studies:
@@ -179,7 +179,9 @@ def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], do
     )
 
 
-def _conditions_in_force(model: Model[Any, Any], values: Values, effects: Sequence[SwitchedOn]) -> dict[str, float]:
+def _conditions_in_force(
+    model: Model[Any, Any], values: StatedValues, effects: Sequence[SwitchedOn]
+) -> dict[str, float]:
     """Return the model's own conditions in SI, and of the kernel's those that are stated or that an effect needs."""
     zeros = {name: condition.zero for name, condition in model.conditions.items()}
     zeros |= {need.name: need.zero for item in effects for need in item.effect.needs if need.name not in zeros}
@@ -314,7 +316,7 @@ def _unfinished(part: Sequence[Unknown], names: Collection[str]) -> str:
     return ""
 
 
-def effects_of(model: Model[Any, Any], values: Values) -> tuple[SwitchedOn, ...]:
+def effects_of(model: Model[Any, Any], values: StatedValues) -> tuple[SwitchedOn, ...]:
     """Return the effects that are on, in the order in which they act."""
     on = []
     for name, effect in model.known_effects.items():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from math import inf
 from typing import Any, get_origin, get_type_hints
 
@@ -15,7 +15,7 @@ from pydantic.errors import PydanticUserError
 from truing.declare.model import Model, Study
 from truing.declare.near_miss import near_miss
 from truing.errors import UnitError
-from truing.inputs_file.values import InputsRead, SentenceError, broken_bound, read_number, written
+from truing.inputs_file.values import InputsRead, SentenceError, StatedValues, broken_bound, read_number, written
 from truing.setup import DiagnoseOptions, column_and_word
 from truing.units import split_quantity
 from truing.units.grammar import shown
@@ -97,7 +97,6 @@ def option_schema(hint: Any) -> dict[str, Any]:
 
 
 NAME = "diagnose"
-Values = Mapping[tuple[str, ...], Any]
 
 
 def of_diagnose(model: Model[Any, Any]) -> Callable[[Any, InputsRead], Any]:
@@ -125,7 +124,7 @@ def of_diagnose(model: Model[Any, Any]) -> Callable[[Any, InputsRead], Any]:
     return check
 
 
-def diagnose_options(model: Model[Any, Any], values: Values) -> DiagnoseOptions:
+def diagnose_options(model: Model[Any, Any], values: StatedValues) -> DiagnoseOptions:
     """Return the options that were read, the others as they are by default; a study of that name has its own."""
     if any(study.name == NAME for study in model.studies):
         return DiagnoseOptions()

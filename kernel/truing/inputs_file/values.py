@@ -25,6 +25,10 @@ class SentenceError(ValueError):
     """A whole sentence about a value, its name included."""
 
 
+StatedValues = Mapping[tuple[str, ...], Any]
+"""What an inputs file states, SI, by section and name."""
+
+
 @dataclass
 class InputsRead:
     """What was read so far: values in SI by section and name, data files with their hashes and their folder.

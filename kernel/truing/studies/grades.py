@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from truing.arrays import Matrix
 from truing.declare.goals import Price
 from truing.declare.sources import Tolerance
 from truing.declare.spreads import Band, Grade, Zone, shift_per_width, with_width
@@ -212,7 +212,6 @@ def with_grades(setup: Setup, grades: Mapping[str, str]) -> Setup:
 
 
 COMPLEX_STEP = 1e-30
-Values: TypeAlias = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -248,7 +247,7 @@ class ToleranceVariable:
         return self.pulls[demand] * (width - self.start)
 
 
-def prices_at(strips: Sequence[ToleranceVariable], widths: Values) -> tuple[Values, Values]:
+def prices_at(strips: Sequence[ToleranceVariable], widths: Matrix) -> tuple[Matrix, Matrix]:
     """Return what these full widths (n,) in SI cost, and the exact derivatives: the formulas with an imaginary step.
 
     Every formula is computed once, for all widths that it prices.

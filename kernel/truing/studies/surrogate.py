@@ -18,6 +18,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from truing.arrays import Matrix
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
@@ -38,7 +39,6 @@ from truing.studies.surrogate_fit import (
     Emulator,
     HeldOutComparison,
     StandIn,
-    Values,
     fitted,
     open_box,
     taken,
@@ -237,7 +237,7 @@ class Emulated:
     inputs: Any = None
     speed: Speed | None = None
 
-    def predict(self, columns: Mapping[str, Any]) -> dict[str, Values]:
+    def predict(self, columns: Mapping[str, Any]) -> dict[str, Matrix]:
         """Return the results (n,) in SI by name; of a logarithm the median.
 
         ``columns`` are inputs and conditions in SI by name, numbers or arrays (n,); those not named are as in the run.
@@ -245,7 +245,7 @@ class Emulated:
         """
         return self.stand_in.predict(columns)
 
-    def predict_band(self, columns: Mapping[str, Any]) -> dict[str, tuple[Values, Values]]:
+    def predict_band(self, columns: Mapping[str, Any]) -> dict[str, tuple[Matrix, Matrix]]:
         """Return both ends (n,) of the 95 % band of every result in SI: between them a new run is expected."""
         return {name: (low, high) for name, (_, low, high) in self.stand_in.bands(columns).items()}
 

@@ -10,12 +10,13 @@ import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from truing.arrays import Matrix
 from truing.declare.near_miss import near_miss
 from truing.errors import DeclarationError, UnitError, UsageError
 from truing.evaluate import Rows
@@ -317,9 +318,6 @@ def _unit_of(setup: Setup, formula: Formula, text: str, study: str) -> str:
 # A surrogate that answers, and what was found of it: at points it never saw, and along one input
 
 
-Values: TypeAlias = NDArray[np.float64]
-
-
 @dataclass(frozen=True, eq=False)
 class StandIn:
     """The box and what was learnt in it, by result. Columns are numbers or arrays (n,) in SI, by input."""
@@ -327,12 +325,12 @@ class StandIn:
     box: Box
     emulators: Mapping[str, Emulator]
 
-    def predict(self, columns: Mapping[str, Any]) -> dict[str, Values]:
+    def predict(self, columns: Mapping[str, Any]) -> dict[str, Matrix]:
         """Return the expected results (n,), SI."""
         places = self.box.places(columns)
         return {name: emulator.mean(places) for name, emulator in self.emulators.items()}
 
-    def bands(self, columns: Mapping[str, Any]) -> dict[str, tuple[Values, Values, Values]]:
+    def bands(self, columns: Mapping[str, Any]) -> dict[str, tuple[Matrix, Matrix, Matrix]]:
         """Return the expected results (n,) and both ends of their 95 % bands, SI."""
         places = self.box.places(columns)
         return {name: emulator.band(places) for name, emulator in self.emulators.items()}
@@ -345,10 +343,10 @@ class HeldOutComparison:
     ``is_share`` says that errors are shares of the value; otherwise they are shares of the range of the values.
     """
 
-    simulated: Values
-    predicted: Values
-    low: Values
-    high: Values
+    simulated: Matrix
+    predicted: Matrix
+    low: Matrix
+    high: Matrix
     is_share: bool
 
     @property
@@ -373,7 +371,7 @@ class HeldOutComparison:
         return low, high
 
     @property
-    def errors(self) -> Values:
+    def errors(self) -> Matrix:
         """How far the surrogate is off, without sign, SI."""
         return abs(self.predicted - self.simulated)
 
@@ -384,7 +382,7 @@ class HeldOutComparison:
         return size if self.is_share else np.ptp(self.simulated) or size.max() or 1.0
 
     @property
-    def shares(self) -> Values:
+    def shares(self) -> Matrix:
         """The same as shares of the value, or of the range of all values."""
         return np.asarray(self.errors / self.whole)
 
@@ -394,10 +392,10 @@ class Course:
     """Results along one input, all else as in the run, SI: the surrogate on a fine axis, the model on a coarse one."""
 
     over: str
-    axis: Values
-    coarse: Values
-    simulated: Mapping[str, Values]
-    bands: Mapping[str, tuple[Values, Values, Values]]
+    axis: Matrix
+    coarse: Matrix
+    simulated: Mapping[str, Matrix]
+    bands: Mapping[str, tuple[Matrix, Matrix, Matrix]]
     every: int
 
     def inside(self, name: str) -> tuple[int, int]:

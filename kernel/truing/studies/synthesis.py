@@ -17,9 +17,10 @@ import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, brentq, milp, minimize, nnls
 from scipy.special import ndtr, ndtri
 
+from truing.arrays import Matrix
 from truing.fits import GRADES
 from truing.studies.demands import Demand, normal_chance
-from truing.studies.grades import AllocationProblem, Values, prices_at
+from truing.studies.grades import AllocationProblem, prices_at
 from truing.studies.threads import one_thread
 
 
@@ -197,20 +198,20 @@ class Search:
     shop: AllocationProblem
     grades: Mapping[str, str]
 
-    def widths(self, x: Values) -> dict[str, float]:
+    def widths(self, x: Matrix) -> dict[str, float]:
         """Return the full widths (SI)."""
         return {
             strip.name: float(strip.start * np.exp(value))
             for strip, value in zip(self.shop.strips.values(), x, strict=True)
         }
 
-    def ends(self) -> tuple[Values, Values]:
+    def ends(self) -> tuple[Matrix, Matrix]:
         """Return the smallest and the largest logarithms."""
         strips = self.shop.strips.values()
         low = np.log([strip.low / strip.start for strip in strips])
         return low, np.log([strip.high / strip.start for strip in strips])
 
-    def cost(self, x: Values) -> tuple[float, Values]:
+    def cost(self, x: Matrix) -> tuple[float, Matrix]:
         """Return the price of the widths and its gradient, both over the price of those in force."""
         strips = tuple(self.shop.strips.values())
         widths = np.array(list(self.widths(x).values()))
@@ -222,12 +223,12 @@ class Search:
         """The price of the widths in force."""
         return sum(abs(strip.cost(strip.start)) for strip in self.shop.strips.values()) or 1.0
 
-    def slack(self, x: Values) -> tuple[Values, Values]:
+    def slack(self, x: Matrix) -> tuple[Matrix, Matrix]:
         """Return by goal how far it is kept (goals,), in standard deviations of the start, and the gradients."""
         found = [self._slack(demand, x) for demand in self.shop.goals]
         return np.array([value for value, _ in found]), np.array([gradient for _, gradient in found])
 
-    def _slack(self, demand: Demand, x: Values) -> tuple[float, Values]:
+    def _slack(self, demand: Demand, x: Matrix) -> tuple[float, Matrix]:
         shop, name = self.shop, demand.name
         widths = self.widths(x)
         sd = max(shop.variance(name, self.grades, widths), 1e-300) ** 0.5
@@ -328,7 +329,7 @@ def _with(
     return replace(plan, cost=cost, chances=chances, reached=reached, status=status, widths=widths, residual=residual)
 
 
-def _starts(search: Search) -> Iterator[Values]:
+def _starts(search: Search) -> Iterator[Matrix]:
     """Yield the widths in force, the narrowest, the widest, those between, and some by chance, always the same."""
     low, high = search.ends()
     yield np.clip(np.zeros(len(low)), low, high)
@@ -338,7 +339,7 @@ def _starts(search: Search) -> Iterator[Values]:
         yield rng.uniform(low, high)
 
 
-def _cheapest(search: Search, starts: Sequence[Values]) -> Values | None:
+def _cheapest(search: Search, starts: Sequence[Matrix]) -> Matrix | None:
     """Return the least cost that was found; goals are held a little off until they are met exactly."""
     for margin in MARGINS:
         ends = [end for start in starts if (end := _descended(search, start, margin)) is not None]
@@ -350,7 +351,7 @@ def _cheapest(search: Search, starts: Sequence[Values]) -> Values | None:
     return None
 
 
-def _exact(search: Search, x: Values) -> Values:
+def _exact(search: Search, x: Matrix) -> Matrix:
     """Take the last rounding out of the goals that are just missed, by the shortest way."""
     for _ in range(4):
         if search.shop.reached(search.grades, search.widths(x)):
@@ -361,7 +362,7 @@ def _exact(search: Search, x: Values) -> Values:
     return x
 
 
-def _descended(search: Search, start: Values, margin: float) -> Values | None:
+def _descended(search: Search, start: Matrix, margin: float) -> Matrix | None:
     """Follow one start to its minimum; None where it ends outside the goals."""
     x = _solved(
         search.cost,
@@ -372,7 +373,7 @@ def _descended(search: Search, start: Values, margin: float) -> Values | None:
     return x if x is not None and search.slack(x)[0].min() >= margin - FEASIBLE else None
 
 
-def _nearest(search: Search, starts: Sequence[Values]) -> Values:
+def _nearest(search: Search, starts: Sequence[Matrix]) -> Matrix:
     """Return the widths whose worst goal is nearest to being met: the largest slack that all goals can have."""
     low, high = search.ends()
     upward = np.append(np.zeros(len(low)), -1.0)
@@ -393,7 +394,7 @@ def _nearest(search: Search, starts: Sequence[Values]) -> Values:
     return max(found, key=lambda x: float(search.slack(x)[0].min()))
 
 
-def _solved(objective: Any, start: Values, ends: tuple[Values, Values], constraint: Any) -> Values | None:
+def _solved(objective: Any, start: Matrix, ends: tuple[Matrix, Matrix], constraint: Any) -> Matrix | None:
     """Return where SLSQP ends, inside the bounds; None where it loses itself."""
     held: Any = {"type": "ineq", **constraint}
     options: Any = {"ftol": 1e-13, "maxiter": 300}
@@ -404,7 +405,7 @@ def _solved(objective: Any, start: Values, ends: tuple[Values, Values], constrai
     return x if np.isfinite(x).all() else None
 
 
-def _residual(search: Search, x: Values) -> float:
+def _residual(search: Search, x: Matrix) -> float:
     """Return how far the end of a search is from a minimum: what no active goal or bound balances of the gradient.
 
     0 is a minimum of Karush, Kuhn and Tucker; 1 is no balance at all.

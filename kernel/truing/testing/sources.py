@@ -25,7 +25,7 @@ COMMUTES = 0.01
 SHAPES = (0.0, 0.5, 1.0)
 SIZES = (0.5, 0.05, 5e-3, 5e-5, 5e-7)
 
-Values = dict[str, Any]
+SampledInputs = dict[str, Any]
 
 
 def spreads_resolve(subject: Subject) -> None:
@@ -159,7 +159,7 @@ def order_matters(subject: Subject) -> list[str]:
     return found
 
 
-def _difference_by_order(orders: Sequence[Setup], base: Values) -> float:
+def _difference_by_order(orders: Sequence[Setup], base: SampledInputs) -> float:
     """Return the largest difference between two orders, as a share of what both effects do together."""
     try:
         answers = [_answers(setup) for setup in orders]
@@ -215,12 +215,12 @@ def off_reference(setup: Setup, steps: float = 10) -> Setup:
     return replace(setup, conditions={**setup.conditions, **moved})
 
 
-def _answers(setup: Setup) -> Values:
+def _answers(setup: Setup) -> SampledInputs:
     """Return what the gauge shows, by flat name."""
     return setup.model.read_results(evaluate(setup, reading=True))
 
 
-def _changed(answers: Values, base: Values) -> list[str]:
+def _changed(answers: SampledInputs, base: SampledInputs) -> list[str]:
     def differs(name: str) -> bool:
         one, other = np.asarray(answers[name], dtype=float), np.asarray(base[name], dtype=float)
         if one.shape != other.shape:

@@ -1,4 +1,4 @@
-"""The kinds of arrays that a diagnosis works with."""
+"""The kinds of arrays that studies and the diagnosis work with."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-Places = NDArray[np.intp]
+Indices = NDArray[np.intp]
 Sides = NDArray[np.int8]
 """By row: 1 where the true value lies above the reading, -1 where it lies below, 0 where it was read."""
 
 
-def first_alike(columns: Sequence[NDArray[Any]]) -> Places:
+def first_alike(columns: Sequence[NDArray[Any]]) -> Indices:
     """Return for each row of columns (n,) the place of the first one that is equal in all; what is missing is equal."""
     cells = np.column_stack(columns)
     cells = np.where(np.isnan(cells), np.nan, cells + 0.0)  # one NaN, one zero: rows are compared by their bytes
