@@ -22,7 +22,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 ROOT = Path(__file__).parents[1]
-KEPT = ("results.json", "diagnosis.json", "sheet.md", "extended.toml", "inputs.toml")
+KEPT = ("results.json", "diagnosis.json", "extended.toml", "inputs.toml")
 """What a run writes that depends on nothing but inputs, data, seed and versions."""
 SHOWN = 12
 """So many lines of a difference are shown."""
