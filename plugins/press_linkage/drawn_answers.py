@@ -144,7 +144,7 @@ def along_the_synthesis(allotted: "Allotted", printed: Mapping[str, Sequence[flo
     for check, (colour, marker, name) in looks.items():
         values = [allotted.start[check], *(step.chances[check] for step in allotted.steps)]
         panel.plot(steps, values, color=colour, marker=marker, markersize=4, label=name)
-        goal = next(demand.goal or 0.0 for demand in allotted.shop.demands if demand.name == check)
+        goal = next(demand.goal or 0.0 for demand in allotted.problem.demands if demand.name == check)
         panel.axhline(goal, color=colour, linewidth=0.9, linestyle=(0, (5, 3)))
         panel.text(steps[-1] + 1.5, goal + 0.004, f"goal {goal:g}", ha="right", va="bottom", fontsize=8, color=colour)
         if check in printed:

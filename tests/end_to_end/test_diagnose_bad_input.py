@@ -330,11 +330,11 @@ SLIPS: dict[str, tuple[str, str, float, str]] = {
 def test_a_unit_that_is_probably_wrong_is_named_and_nothing_is_changed(desk: Path, press: Columns, what: str) -> None:
     column, header, factor, words = SLIPS[what]
     found = diagnose_here(desk, what, text_of(renamed(press, column, header)))
-    (slip,) = found.document["unit_slips"]
-    assert slip["column"] == header.split()[0]
-    assert slip["factor"] == pytest.approx(factor, rel=1e-12)
-    assert slip["text"].startswith(f"the unit of column '{header}' is probably wrong: {words}")
-    assert f"warning: suspected unit slip: {slip['text']} (nothing was changed)" in found.answer.err
+    (unit_error,) = found.document["unit_slips"]
+    assert unit_error["column"] == header.split()[0]
+    assert unit_error["factor"] == pytest.approx(factor, rel=1e-12)
+    assert unit_error["text"].startswith(f"the unit of column '{header}' is probably wrong: {words}")
+    assert f"warning: suspected unit slip: {unit_error['text']} (nothing was changed)" in found.answer.err
     assert "probably wrong" in (found.folder / "sheet.md").read_text(encoding="utf-8")
     measured = np.load(found.folder / "arrays.npz")["slider_position.measured"]
     scale = 1e3 if column == HEIGHT else 1.0  # as the header says

@@ -10,9 +10,9 @@ from hidden_effects.asking import press_offer, write_case
 from hidden_effects.making import Wish, make_case
 from hidden_effects.press_machine import POSITION, TILT
 from truing.diagnosis import curves, sweeps
-from truing.diagnosis.beside import Spanned, beside_of
 from truing.diagnosis.chance import law_of
 from truing.diagnosis.competition import Competition, competition_of
+from truing.diagnosis.conditional import Spanned, conditional_on
 from truing.diagnosis.curves import Bundle
 from truing.diagnosis.engine import laid_out
 from truing.diagnosis.machine import calibration_of
@@ -55,7 +55,7 @@ def test_a_table_gives_what_kept_curves_give(monkeypatch: pytest.MonkeyPatch, tm
         assert set(before) == set(after)
         assert before
         drawn = np.random.default_rng(5).normal(size=(kept.sample.rows + len(at.inputs), 9))
-        beside = beside_of(at, kept.extended)
+        beside = conditional_on(at, kept.extended)
         drawn -= beside.taken @ (beside.taken.T @ drawn)
         for tag, old in before.items():
             new = after[tag]

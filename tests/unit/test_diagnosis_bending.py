@@ -11,8 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from truing import Effect, Float, Model, Unknown, found, given, inputs, results
-from truing.diagnosis.beside import look
 from truing.diagnosis.causes import Candidate, effects_of
+from truing.diagnosis.conditional import look
 from truing.diagnosis.curves import ResponseCurves
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.exact import nothing

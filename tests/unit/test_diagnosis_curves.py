@@ -27,13 +27,13 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Unknown
-from truing.diagnosis.beside import KEPT, Looked, beside_of, compared, independent
 from truing.diagnosis.causes import Parameter
 from truing.diagnosis.competition import Competition
+from truing.diagnosis.conditional import KEPT, ConditionalGain, compared, conditional_on, independent
 from truing.diagnosis.curves import Bundle
 from truing.diagnosis.points import ALIKE, FINEST, LEVELS, SPREAD, WAVES_PER_POINT, first_places, placed, spread
 from truing.diagnosis.sample import Sample
-from truing.diagnosis.sweeps import Beside
+from truing.diagnosis.sweeps import Conditional
 
 
 def rubbing(screw: Drive, base: Deflection, *, drag: Float) -> Deflection:
@@ -97,7 +97,7 @@ def alone(made: Competition, name: str) -> Bundle:
     return made.curves.of(cause_of(made, name), made.null)
 
 
-def looked(bundle: Bundle, beside: Beside) -> Looked | None:
+def looked(bundle: Bundle, beside: Conditional) -> ConditionalGain | None:
     return dict(compared([bundle], beside)).get(bundle.cause.tag)
 
 
@@ -234,7 +234,7 @@ def test_what_is_left_is_least_squares_with_rows_for_the_prior_of_the_inputs(tmp
     bench = wide(80)
     error = gauge(bench.load, bench.travel, 3.2) - gauge(bench.load, bench.travel)
     made = made_of(tmp_path, bench=bench, error=error, tolerances=TOLERANCES)
-    beside = beside_of(made.null, made.extended)
+    beside = conditional_on(made.null, made.extended)
     r = (made.sample.channels[0].values / UM) - gauge(bench.load, bench.travel)
     weight, rows = 1.0, np.zeros((0, 0))
     for _ in range(40):
@@ -257,7 +257,7 @@ def test_a_promise_is_what_least_squares_with_the_inputs_free_give(tmp_path: Pat
     bench = wide(90)
     error = {"lead_error": 0.02 * bench.travel, "warm_up": 8 * (1 - np.exp(-bench.time / 2.5))}[name]
     made = made_of(tmp_path, ["lead_error", "warm_up"], bench=bench, error=error, tolerances=TOLERANCES)
-    beside = beside_of(made.null, made.extended)
+    beside = conditional_on(made.null, made.extended)
     found = looked(alone(made, name), beside)
     assert found is not None
     promised, values = found.starts[0]
@@ -278,7 +278,7 @@ def test_the_best_starts_come_first_and_draw_differently(tmp_path: Path) -> None
     bench = replace(wide(600), travel=np.linspace(0, 300, 600))
     error = sum(size * np.exp(-(((bench.travel - at) / 5) ** 2) / 2) for at, size in ((60, 6), (150, 9), (230, 4)))
     made = made_of(tmp_path, ["bump"], bench=bench, error=np.asarray(error))
-    found = looked(alone(made, "bump"), beside_of(made.null, made.extended))
+    found = looked(alone(made, "bump"), conditional_on(made.null, made.extended))
     assert found is not None
     centres = np.array([values[1] * 1e3 for _, values in found.starts])
     assert len(centres) == KEPT
@@ -295,7 +295,7 @@ def test_bounds_cut_what_is_promised(tmp_path: Path) -> None:
     gaps = []
     for size in (-5, 5):
         made = made_of(tmp_path, ["clearance"], bench=bench, error=size * np.sign(bench.load))
-        found = looked(alone(made, "clearance"), beside_of(made.null, made.extended))
+        found = looked(alone(made, "clearance"), conditional_on(made.null, made.extended))
         assert found is not None
         gaps.append([float(values[0]) / UM for _, values in found.starts])
     assert gaps[0] == []
@@ -305,14 +305,14 @@ def test_bounds_cut_what_is_promised(tmp_path: Path) -> None:
 def test_a_coefficient_that_nothing_excites_draws_nothing(tmp_path: Path) -> None:
     bench = wide(60)
     made = made_of(tmp_path, ["skewed"], bench=bench, error=0.1 * bench.travel)
-    found = looked(alone(made, "skewed"), beside_of(made.null, made.extended))
+    found = looked(alone(made, "skewed"), conditional_on(made.null, made.extended))
     assert found is not None
     assert_allclose(np.linalg.norm(found.span.vectors(0), axis=-1), [1, 0], atol=1e-12)
     along, across = found.starts[0][1]
     assert_allclose(along, 1e-4, rtol=0.02)
     assert across == 0
     still = made_of(tmp_path, ["lead_error"], bench=replace(bench, travel=np.zeros(60)))
-    assert looked(alone(still, "lead_error"), beside_of(still.null, still.extended)) is None
+    assert looked(alone(still, "lead_error"), conditional_on(still.null, still.extended)) is None
 
 
 def test_the_way_along_a_sweep_counts_its_curves() -> None:

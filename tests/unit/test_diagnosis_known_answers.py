@@ -35,8 +35,8 @@ from scipy.linalg import subspace_angles
 from scipy.optimize import least_squares
 from scipy.stats import multivariate_normal, norm
 
-from truing.diagnosis.beside import beside_of
 from truing.diagnosis.competition import Competition
+from truing.diagnosis.conditional import conditional_on
 from truing.diagnosis.design import _Duel
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import Autocorrelation, colour, whiten
@@ -52,7 +52,7 @@ def one_run(n: int) -> NDArray[np.bool_]:
 
 def seen_angle(made: Competition, first: str, second: str) -> float:
     """The angle in degrees between two curves as the search sees them: without what is tolerated, nearly at zero."""
-    beside = beside_of(made.null, made.extended)
+    beside = conditional_on(made.null, made.extended)
     drawn = []
     for name in (first, second):
         bundle = made.curves.of(cause_of(made, name), made.null)

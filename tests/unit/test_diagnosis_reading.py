@@ -147,7 +147,7 @@ def test_every_column_in_si_in_its_part(read: Read) -> None:
     assert records.file_of.tolist() == records.run_of.tolist() == [0, 0, 0]
     assert records.absent == {"time", "strokes", "speed", "direction"}
     assert not records.held_out.any()
-    assert records.slips == ()
+    assert records.unit_errors == ()
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ from truing.diagnosis.learning import FEWEST_OF_MEMORY, learnt, memory_cost, mem
 from truing.diagnosis.machine import Calibration, calibration_of, directions_of
 from truing.diagnosis.noise import SETTINGS, Autocorrelation, Tails, robust_sd
 from truing.diagnosis.sample import NoiseModel, Sample, has_order, resolution_of, sample_of, starts_of
-from truing.diagnosis.sweeps import Beside
+from truing.diagnosis.sweeps import Conditional
 
 TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
 BENCH = wide(150, seed=31)
@@ -143,7 +143,7 @@ def test_with_the_memory_taken_out_rows_are_independent(tmp_path: Path) -> None:
     assert_allclose(made.drawn @ made.drawn.T, drawn @ drawn.T, rtol=1e-9, atol=1e-9)
     added = {"deflection": BENCH.travel * UM}
     assert_allclose(made.curve(added), root @ BENCH.travel, rtol=1e-9, atol=1e-9)
-    beside = Beside(made, np.ones(150), np.zeros(150), np.zeros((150, 0)), there.base)
+    beside = Conditional(made, np.ones(150), np.zeros(150), np.zeros((150, 0)), there.base)
     assert_allclose(beside.drawn(np.array([[BENCH.travel], [BENCH.load]]) * UM)[1, 0], root @ BENCH.load, rtol=1e-9)
     assert made.rows == 150
     assert max(setting.rho for setting in SETTINGS) < 0.95  # or differences alone would be left

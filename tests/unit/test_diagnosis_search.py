@@ -24,10 +24,10 @@ from diagnosis_models import (
 )
 from numpy.testing import assert_allclose
 
-from truing.diagnosis.beside import Looked, beside_of
 from truing.diagnosis.causes import Parameter, are_exclusive
 from truing.diagnosis.chance import DRAWS, FIRST_DRAWS, HOPELESS, LARGEST_RHO, _drawn, _largest, carried, law_of
 from truing.diagnosis.competition import Competition
+from truing.diagnosis.conditional import ConditionalGain, conditional_on
 from truing.diagnosis.fitted import differ, far_inputs, is_at_bound
 from truing.diagnosis.noise import Autocorrelation
 from truing.diagnosis.sample import sample_of
@@ -222,7 +222,7 @@ def test_the_largest_gain_of_a_draw_is_that_of_all_curves_tried_one_by_one(tmp_p
         assert_allclose(_largest(made, seen, drawn, 140.0, steps), by_hand, rtol=1e-9)
 
 
-def _greedy(made: Competition, seen: dict[str, Looked] | object, values: Array, steps: int) -> float:
+def _greedy(made: Competition, seen: dict[str, ConditionalGain] | object, values: Array, steps: int) -> float:
     """The gain of one draw after so many steps, each projected off before the next."""
     assert isinstance(seen, dict)
     total, left = 0.0, values
@@ -275,7 +275,7 @@ def test_curves_beside_an_explanation_leave_what_it_draws(tmp_path: Path) -> Non
     """Beside the lead the lead draws nothing, and a gain what is orthogonal to it."""
     made = competing(tmp_path, 0.02 * BENCH.travel)
     lead = fit_of(made, "lead_error")
-    beside = beside_of(lead, made.extended)
+    beside = conditional_on(lead, made.extended)
     travel, gain = BENCH.travel, gauge(BENCH.load, BENCH.travel)
     left = 0.02 * travel + NOISE
     left = left - travel * (travel @ left) / (travel @ travel)

@@ -19,7 +19,7 @@ from test_report_sheet import HOSTILE, Page
 
 from shared import Calc
 from truing.cli.diagnosis_printed import report
-from truing.diagnosis.records import Covariate, Slip
+from truing.diagnosis.records import Covariate, UnitError
 from truing.diagnosis.result import (
     Alternative,
     Amount,
@@ -67,7 +67,7 @@ def sheet(request: pytest.FixtureRequest) -> DiagnosisSheet:
 
 def texts_of(sheet: DiagnosisSheet) -> Iterator[str]:
     """Every text that stands on the sheet, as it was said."""
-    yield from (sheet.head.title, sheet.verdict, sheet.data, *sheet.sentences, *sheet.slips, *sheet.warnings)
+    yield from (sheet.head.title, sheet.verdict, sheet.data, *sheet.sentences, *sheet.unit_errors, *sheet.warnings)
     for chapter in sheet.chapters:
         yield chapter.title
         for block in chapter.blocks:
@@ -137,7 +137,7 @@ def test_hostile_texts_are_printed_and_do_nothing() -> None:
     made = ambiguous()
     covariates = {**made.records.covariates, HOSTILE: Covariate(HOSTILE, np.arange(160.0), "", "other")}
     records = replace(
-        made.records, covariates=covariates, notes=(HOSTILE,), slips=(Slip(HOSTILE, 10.0, HOSTILE),),
+        made.records, covariates=covariates, notes=(HOSTILE,), unit_errors=(UnitError(HOSTILE, 10.0, HOSTILE),),
         files=(HOSTILE, "b.csv"),
     )  # fmt: skip
     wrong = replace(made.wrong[0], findings=(ResidualFinding("trend", HOSTILE, 0.01, HOSTILE),))

@@ -225,8 +225,8 @@ def test_least_cost_is_what_trying_everything_finds(model, shift, loosen, goal_u
 
 
 def test_prices_are_in_their_currency():
-    assert allotted(PRICED).shop.unit == "EUR"
-    assert allotted(STACK).shop.unit == "1/mm"
+    assert allotted(PRICED).problem.unit == "EUR"
+    assert allotted(STACK).problem.unit == "1/mm"
 
 
 @pytest.mark.parametrize(

@@ -186,7 +186,7 @@ def test_zones_that_grow_move_the_mean_too(require: Require, low: float, high: f
 def test_monte_carlo_verifies_what_was_bought() -> None:
     answer = allotted(GROWING, draws=200_000)
     for design in ("start", "least"):
-        chance = answer.shop.chances({}, answer.least.widths if design == "least" else None)["end"]
+        chance = answer.problem.chances({}, answer.least.widths if design == "least" else None)["end"]
         error = (chance * (1 - chance) / 200_000) ** 0.5
         assert answer.monte_carlo[design]["end"] == pytest.approx(chance, abs=4 * error)
     assert answer.final["end"] == pytest.approx(0.95, abs=1e-9)
@@ -269,7 +269,7 @@ def test_grades_come_first_and_widths_are_bought_with_them() -> None:
     assert set(answer.rule.grades) == {"large", "small"}
     assert set(answer.rule.widths) == {"middle"}
     assert answer.least_cost.cost <= answer.cost
-    assert not answer.shop.reached(answer.rule.grades)  # with the width in force every grade at IT5 is not enough
+    assert not answer.problem.reached(answer.rule.grades)  # with the width in force every grade at IT5 is not enough
     left = (15e-6 / norm.ppf(0.975)) ** 2 - (tolerance("IT5", 0.1) / 6) ** 2 - (0.5 * tolerance("IT5", 0.01) / 6) ** 2
     assert answer.rule.widths["middle"] == pytest.approx(6 * left**0.5 / 1.5, rel=1e-6)
     titles = [block.title for block in answer.blocks() if isinstance(block, Table)]
@@ -300,8 +300,8 @@ def test_the_least_cost_of_grades_and_widths_is_what_trying_everything_finds(goa
 def test_widths_stay_where_grades_have_no_price() -> None:
     bare = Tolerance("large", MIXED.tolerances["large"].spread)
     answer = allotted(replace(MIXED, errors=[bare, MIXED.tolerances["middle"]]))
-    assert not answer.shop.strips
-    assert answer.shop.unit == "1/mm"
+    assert not answer.problem.variables
+    assert answer.problem.unit == "1/mm"
     assert any("the widths of 'middle' stay" in text for text in answer.warnings())
 
 

@@ -58,8 +58,8 @@ def _as_one(progress: Progress) -> Progress:
 def _say_beside(done: Diagnosed, settings: Settings) -> None:
     """Say what is no result: what was done to the records, suspected slips, how the printing went."""
     records = done.diagnosis.records
-    for slip in records.slips:
-        settings.say(f"warning: suspected unit slip: {one_line(slip.text)} (nothing was changed)")
+    for unit_error in records.unit_errors:
+        settings.say(f"warning: suspected unit slip: {one_line(unit_error.text)} (nothing was changed)")
     for count in (count for count in records.counts if count.unused):
         settings.say(f"{one_line(count.file)}: {one_line(count.sentence())}")
     for note in records.notes:

@@ -83,8 +83,8 @@ class BuiltinReading:
         if self.seen is None:
             zero = zero_of(item)
             return value - zero if zero else value
-        sight = self.seen.of(*held, item)
-        return sight - self.seen.zero if self.kind.is_from_zero and self.seen.zero else sight
+        observed = self.seen.of(*held, item)
+        return observed - self.seen.zero if self.kind.is_from_zero and self.seen.zero else observed
 
 
 def builtin_effects(model: Declared) -> dict[str, Effect[Any, Any]]:
@@ -208,21 +208,21 @@ def zero_of(item: ResultField) -> float:
     return float(to_si(0.0, item.unit))
 
 
-def _constant(own: Mapping[str, Float], sight: Float) -> Float:
+def _constant(own: Mapping[str, Float], observed: Float) -> Float:
     return own["size"]
 
 
-def _in_proportion(own: Mapping[str, Float], sight: Float) -> Float:
-    return own["size"] * sight
+def _in_proportion(own: Mapping[str, Float], observed: Float) -> Float:
+    return own["size"] * observed
 
 
-def _wave(own: Mapping[str, Float], sight: Float) -> Float:
-    turned = own["order"] * sight
+def _wave(own: Mapping[str, Float], observed: Float) -> Float:
+    turned = own["order"] * observed
     return own.get("sine", 0.0) * np.sin(turned) + own.get("cosine", 0.0) * np.cos(turned)
 
 
-def _jump(own: Mapping[str, Float], sight: Float) -> Float:
-    return own.get("size", 0.0) * np.where(sight >= own["after"], 1.0, 0.0)
+def _jump(own: Mapping[str, Float], observed: Float) -> Float:
+    return own.get("size", 0.0) * np.where(observed >= own["after"], 1.0, 0.0)
 
 
 _SENSOR = "linear model of a gauge: gain, offset and drift"

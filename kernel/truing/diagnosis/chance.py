@@ -14,8 +14,8 @@ from math import comb, log, sqrt
 import numpy as np
 
 from truing.arrays import Matrix
-from truing.diagnosis.beside import Looked, beside_of
 from truing.diagnosis.competition import Competition
+from truing.diagnosis.conditional import ConditionalGain, conditional_on
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import Autocorrelation, colour, shares, whiten
 from truing.diagnosis.sweeps import Pass
@@ -50,14 +50,14 @@ def law_of(made: Competition, at: Fit, more: Fit, *, seed: int) -> Law:
     Stops early where the answer is plain.
     """
     generator = np.random.Generator(np.random.SFC64(seed))
-    seen, beside = made.look(at), beside_of(at, made.extended)
+    seen, conditional = made.look(at), conditional_on(at, made.extended)
     gain, steps = made.score(at) - made.score(more), len(more.causes) - len(at.causes)
     many, on = len(made.causes), len(at.causes)
     choice = 2 * (log(comb(many, on + steps)) - log(comb(many, on)))
     gains = np.zeros(0)
     while len(gains) < DRAWS and (gains >= gain).sum() < HOPELESS:
         drawn = _drawn(at, more, DRAWS - len(gains) if len(gains) else FIRST_DRAWS, generator)
-        drawn -= beside.taken @ (beside.taken.T @ drawn)
+        drawn -= conditional.taken @ (conditional.taken.T @ drawn)
         gains = np.concatenate([gains, _largest(made, seen, drawn, made.sample.known, steps) - choice])
     return Law(gains, float((1 + (gains >= gain).sum()) / (1 + len(gains))))
 
@@ -81,14 +81,14 @@ def _drawn(at: Fit, more: Fit, count: int, generator: np.random.Generator) -> Ma
     return np.concatenate([*parts, generator.standard_normal((len(at.inputs), count))])
 
 
-def _largest(made: Competition, seen: Mapping[str, Looked], drawn: Matrix, known: float, steps: int) -> Matrix:
+def _largest(made: Competition, seen: Mapping[str, ConditionalGain], drawn: Matrix, known: float, steps: int) -> Matrix:
     """Return by draw the largest gain of so many causes, one after another, each paid for, (draws,)."""
     summed, drawn = np.zeros(drawn.shape[1]), np.array(drawn)
     prices = {cause.tag: made.price_of(cause) for cause in made.causes}
     for _ in range(steps):
         whole = np.sum(drawn**2, axis=0)
         best = np.full(drawn.shape[1], -np.inf)
-        chosen: dict[int, tuple[Looked, int, Matrix]] = {}
+        chosen: dict[int, tuple[ConditionalGain, int, Matrix]] = {}
         passed: dict[Pass, Matrix] = {}
         for tag, each in seen.items():
             inner = each.span.inner(drawn, passed)

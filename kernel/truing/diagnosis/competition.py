@@ -10,8 +10,8 @@ from math import lgamma, log, log1p
 import numpy as np
 
 from truing.arrays import Matrix
-from truing.diagnosis.beside import Looked, look
 from truing.diagnosis.causes import Candidate, are_exclusive
+from truing.diagnosis.conditional import ConditionalGain, look
 from truing.diagnosis.curves import ResponseCurves
 from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit, nothing, refit
 from truing.diagnosis.extended import Extended, shape_added
@@ -51,7 +51,7 @@ class Competition:
     stage: str = "causes alone"
     owned: dict[Fit, float] = field(default_factory=dict)
     paid: dict[Fit, float] = field(default_factory=dict)
-    looked: dict[frozenset[str], tuple[Matrix, dict[str, Looked | None]]] = field(default_factory=dict)
+    gains_seen: dict[frozenset[str], tuple[Matrix, dict[str, ConditionalGain | None]]] = field(default_factory=dict)
     exchanged: set[tuple[frozenset[str], str]] = field(default_factory=set)
     fresh: set[frozenset[str]] = field(default_factory=set)
     """What was fitted in the present noise."""
@@ -146,15 +146,15 @@ class Competition:
             made = self.fitted((*at.causes, cause), (*at.values, values), at) or made
         return made
 
-    def look(self, at: Fit, causes: Sequence[Candidate] | None = None) -> Mapping[str, Looked]:
+    def look(self, at: Fit, causes: Sequence[Candidate] | None = None) -> Mapping[str, ConditionalGain]:
         """Compare the curves of causes with what an explanation leaves, and count their independent curves."""
         wanted = [cause for cause in (self.causes if causes is None else causes) if cause.tag not in at.key]
-        left, known = self.looked.get(at.key, (None, {}))
+        left, known = self.gains_seen.get(at.key, (None, {}))
         if left is not at.left:
             known = {}
         new = [cause for cause in wanted if cause.tag not in known]
         known = {**known, **dict.fromkeys((cause.tag for cause in new), None), **look(self.curves, at, new)}
-        self.looked = {at.key: (at.left, known)}  # the last one only: waves have many curves
+        self.gains_seen = {at.key: (at.left, known)}  # the last one only: waves have many curves
         made = {cause.tag: each for cause in wanted if (each := known[cause.tag]) is not None}
         for tag, each in made.items():
             self.tries[tag] = max(self.tries.get(tag, 1.0), each.tries)
@@ -172,7 +172,7 @@ class Competition:
             elif at.cost - starts[0][0] < found.cost - MARGIN:  # it begins elsewhere
                 self.joined(at, cause, starts[:1])
 
-    def promising(self, seen: Mapping[str, Looked]) -> list[Candidate]:
+    def promising(self, seen: Mapping[str, ConditionalGain]) -> list[Candidate]:
         """Return causes by what their curves promise once they are paid for, of those of one curve the weakest."""
         worth = {
             cause: seen[cause.tag].starts[0][0] - self.price_of(cause)

@@ -59,23 +59,23 @@ class ResponseCurves:
         self._straight: dict[str, bool] = {}
         self._tables: dict[tuple[str, ...], TermTable] = {}
 
-    def of(self, cause: Candidate, beside: Fit) -> Bundle:
+    def of(self, cause: Candidate, conditional: Fit) -> Bundle:
         """Return the curves of a cause beside an explanation; those beside nothing where that makes no difference.
 
         So they are too where the budget of calls has ended.
         """
-        if self._matters(cause, beside):
-            return self._made(cause, _Place(self.extended, beside, beside.causes))
+        if self._matters(cause, conditional):
+            return self._made(cause, _Place(self.extended, conditional, conditional.causes))
         if cause.tag in self._alone:
             return self._alone[cause.tag]
-        made = self._first(cause, _Place(self.extended, beside, ()))
+        made = self._first(cause, _Place(self.extended, conditional, ()))
         if made.curves.size <= LARGEST:
             self._alone[cause.tag] = made
         return made
 
-    def _matters(self, cause: Candidate, beside: Fit) -> bool:
+    def _matters(self, cause: Candidate, conditional: Fit) -> bool:
         """Whether an effect may draw something else beside an explanation than alone."""
-        on = [each for each in beside.causes if each.effect is not None]
+        on = [each for each in conditional.causes if each.effect is not None]
         acts = cause.effect is not None and bool(on) and any(each.acts_on_inputs for each in (cause, *on))
         return acts and self.extended.lasts
 
@@ -126,10 +126,10 @@ class ResponseCurves:
 class _Place:
     """An explanation beside which curves are asked for."""
 
-    def __init__(self, extended: Extended, beside: Fit, causes: tuple[Candidate, ...]) -> None:
+    def __init__(self, extended: Extended, conditional: Fit, causes: tuple[Candidate, ...]) -> None:
         self.extended, self.causes, self.machine = extended, causes, extended.machine
-        self.values = [beside.of(cause) for cause in causes]
-        self.moved = beside.moved if causes else np.zeros_like(beside.moved)
+        self.values = [conditional.of(cause) for cause in causes]
+        self.moved = conditional.moved if causes else np.zeros_like(conditional.moved)
 
     def _stacked(self, causes: tuple[Candidate, ...], points: Sequence[Sequence[Matrix]]) -> Matrix:
         """Return what the gauges show with some causes on at several points, (points, readings), SI."""

@@ -14,10 +14,10 @@ from itertools import permutations
 import numpy as np
 
 from truing.arrays import Matrix
-from truing.diagnosis.beside import look
 from truing.diagnosis.causes import Candidate
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.competition import Competition
+from truing.diagnosis.conditional import look
 from truing.diagnosis.exact import fit, slopes_at, unit_of
 from truing.diagnosis.extended import Extended, elsewhere, parts_of
 from truing.diagnosis.fitted import STEP, WIDE, Fit, moved_by

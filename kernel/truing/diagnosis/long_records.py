@@ -46,7 +46,7 @@ def on_all_rows(chosen: Chosen, machine: Calibration) -> Chosen:
     made.stage, made.extended.grain = "fits to all rows", few.extended.grain
     made.extended.budget = few.extended.budget.of_rows(len(machine.records) / len(few.sample.machine.records))
     made.tries = dict(few.tries)
-    few.looked = {}  # much, and needed no more
+    few.gains_seen = {}  # much, and needed no more
     rivals_there = [few.known[rival.fit.key] for rival in chosen.rivals]
     singles = few.ranked(lambda found: len(found.causes) == 1)[:SINGLES]
     wanted = [few.known[chosen.best.key], *rivals_there, *few.ranked()[:RANKED], *singles]

@@ -184,9 +184,9 @@ def _followed(found: Fit) -> tuple[str, ...]:
 
 def alternative_of(chosen: Chosen, rival: Rival, *, with_sizes: bool = False) -> Alternative:
     """Return a rival explanation: how far behind, how separable, and on demand what its own fit says."""
-    found, looked = rival.fit, chosen.searched
-    fits = looked.competition.known if looked is not chosen else {}
-    apart = separation(looked.best, fits.get(found.key, found), looked.competition.extended)
+    found, searched = rival.fit, chosen.searched
+    fits = searched.competition.known if searched is not chosen else {}
+    apart = separation(searched.best, fits.get(found.key, found), searched.competition.extended)
     sized = causes_of(chosen, found) if with_sizes else ()
     same = {name: others for name in found.names if (others := _other_names(chosen, found, name))}
     return Alternative(

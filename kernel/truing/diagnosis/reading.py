@@ -13,8 +13,8 @@ from truing.diagnosis.covariates import censored_rows, covariates_of, held_out_r
 from truing.diagnosis.data_file import DataRows, objects, read_data_file
 from truing.diagnosis.joining import complete_rows, join, measured_rows, rows_of, settle_conditions
 from truing.diagnosis.records import FEWEST_READINGS, Records
-from truing.diagnosis.slips import factor_that_works, suspected_slips
 from truing.diagnosis.tidying import numbered, tidy
+from truing.diagnosis.unit_errors import factor_that_works, suspected_unit_errors
 from truing.errors import Fault, InputError
 from truing.gauge import one_machine, read_by_gauge
 from truing.kernel import Offer
@@ -29,10 +29,10 @@ MOST_FAILED = 0.5
 _FEW = ("no row", "one row", "two rows")
 
 
-def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_slips: bool = True) -> Records:
+def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_unit_errors: bool = True) -> Records:
     """Read measured files as the records of one machine; everything odd is counted and said in ``notes``.
 
-    ``with_slips`` looks for units that were written wrong, which asks the model for every column and factor.
+    ``with_unit_errors`` looks for units that were written wrong, which asks the model for every column and factor.
     A column is an input, a result (measured), a condition of an effect, ``sigma_NAME``, ``run``, or anything else that
     an error may depend on. Raises InputError with every fault of every file: nothing measured, a unit that is unknown
     or of another dimension, cells that are no numbers, columns without any value, fewer than three rows.
@@ -46,7 +46,7 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_slip
     joined = held_out_rows(_answered(joined, setup), setup)
     _demand_rows(joined)
     joined = measured_rows(_enough_values(joined, setup))
-    slips = suspected_slips(joined, setup) if with_slips else ()
+    unit_errors = suspected_unit_errors(joined, setup) if with_unit_errors else ()
     joined, sides, censored = censored_rows(joined, setup)
     covariates, said = covariates_of(joined, setup)
     sigma, unused = _sigma(joined)
@@ -61,7 +61,7 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_slip
         covariates=covariates,
         held_out=joined.held_out,
         notes=(*joined.notes, *said, *unused, *censored),
-        slips=slips,
+        unit_errors=unit_errors,
         absent=joined.absent,
         sides=sides,
         counts=joined.counts,

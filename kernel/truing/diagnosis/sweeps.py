@@ -26,7 +26,7 @@ DEPENDS = 1e-6
 
 
 @dataclass(frozen=True)
-class Beside:
+class Conditional:
     """What an explanation leaves, weighted (rows + K,), once its numbers and the inputs have taken their part.
 
     ``taken`` (rows + K, t) is an orthonormal basis of what they can draw; ``roots`` weigh the rows of the sample, and
@@ -67,10 +67,10 @@ class Pass:
     result stand among all rows of the sample.
     """
 
-    def __init__(self, table: TermTable, beside: Beside, place: int) -> None:
-        self.table, self.beside = table, beside
-        self.channel, self.part = beside.sample.channels[place], beside.sample.parts[place]
-        against = np.column_stack([beside.left[self.part], beside.taken[self.part]])
+    def __init__(self, table: TermTable, conditional: Conditional, place: int) -> None:
+        self.table, self.conditional = table, conditional
+        self.channel, self.part = conditional.sample.channels[place], conditional.sample.parts[place]
+        against = np.column_stack([conditional.left[self.part], conditional.taken[self.part]])
         shared, normal, following = [], [], []
         last = np.zeros((0, table.terms.shape[1], len(self.channel)))
         for block in blocks_of(table.terms):
@@ -87,8 +87,8 @@ class Pass:
     def rows(self, block: slice) -> Matrix:
         """Return the terms at some points in units of the noise, (m, c, rows of the result)."""
         terms = np.asarray(self.table.terms[block], dtype=float)
-        flat = self.channel.curve(terms.reshape(-1, terms.shape[-1]).T, self.beside.at[self.channel.name]).T
-        return np.asarray(flat.reshape(*terms.shape[:2], -1) * self.beside.roots[self.part])
+        flat = self.channel.curve(terms.reshape(-1, terms.shape[-1]).T, self.conditional.at[self.channel.name]).T
+        return np.asarray(flat.reshape(*terms.shape[:2], -1) * self.conditional.roots[self.part])
 
     def inner(self, drawn: Matrix) -> Matrix:
         """Return what the terms share with draws (rows + K, draws), (M, c, draws)."""
@@ -118,11 +118,11 @@ class ProjectedCurves:
 
     def vectors(self, place: int) -> Matrix:
         """Return the orthonormal curves at one of the points, (q, rows + K)."""
-        beside, at = self.passes[0].beside, int(self.points[place])
-        rows = np.zeros((len(self.passes), self.units.shape[1] // len(self.passes), beside.sample.rows))
+        conditional, at = self.passes[0].conditional, int(self.points[place])
+        rows = np.zeros((len(self.passes), self.units.shape[1] // len(self.passes), conditional.sample.rows))
         for each, kept in zip(self.passes, rows, strict=True):
             kept[:, each.part] = each.rows(slice(at, at + 1))[0]
-        return np.asarray(self.units[at] @ beside.beyond(rows.reshape(-1, beside.sample.rows)))
+        return np.asarray(self.units[at] @ conditional.beyond(rows.reshape(-1, conditional.sample.rows)))
 
 
 def blocks_of(several: NDArray[Any]) -> Iterator[slice]:

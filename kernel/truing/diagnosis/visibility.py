@@ -153,15 +153,15 @@ def _curves(chosen: Chosen, cause: Candidate, place: int) -> Iterator[tuple[floa
 
     Of a cause in proportion the size is 0, and the curve is the one per unit.
     """
-    looked = chosen.searched
-    bundle = looked.competition.curves.of(cause, looked.null)
+    searched = chosen.searched
+    bundle = searched.competition.curves.of(cause, searched.null)
     if bundle.is_straight:
         column = cause.amplitudes.index(place)
         yield from ((0.0, curve) for curve in bundle.curves[:, column])
     elif len(cause.amplitudes) == 1:
         yield from zip(bundle.points[:, place].tolist(), bundle.curves[:, 0], strict=True)
     elif len(bundle.points):
-        yield from _one_by_one(looked, cause, place, bundle.points[:FEW_SHAPES])
+        yield from _one_by_one(searched, cause, place, bundle.points[:FEW_SHAPES])
 
 
 def _one_by_one(chosen: Chosen, cause: Candidate, place: int, shapes: Matrix) -> Iterator[tuple[float, Matrix]]:

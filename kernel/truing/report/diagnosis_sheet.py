@@ -25,7 +25,7 @@ class DiagnosisSheet:
     mood: str
     verdict: str
     sentences: tuple[str, ...]
-    slips: tuple[str, ...]
+    unit_errors: tuple[str, ...]
     data: str
     chapters: tuple[Chapter, ...]
     warnings: tuple[str, ...]
@@ -47,7 +47,7 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
         mood=_mood(diagnosis),
         verdict=verdict_word(diagnosis),
         sentences=tuple(headline(diagnosis)),
-        slips=tuple(slip.text for slip in diagnosis.records.slips),
+        unit_errors=tuple(unit_error.text for unit_error in diagnosis.records.unit_errors),
         data=data_words(diagnosis),
         chapters=tuple(numbered(chapters, 1).values()),
         warnings=warnings,

@@ -63,7 +63,8 @@ def diagnosis_document(diagnosis: DiagnosisResult) -> dict[str, Any]:
         **_alarming(diagnosis),
         "notes": list(diagnosis.records.notes),
         "unit_slips": [
-            {"column": slip.column, "factor": clean(slip.factor), "text": slip.text} for slip in diagnosis.records.slips
+            {"column": unit_error.column, "factor": clean(unit_error.factor), "text": unit_error.text}
+            for unit_error in diagnosis.records.unit_errors
         ],
         "warnings": list(diagnosis.warnings),
     }

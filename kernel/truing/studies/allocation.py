@@ -91,37 +91,39 @@ class Allocation:
         wanted = _goals(setup, bench.answers, self.name)
         machines = Machines(setup, scatter_of(setup))
         straight, found = straightened(machines, wanted, nominal_inputs(setup, wanted))
-        shop = open_problem(setup, wanted, straight, self.finest, loosen=self.loosen, span=(self.tightest, self.widest))
-        order = coefficients(shop, self._slopes(machines, wanted, shop), self.weights) if shop.parts else {}
-        steps, ruled = by_rule(shop, order, self.finest) if shop.parts else ([], as_it_stands(shop))
-        rule = bought(shop, ruled)
-        least = _least(shop, ruled, rule)
-        designs = {"start": as_it_stands(shop), "rule": rule, "least": least}
+        problem = open_problem(
+            setup, wanted, straight, self.finest, loosen=self.loosen, span=(self.tightest, self.widest)
+        )
+        order = coefficients(problem, self._slopes(machines, wanted, problem), self.weights) if problem.parts else {}
+        steps, ruled = by_rule(problem, order, self.finest) if problem.parts else ([], as_it_stands(problem))
+        rule = bought(problem, ruled)
+        least = _least(problem, ruled, rule)
+        designs = {"start": as_it_stands(problem), "rule": rule, "least": least}
         return Allotted(
             name=self.name,
             finest=self.finest,
-            shop=shop,
+            problem=problem,
             steps=tuple(steps),
             rule=rule,
             least=least,
             coefficients=order,
             sampled=self._verified(bench, wanted, designs),
-            texts={key: _texts(setup, shop, plan) for key, plan in designs.items()},
+            texts={key: _texts(setup, problem, plan) for key, plan in designs.items()},
             priced={key: _price_checks(setup, plan) for key, plan in designs.items()},
-            remarks=(*found.warnings, *_left_alone(setup, shop)),
+            remarks=(*found.warnings, *_left_alone(setup, problem)),
             inputs=acting_inputs(setup),
         )
 
-    def _slopes(self, machines: Machines, wanted: Sequence[Demand], shop: AllocationProblem) -> dict[str, float]:
+    def _slopes(self, machines: Machines, wanted: Sequence[Demand], problem: AllocationProblem) -> dict[str, float]:
         """Return by part the sum of the absolute derivatives of the ordering result."""
         of = self.of or wanted[0].result
         known = machines.setup.model.own_result_fields
         if of not in known:
             raise UsageError(f"study '{self.name}': there is no result '{of}'.{near_miss(of, known)}")
         tolerances = machines.setup.model.tolerances
-        columns = tuple(dict.fromkeys(column for name in shop.parts for column in tolerances[name].on))
+        columns = tuple(dict.fromkeys(column for name in problem.parts for column in tolerances[name].on))
         found = slopes(machines.setup, (of,), columns, machines.scatter).of[of]
-        return {name: sum(abs(float(found[column])) for column in tolerances[name].on) for name in shop.parts}
+        return {name: sum(abs(float(found[column])) for column in tolerances[name].on) for name in problem.parts}
 
     def _verified(
         self, bench: Bench, wanted: Sequence[Demand], designs: Mapping[str, AllocationPlan]
@@ -148,22 +150,22 @@ def with_plan(setup: Setup, plan: AllocationPlan) -> Setup:
     return with_widths(with_grades(setup, plan.grades), plan.widths)
 
 
-def _least(shop: AllocationProblem, ruled: AllocationPlan, rule: AllocationPlan) -> AllocationPlan:
+def _least(problem: AllocationProblem, ruled: AllocationPlan, rule: AllocationPlan) -> AllocationPlan:
     """Return the cheapest design. With widths too it is sought by steps of one grade from three choices of grades."""
-    if not shop.parts:
+    if not problem.parts:
         return rule
-    if not shop.strips:
-        return least_cost(shop)
-    found = [bought(shop, least_cost(shop)), rule]
-    if ruled.grades != shop.start:
-        found.append(bought(shop, as_it_stands(shop)))
-    return min((bettered(shop, plan) for plan in found), key=lambda plan: (not plan.reached, plan.cost))
+    if not problem.variables:
+        return least_cost(problem)
+    found = [bought(problem, least_cost(problem)), rule]
+    if ruled.grades != problem.start:
+        found.append(bought(problem, as_it_stands(problem)))
+    return min((bettered(problem, plan) for plan in found), key=lambda plan: (not plan.reached, plan.cost))
 
 
-def _texts(setup: Setup, shop: AllocationProblem, plan: AllocationPlan) -> dict[str, str]:
+def _texts(setup: Setup, problem: AllocationProblem, plan: AllocationPlan) -> dict[str, str]:
     """Return by tolerance what an inputs file would say of this design."""
     chosen = with_plan(setup, plan)
-    return {name: chosen.spread_of(name).text for name in (*shop.parts, *shop.strips)}
+    return {name: chosen.spread_of(name).text for name in (*problem.parts, *problem.variables)}
 
 
 def _price_checks(setup: Setup, plan: AllocationPlan) -> tuple[Check, ...]:
@@ -172,9 +174,9 @@ def _price_checks(setup: Setup, plan: AllocationPlan) -> tuple[Check, ...]:
     return tuple(plain_checks(chosen, price_answers(chosen)))
 
 
-def _left_alone(setup: Setup, shop: AllocationProblem) -> list[str]:
+def _left_alone(setup: Setup, problem: AllocationProblem) -> list[str]:
     """Say which widths with a price were not chosen, since the grades beside them have none."""
-    names = [f"'{item.name}'" for item in priced_widths(setup) if item.name not in shop.strips]
+    names = [f"'{item.name}'" for item in priced_widths(setup) if item.name not in problem.variables]
     if not names:
         return []
     return [f"the widths of {' and '.join(names)} stay: not every grade has a price, so costs cannot be compared"]
@@ -204,7 +206,7 @@ class Allotted:
 
     name: str = "allocation"
     finest: str
-    shop: AllocationProblem
+    problem: AllocationProblem
     steps: tuple[Step, ...]
     rule: AllocationPlan
     least: AllocationPlan
@@ -228,7 +230,7 @@ class Allotted:
     @property
     def start(self) -> dict[str, float]:
         """The first-order probabilities before the first step."""
-        return self.shop.chances(self.shop.start)
+        return self.problem.chances(self.problem.start)
 
     @property
     def final(self) -> Mapping[str, float]:
@@ -253,7 +255,7 @@ class Allotted:
     @property
     def least_steps(self) -> int:
         """How many grades the least-cost choice lies away from the start."""
-        start = self.shop.start
+        start = self.problem.start
         return sum(abs(GRADES.index(grade) - GRADES.index(start[name])) for name, grade in self.least.grades.items())
 
     @property
@@ -267,9 +269,9 @@ class Allotted:
     @property
     def spoken(self) -> dict[str, tuple[str, AllocationPlan]]:
         """The designs that were adjusted, by key: what they are called, and the plan. Without grades there is one."""
-        if not self.shop.parts:
+        if not self.problem.parts:
             return {"least": ("the widths of least cost", self.least)}
-        what = "tolerances" if self.shop.strips else "grades"
+        what = "tolerances" if self.problem.variables else "grades"
         return {"rule": (f"the rule's {what}", self.rule), "least": (f"the least-cost {what}", self.least)}
 
     def as_json(self) -> dict[str, Any]:
@@ -302,7 +304,7 @@ class Allotted:
         method = "first order" if tally is None else f"Monte Carlo, {tally.draws} machines"
         return tuple(
             chance_check(demand.name, drawn[demand.name], demand.goal, method=method)
-            for demand in self.shop.demands
+            for demand in self.problem.demands
             if demand.goal is not None
         )
 
@@ -310,7 +312,7 @@ class Allotted:
         """Say what cannot be reached, and where the exact model contradicts first order."""
         words = [f"study '{self.name}': {remark}" for remark in self.remarks]
         if not self.reached:
-            missed = [demand for demand in self.shop.demands if self.final[demand.name] < (demand.goal or 0.0)]
+            missed = [demand for demand in self.problem.demands if self.final[demand.name] < (demand.goal or 0.0)]
             far = ", ".join(f"'{item.name}' comes to {self.final[item.name]:.4f} of {item.goal:g}" for item in missed)
             words.append(f"study '{self.name}': the goal is {self.rule.status}; {far}")
         for key, (what, plan) in self.spoken.items():
@@ -320,7 +322,7 @@ class Allotted:
             if tally is not None and tally.failed:
                 words.append(f"study '{self.name}': {_without_answer(tally, what)}")
             if tally is not None and plan.reached:
-                words += [f"study '{self.name}': {text}" for text in _contradicted(tally, self.shop.demands, what)]
+                words += [f"study '{self.name}': {text}" for text in _contradicted(tally, self.problem.demands, what)]
         return words
 
 
@@ -373,34 +375,34 @@ def allotted_json(allotted: Allotted) -> dict[str, Any]:
 
 
 def _start(allotted: Allotted) -> dict[str, Any]:
-    start = allotted.shop.start
-    plan = AllocationPlan(start, allotted.shop.cost(start), allotted.start, allotted.shop.reached(start))
+    start = allotted.problem.start
+    plan = AllocationPlan(start, allotted.problem.cost(start), allotted.start, allotted.problem.reached(start))
     return _design(allotted, plan, "start")
 
 
 def _design(allotted: Allotted, plan: AllocationPlan, key: str) -> dict[str, Any]:
     entry: dict[str, Any] = {
         "tolerances": dict(allotted.texts.get(key, plan.grades)),
-        "cost": {"value": plan.cost, "unit": allotted.shop.unit},
+        "cost": {"value": plan.cost, "unit": allotted.problem.unit},
         "reached": plan.reached,
         "probabilities": dict(plan.chances),
     }
     if plan.status:
         entry["status"] = plan.status
-    if allotted.shop.strips:
-        entry["widths"] = {strip.name: _width(strip, plan) for strip in allotted.shop.strips.values()}
+    if allotted.problem.variables:
+        entry["widths"] = {variable.name: _width(variable, plan) for variable in allotted.problem.variables.values()}
     if key in allotted.sampled:
         entry["monte_carlo"] = _sampled(allotted.sampled[key])
     return entry
 
 
-def _width(strip: ToleranceVariable, plan: AllocationPlan) -> dict[str, Any]:
-    width = plan.widths.get(strip.name, strip.start)
+def _width(variable: ToleranceVariable, plan: AllocationPlan) -> dict[str, Any]:
+    width = plan.widths.get(variable.name, variable.start)
     return {
-        "from": printed_step(strip.start, strip.unit),
-        "to": printed_step(width, strip.unit),
-        "unit": strip.unit,
-        "price": {"from": strip.cost(strip.start), "to": strip.cost(width), "unit": strip.price.unit},
+        "from": printed_step(variable.start, variable.unit),
+        "to": printed_step(width, variable.unit),
+        "unit": variable.unit,
+        "price": {"from": variable.cost(variable.start), "to": variable.cost(width), "unit": variable.price.unit},
     }
 
 
@@ -426,12 +428,12 @@ def allotted_blocks(allotted: Allotted) -> Sequence[Block]:
     if not allotted.reached:
         far = " and ".join(f"{spoken(name)} {100 * value:.2f} %" for name, value in allotted.final.items())
         blocks.append(Words(f"The goal is {allotted.rule.status}. It comes to {far}.", "finding"))
-    if allotted.shop.parts:
+    if allotted.problem.parts:
         blocks.append(_steps(allotted))
     blocks.append(_comparison(allotted))
-    if allotted.shop.parts:
+    if allotted.problem.parts:
         blocks.append(_grades(allotted))
-    if allotted.shop.strips:
+    if allotted.problem.variables:
         blocks += [_widths(allotted, what, plan) for what, plan in allotted.spoken.values()]
     if allotted.steps:
         blocks.append(Drawing("Probability along the synthesis", _drawn(allotted)))
@@ -452,30 +454,30 @@ def _steps(allotted: Allotted) -> Table:
 
 def _comparison(allotted: Allotted) -> Table:
     names = list(allotted.start)
-    shop = allotted.shop
-    start = AllocationPlan(shop.start, shop.cost(shop.start), allotted.start, shop.reached(shop.start))
+    problem = allotted.problem
+    start = AllocationPlan(problem.start, problem.cost(problem.start), allotted.start, problem.reached(problem.start))
     designs: Mapping[str, tuple[AllocationPlan, str, int]] = {
         "start": (start, "start", 0),
-        **({"rule": (allotted.rule, "rule", allotted.adjustments)} if shop.parts else {}),
+        **({"rule": (allotted.rule, "rule", allotted.adjustments)} if problem.parts else {}),
         "least cost": (allotted.least, "least", allotted.least_steps),
     }
     rows: list[list[Any]] = []
     for title, (plan, key, steps) in designs.items():
         sampled = allotted.monte_carlo.get(key, {})
         chances = [value for name in names for value in (100 * plan.chances[name], _percent(sampled.get(name)))]
-        rows.append([title, *([steps] if shop.parts else []), plan.cost, *chances, plan.reached])
+        rows.append([title, *([steps] if problem.parts else []), plan.cost, *chances, plan.reached])
     pairs = [column for name in names for column in (name, "Monte Carlo")]
-    unit = shop.unit
+    unit = problem.unit
     note = (
         "Cost: the sum of the prices of the tolerances, each paid once however many inputs it is on."
-        if shop.priced
+        if problem.priced
         else "Cost: the sum of 1/width over the tolerances, the reciprocal law; not every one has a price."
     )
     note += f" First order beside {_drawn_words(allotted)}" if allotted.sampled else ""
-    counted = ("grades",) if shop.parts else ()
+    counted = ("grades",) if problem.parts else ()
     columns = ("design", *counted, "cost", *pairs, "reached")
     units = ("", *("" for _ in counted), unit, *("%" for _ in pairs), "")
-    title = "Rule against least cost" if shop.parts else "In force and at least cost"
+    title = "Rule against least cost" if problem.parts else "In force and at least cost"
     return Table(title, columns, rows, units, note)
 
 
@@ -504,7 +506,7 @@ def _grades(allotted: Allotted) -> Table:
             allotted.rule.grades[name],
             allotted.least.grades[name],
         ]
-        for name, part in sorted(allotted.shop.parts.items(), key=lambda item: allotted.coefficients[item[0]])
+        for name, part in sorted(allotted.problem.parts.items(), key=lambda item: allotted.coefficients[item[0]])
     ]
     return Table("Grades", ("tolerance", "coefficient", "start", "rule", "least cost"), rows)
 
@@ -512,14 +514,14 @@ def _grades(allotted: Allotted) -> Table:
 def _widths(allotted: Allotted, what: str, plan: AllocationPlan) -> Table:
     """Say what became of every width that has a price."""
     rows: list[list[Any]] = []
-    for strip in allotted.shop.strips.values():
-        width = plan.widths.get(strip.name, strip.start)
-        ends = {strip.low: "tightest", strip.high: "widest"}
+    for variable in allotted.problem.variables.values():
+        width = plan.widths.get(variable.name, variable.start)
+        ends = {variable.low: "tightest", variable.high: "widest"}
         at_end = next((word for end, word in ends.items() if abs(width / end - 1) < 1e-6), "")
-        pair = [printed_step(one, strip.unit) for one in (strip.start, width)]
-        prices = [strip.cost(strip.start), strip.cost(width)]
-        rows.append([strip.name, unit_text(strip.unit), *pair, width / strip.start, *prices, at_end])
-    unit = allotted.shop.unit
+        pair = [printed_step(one, variable.unit) for one in (variable.start, width)]
+        prices = [variable.cost(variable.start), variable.cost(width)]
+        rows.append([variable.name, unit_text(variable.unit), *pair, width / variable.start, *prices, at_end])
+    unit = allotted.problem.unit
     columns = ("tolerance", "unit", "in force", "bought", "times", "price in force", "price", "at the end")
     note = "Full widths. Those at an end would go further if tightest and widest allowed it."
     return Table(what[:1].upper() + what[1:], columns, rows, ("", "", "", "", "", unit, unit, ""), note)
@@ -528,5 +530,5 @@ def _widths(allotted: Allotted, what: str, plan: AllocationPlan) -> Table:
 def _drawn(allotted: Allotted) -> Any:
     names = list(allotted.start)
     series = {name: [allotted.start[name], *(step.chances[name] for step in allotted.steps)] for name in names}
-    goals = {demand.name: demand.goal for demand in allotted.shop.demands if demand.goal is not None}
+    goals = {demand.name: demand.goal for demand in allotted.problem.demands if demand.goal is not None}
     return lines(range(len(allotted.steps) + 1), series, ("step", "probability"), goals)

@@ -59,23 +59,23 @@ class AllocationProblem:
     fixed: Mapping[str, float]
     unit: str
     priced: bool
-    strips: Mapping[str, ToleranceVariable] = field(default_factory=dict)
+    variables: Mapping[str, ToleranceVariable] = field(default_factory=dict)
     span: tuple[float, float] = (1.0, 1.0)
 
     def variance(self, name: str, grades: Mapping[str, str], widths: Mapping[str, float] | None = None) -> float:
         """Return the first-order variance of a demand's response with these grades and widths (those in force)."""
         graded = sum(part.choices[grades[key]].variances[name] for key, part in self.parts.items())
-        moved = ((self.strips[key], width) for key, width in (widths or {}).items())
+        moved = ((self.variables[key], width) for key, width in (widths or {}).items())
         return max(
             0.0,
             self.fixed[name]
             + graded
-            + sum(strip.variance(name, width) - strip.variances[name] for strip, width in moved),
+            + sum(variable.variance(name, width) - variable.variances[name] for variable, width in moved),
         )
 
     def mean(self, name: str, widths: Mapping[str, float] | None = None) -> float:
         """Return the first-order mean of a demand's response with these widths (those in force)."""
-        return self.means[name] + sum(self.strips[key].shift(name, width) for key, width in (widths or {}).items())
+        return self.means[name] + sum(self.variables[key].shift(name, width) for key, width in (widths or {}).items())
 
     def chances(self, grades: Mapping[str, str], widths: Mapping[str, float] | None = None) -> dict[str, float]:
         """Return the first-order probability of every demand with these grades and widths."""
@@ -93,7 +93,7 @@ class AllocationProblem:
         """Return the sum of what these grades and widths cost."""
         graded = sum(part.choices[grades[key]].cost for key, part in self.parts.items())
         chosen = {**self.widths, **(widths or {})}
-        return graded + sum(strip.cost(chosen[key]) for key, strip in self.strips.items())
+        return graded + sum(variable.cost(chosen[key]) for key, variable in self.variables.items())
 
     def reached(self, grades: Mapping[str, str], widths: Mapping[str, float] | None = None) -> bool:
         """Say whether every goal is met to first order."""
@@ -108,7 +108,7 @@ class AllocationProblem:
     @property
     def widths(self) -> dict[str, float]:
         """The full widths (SI) before anything is adjusted."""
-        return {name: strip.start for name, strip in self.strips.items()}
+        return {name: variable.start for name, variable in self.variables.items()}
 
     @property
     def start(self) -> dict[str, str]:
@@ -132,8 +132,8 @@ def open_problem(
     graded = [item for item in setup.model.tolerances.values() if isinstance(setup.spread_of(item.name), Grade)]
     price_unit = _price_unit(setup, graded)
     priced = price_unit is not None
-    strips = tolerance_variables(setup, straight, span) if priced or not graded else {}
-    if not graded and not strips:
+    variables = tolerance_variables(setup, straight, span) if priced or not graded else {}
+    if not graded and not variables:
         raise UsageError(
             f'{setup.model.name} has no tolerance that is a grade, such as grade("IT7"), and none with a price whose '
             "width could be chosen: nothing to allocate"
@@ -145,9 +145,9 @@ def open_problem(
         for name, variance in whole.items()
     }
     means = {demand.name: float(straight[demand.name].mean) for demand in wanted}
-    units = [price_unit] if price_unit is not None else [strip.price.unit for strip in strips.values()]
+    units = [price_unit] if price_unit is not None else [variable.price.unit for variable in variables.values()]
     unit = units[0] if units else RECIPROCAL
-    return AllocationProblem(parts, tuple(wanted), means, fixed, unit, priced or bool(strips), strips, span)
+    return AllocationProblem(parts, tuple(wanted), means, fixed, unit, priced or bool(variables), variables, span)
 
 
 def _part(
@@ -247,14 +247,14 @@ class ToleranceVariable:
         return self.pulls[demand] * (width - self.start)
 
 
-def prices_at(strips: Sequence[ToleranceVariable], widths: Matrix) -> tuple[Matrix, Matrix]:
+def prices_at(variables: Sequence[ToleranceVariable], widths: Matrix) -> tuple[Matrix, Matrix]:
     """Return what these full widths (n,) in SI cost, and the exact derivatives: the formulas with an imaginary step.
 
     Every formula is computed once, for all widths that it prices.
     Source: W. Squire, G. Trapp, Using complex variables to estimate derivatives, SIAM Rev. 40 (1998) 110.
     """
-    paid = np.empty(len(strips), dtype=complex)
-    prices = [strip.price for strip in strips]
+    paid = np.empty(len(variables), dtype=complex)
+    prices = [variable.price for variable in variables]
     for price in set(prices):
         own = [index for index, other in enumerate(prices) if other == price]
         paid[own] = price.evaluated(widths[own] * (1 + 1j * COMPLEX_STEP))

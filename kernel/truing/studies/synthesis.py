@@ -58,29 +58,29 @@ class AllocationPlan:
 
 
 def coefficients(
-    shop: AllocationProblem, slopes: Mapping[str, float], weights: tuple[float, float]
+    problem: AllocationProblem, slopes: Mapping[str, float], weights: tuple[float, float]
 ) -> dict[str, float]:
     """Return the adjustment coefficient of every part: small is tightened first.
 
     r = (P1 x + P2 c)/(P1 + P2), with x the sensitivity of the most sensitive part over that of this one and c the cost
     of this part's tolerance over that of the most sensitive one's. ``slopes`` are the summed absolute derivatives.
     """
-    reference = max(shop.parts, key=lambda name: slopes[name])
+    reference = max(problem.parts, key=lambda name: slopes[name])
     first, second = weights
     found: dict[str, float] = {}
-    for name, part in shop.parts.items():
+    for name, part in problem.parts.items():
         ratio = slopes[reference] / slopes[name] if slopes[name] else float("inf")
-        cost = part.first.cost / shop.parts[reference].first.cost
+        cost = part.first.cost / problem.parts[reference].first.cost
         found[name] = (first * ratio + second * cost) / (first + second) if first else cost
     return found
 
 
-def by_rule(shop: AllocationProblem, order: Mapping[str, float], finest: str) -> tuple[list[Step], AllocationPlan]:
+def by_rule(problem: AllocationProblem, order: Mapping[str, float], finest: str) -> tuple[list[Step], AllocationPlan]:
     """Tighten one part by one grade at a time until every goal is met or every part is at the finest grade."""
-    grades = shop.start
+    grades = problem.start
     steps: list[Step] = []
-    while not shop.reached(grades):
-        open_parts = [name for name in shop.parts if GRADES.index(grades[name]) > GRADES.index(finest)]
+    while not problem.reached(grades):
+        open_parts = [name for name in problem.parts if GRADES.index(grades[name]) > GRADES.index(finest)]
         if not open_parts:
             break
         coarsest = max(GRADES.index(grades[name]) for name in open_parts)
@@ -89,21 +89,21 @@ def by_rule(shop: AllocationProblem, order: Mapping[str, float], finest: str) ->
         )
         before, after = grades[name], GRADES[coarsest - 1]
         grades = {**grades, name: after}
-        widths = (shop.parts[name].choices[before].width, shop.parts[name].choices[after].width)
-        steps.append(Step(len(steps) + 1, name, before, after, *widths, shop.chances(grades)))
-    return steps, _plan(shop, grades, f"every tolerance is at {finest}")
+        widths = (problem.parts[name].choices[before].width, problem.parts[name].choices[after].width)
+        steps.append(Step(len(steps) + 1, name, before, after, *widths, problem.chances(grades)))
+    return steps, _plan(problem, grades, f"every tolerance is at {finest}")
 
 
-def as_it_stands(shop: AllocationProblem) -> AllocationPlan:
+def as_it_stands(problem: AllocationProblem) -> AllocationPlan:
     """Return the design before anything is adjusted."""
-    return _plan(shop, shop.start, "nothing is adjusted")
+    return _plan(problem, problem.start, "nothing is adjusted")
 
 
-def _plan(shop: AllocationProblem, grades: Mapping[str, str], shortfall: str) -> AllocationPlan:
-    chances = shop.chances(grades)
-    reached = shop.reached(grades)
+def _plan(problem: AllocationProblem, grades: Mapping[str, str], shortfall: str) -> AllocationPlan:
+    chances = problem.chances(grades)
+    reached = problem.reached(grades)
     return AllocationPlan(
-        grades, shop.cost(grades), chances, reached, "reached" if reached else f"not reachable: {shortfall}"
+        grades, problem.cost(grades), chances, reached, "reached" if reached else f"not reachable: {shortfall}"
     )
 
 
@@ -129,41 +129,41 @@ def largest_variance(demand: Demand, mean: float) -> float | None:
     return float((reach * 10.0**log_sd) ** 2)
 
 
-def least_cost(shop: AllocationProblem) -> AllocationPlan:
+def least_cost(problem: AllocationProblem) -> AllocationPlan:
     """Choose one grade for every part so that all goals are met to first order at the least cost there is."""
     bounds: dict[str, float] = {}
-    for demand in shop.demands:
+    for demand in problem.demands:
         if demand.goal is None:
             continue
-        bound = largest_variance(demand, shop.means[demand.name])
+        bound = largest_variance(demand, problem.means[demand.name])
         if bound is None:
-            return _finest(shop, f"'{demand.name}' misses {demand.goal:g} however small the scatter")
+            return _finest(problem, f"'{demand.name}' misses {demand.goal:g} however small the scatter")
         if bound < float("inf"):
             bounds[demand.name] = bound
     margin = 0.0
     for _ in range(6):  # the solver keeps a bound to 1e-7 only: hold it a little off until the goals are met exactly
-        grades = _solve(shop, bounds, margin)
-        if grades is None or shop.reached(grades):
+        grades = _solve(problem, bounds, margin)
+        if grades is None or problem.reached(grades):
             break
         margin = margin * 4 or 1e-7
-    if grades is None or not shop.reached(grades):
-        return _finest(shop, "every tolerance is at its finest grade")
-    return _plan(shop, grades, "")
+    if grades is None or not problem.reached(grades):
+        return _finest(problem, "every tolerance is at its finest grade")
+    return _plan(problem, grades, "")
 
 
-def _finest(shop: AllocationProblem, reason: str) -> AllocationPlan:
-    grades = {name: min(part.choices, key=GRADES.index) for name, part in shop.parts.items()}
-    return _plan(shop, grades, reason)
+def _finest(problem: AllocationProblem, reason: str) -> AllocationPlan:
+    grades = {name: min(part.choices, key=GRADES.index) for name, part in problem.parts.items()}
+    return _plan(problem, grades, reason)
 
 
-def _solve(shop: AllocationProblem, bounds: Mapping[str, float], margin: float) -> dict[str, str] | None:
+def _solve(problem: AllocationProblem, bounds: Mapping[str, float], margin: float) -> dict[str, str] | None:
     """Solve the choice of grades as a mixed-integer linear program; None where no choice meets the bounds."""
-    choices = [(name, choice) for name, part in shop.parts.items() for choice in part.choices.values()]
+    choices = [(name, choice) for name, part in problem.parts.items() for choice in part.choices.values()]
     costs = np.array([choice.cost for _, choice in choices])
-    one_each = np.array([[float(name == part) for name, _ in choices] for part in shop.parts])
+    one_each = np.array([[float(name == part) for name, _ in choices] for part in problem.parts])
     constraints: list[Any] = [LinearConstraint(one_each, 1.0, 1.0)]
     for demand, bound in bounds.items():
-        room = bound * (1 - margin) - shop.fixed[demand]
+        room = bound * (1 - margin) - problem.fixed[demand]
         if room <= 0:
             return None
         shares = np.array([choice.variances[demand] / room for _, choice in choices])
@@ -195,47 +195,47 @@ CHEAPER = 1e-9
 class Search:
     """The widths to choose, as logarithms over those in force, with these grades; goals in standard deviations."""
 
-    shop: AllocationProblem
+    problem: AllocationProblem
     grades: Mapping[str, str]
 
     def widths(self, x: Matrix) -> dict[str, float]:
         """Return the full widths (SI)."""
         return {
-            strip.name: float(strip.start * np.exp(value))
-            for strip, value in zip(self.shop.strips.values(), x, strict=True)
+            variable.name: float(variable.start * np.exp(value))
+            for variable, value in zip(self.problem.variables.values(), x, strict=True)
         }
 
     def ends(self) -> tuple[Matrix, Matrix]:
         """Return the smallest and the largest logarithms."""
-        strips = self.shop.strips.values()
-        low = np.log([strip.low / strip.start for strip in strips])
-        return low, np.log([strip.high / strip.start for strip in strips])
+        variables = self.problem.variables.values()
+        low = np.log([variable.low / variable.start for variable in variables])
+        return low, np.log([variable.high / variable.start for variable in variables])
 
     def cost(self, x: Matrix) -> tuple[float, Matrix]:
         """Return the price of the widths and its gradient, both over the price of those in force."""
-        strips = tuple(self.shop.strips.values())
+        variables = tuple(self.problem.variables.values())
         widths = np.array(list(self.widths(x).values()))
-        prices, slopes = prices_at(strips, widths)
+        prices, slopes = prices_at(variables, widths)
         return float(prices.sum()) / self._whole, slopes * widths / self._whole
 
     @cached_property
     def _whole(self) -> float:
         """The price of the widths in force."""
-        return sum(abs(strip.cost(strip.start)) for strip in self.shop.strips.values()) or 1.0
+        return sum(abs(variable.cost(variable.start)) for variable in self.problem.variables.values()) or 1.0
 
     def slack(self, x: Matrix) -> tuple[Matrix, Matrix]:
         """Return by goal how far it is kept (goals,), in standard deviations of the start, and the gradients."""
-        found = [self._slack(demand, x) for demand in self.shop.goals]
+        found = [self._slack(demand, x) for demand in self.problem.goals]
         return np.array([value for value, _ in found]), np.array([gradient for _, gradient in found])
 
     def _slack(self, demand: Demand, x: Matrix) -> tuple[float, Matrix]:
-        shop, name = self.shop, demand.name
+        problem, name = self.problem, demand.name
         widths = self.widths(x)
-        sd = max(shop.variance(name, self.grades, widths), 1e-300) ** 0.5
-        by_mean = np.array([strip.pulls[name] * widths[key] for key, strip in shop.strips.items()])
-        by_sd = np.array([strip.variance(name, widths[key]) / sd for key, strip in shop.strips.items()])
-        room, of_mean, of_sd = _room(demand, shop.mean(name, widths), sd)
-        scale = shop.variance(name, shop.start) ** 0.5 or 1.0
+        sd = max(problem.variance(name, self.grades, widths), 1e-300) ** 0.5
+        by_mean = np.array([variable.pulls[name] * widths[key] for key, variable in problem.variables.items()])
+        by_sd = np.array([variable.variance(name, widths[key]) / sd for key, variable in problem.variables.items()])
+        room, of_mean, of_sd = _room(demand, problem.mean(name, widths), sd)
+        scale = problem.variance(name, problem.start) ** 0.5 or 1.0
         return room / scale, (of_mean * by_mean + of_sd * by_sd) / scale
 
 
@@ -274,11 +274,11 @@ def _largest_sd(demand: Demand, mean: float) -> tuple[float, float]:
     return sd, -(at_high - at_low) / (above * at_high - below * at_low)
 
 
-def bought(shop: AllocationProblem, plan: AllocationPlan) -> AllocationPlan:
+def bought(problem: AllocationProblem, plan: AllocationPlan) -> AllocationPlan:
     """Return the plan with the widths that meet all goals at the least cost; where none do, those that come nearest."""
-    if not shop.strips or any(demand.goal is not None and demand.goal >= 1.0 for demand in shop.demands):
+    if not problem.variables or any(demand.goal is not None and demand.goal >= 1.0 for demand in problem.demands):
         return plan
-    search = Search(shop, plan.grades)
+    search = Search(problem, plan.grades)
     starts = list(_starts(search))
     with one_thread():
         found = _cheapest(search, starts)
@@ -286,46 +286,48 @@ def bought(shop: AllocationProblem, plan: AllocationPlan) -> AllocationPlan:
             nearest = _nearest(search, starts)
             found = _cheapest(search, [nearest])
     if found is None:
-        return _with(shop, plan, search.widths(nearest), residual=None)
-    return _with(shop, plan, search.widths(found), residual=_residual(search, found))
+        return _with(problem, plan, search.widths(nearest), residual=None)
+    return _with(problem, plan, search.widths(found), residual=_residual(search, found))
 
 
-def bettered(shop: AllocationProblem, plan: AllocationPlan) -> AllocationPlan:
+def bettered(problem: AllocationProblem, plan: AllocationPlan) -> AllocationPlan:
     """Change one grade by one step, buy the widths anew, and take what is cheapest, until no such step is cheaper."""
     with one_thread():
-        while plan.reached and shop.strips:
-            best = min(_steps_from(shop, plan), key=lambda other: other.cost, default=plan)
+        while plan.reached and problem.variables:
+            best = min(_steps_from(problem, plan), key=lambda other: other.cost, default=plan)
             if best.cost >= plan.cost * (1 - CHEAPER):
                 break
             plan = best
     return plan
 
 
-def _steps_from(shop: AllocationProblem, plan: AllocationPlan) -> Iterator[AllocationPlan]:
+def _steps_from(problem: AllocationProblem, plan: AllocationPlan) -> Iterator[AllocationPlan]:
     """Yield the designs with one grade a step finer or coarser that meet all goals; widths start where they are."""
-    for name, part in shop.parts.items():
+    for name, part in problem.parts.items():
         offered = list(part.choices)
         place = offered.index(plan.grades[name])
         for grade in offered[max(place - 1, 0) : place] + offered[place + 1 : place + 2]:
             other = replace(plan, grades={**plan.grades, name: grade})
-            search = Search(shop, other.grades)
-            held = [np.log(plan.widths[key] / strip.start) for key, strip in shop.strips.items()]
+            search = Search(problem, other.grades)
+            held = [np.log(plan.widths[key] / variable.start) for key, variable in problem.variables.items()]
             low, high = search.ends()
             found = _cheapest(search, [np.clip(held, low, high), low])
             if found is not None:
-                yield _with(shop, other, search.widths(found), residual=_residual(search, found))
+                yield _with(problem, other, search.widths(found), residual=_residual(search, found))
 
 
 def _with(
-    shop: AllocationProblem, plan: AllocationPlan, widths: Mapping[str, float], *, residual: float | None
+    problem: AllocationProblem, plan: AllocationPlan, widths: Mapping[str, float], *, residual: float | None
 ) -> AllocationPlan:
-    reached = shop.reached(plan.grades, widths)
+    reached = problem.reached(plan.grades, widths)
     status = "reached"
     if not reached:
-        status = f"not reachable: no widths from {shop.span[0]:g} to {shop.span[1]:g} times those in force meet it"
+        status = (
+            f"not reachable: no widths from {problem.span[0]:g} to {problem.span[1]:g} times those in force meet it"
+        )
         status += ", and every grade is at its finest" if plan.grades else ""
-    chances = shop.chances(plan.grades, widths)
-    cost = shop.cost(plan.grades, widths)
+    chances = problem.chances(plan.grades, widths)
+    cost = problem.cost(plan.grades, widths)
     return replace(plan, cost=cost, chances=chances, reached=reached, status=status, widths=widths, residual=residual)
 
 
@@ -346,7 +348,7 @@ def _cheapest(search: Search, starts: Sequence[Matrix]) -> Matrix | None:
         if not ends:
             return None
         best = _exact(search, min(ends, key=lambda x: search.cost(x)[0]))
-        if search.shop.reached(search.grades, search.widths(best)):
+        if search.problem.reached(search.grades, search.widths(best)):
             return best
     return None
 
@@ -354,7 +356,7 @@ def _cheapest(search: Search, starts: Sequence[Matrix]) -> Matrix | None:
 def _exact(search: Search, x: Matrix) -> Matrix:
     """Take the last rounding out of the goals that are just missed, by the shortest way."""
     for _ in range(4):
-        if search.shop.reached(search.grades, search.widths(x)):
+        if search.problem.reached(search.grades, search.widths(x)):
             break
         slack, rows = search.slack(x)
         short = slack < ROUNDING
@@ -377,7 +379,7 @@ def _nearest(search: Search, starts: Sequence[Matrix]) -> Matrix:
     """Return the widths whose worst goal is nearest to being met: the largest slack that all goals can have."""
     low, high = search.ends()
     upward = np.append(np.zeros(len(low)), -1.0)
-    rising = -np.ones(len(search.shop.goals))
+    rising = -np.ones(len(search.problem.goals))
     found = list(starts)
     for start in starts:
         ends = (np.append(low, -np.inf), np.append(high, np.inf))

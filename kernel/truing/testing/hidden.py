@@ -115,16 +115,16 @@ def _answered(hidden: Hidden) -> Answered:
     document = json.loads(json.dumps(diagnosis_document(diagnosis)))
     if not hidden.held_out:
         return Answered(diagnosis, document, {}, {}, seconds)
-    judged = records_of(hidden.setup, hidden.held_out, HELD_OUT, with_slips=False)
+    judged = records_of(hidden.setup, hidden.held_out, HELD_OUT, with_unit_errors=False)
     return Answered(diagnosis, document, judged.measured, predicted(diagnosis, hidden.setup, judged), seconds)
 
 
-def records_of(setup: Setup, text: str, name: str, *, with_slips: bool = True) -> Records:
+def records_of(setup: Setup, text: str, name: str, *, with_unit_errors: bool = True) -> Records:
     """Read a record as the command line does; without a search for wrong units where nobody is told of them."""
     with TemporaryDirectory() as folder:
         file = Path(folder) / name
         file.write_text(text, encoding="utf-8")
-        return read_records([file], offer_of(setup), setup, with_slips=with_slips)
+        return read_records([file], offer_of(setup), setup, with_unit_errors=with_unit_errors)
 
 
 def predicted(diagnosis: DiagnosisResult, setup: Setup, records: Records) -> dict[str, NDArray[np.float64]]:

@@ -48,8 +48,8 @@ def strokes_of_a_press() -> tuple[Setup, NDArray[np.float64], NDArray[np.float64
     return setup, angles, found.results["slider_position"] * 1e3 + rng.normal(0, 0.05, ROWS)
 
 
-def slips(records: Records) -> list[tuple[str, float]]:
-    return [(slip.column, slip.factor) for slip in records.slips]
+def unit_errors(records: Records) -> list[tuple[str, float]]:
+    return [(unit_error.column, unit_error.factor) for unit_error in records.unit_errors]
 
 
 ANGLE, HEIGHT = "crank_angle [deg]", "slider_position [mm]"
@@ -74,7 +74,7 @@ def test_slips_of_a_press(
     tmp_path: Path, angle: str, height: str, scale: tuple[float, float], expected: list[tuple[str, float]]
 ) -> None:
     _, angles, heights = strokes_of_a_press()
-    found = slips(read(tmp_path, PRESS, {angle: angles * scale[0], height: heights * scale[1]}))
+    found = unit_errors(read(tmp_path, PRESS, {angle: angles * scale[0], height: heights * scale[1]}))
     assert [name for name, _ in found] == [name for name, _ in expected]
     np.testing.assert_allclose([factor for _, factor in found], [factor for _, factor in expected], rtol=1e-12)
 
@@ -83,9 +83,9 @@ def test_a_slip_is_named_in_words_and_nothing_is_changed(tmp_path: Path) -> None
     _, angles, heights = strokes_of_a_press()
     records = read(tmp_path, PRESS, {"crank_angle [rad]": angles, HEIGHT: heights})
     np.testing.assert_allclose(records.rows.columns["crank_angle"], angles)
-    (slip,) = records.slips
-    assert "'crank_angle [rad]' is probably wrong: multiply it by pi/180 (degrees, not radians)" in slip.text
-    assert "mm off 'slider_position' instead of" in slip.text
+    (unit_error,) = records.unit_errors
+    assert "'crank_angle [rad]' is probably wrong: multiply it by pi/180 (degrees, not radians)" in unit_error.text
+    assert "mm off 'slider_position' instead of" in unit_error.text
 
 
 def test_a_sweep_in_degrees_under_radians_is_not_joined(tmp_path: Path) -> None:
@@ -96,16 +96,16 @@ def test_a_sweep_in_degrees_under_radians_is_not_joined(tmp_path: Path) -> None:
     heights = found.results["slider_position"] * 1e3
     records = read(tmp_path, PRESS, {"crank_angle [rad]": angles, HEIGHT: heights})
     np.testing.assert_allclose(records.rows.columns["crank_angle"], angles)
-    assert slips(records) == [("crank_angle", pytest.approx(math.pi / 180))]
+    assert unit_errors(records) == [("crank_angle", pytest.approx(math.pi / 180))]
 
 
 def test_a_gauge_that_was_set_to_zero_somewhere(tmp_path: Path) -> None:
     _, angles, heights = strokes_of_a_press()
     zeroed = heights - heights.mean()
-    assert not read(tmp_path, PRESS, {ANGLE: angles, HEIGHT: zeroed}).slips
-    (slip,) = read(tmp_path, PRESS, {ANGLE: angles, "slider_position [um]": zeroed}).slips
-    assert (slip.column, slip.factor) == ("slider_position", 1e3)
-    assert "about its middle" in slip.text
+    assert not read(tmp_path, PRESS, {ANGLE: angles, HEIGHT: zeroed}).unit_errors
+    (unit_error,) = read(tmp_path, PRESS, {ANGLE: angles, "slider_position [um]": zeroed}).unit_errors
+    assert (unit_error.column, unit_error.factor) == ("slider_position", 1e3)
+    assert "about its middle" in unit_error.text
 
 
 @pytest.mark.parametrize("off", [5.0, 300.0])
@@ -115,13 +115,15 @@ def test_what_is_merely_wrong_is_no_slip(tmp_path: Path, off: float) -> None:
     _, angles, heights = strokes_of_a_press()
     heights[::11] += 1e7
     columns = {ANGLE: angles, HEIGHT: heights + off, "slider_tilt [urad]": 3000 + rng.normal(0, 50, ROWS)}
-    assert not read(tmp_path, PRESS, columns).slips
+    assert not read(tmp_path, PRESS, columns).unit_errors
 
 
 def test_wild_readings_hide_no_slip(tmp_path: Path) -> None:
     _, angles, heights = strokes_of_a_press()
     heights[::15] = 9e9
-    assert slips(read(tmp_path, PRESS, {ANGLE: angles, "slider_position [m]": heights})) == [("slider_position", 1e-3)]
+    assert unit_errors(read(tmp_path, PRESS, {ANGLE: angles, "slider_position [m]": heights})) == [
+        ("slider_position", 1e-3)
+    ]
 
 
 def test_a_condition_beyond_its_range(tmp_path: Path) -> None:
@@ -129,10 +131,10 @@ def test_a_condition_beyond_its_range(tmp_path: Path) -> None:
     _, angles, heights = strokes_of_a_press()
     force = np.linspace(5, 900, ROWS)
     columns = {ANGLE: angles, HEIGHT: heights}
-    assert not read(tmp_path, PRESS, {**columns, "forming_force [kN]": force}).slips
+    assert not read(tmp_path, PRESS, {**columns, "forming_force [kN]": force}).unit_errors
     records = read(tmp_path, PRESS, {**columns, "forming_force [kN]": force * 1e3})
-    assert slips(records) == [("forming_force", 1e-3)]
-    assert "it can be set from -200 to 2000 kN" in records.slips[0].text
+    assert unit_errors(records) == [("forming_force", 1e-3)]
+    assert "it can be set from -200 to 2000 kN" in records.unit_errors[0].text
 
 
 def pins() -> dict[str, NDArray[np.float64]]:
@@ -160,11 +162,11 @@ def renamed(columns: Columns, old: str, new: str) -> dict[str, NDArray[np.float6
 def test_one_slip_that_explains_two_results_is_that_of_the_input(
     tmp_path: Path, old: str, new: str, expected: list[tuple[str, float]]
 ) -> None:
-    assert slips(read(tmp_path, PIN_WEAR, renamed(pins(), old, new))) == expected
+    assert unit_errors(read(tmp_path, PIN_WEAR, renamed(pins(), old, new))) == expected
 
 
 def test_a_temperature_level_has_no_factor(tmp_path: Path) -> None:
     """Beyond its range and with an effect on, yet a thousand times 20 degrees is no other unit of the same."""
     _, angles, heights = strokes_of_a_press()
     columns = {ANGLE: angles, HEIGHT: heights, "link_temperature [degC]": np.full(ROWS, 2e4)}
-    assert not read(tmp_path, PRESS, columns, HEATED).slips
+    assert not read(tmp_path, PRESS, columns, HEATED).unit_errors

@@ -17,7 +17,16 @@ from truing.diagnosis.curves import LARGEST, Bundle, ResponseCurves
 from truing.diagnosis.exact import slopes_left
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.sweeps import BLOCK, Beside, Pass, ProjectedCurves, TermTable, blocks_of, units_of, without_taken
+from truing.diagnosis.sweeps import (
+    BLOCK,
+    Conditional,
+    Pass,
+    ProjectedCurves,
+    TermTable,
+    blocks_of,
+    units_of,
+    without_taken,
+)
 
 KEPT = 3
 """So many points of a cause begin exact fits."""
@@ -46,7 +55,7 @@ class Spanned:
 
 
 @dataclass(frozen=True)
-class Looked:
+class ConditionalGain:
     """What a cause could draw beside an explanation: gains in score with the numbers to begin with, the best first.
 
     ``tries`` counts its independent curves, which ``span`` holds or makes again.
@@ -57,7 +66,7 @@ class Looked:
     span: Spanned | ProjectedCurves
 
 
-def beside_of(found: Fit, extended: Extended) -> Beside:
+def conditional_on(found: Fit, extended: Extended) -> Conditional:
     """Return an explanation as other causes see it."""
     sample, k = found.sample, len(found.inputs)
     roots = sample.roots(found.left)
@@ -67,30 +76,30 @@ def beside_of(found: Fit, extended: Extended) -> Beside:
     basis, size, _ = np.linalg.svd(columns, full_matrices=False)
     taken = np.asarray(basis[:, size > 1e-9 * size.max()] if size.size else basis)
     left = np.concatenate([roots * found.left, -found.inputs])
-    return Beside(sample, roots, left - taken @ (taken.T @ left), taken, found.predicted)
+    return Conditional(sample, roots, left - taken @ (taken.T @ left), taken, found.predicted)
 
 
-def look(curves: ResponseCurves, at: Fit, causes: Sequence[Candidate]) -> Mapping[str, Looked]:
+def look(curves: ResponseCurves, at: Fit, causes: Sequence[Candidate]) -> Mapping[str, ConditionalGain]:
     """Compare all causes with what an explanation leaves, by their tag."""
-    beside = beside_of(at, curves.extended)
+    conditional = conditional_on(at, curves.extended)
     bundles = (curves.of(cause, at) for cause in causes)  # one after another: those of effects may be large
-    made = {tag: each for group in _grouped(bundles) for tag, each in compared(group, beside)}
+    made = {tag: each for group in _grouped(bundles) for tag, each in compared(group, conditional)}
     passes: dict[tuple[TermTable, int], Pass] = {}
     for bundle in (curves.of(cause, at) for cause in causes if cause.shape is not None):
-        if bundle.table is not None and (each := _swept(bundle, bundle.table, beside, passes)) is not None:
+        if bundle.table is not None and (each := _swept(bundle, bundle.table, conditional, passes)) is not None:
             made[bundle.cause.tag] = each
     return made
 
 
 def _swept(
-    bundle: Bundle, table: TermTable, beside: Beside, passes: dict[tuple[TermTable, int], Pass]
-) -> Looked | None:
+    bundle: Bundle, table: TermTable, conditional: Conditional, passes: dict[tuple[TermTable, int], Pass]
+) -> ConditionalGain | None:
     """Compare a table with what an explanation leaves; each result is passed through once."""
-    shape, names = bundle.cause.shape, [channel.name for channel in beside.sample.channels]
+    shape, names = bundle.cause.shape, [channel.name for channel in conditional.sample.channels]
     places = [names.index(name) for name in (shape.results if shape is not None else ())]
     for place in places:
         if (table, place) not in passes:
-            passes[table, place] = Pass(table, beside, place)
+            passes[table, place] = Pass(table, conditional, place)
     own = tuple(passes[table, place] for place in places)
     raw, normal, following = without_taken(own)
     sizes = [np.sqrt(np.maximum(np.einsum("mqq->mq", each), 0.0)) for each in (normal, raw)]
@@ -100,7 +109,7 @@ def _swept(
     right, span = np.concatenate([each.right for each in own], axis=1), ProjectedCurves(own, units_of(normal), points)
     inner = span.units[1:] @ following @ span.units[:-1].swapaxes(1, 2)
     tries = 1.0 + _turned(inner[is_own[1:] & is_own[:-1]], normal.shape[1])
-    return Looked(_best(*_starts(bundle, points, right, normal), span, beside), tries, span)
+    return ConditionalGain(_best(*_starts(bundle, points, right, normal), span, conditional), tries, span)
 
 
 def _draws(size: Matrix, raw: Matrix) -> Mask:
@@ -126,10 +135,10 @@ def _grouped(bundles: Iterable[Bundle]) -> Iterator[list[Bundle]]:
     yield from waiting.values()
 
 
-def compared(bundles: list[Bundle], beside: Beside) -> Iterator[tuple[str, Looked]]:
+def compared(bundles: list[Bundle], conditional: Conditional) -> Iterator[tuple[str, ConditionalGain]]:
     """Compare the curves of causes with what an explanation leaves; those that draw nothing here are left out."""
     curves = np.concatenate([each.curves for each in bundles]) if len(bundles) > 1 else bundles[0].curves
-    kept, is_own, basis, right, normal = _weighed(curves, beside)
+    kept, is_own, basis, right, normal = _weighed(curves, conditional)
     begin = 0
     for bundle in bundles:
         end = begin + len(bundle.points)
@@ -139,31 +148,31 @@ def compared(bundles: list[Bundle], beside: Beside) -> Iterator[tuple[str, Looke
             drawn = Spanned(basis[own] if len(own) < len(basis) else basis)
             is_sweep = bundle.is_straight and len(bundle.cause.shapes) <= 1  # neighbouring points draw alike
             tries = independent(basis[own[is_own[own]]], is_sweep=is_sweep)
-            yield bundle.cause.tag, Looked(_best(*starts, drawn, beside), tries, drawn)
+            yield bundle.cause.tag, ConditionalGain(_best(*starts, drawn, conditional), tries, drawn)
         begin = end
 
 
-def _weighed(curves: Matrix, beside: Beside) -> tuple[Any, Any, Matrix, Matrix, Matrix]:
+def _weighed(curves: Matrix, conditional: Conditional) -> tuple[Any, Any, Matrix, Matrix, Matrix]:
     """Return which points draw anything, which something of their own, and their bases, right and normal sides.
 
     Bases of many curves are kept in single precision.
     """
     kind = np.float32 if curves.size > LARGEST else np.float64
-    basis = np.empty((*curves.shape[:2], len(beside.left)), dtype=kind)
+    basis = np.empty((*curves.shape[:2], len(conditional.left)), dtype=kind)
     parts = []
     for block in blocks_of(curves):
-        rows = beside.drawn(curves[block])
-        weighed = beside.beyond(rows)
+        rows = conditional.drawn(curves[block])
+        weighed = conditional.beyond(rows)
         raw, size = np.linalg.norm(rows, axis=-1), np.linalg.norm(weighed, axis=-1)
         normal = weighed @ weighed.swapaxes(1, 2)
         basis[block] = units_of(normal) @ weighed
-        parts.append((_draws(size, raw), (size > OWN * raw).any(axis=1), weighed @ beside.left, normal))
+        parts.append((_draws(size, raw), (size > OWN * raw).any(axis=1), weighed @ conditional.left, normal))
     kept, is_own, right, normal = (np.concatenate(each) for each in zip(*parts, strict=True))
     return kept, is_own, basis, right, normal
 
 
 def _best(
-    gains: Matrix, values: Matrix, span: Spanned | ProjectedCurves, beside: Beside
+    gains: Matrix, values: Matrix, span: Spanned | ProjectedCurves, conditional: Conditional
 ) -> tuple[tuple[float, Matrix], ...]:
     """Return the best points that do not draw the same, with what each is worth in score."""
     chosen: list[int] = []
@@ -172,7 +181,7 @@ def _best(
             chosen.append(place)
         if len(chosen) == KEPT:
             break
-    known, whole = beside.sample.known, float(beside.left @ beside.left)
+    known, whole = conditional.sample.known, float(conditional.left @ conditional.left)
     rest = np.maximum(1 - gains[chosen] / max(whole, known, 1.0), 1e-9)  # of the squares; the noise is what is left
     return tuple(zip((-known * np.log(rest)).tolist(), values[chosen], strict=True))
 
