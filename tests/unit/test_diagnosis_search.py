@@ -274,7 +274,7 @@ def test_chance_is_uniform_where_there_is_nothing(tmp_path: Path) -> None:
 def test_curves_beside_an_explanation_leave_what_it_draws(tmp_path: Path) -> None:
     """Beside the lead the lead draws nothing, and a gain what is orthogonal to it."""
     made = competing(tmp_path, 0.02 * BENCH.travel)
-    lead = fit_of(made, "lead_error")
+    lead = made.exact(fit_of(made, "lead_error"))
     beside = conditional_on(lead, made.extended)
     travel, gain = BENCH.travel, gauge(BENCH.load, BENCH.travel)
     left = 0.02 * travel + NOISE
