@@ -16,3 +16,8 @@ def entry_points() -> list[metadata.EntryPoint]:
 def distribution_of(entry: metadata.EntryPoint) -> str:
     """Return the name of the distribution that an entry point belongs to, or nothing."""
     return entry.dist.name if entry.dist is not None else ""
+
+
+def plugin_names() -> list[str]:
+    """Return the names of all plugins, each once; which distribution offers them is not looked up."""
+    return sorted({entry.name for entry in metadata.entry_points(group=GROUP)})

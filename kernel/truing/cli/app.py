@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from importlib import metadata
 from pathlib import Path
 from typing import Annotated, ParamSpec
 
@@ -17,7 +16,6 @@ import typer
 from truing.cli.candidates import names, names_inside, runs
 from truing.cli.console import out, verb
 from truing.cli.words import AsJson, Cases, Changed, Excel, Inputs, OutputFile, Pdf, Plugin, RunFolder, Shell
-from truing.entry_points import entry_points
 from truing.heavy import Later
 
 P = ParamSpec("P")
@@ -35,7 +33,7 @@ app = typer.Typer(
 
 def _version(wanted: bool) -> None:
     if wanted:
-        out(f"truing {metadata.version('truing')}")
+        out(f"truing {Later('importlib.metadata').version('truing')}")
         raise typer.Exit
 
 
@@ -70,8 +68,8 @@ def plugins(
     """List what is installed, from where, which version, and what broke while loading."""
     if not names:
         return int(Later("truing.cli.plugins").plugins(context=context, as_json=as_json, strict=strict))
-    for entry in entry_points():
-        out(entry.name)
+    for name in Later("truing.entry_points").plugin_names():
+        out(name)
     return 0
 
 

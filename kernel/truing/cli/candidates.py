@@ -16,7 +16,6 @@ from typing import Any, ParamSpec
 import typer
 
 from truing.cli.console import one_line
-from truing.entry_points import entry_points
 from truing.heavy import Later
 
 P = ParamSpec("P")
@@ -24,6 +23,7 @@ OfferedWord = tuple[str, str]
 """A word to offer, and what it is."""
 
 LONGEST_HELP = 90
+_door: Any = Later("truing.entry_points")
 _inside: Any = Later("truing.cli.inside")
 """What lies inside a plugin: loaded when a shell asks for it."""
 
@@ -58,7 +58,7 @@ def plugins(incomplete: str) -> Iterator[OfferedWord]:
     """Offer installed plugins; behind the whole name of one, or its point, the models it offers."""
     if _is_file(incomplete):
         return
-    entries = {entry.name: entry for entry in entry_points()}
+    entries = {entry.name: entry for entry in _door.entry_points()}
     plugin = incomplete.partition(".")[0]
     if plugin in entries:
         yield from ((offer.name, offer.model.title) for offer in _inside.offers(plugin))
@@ -72,7 +72,7 @@ def names(incomplete: str) -> Iterator[OfferedWord]:
     if _is_file(incomplete):
         return
     if "." not in incomplete:
-        yield from ((f"{entry.name}.", _from(entry.dist)) for entry in entry_points())
+        yield from ((f"{entry.name}.", _from(entry.dist)) for entry in _door.entry_points())
         return
     yield from _inside.names_of(incomplete)
 

@@ -17,9 +17,9 @@ from typing import Any, ParamSpec, TextIO
 
 import typer
 
-from truing.atomic import writings, written
 from truing.cli.endings import Terminated
 from truing.errors import InputError, OutputError, TruingError
+from truing.heavy import Later
 
 P = ParamSpec("P")
 NARROWEST = 60
@@ -47,6 +47,7 @@ class Settings:
             say(text)
 
 
+_atomic: Any = Later("truing.atomic")
 _lost: list[str] = []
 """Why the output took no more, since the present command began."""
 
@@ -127,7 +128,7 @@ def verb(function: Callable[P, int]) -> Callable[P, None]:
     @functools.wraps(function)
     def guarded(*args: P.args, **kwargs: P.kwargs) -> None:
         settings = settings_of(kwargs.get("context"))
-        before = writings()
+        before = _atomic.writings()
         try:
             code = function(*args, **kwargs)
         except KeyboardInterrupt as end:
@@ -145,7 +146,7 @@ def verb(function: Callable[P, int]) -> Callable[P, None]:
 
 def interrupted(before: int) -> str:
     """Say what was written when it was interrupted, of all that followed the first ``before`` writings."""
-    complete = written(before)
+    complete = _atomic.written(before)
     if not complete:
         return "calc: interrupted; nothing was written"
     return f"calc: interrupted; {' and '.join(map(str, complete))} {'is' if len(complete) == 1 else 'are'} complete"
