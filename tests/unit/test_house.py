@@ -97,6 +97,29 @@ def test_every_package_is_marked_as_typed(package: str) -> None:
     assert (Path(str(module.__file__)).parent / "py.typed").is_file()
 
 
+def _drawn(begin: str) -> list[str]:
+    """Return the indented lines of a drawing in docs/explanation/house.md that begins with these words."""
+    text = (ROOT / "docs" / "explanation" / "house.md").read_text(encoding="utf-8")
+    _, _, rest = text.partition(f"```text\n{begin}")
+    rest = rest.partition("\n")[2]
+    return [line for line in rest.partition("```")[0].splitlines() if line.startswith("  ")]
+
+
+def test_the_house_is_drawn_with_every_room_on_its_floor() -> None:
+    contracts = configparser.ConfigParser()
+    contracts.read(ROOT / ".importlinter")
+    floors = [set(re.findall(r"\w+", line)) for line in contracts["importlinter:contract:floors"]["layers"].split("\n")]
+    drawn = [set(re.split(r" {3,}", line.strip())[0].split()) for line in _drawn("kernel/truing/") if line[:3] != "   "]
+    assert [floor for floor in drawn if floor] == [floor for floor in floors if floor]
+
+
+@pytest.mark.parametrize("begin", ["inputs.toml", "measured.csv"])
+def test_every_file_on_the_way_is_there(begin: str) -> None:
+    files = [file for line in _drawn(begin) for file in re.findall(r"[\w/]+\.py", line)]
+    assert len(files) > 8
+    assert not [file for file in files if not (ROOT / "kernel" / "truing" / file).is_file()]
+
+
 def imports_of(file: Path) -> Iterator[str]:
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
