@@ -22,9 +22,8 @@ from truing.diagnosis.sample import sample_of
 
 LONG = 2500
 """A record of more rows is searched on about so many of them."""
-SINGLES = 12
 RANKED = 8
-"""So many of the best single causes, and of the best explanations, are fitted to all rows beside the chosen one."""
+"""So many of the best explanations are fitted to all rows beside the chosen one and its rivals."""
 
 
 def searched(records: Records, *, seed: int) -> Records:
@@ -48,8 +47,7 @@ def on_all_rows(chosen: Chosen, machine: Calibration) -> Chosen:
     made.tries = dict(few.tries)
     few.gains_seen = {}  # much, and needed no more
     rivals_there = [few.known[rival.fit.key] for rival in chosen.rivals]
-    singles = few.ranked(lambda found: len(found.causes) == 1)[:SINGLES]
-    wanted = [few.known[chosen.best.key], *rivals_there, *few.ranked()[:RANKED], *singles]
+    wanted = [few.known[chosen.best.key], *rivals_there, *few.ranked()[:RANKED]]
     for found in {found.key: found for found in wanted}.values():
         made.fitted(found.causes, found.values, None)
     made.renew()
