@@ -13,9 +13,8 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from press_linkage.closure import demands
-from press_linkage.increments import KINDS, SOURCES
-from press_linkage.kinematics import Deviations, Geometry, solve
+from press_linkage.errors import KINDS, SOURCES
+from press_linkage.kinematics import Deviations, Geometry, demands, solve
 
 BATCH = 2**14
 SD = np.full((len(SOURCES), 1), 20e-6)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from press_linkage import increments
-from press_linkage.increments import ARM, KINDS, POLAR_ANGLES
+from press_linkage import errors
+from press_linkage.errors import ARM, KINDS, POLAR_ANGLES
 from press_linkage.kinematics import Deviations, Geometry, Position, solve
 
 PAPER = Geometry()
@@ -44,7 +44,7 @@ def moved(geometry: Geometry, angle: NDArray[np.float64], name: str, by: float) 
 
 def sensitivities(geometry: Geometry, angle: float | NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
     """The paper's xi of side 1, as arrays."""
-    found = increments.side_sensitivities(solve(geometry, angle).side_1)
+    found = errors.side_sensitivities(solve(geometry, angle).side_1)
     return {kind: np.asarray(value) for kind, value in found.items()}
 
 

@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 from press_linkage_cases import AROUND, MECHANISMS, PAPER
 
-from press_linkage import closure, kinematics
+from press_linkage import kinematics
 from press_linkage.kinematics import Deviations, Geometry, solve
 
 
-def broken(geometry: Geometry, angle: float = 0.0, **off: object) -> list[closure.Demand]:
+def broken(geometry: Geometry, angle: float = 0.0, **off: object) -> list[kinematics.Demand]:
     """The demands that do not hold."""
     position = solve(geometry, angle, **off)
-    return [demand for demand in closure.demands(geometry, position) if not np.all(demand.holds)]
+    return [demand for demand in kinematics.demands(geometry, position) if not np.all(demand.holds)]
 
 
 @MECHANISMS
 def test_nothing_is_wrong_over_the_whole_turn(geometry: Geometry) -> None:
-    assert [demand.name for demand in closure.cycle_demands(geometry) if not demand.holds] == []
+    assert [demand.name for demand in kinematics.cycle_demands(geometry) if not demand.holds] == []
 
 
 # What is wrong, where, what is said first
@@ -85,22 +85,26 @@ def test_smallest_sine_warns_before_a_singular_position(kind: str) -> None:
     position = solve(geometry, angle)
     angles = [position.side_1.rod.angle, position.side_1.lower.angle]
     angles.append(position.side_1.upper.angle - position.side_1.drive.angle)
-    assert closure.smallest_sine(position) == pytest.approx(np.min(np.abs(np.sin(angles))), abs=1e-9)
-    assert closure.smallest_sine(position) < closure.NEARLY_SINGULAR < closure.smallest_sine(solve(PAPER, AROUND)).min()
+    assert kinematics.smallest_sine(position) == pytest.approx(np.min(np.abs(np.sin(angles))), abs=1e-9)
+    assert (
+        kinematics.smallest_sine(position)
+        < kinematics.NEARLY_SINGULAR
+        < kinematics.smallest_sine(solve(PAPER, AROUND)).min()
+    )
 
 
 def test_full_rotation_is_a_demand_of_the_cycle_only() -> None:
     short = replace(PAPER, rod_length=1.25)
     assert broken(short) == []
-    assert not closure.rotation_demand(short).holds
+    assert not kinematics.rotation_demand(short).holds
     assert np.isnan(kinematics.stroke(short))
-    assert not next(iter(closure.cycle_demands(short))).holds
+    assert not next(iter(kinematics.cycle_demands(short))).holds
 
 
 def test_a_failed_row_keeps_its_neighbours() -> None:
     off = Deviations(lower_knee_length=np.array([0.0, -1.0, 1e-4]))
     position = solve(PAPER, 0.0, side_1=off)
     assert np.isfinite(position.slider_position).tolist() == [True, False, True]
-    holds = {demand.name: demand.holds for demand in closure.demands(PAPER, position)}
+    holds = {demand.name: demand.holds for demand in kinematics.demands(PAPER, position)}
     assert np.asarray(holds["loop III"]).tolist() == [True, False, True]
     assert np.all(holds["loop IV"])

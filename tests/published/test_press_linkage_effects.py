@@ -16,12 +16,10 @@ import press_by_hand as by_hand
 import pytest
 from press_linkage_cases import AROUND, MECHANISMS, PAPER, scattered
 
-from press_linkage.effects import EFFECTS
-from press_linkage.effects_of_load import shares_of_load
-from press_linkage.kinematics import Geometry, Half, solve
-from press_linkage.mechanism import position_of, press_linkage
+from press_linkage.effects import EFFECTS, shares_of_load
+from press_linkage.errors import position_of, press_linkage
+from press_linkage.kinematics import Geometry, Half, slider_motion, solve
 from press_linkage.model import PRESS_LINKAGE
-from press_linkage.motion import slider_motion
 from press_linkage.quantities import Press, Slider
 from truing import Effect, Float
 from truing.calculation import calculate

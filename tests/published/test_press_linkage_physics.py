@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from press_linkage_cases import AROUND, MECHANISMS, PAPER, mirrored, scattered
 
 from press_linkage import kinematics
-from press_linkage.increments import KINDS
+from press_linkage.errors import KINDS
 from press_linkage.kinematics import Deviations, Geometry, Half, Position, solve
 
 

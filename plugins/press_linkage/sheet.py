@@ -6,11 +6,9 @@ from math import degrees, isfinite
 from typing import TypeGuard
 
 from press_linkage.answers import LINKS, sources_of
-from press_linkage.drawn_answers import along_the_synthesis, over_the_turn, salience_bars, way
-from press_linkage.drawn_mechanism import mechanism
-from press_linkage.increments import KINDS, POLAR_ANGLES, SOURCES
+from press_linkage.errors import KINDS, POLAR_ANGLES, SOURCES, geometry_of
+from press_linkage.figures import along_the_synthesis, mechanism, over_the_turn, salience_bars, way
 from press_linkage.kinematics import top_crank_angle
-from press_linkage.mechanism import geometry_of
 from press_linkage.published import WHERE
 from press_linkage.quantities import Press, Slider
 from truing import Block, Drawing, Record, Section, Sensitivities, Table, Words
