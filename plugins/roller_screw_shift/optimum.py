@@ -1,31 +1,284 @@
 """A study of our own: the shift that the paper's weighed objectives prefer among those that keep every limit."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from math import floor, isfinite, log10
-from typing import Any
+from dataclasses import dataclass, replace
+from math import floor, isfinite, log10, nan
+from typing import Any, Literal
 
 import numpy as np
 
-from roller_screw_shift.best_shifts import (
-    OTHER,
-    READINGS,
-    Field,
-    Variant,
-    box_optimum,
-    field_of,
-    grid_optimum,
-    limits_at,
-    other_optimum,
-    stress_factor,
-    variants,
+from roller_screw_shift.geometry import geometry_of
+from roller_screw_shift.objectives import (
+    MEGA,
+    PRINTED_RANGES,
+    PRINTED_WEIGHTS,
+    Course,
+    Interval,
+    Margins,
+    Ranges,
+    Three,
+    Values,
+    course_of,
+    dense,
+    equal_sliding,
+    intervals_of,
+    lower_limit,
+    rule_weights,
+    total,
+    weights_of,
 )
-from roller_screw_shift.box import Found, Plan
-from roller_screw_shift.constraints import Margins
-from roller_screw_shift.courses import course_of, equal_sliding
 from roller_screw_shift.quantities import Pair
-from roller_screw_shift.weighing import PRINTED_RANGES, PRINTED_WEIGHTS, Three, lower_limit, rule_weights, weights_of
-from truing import Bench, Block, Check, Table, TruingError, Words
+from truing import Bench, Block, Check, Float, Table, TruingError, Words, found, results
+
+# The complex method of Box: the least cost within limits, by a cloud of vertices that walks, shrinks and settles
+
+Cost = Callable[[Values], Values]
+"""Of points (n, d) their costs (n,): small is good, and not finite where a point misses a limit."""
+
+AT_ONCE = 64
+HELD = 0.8  # of the way from the best vertex to the middle is left as the goal of the way back, after every try
+ALIKE = 4e-16  # of the largest cost: what differs by less cannot be told apart
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plan:
+    """How the cloud is made and when it has settled: ``spread`` is its largest extent along any direction.
+
+    At most ``draws`` points are drawn for the first vertices, and ``most`` costs asked for after them.
+    """
+
+    vertices: int = 9
+    reflection: float = 1.3
+    spread: float = 1e-8
+    most: int = 5000
+    draws: int = 50_000
+
+    def __post_init__(self) -> None:
+        if self.vertices < 3:
+            raise TruingError(f"vertices = {self.vertices}, but a complex has at least 3, and one more than directions")
+        if not self.reflection > 1:
+            raise TruingError(f"reflection = {self.reflection:g} must lie above 1: a complex would shrink where it is")
+        if not self.spread > 0:
+            raise TruingError(f"spread = {self.spread:g} must lie above 0")
+        if min(self.most, self.draws) < 1:
+            raise TruingError(f"most = {self.most} and draws = {self.draws} are at least 1")
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """The best vertex (d,), its cost, how wide the cloud still is, and what it took.
+
+    Of the ``evaluations`` so many were ``drawn`` for the first vertices.
+    """
+
+    point: Values
+    cost: float
+    spread: float
+    evaluations: int
+    drawn: int
+    reflections: int
+    settled: bool
+
+
+def complex_method(
+    cost: Cost, span: tuple[Values, Values], rng: np.random.Generator, plan: Plan | None = None
+) -> Found:
+    """Return the point of least cost between the ends of ``span``, each (d,).
+
+    Raises TruingError with a sentence where too few points keep the limits to make the first vertices.
+    """
+    plan = plan or Plan()
+    low, high = (np.atleast_1d(np.asarray(end, dtype=float)) for end in span)
+    if not (np.isfinite(low).all() and np.isfinite(high).all() and (low < high).all()):
+        raise TruingError("the complex method searches between a lower and a higher end, both finite")
+    cloud, drawn = _first(cost, (low, high), rng, plan)
+    asked = reflections = 0
+    while not cloud.settled(plan.spread) and asked < plan.most:
+        cloud, tries = _stepped(cost, cloud, (low, high), plan)
+        asked, reflections = asked + tries, reflections + 1
+    best = cloud.best
+    return Found(
+        cloud.points[best].copy(), float(cloud.costs[best]), cloud.spread, drawn + asked, drawn, reflections,
+        settled=cloud.settled(plan.spread),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class _Cloud:
+    points: Values  # (k, d), all within the limits
+    costs: Values  # (k,)
+
+    @property
+    def best(self) -> int:
+        return int(np.argmin(self.costs))
+
+    @property
+    def worst(self) -> int:
+        return int(np.argmax(self.costs))
+
+    @property
+    def spread(self) -> float:
+        return float(np.ptp(self.points, axis=0).max())
+
+    def settled(self, spread: float) -> bool:
+        """Whether the cloud is as small as asked, or its costs differ by rounding alone."""
+        return self.spread < spread or bool(np.ptp(self.costs) <= ALIKE * np.abs(self.costs).max())
+
+
+def _first(cost: Cost, span: tuple[Values, Values], rng: np.random.Generator, plan: Plan) -> tuple[_Cloud, int]:
+    """Draw evenly, and again where a limit is missed, until every vertex keeps them all."""
+    low, high = span
+    points, costs = np.empty((0, len(low))), np.empty(0)
+    drawn = 0
+    while len(points) < plan.vertices and drawn < plan.draws:
+        tried = low + (high - low) * rng.random((AT_ONCE, len(low)))
+        found = cost(tried)
+        kept = np.isfinite(found)
+        points, costs = np.concatenate([points, tried[kept]]), np.concatenate([costs, found[kept]])
+        drawn += AT_ONCE
+    if len(points) < plan.vertices:
+        told = "no point keeps" if not len(points) else f"only {len(points)} points keep"
+        raise TruingError(f"{told} every limit among {drawn} drawn evenly; {plan.vertices} vertices are needed")
+    return _Cloud(points[: plan.vertices], costs[: plan.vertices]), drawn
+
+
+def _stepped(cost: Cost, cloud: _Cloud, span: tuple[Values, Values], plan: Plan) -> tuple[_Cloud, int]:
+    """Reflect the worst vertex through the middle of the others; halve the way back until it is better than it was.
+
+    The place to which it comes back begins at that middle and ends at the best vertex, which the worst then joins.
+    """
+    worst = cloud.worst
+    others, costs = np.delete(cloud.points, worst, axis=0), np.delete(cloud.costs, worst)
+    best = int(np.argmin(costs))
+    middle, goal = others.mean(axis=0), others[best]
+    point = np.clip(middle + plan.reflection * (middle - cloud.points[worst]), *span)
+    value, tries = float(cost(point[None, :])[0]), 1
+    while not value < cloud.costs[worst]:
+        if np.abs(point - goal).max() < 0.5 * plan.spread:
+            point, value = goal, float(costs[best])
+            break
+        held = HELD**tries
+        point = 0.5 * (point + held * middle + (1.0 - held) * goal)
+        value, tries = float(cost(point[None, :])[0]), tries + 1
+    return _Cloud(np.vstack([others, point]), np.append(costs, value)), tries
+
+
+# The shift that the weighed sum of the objectives prefers: by Box's complex method, and on a dense grid as a check
+
+OTHER: dict[str, Literal["path", "roots"]] = {"path": "roots", "roots": "path"}
+READINGS = ("own_ranges", "printed_ranges", "printed")
+NEAR = 1e-5  # of a shift: nearer to its end the optimum stands at the limit; the weighed sum is level there
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """Where every limit is kept: intervals, a dense course over them, and the range of each objective there."""
+
+    pair: Pair
+    intervals: tuple[Interval, ...]
+    course: Course
+    ranges: Ranges
+
+    def around(self, shift: float) -> Interval:
+        """The interval that holds this shift, or the nearest one."""
+        return min(self.intervals, key=lambda part: max(part.low - shift, shift - part.high, 0.0))
+
+
+def field_of(pair: Pair, span: tuple[float, float], points: int) -> Field | None:
+    """Return where between the ends of ``span`` every limit is kept; None where no shift of the grid does."""
+    intervals = intervals_of(pair, span, points)
+    if not intervals:
+        return None
+    course = dense(pair, intervals, points)
+    return Field(pair, intervals, course, course.ranges)
+
+
+def box_optimum(field: Field, weights: Three, span: tuple[float, float], rng: np.random.Generator, plan: Plan) -> Found:
+    """Return what Box's method finds; it knows the limits by rejection only."""
+
+    def cost(points: Values) -> Values:
+        course = course_of(field.pair, points[:, 0])
+        with np.errstate(invalid="ignore"):
+            return np.where(course.kept, total(course.objectives, field.ranges, weights), np.inf)
+
+    return complex_method(cost, (np.array([span[0]]), np.array([span[1]])), rng, plan)
+
+
+def grid_optimum(field: Field, weights: Three) -> float:
+    """Return the best shift of the dense course, then of as many points between its neighbours."""
+    course = field.course
+    place = int(np.argmin(total(course.objectives, field.ranges, weights)))
+    part = field.around(float(course.shifts[place]))
+    ends = course.shifts[max(place - 1, 0)], course.shifts[min(place + 1, len(course.shifts) - 1)]
+    low, high = max(float(ends[0]), part.low), min(float(ends[1]), part.high)
+    finer = course_of(field.pair, np.linspace(low, high, len(course.shifts)))
+    costs = np.where(finer.kept, total(finer.objectives, field.ranges, weights), np.inf)
+    return float(finer.shifts[int(np.argmin(costs))])
+
+
+def limits_at(field: Field, shift: float) -> tuple[str, ...]:
+    """Return the limits at which this shift stands; none where it lies within its interval."""
+    part = field.around(shift)
+    if shift >= part.high - NEAR:
+        return part.high_limits
+    return part.low_limits if shift <= part.low + NEAR else ()
+
+
+@dataclass(frozen=True)
+class Variant:
+    """The optimum under another least contact ratio or with other weights."""
+
+    least_contact_ratio: float
+    reading: str
+    weights: Three
+    shift: float
+    contact_ratio: float
+    limits: tuple[str, ...]
+
+
+def variants(pair: Pair, ratios: Sequence[float], span: tuple[float, float], points: int) -> Iterator[Variant | None]:
+    """Give the optimum on the grid for every least contact ratio and every reading of the weights; None without one."""
+    for ratio in ratios:
+        field = field_of(replace(pair, least_contact_ratio=ratio), span, points)
+        for reading in READINGS:
+            if field is None:
+                yield None
+                continue
+            weights = weights_of(reading, field.ranges)
+            shift = grid_optimum(field, weights)
+            margin = course_of(field.pair, np.array([shift])).margins["margin_contact_ratio"][0]
+            yield Variant(ratio, reading, weights, shift, ratio + float(margin), limits_at(field, shift))
+
+
+def other_optimum(pair: Pair, span: tuple[float, float], points: int) -> float:
+    """Return the optimum on the grid by the other reading of the sliding; NaN where no shift keeps every limit then."""
+    field = field_of(replace(pair, sliding_reading=OTHER[pair.sliding_reading]), span, points)
+    return float("nan") if field is None else grid_optimum(field, weights_of(pair.weights, field.ranges))
+
+
+def stress_factor(field: Field, weights: Three, shift: float) -> float | None:
+    """Return how many times as heavy the stresses must be before the optimum leaves the end at which it stands.
+
+    None where it stands at no end, or a weight is missing, or a million times is not enough.
+    """
+    if not limits_at(field, shift) or not weights[1]:
+        return None
+    low, high = 0.0, 6.0  # decimal logarithms
+
+    def leaves(exponent: float) -> bool:
+        heavier = (weights[0], weights[1] * 10.0**exponent, weights[2])
+        place = int(np.argmin(total(field.course.objectives, field.ranges, heavier)))
+        return bool(abs(field.course.shifts[place] - shift) > NEAR + np.diff(field.course.shifts).max())
+
+    if leaves(low) or not leaves(high):
+        return None
+    for _ in range(30):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if leaves(middle) else (middle, high)
+    return float(10.0**high)
+
+
+# A study of our own: the shift that the paper's weighed objectives prefer among those that keep every limit
 
 FOUND = "found"
 BEFORE = 2  # steps before the variants: the field, and Box's search with the grid beside it
@@ -215,9 +468,8 @@ def _silent(chosen: Chosen) -> Sequence[str]:
 
 # How the choice of the shift is written: results.json, tables and words of the sheet
 
-
-MM, MEGA = 1e3, 1e6
-ALIKE = 5e-5  # of a shift, on the sheet
+MM = 1e3
+SAME_SHIFT = 5e-5  # of a shift, on the sheet
 SLIDING = {
     "path": "the largest sliding of each gear on the path of contact",
     "roots": "the sliding at the roots alone, which need not be the largest,",
@@ -376,7 +628,7 @@ def _other_words(chosen: "Chosen") -> str:
     """Say where the other reading of the sliding leads."""
     if not isfinite(chosen.other):
         return f"By {SLIDING[OTHER[chosen.inputs.sliding_reading]]} no shift keeps every limit."
-    same = abs(chosen.other - chosen.grid) < ALIKE
+    same = abs(chosen.other - chosen.grid) < SAME_SHIFT
     led = "there is the same optimum" if same else f"the optimum would be {signed(chosen.other)} for the roller"
     taken, other = SLIDING[chosen.inputs.sliding_reading], SLIDING[OTHER[chosen.inputs.sliding_reading]]
     return f"The third objective compares {taken}. By {other} {led}."
@@ -427,3 +679,118 @@ def small(value: float) -> str:
 def signed(value: float, digits: str = ".4f") -> str:
     """A number with a true minus."""
     return f"{value:{digits}}".replace("-", "−")
+
+
+# What the choice of the shift gives as results
+
+KEPT = "over all shifts that keep every limit"
+RULE = "one over the square of half the range; or as the input weights states"
+BOX = "Box's complex method on the weighed sum"
+DRAWN = "8192 screws drawn from the tolerances in force"
+
+
+def weight(symbol: str, of: str, unit: str) -> float:
+    """Declare a weight."""
+    declared: float = found(unit, symbol=symbol, note=f"weight of the {of}", method=RULE, source="the paper")
+    return declared
+
+
+def reach(symbol: str, what: str, unit: str = "") -> float:
+    """Declare an end of the range of an objective."""
+    declared: float = found(unit, symbol=symbol, note=what, method=KEPT)
+    return declared
+
+
+def optimal(symbol: str, what: str, unit: str = "") -> float:
+    """Declare a number at the optimum."""
+    declared: float = found(unit, symbol=symbol, note=f"{what} at the optimum", method=BOX)
+    return declared
+
+
+@results
+class Choice:
+    """Where every limit is kept, how the objectives are weighed, and the optimum."""
+
+    lowest_shift: Float = reach("x_E,min", "lowest shift of the roller that keeps every limit")
+    highest_shift: Float = reach("x_E,max", "highest shift of the roller that keeps every limit")
+    least_sum: Float = reach("p_1", "smallest sum of the shifts")
+    most_sum: Float = reach("q_1", "largest sum of the shifts")
+    least_stress_difference: Float = reach("p_2", "smallest difference of the root stresses", "MPa")
+    most_stress_difference: Float = reach("q_2", "largest difference of the root stresses", "MPa")
+    least_sliding: Float = reach("p_3", "smallest difference of specific sliding")
+    most_sliding: Float = reach("q_3", "largest difference of specific sliding")
+    weight_sum: Float = weight("w_1", "sum of the shifts", "")
+    weight_stress: Float = weight("w_2", "difference of the root stresses", "1/MPa^2")
+    weight_sliding: Float = weight("w_3", "difference of specific sliding", "")
+    optimal_shift_roller: Float = optimal("x_E,opt", "shift of the roller")
+    optimal_shift_ring: Float = optimal("x_I,opt", "shift of the ring")
+    optimal_sum: Float = optimal("f_1,opt", "sum of the shifts")
+    optimal_stress_difference: Float = optimal("f_2,opt", "difference of the root stresses", "MPa")
+    optimal_sliding_difference: Float = optimal("f_3,opt", "difference of specific sliding")
+    optimal_contact_ratio: Float = optimal("epsilon_opt", "contact ratio")
+    optimal_margin: Float = found("", symbol="g_opt", note="smallest of the margins at the optimum",
+                                  method="each in its own unit; 0: a limit holds the optimum")  # fmt: skip
+    limit_distance: Float = found("", symbol="Delta x_E", note="from the optimum to the nearest shift that misses a "
+                                  "limit", method="ends of the interval, halved down to the last digits")  # fmt: skip
+    kept_as_stated: Float = found("%", symbol="n_0", note="screws of the stated shift that keep every limit",
+                                  method=DRAWN)  # fmt: skip
+    kept_at_optimum: Float = found("%", symbol="n_opt", note="screws of the optimal shift that keep every limit",
+                                   method=DRAWN)  # fmt: skip
+    grid_shift: Float = found("", symbol="x_E,grid", note="optimal shift of the roller on a dense grid",
+                              method="a check of Box's method")  # fmt: skip
+    grid_distance: Float = found("", symbol="Delta x_grid", note="between both optima",
+                                 method="magnitude")  # fmt: skip
+    evaluations: Float = found("", symbol="n_eval", note="shifts that Box's method tried", method="drawn ones counted")
+    equal_sliding_roller: Float = found("", symbol="x_E,3", note="shift of the roller at which both roots slide alike",
+                                        method="whatever the limits")  # fmt: skip
+    equal_sliding_ring: Float = found("", symbol="x_I,3", note="shift of the ring there", method="no backlash")
+
+
+def choice(chosen: Chosen) -> Choice:
+    """The numbers of the study; NaN where no shift keeps every limit."""
+    difference = float(np.asarray(geometry_of(chosen.inputs).shift_difference))
+    equal = {"equal_sliding_roller": chosen.equal, "equal_sliding_ring": chosen.equal + difference}
+    field = chosen.field
+    if field is None:
+        names = (name for name in Choice.__dataclass_fields__ if name not in equal)
+        return Choice(**{**dict.fromkeys(names, nan), **equal})
+    (sum_low, sum_high), (stress_low, stress_high), (sliding_low, sliding_high) = field.ranges
+    part = field.around(chosen.shift)
+    return Choice(
+        lowest_shift=min(each.low for each in field.intervals),
+        highest_shift=max(each.high for each in field.intervals),
+        least_sum=sum_low,
+        most_sum=sum_high,
+        least_stress_difference=MEGA * stress_low,
+        most_stress_difference=MEGA * stress_high,
+        least_sliding=sliding_low,
+        most_sliding=sliding_high,
+        **_weights(chosen.weights),
+        **_optimum(chosen, difference),
+        limit_distance=max(min(chosen.shift - part.low, part.high - chosen.shift), 0.0),
+        kept_as_stated=chosen.kept[0],
+        kept_at_optimum=chosen.kept[1],
+        grid_shift=chosen.grid,
+        grid_distance=nan if chosen.box is None else abs(chosen.shift - chosen.grid),
+        evaluations=nan if chosen.box is None else float(chosen.box.evaluations),
+        **equal,
+    )
+
+
+def _weights(weights: Three) -> dict[str, float]:
+    return {"weight_sum": weights[0], "weight_stress": weights[1] / MEGA**2, "weight_sliding": weights[2]}
+
+
+def _optimum(chosen: Chosen, difference: float) -> dict[str, float]:
+    at = course_of(chosen.inputs, np.array([chosen.shift]))
+    total, stress, sliding = (float(values[0]) for values in at.objectives)
+    return {
+        "optimal_shift_roller": chosen.shift,
+        "optimal_shift_ring": chosen.shift + difference,
+        "optimal_sum": total,
+        "optimal_stress_difference": MEGA * stress,
+        "optimal_sliding_difference": sliding,
+        "optimal_contact_ratio": float(at.margins["margin_contact_ratio"][0])
+        + float(chosen.inputs.least_contact_ratio),
+        "optimal_margin": min(float(margin[0]) for margin in at.margins.values()),
+    }
