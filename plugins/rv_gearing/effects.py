@@ -1,24 +1,265 @@
-"""What the rating of the first stage leaves out, and what is measured of the stage that it does not calculate.
+"""What the rating of the first stage leaves out, and what is measured of the stage that it does not give."""
 
-They act in the order declared: first what changes the load of a tooth, then what is added to a result. A new effect is
-a function beside the others and one more entry in EFFECTS.
-"""
+from dataclasses import replace
 
-from rv_gearing.answers import Strength
-from rv_gearing.conditions import INPUT_ANGLE, TIME
-from rv_gearing.effects_of_friction import flash_temperature
-from rv_gearing.effects_of_load import (
-    crowned_contact,
-    face_misalignment,
-    planet_load_sharing,
-    relief_error,
-    structural_resonance,
-)
-from rv_gearing.effects_of_oil import centre_distance_growth, speed_dependent_loss
-from rv_gearing.effects_of_rotation import mesh_ripple, output_eccentricity, planet_runout, ratio_drift, sun_runout
-from rv_gearing.effects_of_torque import lost_motion, mesh_stiffening, wear_drift, wind_up
+import numpy as np
+
+from gear_geometry.mesh_load import shaken_by_error
+from rv_gearing.geometry import Load, load_of
+from rv_gearing.groups import centre_distance_of
 from rv_gearing.quantities import Gearing
-from truing import Effect, Unknown
+from rv_gearing.rating import Strength
+from truing import Condition, Effect, Float, Unknown
+
+# What else must be measured before the effects of the gearing can act: each condition once, shared by its effects
+
+INPUT_ANGLE = Condition(
+    "input_angle", "deg", reference=0, low=0, high=39960,
+    note="of the sun, counted on over its turns; at a ratio of 111 one turn of the output is 39960 degrees",
+)  # fmt: skip
+TIME = Condition("time", "h", reference=0, low=0, high=6000, note="at work since new")
+
+
+# What changes the load of a tooth and so every stress: misalignment, resonance, sharing, width and tip that carry
+
+LEAST_FORCE = 1e-3  # N, of an idle mesh: even that touches somewhere
+
+
+def face_misalignment(stage: Gearing, *, misalignment: Float, per_load: Float) -> Gearing:
+    """The teeth do not meet along their whole width: by so much at any load, and by so much per newton of a mesh."""
+    out_of_line = misalignment + per_load * load_of(stage).tangential_force
+    return replace(stage, extra_misalignment=stage.extra_misalignment + out_of_line)
+
+
+def structural_resonance(stage: Gearing, *, strength: Float, resonance_speed: Float, damping: Float) -> Gearing:
+    """Shaft, carrier or housing answers to the meshing teeth as one degree of freedom that their error shakes.
+
+    ``strength`` is the error, by the stiffness that it works against, over the load: the dynamic factor gains
+    ``strength`` N² / sqrt((1 - N²)² + (2 zeta N)²), nothing at rest and strength/(2 zeta) at the resonance. Speeds are
+    those of the sun relative to the carrier, which the frequency of the mesh follows.
+    """
+    answer = strength * shaken_by_error(load_of(stage).mesh_speed / resonance_speed, damping)
+    return replace(stage, extra_dynamic_factor=stage.extra_dynamic_factor + answer)
+
+
+def planet_load_sharing(stage: Gearing, *, lead: Float) -> Gearing:
+    """One planet is ahead of the mean of all and is loaded more, until its mesh has given way by as much."""
+    return replace(stage, sharing_error=stage.sharing_error + lead)
+
+
+def crowned_contact(stage: Gearing, *, full_line_load: Float) -> Gearing:
+    """Crowned teeth touch over a width that grows with the cube root of the force, until the whole face carries.
+
+    Of a parabola, on a bed of springs and on Hertz's half space alike. The mean over this width is what is raised; how
+    uneven the load is across it stays with the face load factor.
+    """
+    force = np.maximum(load_of(stage).tangential_force, LEAST_FORCE)
+    share = np.cbrt(force / np.maximum(force, full_line_load * stage.face_width))
+    return replace(stage, carrying_share=stage.carrying_share * share)
+
+
+def relief_error(stage: Gearing, *, missing: Float) -> Gearing:
+    """The tip is relieved by less than was meant, or by more: the tooth takes its load nearer to the tip, or lower."""
+    return replace(stage, relief_deviation=stage.relief_deviation + missing)
+
+
+# What the angle of the sun brings into the transmission error: runouts, teeth, the output, and a miscount
+#
+# The orders of the gears count the turns of the sun against the carrier, those of the output the turns of the housing's
+# frame. Angles in rad, errors in m along the line of action.
+
+
+def wave(angle: Float, cosine: Float, sine: Float) -> Float:
+    """Return one harmonic of an angle."""
+    return cosine * np.cos(angle) + sine * np.sin(angle)
+
+
+def relative_angle(load: Load, input_angle: Float) -> Float:
+    """Return the angle of the sun against the carrier, which turns with the output."""
+    return input_angle * (1.0 - 1.0 / load.ratio)
+
+
+def with_error(strength: Strength, error: Float) -> Strength:
+    """Return the results with so much more transmission error."""
+    return replace(strength, transmission_error=strength.transmission_error + error)
+
+
+def sun_runout(stage: Gearing, strength: Strength, *, cosine: Float, sine: Float, input_angle: Float) -> Strength:
+    """The teeth of the sun are off its axis: one wave per turn against the carrier."""
+    return with_error(strength, wave(relative_angle(load_of(stage), input_angle), cosine, sine))
+
+
+def planet_runout(stage: Gearing, strength: Strength, *, cosine: Float, sine: Float, input_angle: Float) -> Strength:
+    """The teeth of a planet are off its axis: one wave per turn of the planet, z1/z2 of the sun's."""
+    load = load_of(stage)
+    return with_error(strength, wave(relative_angle(load, input_angle) * load.sun / load.planet, cosine, sine))
+
+
+def mesh_ripple(
+    stage: Gearing,
+    strength: Strength,
+    *,
+    cosine: Float,
+    sine: Float,
+    second_cosine: Float,
+    second_sine: Float,
+    input_angle: Float,
+) -> Strength:
+    """Every tooth of the sun passes once per turn and brings the error of its flank, and that of half its pitch."""
+    load = load_of(stage)
+    teeth = load.sun * relative_angle(load, input_angle)
+    return with_error(strength, wave(teeth, cosine, sine) + wave(2.0 * teeth, second_cosine, second_sine))
+
+
+def output_eccentricity(
+    stage: Gearing,
+    strength: Strength,
+    *,
+    cosine: Float,
+    sine: Float,
+    tooth_cosine: Float,
+    tooth_sine: Float,
+    input_angle: Float,
+) -> Strength:
+    """The output, or what it is measured on, is off its axis; and the teeth of the discs pass once per turn of it."""
+    load = load_of(stage)
+    output = input_angle / load.ratio
+    of_teeth = wave((load.pins - 1.0) * output, tooth_cosine, tooth_sine)
+    return with_error(strength, wave(output, cosine, sine) + of_teeth)
+
+
+def ratio_drift(stage: Gearing, strength: Strength, *, miscount: Float, input_angle: Float) -> Strength:
+    """The angles of input and output are counted in another ratio than that of the teeth: an error that adds up."""
+    return with_error(strength, miscount * input_angle * load_of(stage).base_radii[0])
+
+
+# How warm the flanks get where they slide on one another
+
+BLOK_FACTOR = 1.11  # for the heat of a Hertzian contact over its full width
+CONTACT_COEFFICIENT = 13784.0  # N/(m s^0.5 K) of steel: root of 50 W/(m K) times 3.8 MJ/(m³ K)
+TURN = 2.0 * np.pi
+
+
+def flash_temperature(stage: Gearing, strength: Strength, *, friction: Float) -> Strength:
+    """The flanks are warmer than the oil by the flash of that end of the path of contact where it is the greater.
+
+    Every tooth is taken to carry the whole line load at the ends of its path, so the friction that is found is that of
+    a mesh in which the second pair of teeth does not help.
+    """
+    rise = friction * flash_of(stage, strength)
+    return replace(strength, flank_temperature=strength.flank_temperature + rise)
+
+
+def flash_of(stage: Gearing, strength: Strength) -> Float:
+    """Return the flash temperature per coefficient of friction, K: 1.11 w |v_1^1/2 - v_2^1/2| / ((2 b_H)^1/2 B_M).
+
+    Transverse section, both gears of steel; w is the line load along the normal with the application factor alone, v
+    the speeds of the flanks along themselves. Reference: Blok 1937, ISO/TS 6336-20.
+    """
+    speed = TURN * strength.duty.mesh_speed
+    force = strength.duty.line_load / np.cos(strength.mesh.transverse_angle)
+    found: list[Float] = []
+    for sun, planet in ends_of_path(strength):
+        width = 2.0 * half_width(stage, force, sun * planet / (sun + planet))
+        slip = np.abs(np.sqrt(speed * sun) - np.sqrt(speed * planet / strength.mesh.tooth_ratio))
+        found.append(BLOK_FACTOR * force * slip / (np.sqrt(width) * CONTACT_COEFFICIENT))
+    return np.maximum(found[0], found[1])
+
+
+def ends_of_path(strength: Strength) -> tuple[tuple[Float, Float], tuple[Float, Float]]:
+    """Return the radii of curvature of sun and planet, m, where contact begins and where it ends."""
+    sun, planet = strength.sun, strength.planet
+    tips = [0.5 * gear.size.base_diameter * np.tan(gear.size.tip_angle) for gear in (sun, planet)]
+    return (np.maximum(sun.size.start_curvature, 0.0), tips[1]), (tips[0], np.maximum(planet.size.start_curvature, 0.0))
+
+
+def half_width(stage: Gearing, force: Float, radius: Float) -> Float:
+    """Return the Hertzian half width, m, under a line load (N/m), at this radius of both flanks together."""
+    soft = sum((1.0 - gear.poisson_ratio**2) / gear.young_modulus for gear in (stage.sun, stage.planet))
+    return np.sqrt(4.0 * force * radius * soft / np.pi)
+
+
+# What follows the oil: how far its heat drives the gears apart, and what it holds back at any torque
+
+ROOM = 293.15  # K: at 20 degC the gears are as far apart as on the drawing
+FORTY = 313.15  # K, at which the viscosity of an oil is stated
+SLOPE = 3.567  # of an ISO VG 100 oil with viscosity index 95: 100 mm²/s at 40 degC and 11.1 mm²/s at 100 degC
+MM2_S = 1e-6
+ADDED = 0.7  # mm²/s, in the law
+REFERENCE = 100.0 * MM2_S * 1000.0 / 60.0  # m²/s times turns per second: 100 mm²/s at 1000 r/min
+LEAST_TORQUE = 1e-9  # N m, of an idle sun
+
+
+def centre_distance_growth(stage: Gearing, *, expansion: Float) -> Gearing:
+    """Housing and carrier part sun and planet as they get warm; ``expansion`` is theirs less that of the gears."""
+    load = load_of(stage)
+    growth = expansion * centre_distance_of(stage, load.sun, load.planet) * (stage.oil_temperature - ROOM)
+    return replace(stage, centre_distance_deviation=stage.centre_distance_deviation + growth)
+
+
+def viscosity_at_work(stage: Gearing) -> Float:
+    """Return the kinematic viscosity at the temperature of the oil, m²/s: log log (nu + 0.7) falls with log T.
+
+    For mineral oils of viscosity index about 95, 0 to 150 degC; others have another slope. Reference: ASTM D341.
+    """
+    at_forty = np.log10(stage.viscosity / MM2_S + ADDED)
+    return MM2_S * (10.0 ** (at_forty * (stage.oil_temperature / FORTY) ** -SLOPE) - ADDED)
+
+
+def speed_dependent_loss(stage: Gearing, strength: Strength, *, constant: Float, viscous: Float) -> Strength:
+    """Seals, bearings and oil hold the sun back at any torque: efficiency less M_0/T_1, not below 0.
+
+    ``viscous`` is the part of M_0 that grows with viscosity times speed to the power 2/3, at 100 mm²/s and 1000 r/min.
+    T_1 is the torque that was calculated without M_0, so the loss is meant to be small beside it.
+    """
+    load = load_of(stage)
+    product = viscosity_at_work(stage) * load.input_speed
+    held_back = constant + viscous * np.cbrt(product / REFERENCE) ** 2
+    loss = held_back / np.maximum(load.sun_torque, LEAST_TORQUE)
+    return replace(strength, efficiency=np.maximum(strength.efficiency - loss, 0.0))
+
+
+# What torque and time bring into the transmission error and the backlash: twist, play, deflection of teeth, wear
+
+
+def wind_up(stage: Gearing, strength: Strength, *, compliance: Float) -> Strength:
+    """The shaft of the sun twists in proportion to its torque, to the side to which it turns."""
+    load = load_of(stage)
+    return with_error(strength, compliance * load.sun_torque * load.direction)
+
+
+def lost_motion(stage: Gearing, strength: Strength, *, play: Float, torque_scale: Float) -> Strength:
+    """The torque takes up the play to one side or the other; about zero torque it does so gradually.
+
+    At ``torque_scale`` of the output 76 % (tanh 1) of half the play is taken up.
+    """
+    load = load_of(stage)
+    torque = load.direction * load.sun_torque * load.ratio * load.efficiency
+    moved = with_error(strength, 0.5 * play * np.tanh(torque / torque_scale))
+    return replace(moved, backlash=strength.backlash + play)
+
+
+def wear_drift(stage: Gearing, strength: Strength, *, rate: Float, time: Float) -> Strength:
+    """Every loaded flank loses a depth in proportion to the time; torque lays the teeth on one flank or the other."""
+    depth = rate * time
+    moved = with_error(strength, load_of(stage).direction * depth)
+    return replace(moved, backlash=strength.backlash + 2.0 * depth)
+
+
+def mesh_stiffening(stage: Gearing, strength: Strength, *, share: Float) -> Strength:
+    """Teeth give way under their line load; below 100 N/mm they are softer, so the first newtons move them most.
+
+    At a share of 1 by the line load with the application factor over the mesh stiffness of the rating.
+    """
+    load = load_of(stage)
+    deflection = strength.duty.line_load / strength.stiffness.mesh_stiffness
+    return with_error(strength, share * load.direction * deflection)
+
+
+# What the rating of the first stage leaves out, and what is measured of the stage that it does not calculate
+#
+# They act in the order declared: first what changes the load of a tooth, then what is added to a result. A new effect
+# is a function beside the others and one more entry in EFFECTS.
 
 FACE = "face load factor of ISO 6336-1, method C, for a misalignment that grows with the load"
 RESONANCE = "one degree of freedom shaken by an error of position: Den Hartog, Mechanical vibrations, ch. 2"
@@ -36,7 +277,7 @@ BLOK = (
 ARCHARD = "Archard, J. F., Contact and rubbing of flat surfaces, Journal of Applied Physics 24 (1953) 981"
 
 
-def wave(cosine: str, sine: str, of: str) -> list[Unknown]:
+def wave_unknowns(cosine: str, sine: str, of: str) -> list[Unknown]:
     """Declare both parts of one harmonic."""
     return [
         Unknown(cosine, -1000, 1000, "um", note=f"in proportion to the cosine of {of}"),
@@ -137,7 +378,7 @@ ROTATION: list[Effect[Gearing, Strength]] = [
         on_results=sun_runout,
         needs=[INPUT_ANGLE],
         acts_at_reference=True,
-        unknowns=wave("cosine", "sine", "the angle of the sun against the carrier"),
+        unknowns=wave_unknowns("cosine", "sine", "the angle of the sun against the carrier"),
         looks_like="transmission error with one wave per turn of the sun against the carrier, a little slower than the "
         "input shaft",
         why="the teeth of the sun are off the axis on which it turns",
@@ -148,7 +389,7 @@ ROTATION: list[Effect[Gearing, Strength]] = [
         on_results=planet_runout,
         needs=[INPUT_ANGLE],
         acts_at_reference=True,
-        unknowns=wave("cosine", "sine", "the angle of the planet"),
+        unknowns=wave_unknowns("cosine", "sine", "the angle of the planet"),
         looks_like="transmission error with one wave per turn of the planet, z1/z2 of those of the sun",
         why="the teeth of a planet are off the axis of its crank",
         source=HARMONIC,
@@ -159,8 +400,8 @@ ROTATION: list[Effect[Gearing, Strength]] = [
         needs=[INPUT_ANGLE],
         acts_at_reference=True,
         unknowns=[
-            *wave("cosine", "sine", "the passing teeth"),
-            *wave("second_cosine", "second_sine", "the passing teeth, twice a tooth"),
+            *wave_unknowns("cosine", "sine", "the passing teeth"),
+            *wave_unknowns("second_cosine", "second_sine", "the passing teeth, twice a tooth"),
         ],
         parts=[("cosine", "sine"), ("second_cosine", "second_sine")],
         looks_like="a fast ripple of the transmission error: one wave, or two, for every tooth of the sun that passes",
@@ -173,8 +414,8 @@ ROTATION: list[Effect[Gearing, Strength]] = [
         needs=[INPUT_ANGLE],
         acts_at_reference=True,
         unknowns=[
-            *wave("cosine", "sine", "the angle of the output"),
-            *wave("tooth_cosine", "tooth_sine", "the passing teeth of the discs"),
+            *wave_unknowns("cosine", "sine", "the angle of the output"),
+            *wave_unknowns("tooth_cosine", "tooth_sine", "the passing teeth of the discs"),
         ],
         parts=[("cosine", "sine"), ("tooth_cosine", "tooth_sine")],
         looks_like="a slow wave of the transmission error over one turn of the output, or one for every tooth of the "
@@ -232,5 +473,3 @@ TORQUE: list[Effect[Gearing, Strength]] = [
     ),
 ]
 EFFECTS: list[Effect[Gearing, Strength]] = [*LOAD, *OIL, *ROTATION, *TORQUE]
-
-__all__ = ["EFFECTS"]
