@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from gear_geometry.involute import involute
+from gear_geometry.pairs import involute
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.objectives import Course, Three, Values, course_of, normalised, weights_of
 from roller_screw_shift.optimum import LIMITS, MM, READING, READINGS, Chosen, Field, grid_optimum, signed

@@ -5,12 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_geometry.cut_rings import Cutter, cut_ring_arm, cut_ring_root
 from gear_geometry.roots import (
     Arm,
+    Cutter,
     Fillet,
     Rack,
     Root,
+    cut_ring_arm,
+    cut_ring_root,
     external_arm,
     external_root,
     fillet_of,

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_geometry import pairs
-from gear_geometry.involute import involute
-from gear_geometry.pairs import transverse_angle
+from gear_geometry.pairs import involute, transverse_angle
 from gear_geometry.roots import Rack
 from rv_gearing.groups import chosen_teeth, efficiency_of, ratio_of, torque_of
 from rv_gearing.quantities import Gear, Gearing

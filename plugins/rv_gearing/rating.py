@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_geometry.involute import involute
+from gear_geometry.pairs import involute
 from rv_gearing.geometry import LEAST_LINE_LOAD, GearSize, Load, MeshSize, Which, gear_size, load_of, mesh_size
 from rv_gearing.groups import mesh_efficiency
 from rv_gearing.load_factors import (

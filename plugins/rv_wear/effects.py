@@ -1,34 +1,185 @@
-"""What the paper leaves out of the wear and the backlash of a reducer, or of their measurement.
+"""What the paper leaves out of the wear and the backlash of a reducer, or of their measurement."""
 
-They act in the order declared: first what changes the clearance, then what changes the wear and what is felt of it,
-then what is in the reading alone. A new effect is a function beside the others and one more entry in EFFECTS.
-"""
+from dataclasses import replace
 
-from rv_wear.answers import Wear
-from rv_wear.conditions import (
-    CRANK_ANGLE,
-    DIRECTION,
-    DISC_TEMPERATURE,
-    HOUSING_TEMPERATURE,
-    MEASURING_TORQUE,
-    OIL_TEMPERATURE,
-    OUTPUT_ANGLE,
-)
-from rv_wear.effects_of_clearance import bearing_wear, runout, thermal_clearance
-from rv_wear.effects_of_gauge import friction_hysteresis, pin_pass_ripple, stiffening, wind_up
-from rv_wear.effects_of_wear import (
-    duty_share,
-    film_lubrication,
-    load_exponent,
-    lost_motion_share,
-    lubricant_ageing,
-    pin_rolling,
-    pin_wear,
-    running_in,
-    wear_temperature,
-)
-from rv_wear.quantities import Reducer
-from truing import Effect, Unknown
+import numpy as np
+
+from rv_wear.quantities import Reducer, Wear
+from truing import Condition, Effect, Float, Unknown
+
+# What else must be measured before the effects of the reducer can act: each condition once, shared by its effects
+
+HOUSING_TEMPERATURE = Condition(
+    "housing_temperature", "degC", reference=20, low=15, high=60, note="of the housing with its pins, when measured"
+)  # fmt: skip
+DISC_TEMPERATURE = Condition(
+    "disc_temperature", "degC", reference=20, low=15, high=60, note="of the cycloid discs, when measured"
+)  # fmt: skip
+OIL_TEMPERATURE = Condition(
+    "oil_temperature", "degC", reference=40, low=20, high=80, note="of the lubricant at work, mean since new"
+)  # fmt: skip
+OUTPUT_ANGLE = Condition(
+    "output_angle", "deg", reference=0, low=0, high=360, note="of the output, at which the backlash is read"
+)  # fmt: skip
+CRANK_ANGLE = Condition(
+    "crank_angle", "deg", reference=0, low=0, high=360,
+    note="of the throw of the crank against the housing, at which the backlash is read",
+)  # fmt: skip
+MEASURING_TORQUE = Condition(
+    "measuring_torque", "N*m", reference=0, low=0, high=1000,
+    note="at the output, to one side and the other while the backlash is read; its amplitude",
+)  # fmt: skip
+DIRECTION = Condition(
+    "direction", "", reference=0, low=-1, high=1,
+    note="way in which the output was brought to where the backlash is read: +1 in the sense of the output angle, -1 "
+    "against it",
+)  # fmt: skip
+
+
+# What changes the clearance between disc, pins and bearings, and no flank: heat, runout, wear of the bearings
+
+RATED_TORQUE = 3136.0  # N*m, of the paper
+MILLION = 1e6
+NOTHING = 1e-15  # m
+
+
+def thermal_clearance(
+    reducer: Reducer, *, expansion: Float, housing_temperature: Float, disc_temperature: Float
+) -> Reducer:
+    """Pins and their circle grow with the housing, the whole profile with the disc: only their difference is felt.
+
+    A disc that is larger by a share is ground on a circle and with pins that are both larger by that share.
+    """
+    strain = expansion * (housing_temperature - disc_temperature)
+    return replace(
+        reducer,
+        pin_circle_error=reducer.pin_circle_error + strain * reducer.pin_circle_radius,
+        pin_radius_error=reducer.pin_radius_error + strain * reducer.pin_radius,
+    )
+
+
+def runout(reducer: Reducer, *, offset: Float, direction: Float, crank_angle: Float) -> Reducer:
+    """The circle of the pins is off the axis of the output: of two opposite discs each stops one end of the play.
+
+    Across the crank the offset turns one disc forward and the other back. Along the crank it moves the first contact
+    away from the longest arm, which takes less. Equation R2 of the theory page; two discs, their cranks opposite.
+    """
+    across, along = (np.abs(offset * part(direction - crank_angle)) for part in (np.sin, np.cos))
+    curve = _curve(reducer)
+    place = along / np.maximum(np.maximum(2.0 * curve, along), NOTHING)
+    return replace(reducer, runout_gap=reducer.runout_gap + 2.0 * (across + along * place - curve * place**2))
+
+
+def _curve(reducer: Reducer) -> Float:
+    """How fast the gap grows on both sides of the longest arm, m: over the square of (cos psi - K_1) / sin psi."""
+    root = np.sqrt(1.0 - (reducer.eccentricity * reducer.pin_count / reducer.pin_circle_radius) ** 2)
+    thinner = reducer.equidistant_modification + reducer.equidistant_error + 0.5 * reducer.pin_fit_clearance
+    outward = reducer.shift_modification + reducer.shift_error - reducer.pin_circle_error
+    return np.maximum(root * (thinner - reducer.pin_radius_error) - outward, 0.0) / (2.0 * root)
+
+
+def bearing_wear(reducer: Reducer, *, wear: Float) -> Reducer:
+    """The crank bearings gain clearance in proportion to their load and to the turns made, as Archard has it."""
+    load = reducer.output_torque / RATED_TORQUE
+    turns = reducer.output_speed * reducer.working_time
+    return replace(reducer, bearing_clearance=reducer.bearing_clearance + wear * load * turns / MILLION)
+
+
+# What is in the reading of the backlash and not in the play of the parts: torque, friction and where it is read
+
+
+def pin_pass_ripple(
+    reducer: Reducer,
+    wear: Wear,
+    *,
+    disc_cosine: Float,
+    disc_sine: Float,
+    pin_cosine: Float,
+    pin_sine: Float,
+    output_angle: Float,
+) -> Wear:
+    """Every tooth of the disc, or every pin, passes once per turn of the output and leaves its own play."""
+    teeth, pins = (reducer.pin_count - 1) * output_angle, reducer.pin_count * output_angle
+    of_disc = disc_cosine * np.cos(teeth) + disc_sine * np.sin(teeth)
+    of_pins = pin_cosine * np.cos(pins) + pin_sine * np.sin(pins)
+    return replace(wear, backlash=wear.backlash + of_disc + of_pins)
+
+
+def wind_up(reducer: Reducer, wear: Wear, *, compliance: Float, measuring_torque: Float) -> Wear:
+    """The torque that turns the output to either side twists it, both ways, in proportion."""
+    return replace(wear, backlash=wear.backlash + 2.0 * compliance * np.abs(measuring_torque))
+
+
+def stiffening(reducer: Reducer, wear: Wear, *, twist: Float, torque_scale: Float, measuring_torque: Float) -> Wear:
+    """Contacts that close under the measuring torque twist the output until all of them carry; no linear term."""
+    return replace(wear, backlash=wear.backlash - twist * np.expm1(-np.abs(measuring_torque) / torque_scale))
+
+
+def friction_hysteresis(reducer: Reducer, wear: Wear, *, lag: Float, direction: Float) -> Wear:
+    """Friction holds the output back from where it would come to rest, to the side from which it came."""
+    return replace(wear, backlash=wear.backlash + lag * direction)
+
+
+# What changes the wear of the disc, and what of it is felt as backlash
+
+VISCOSITY_EXPONENT = 7.377  # of the pressure-viscosity coefficient in the regression of the wear coefficient
+THINNING = 0.0411  # 1/K, oil ISO VG 220 of viscosity index 95: 220 mm²/s at 40 degC, 18.7 mm²/s at 100 degC
+
+
+def running_in(reducer: Reducer, *, depth: Float, run_in_time: Float) -> Reducer:
+    """Fresh asperities go first: a depth beside the law of wear, complete after a few times the run-in time."""
+    lost = -depth * np.expm1(-reducer.working_time / run_in_time)
+    return replace(reducer, extra_wear=reducer.extra_wear + lost)
+
+
+def wear_temperature(reducer: Reducer, *, softening: Float, oil_temperature: Float) -> Reducer:
+    """Warm oil stiffens less under pressure, by ``softening`` per kelvin: the wear coefficient grows by its power."""
+    faster = np.exp(VISCOSITY_EXPONENT * softening * (oil_temperature - OIL_TEMPERATURE.zero))
+    return replace(reducer, wear_rate_factor=reducer.wear_rate_factor * faster)
+
+
+def film_lubrication(reducer: Reducer, *, film_factor: Float, oil_temperature: Float) -> Reducer:
+    """A film parts disc and pins wherever it is thick against the roughness; the oil thins out with its temperature."""
+    thinner = np.exp(-THINNING * (oil_temperature - OIL_TEMPERATURE.zero))
+    return replace(
+        reducer, film_factor=reducer.film_factor + film_factor, oil_viscosity=reducer.oil_viscosity * thinner
+    )
+
+
+def pin_rolling(reducer: Reducer, *, rolling: Float) -> Reducer:
+    """The pins turn in their grooves and take over this share of the sliding."""
+    return replace(reducer, sliding_factor=reducer.sliding_factor * (1.0 - rolling))
+
+
+def pin_wear(reducer: Reducer, *, ratio: Float) -> Reducer:
+    """The pins wear too, ``ratio`` times as deep as the disc, and the backlash feels both."""
+    return replace(reducer, pin_wear_ratio=reducer.pin_wear_ratio + ratio)
+
+
+def lost_motion_share(reducer: Reducer, *, loss: Float) -> Reducer:
+    """The backlash does not feel the deepest wear but what is left of it where disc and pins first touch."""
+    return replace(reducer, lost_motion_share=reducer.lost_motion_share * (1.0 - loss))
+
+
+def lubricant_ageing(reducer: Reducer, *, rate: Float) -> Reducer:
+    """Additives are used up and debris gathers: the momentary wear coefficient grows evenly with the working time."""
+    return replace(reducer, ageing_rate=reducer.ageing_rate + rate)
+
+
+def load_exponent(reducer: Reducer, *, exponent: Float) -> Reducer:
+    """The wear depth follows another power of the load than calculated; at the rated torque nothing changes."""
+    return replace(reducer, depth_factor=reducer.depth_factor * (reducer.output_torque / RATED_TORQUE) ** exponent)
+
+
+def duty_share(reducer: Reducer, *, idle: Float) -> Reducer:
+    """Either flank is idle for this share of the working time: 0.5 where both share it evenly."""
+    return replace(reducer, loaded_share=reducer.loaded_share * (1.0 - idle))
+
+
+# What the paper leaves out of the wear and the backlash of a reducer, or of their measurement
+#
+# They act in the order declared: first what changes the clearance, then what changes the wear and what is felt of it,
+# then what is in the reading alone. A new effect is a function beside the others and one more entry in EFFECTS.
 
 REGRESSION = (
     "Janakiraman, V., Li, S., Kahraman, A., An investigation of the impacts of contact parameters on wear coefficient, "
@@ -229,5 +380,3 @@ READING: list[Effect[Reducer, Wear]] = [
     ),
 ]
 EFFECTS: list[Effect[Reducer, Wear]] = [*CLEARANCE, *WEAR, *READING]
-
-__all__ = ["EFFECTS"]

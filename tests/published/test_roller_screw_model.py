@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from traced_gears import ALPHA, Flanks, line_of_action_meets, swept_root
 
-from gear_geometry.cut_rings import Cutter, cut_ring_arm, cut_ring_root
-from gear_geometry.roots import form_factor, stress_correction
+from gear_geometry.roots import Cutter, cut_ring_arm, cut_ring_root, form_factor, stress_correction
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
 from roller_screw_shift.objectives import margins_of, objectives_of
 from roller_screw_shift.quantities import Meshing, Pair

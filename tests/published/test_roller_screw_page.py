@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gear_geometry.involute import involute
-from gear_geometry.pairs import clear_of_base, internal_sliding, working_angle
+from gear_geometry.pairs import clear_of_base, internal_sliding, involute, working_angle
 from roller_screw_shift.calculation import roller_screw_shift
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
 from roller_screw_shift.objectives import margins_of, objectives_of
