@@ -1,39 +1,303 @@
-"""What the rough flanks leave out of the torsion and the stiffness of a drive, or of a measured surface.
+"""What the rough flanks leave out of the torsion and the stiffness of a drive, or of a measured surface."""
 
-They act in the order declared: first what changes flanks, pairs and springs, then what is added to the torsion, then
-the surface, then the readings. A new effect is a function beside the others and one more entry in EFFECTS.
-"""
+from dataclasses import replace
 
-from harmonic_fractal.answers import Stiffness
-from harmonic_fractal.conditions import (
-    CYCLES,
-    DIRECTION,
-    PEAK_TORQUE,
-    REVERSAL_TORQUE,
-    SPEED,
-    TEMPERATURE,
-    TIME,
-    WAVE_ANGLE,
-)
-from harmonic_fractal.effects_of_friction import (
-    first_load_set,
-    flank_wear,
-    hysteresis,
-    lost_motion,
-    thermal_preload,
-    viscous_hysteresis,
-)
-from harmonic_fractal.effects_of_mesh import (
-    asperity_smoothing,
-    engaged_pairs,
-    modulus_temperature,
-    oil_film,
-    series_compliance,
-)
-from harmonic_fractal.effects_of_motion import creep, eccentricity, ellipticity, rig_drift
-from harmonic_fractal.effects_of_surface import instrument_noise, lateral_filter, waviness
-from harmonic_fractal.quantities import Drive
-from truing import Effect, Unknown
+import numpy as np
+
+from harmonic_fractal.calculation import TABLE
+from harmonic_fractal.quantities import Drive, Stiffness
+from truing import Condition, Effect, Float, Unknown, column
+
+# What else must be measured before the effects of the drive can act: each condition once, for all of them
+
+REVERSAL_TORQUE = Condition(
+    "reversal_torque", "N*m", reference=0, derived="last_reversal of torque", low=-500, high=500,
+    note="where the torque last turned; at first where it began",
+)  # fmt: skip
+PEAK_TORQUE = Condition(
+    "peak_torque", "N*m", reference=0, derived="running_maximum of torque", low=0, high=1000,
+    note="the largest torque so far",
+)  # fmt: skip
+DIRECTION = Condition(
+    "direction", "", reference=0, derived="direction of torque", low=-1, high=1,
+    note="way of the torque: +1 while it grows, -1 while it falls, 0 for the mean of both",
+)  # fmt: skip
+WAVE_ANGLE = Condition(
+    "wave_angle", "deg", reference=0, low=0, high=360, note="angle of the wave generator, against the circular spline"
+)  # fmt: skip
+TEMPERATURE = Condition(
+    "temperature", "degC", reference=20, low=-10, high=80,
+    note="temperature of the drive and its lubricant, when measured",
+)  # fmt: skip
+CYCLES = Condition(
+    "cycles", "", reference=0, low=0, high=1e8, note="meshes of a pair of teeth in service, since new"
+)  # fmt: skip
+TIME = Condition(
+    "time", "h", reference=0, derived="since_start", low=0, high=100, note="time under torque, since the first row"
+)  # fmt: skip
+SPEED = Condition(
+    "speed", "rpm", reference=0, low=0, high=6000, note="speed of the wave generator; the sign is its sense of turning"
+)  # fmt: skip
+
+
+# What is in the structure function of a flank beside its fractal roughness: a wave, noise, a blunt instrument
+
+
+def raised(results: Stiffness, by: Float) -> Stiffness:
+    """Return the results with an amount, m², on the structure function."""
+    return replace(results, structure_function=results.structure_function + by)
+
+
+def waviness(drive: Drive, results: Stiffness, *, square: Float, wavelength: Float) -> Stiffness:
+    """A wave lies across the flank: A² (1 - cos(2 pi lag/wavelength)), with ``square`` the square of its amplitude."""
+    phase = 2.0 * np.pi * np.asarray(drive.lags) / column(wavelength)
+    return raised(results, column(square) * (1.0 - np.cos(phase)))
+
+
+def instrument_noise(drive: Drive, results: Stiffness, *, variance: Float) -> Stiffness:
+    """Every height is read with an error of its own: twice its variance at any lag."""
+    return raised(results, 2.0 * column(variance))
+
+
+def lateral_filter(drive: Drive, *, width: Float) -> Drive:
+    """The instrument averages over a spot along the line: the finest roughness is lost, waves and noise are not.
+
+    A Gaussian weight of standard deviation ``width``; two spots in a row are one whose variance is their sum.
+    """
+    return replace(drive, spot_width=np.hypot(drive.spot_width, width))
+
+
+# What the torsion owes to friction, play and the first load: terms on the angle, in its own sense of the torque
+
+MILLION = 1e6
+RATED_SPEED = 1000.0 / 60.0  # turns per second
+
+
+def turned(results: Stiffness, by: Float) -> Stiffness:
+    """Return the results with an angle, rad, on the torsion."""
+    return replace(results, torsion=results.torsion + by)
+
+
+def rated_torque(drive: Drive) -> float:
+    """Return T_2 of the size in the catalogue, N m: 25 for size 20."""
+    return TABLE[drive.catalogue_size][1]
+
+
+def held_share(
+    drive: Drive, torque_scale: Float, direction: Float, reversal_torque: Float, peak_torque: Float
+) -> Float:
+    """Return what friction holds back, in halves of its loop: 1 once it has slipped on a way up, -1 on a way down.
+
+    +-(1 - 2 exp(-|T - T_rev|/T_c)) after a turn. The first load starts in the middle and slips through in half that
+    torque, 1 - exp(-2 |T - T_rev|/T_c), as Masing's rule has it; a loop that closes at its peak meets it there.
+    """
+    sense = np.sign(direction)
+    way = np.abs(drive.torque - reversal_torque) / (torque_scale * rated_torque(drive))
+    is_first = (drive.torque >= peak_torque) & (sense > 0.0)
+    share: Float = sense * np.where(is_first, -np.expm1(-2.0 * way), 1.0 - 2.0 * np.exp(-way))
+    return share
+
+
+def hysteresis(
+    drive: Drive,
+    results: Stiffness,
+    *,
+    loop: Float,
+    torque_scale: Float,
+    direction: Float,
+    reversal_torque: Float,
+    peak_torque: Float,
+) -> Stiffness:
+    """Dry friction holds the angle back by half of the loop: behind a torque that grows, and before one that falls.
+
+    So the loop takes up energy, and is never negative. Range: every turn but that of the first load follows a branch on
+    which the friction has slipped through, so several ``torque_scale`` (in parts of T_2) long. Of the direction only
+    the sign counts.
+    """
+    return turned(results, -0.5 * loop * held_share(drive, torque_scale, direction, reversal_torque, peak_torque))
+
+
+def viscous_hysteresis(
+    drive: Drive,
+    results: Stiffness,
+    *,
+    loop: Float,
+    torque_scale: Float,
+    thinning: Float,
+    speed: Float,
+    temperature: Float,
+    direction: Float,
+    reversal_torque: Float,
+    peak_torque: Float,
+) -> Stiffness:
+    """The lubricant adds to the loop, in proportion to its viscosity and to the speed; at rest there is none of it.
+
+    ``loop`` is the width at 1000 rpm and 20 degC; the viscosity falls by exp(-``thinning`` (temperature - 20 degC)).
+    """
+    viscosity = np.exp(-thinning * (temperature - TEMPERATURE.zero))
+    width = loop * viscosity * np.abs(speed) / RATED_SPEED
+    return turned(results, -0.5 * width * held_share(drive, torque_scale, direction, reversal_torque, peak_torque))
+
+
+def crossed(drive: Drive, torque_scale: Float) -> Float:
+    """Return the share of a play that is crossed, in the sense of the torque; the scale is in parts of T_2."""
+    share: Float = np.tanh(drive.torque / (torque_scale * rated_torque(drive)))
+    return share
+
+
+def lost_motion(drive: Drive, results: Stiffness, *, play: Float, torque_scale: Float) -> Stiffness:
+    """The teeth cross their play and come to bear one after another: ``play`` to either side of the middle."""
+    return turned(results, play * crossed(drive, torque_scale))
+
+
+def flank_wear(drive: Drive, results: Stiffness, *, rate: Float, torque_scale: Float, cycles: Float) -> Stiffness:
+    """Both flanks of a pair wear in proportion to the cycles in service, and the drive gains so much play.
+
+    Depth k_w p s n of Archard on either flank, with ``rate`` the depth per million cycles at the pressure and sliding
+    of its service; 2 depths along the line of action are 2 depths/(r_p cos alpha) at the output. The gap is crossed
+    as any other play is.
+    """
+    gap = 2.0 * rate * cycles / MILLION
+    lever = drive.pitch_radius * np.cos(drive.pressure_angle)
+    return turned(results, gap / lever * crossed(drive, torque_scale))
+
+
+def thermal_preload(drive: Drive, results: Stiffness, *, expansion: Float, temperature: Float) -> Stiffness:
+    """The circular spline grows more than the flexspline, which opens a gap: the teeth turn until they bear.
+
+    A distance dr across the pitch circle opens r_p dtheta = dr tan(alpha) to either side, with
+    dr = ``expansion`` r_p (temperature - 20 degC).
+    """
+    strain = expansion * (temperature - TEMPERATURE.zero)
+    return turned(results, strain * np.tan(drive.pressure_angle) * np.sign(drive.torque))
+
+
+def first_load_set(drive: Drive, results: Stiffness, *, peak_torque: Float, **unknowns: Float) -> Stiffness:
+    """The first load leaves a set behind, and below its peak the flattened flanks are stiffer than they were.
+
+    The set is ``set`` (peak/T_2)^``exponent``, with T_2 = 25 N m for size 20; the mesh is stiffer by the share
+    ``stiffening`` wherever the torque is below the largest so far.
+    """
+    height = np.maximum(peak_torque, 0.0) / rated_torque(drive)
+    left = unknowns.get("set", 0.0) * height ** unknowns.get("exponent", 1.0)
+    again = np.abs(drive.torque) < peak_torque
+    stiffer = 1.0 + np.where(again, unknowns.get("stiffening", 0.0), 0.0)
+    return turned(replace(results, mesh_stiffness=results.mesh_stiffness * stiffer), left)
+
+
+# What turns and time bring along: an oval and an eccentric wave generator, creep, a rig that drifts
+
+
+def creep(drive: Drive, results: Stiffness, *, share: Float, time_scale: Float, time: Float) -> Stiffness:
+    """The twist goes on under torque: by ``share`` of itself each time that the time grows e-fold.
+
+    Only what is elastic creeps: the mesh and what is in series with it.
+    """
+    beyond = np.sign(drive.torque) * np.maximum(np.abs(drive.torque) - drive.reference_torque, 0.0)
+    elastic = results.mesh_torsion + results.series_compliance * beyond
+    return turned(results, share * elastic * np.log1p(np.maximum(time, 0.0) / time_scale))
+
+
+def ellipticity(drive: Drive, results: Stiffness, *, wave_angle: Float, **unknowns: Float) -> Stiffness:
+    """The two lobes of the wave generator are not alike: two waves per turn, of the angle and of the stiffness."""
+
+    def wave(name: str) -> Float:
+        cosine, sine = unknowns.get(f"{name}cosine", 0.0), unknowns.get(f"{name}sine", 0.0)
+        return cosine * np.cos(2.0 * wave_angle) + sine * np.sin(2.0 * wave_angle)
+
+    stiffer = replace(results, mesh_stiffness=results.mesh_stiffness * (1.0 + wave("stiffness_")))
+    return turned(stiffer, wave(""))
+
+
+def eccentricity(drive: Drive, results: Stiffness, *, cosine: Float, sine: Float, wave_angle: Float) -> Stiffness:
+    """The wave generator is off its axis: one wave of the angle per turn."""
+    return turned(results, cosine * np.cos(wave_angle) + sine * np.sin(wave_angle))
+
+
+def rig_drift(drive: Drive, results: Stiffness, *, rate: Float, time: Float) -> Stiffness:
+    """The rig moves on with time, whatever the torque; the drive does not."""
+    return turned(results, rate * time)
+
+
+# What makes the drive softer or stiffer than its flanks: springs in series, pairs, film, smoothing, heat
+
+FILM_EXPONENT = 0.67  # of viscosity times speed in the thickness of the film
+LOAD_EXPONENT = -0.07  # of the load in it
+FILM_THINNING = 0.035  # 1/K, of the viscosity
+LEAST_TORQUE = 1e-3  # N*m, from which it is counted
+LEAST_GAP = 0.1  # over the film at 1000 rpm and 20 degC: without oil the asperities hold the flanks so far apart
+YIELDING = 0.02  # likewise: by which the gap grows while the load of the asperities falls by e (Persson 2007)
+STEPS = 8  # of Newton's iteration for the gap; six do, from any speed
+
+
+def series_compliance(drive: Drive, *, compliance: Float) -> Drive:
+    """Cup, wave generator, its bearing and the rig twist in proportion to the torque, beside the mesh."""
+    return replace(drive, drive_compliance=drive.drive_compliance + compliance)
+
+
+def engaged_pairs(drive: Drive, *, gain: Float, torque_scale: Float) -> Drive:
+    """The flexspline gives way until more pairs touch: the share ``gain`` more of them at a large torque.
+
+    The torsion is added up with the pairs that there are on the way. Beside a gain that is stated, both are one gain
+    of their sum, under their mean torque.
+    """
+    both = drive.engaged_gain + gain
+    share = np.where(both > 0.0, gain / np.where(both > 0.0, both, 1.0), 0.0)
+    scale = drive.engaged_torque + share * (torque_scale * rated_torque(drive) - drive.engaged_torque)
+    return replace(drive, engaged_gain=both, engaged_torque=scale)
+
+
+def oil_film(drive: Drive, *, stiffness: Float, speed: Float, temperature: Float) -> Drive:
+    """The oil between the flanks carries beside their asperities, the stiffer the thinner it is; at rest it is gone.
+
+    ``stiffness`` is that of a film which fills the flank of a pair at 1000 rpm, 20 degC and T_2 of the catalogue, 25 N
+    m for size 20: modulus of compression times flank over thickness. Alone it would be as thick as (viscosity
+    speed)^0.67 torque^-0.07 says; the asperities hold the flanks apart at a tenth of that, and the film shares the load
+    with them. The asperities' own stiffness is that under the whole load, which is too much by what the film carries.
+    """
+    flow = np.exp(-FILM_THINNING * (temperature - TEMPERATURE.zero)) * np.abs(speed) / RATED_SPEED
+    load = np.maximum(np.abs(drive.torque), LEAST_TORQUE) / rated_torque(drive)
+    gap, share = shared(flow**FILM_EXPONENT * load**LOAD_EXPONENT)
+    return replace(drive, film_stiffness=drive.film_stiffness + stiffness * share / gap)
+
+
+def shared(alone: Float) -> tuple[Float, Float]:
+    """Return the gap between flanks, over the film at 1000 rpm, and the share of the load that the film carries.
+
+    ``alone`` is how thick the film would be without asperities. At a fixed gap h it carries in proportion to viscosity
+    times speed (Reynolds), so (alone/h)^(1/0.67), and the asperities exp(-(h - h_r)/gamma); together that is all of it.
+    The sum is convex and falls over h, so Newton's iteration closes in from below.
+    """
+    gap = np.maximum(alone, LEAST_GAP)
+    for _ in range(STEPS):
+        asperities, film = np.exp((LEAST_GAP - gap) / YIELDING), (alone / gap) ** (1.0 / FILM_EXPONENT)
+        gap = gap + (asperities + film - 1.0) / (asperities / YIELDING + film / (FILM_EXPONENT * gap))
+    return gap, (alone / gap) ** (1.0 / FILM_EXPONENT)
+
+
+def asperity_smoothing(drive: Drive, *, dimension: Float, roughness: Float, cycle_scale: Float, cycles: Float) -> Drive:
+    """The finest asperities go first: the dimension rises and G falls, until the flanks have run in.
+
+    ``roughness`` is by how much ln G falls.
+    """
+    run_in = -np.expm1(-cycles / cycle_scale)
+    return replace(
+        drive,
+        dimension_deviation=drive.dimension_deviation + dimension * run_in,
+        roughness_deviation=drive.roughness_deviation - roughness * run_in,
+    )
+
+
+def modulus_temperature(drive: Drive, *, softening: Float, temperature: Float) -> Drive:
+    """Warm steel is softer, by the share ``softening`` per kelvin: flanks, teeth and all that twists."""
+    left = 1.0 - softening * (temperature - TEMPERATURE.zero)
+    return replace(drive, modulus_factor=drive.modulus_factor * left)
+
+
+# What the rough flanks leave out of the torsion and the stiffness of a drive, or of a measured surface
+#
+# They act in the order declared: first what changes flanks, pairs and springs, then what is added to the torsion, then
+# the surface, then the readings. A new effect is a function beside the others and one more entry in EFFECTS.
 
 ARCHARD = "Archard, J. F., Contact and rubbing of flat surfaces, Journal of Applied Physics 24 (1953) 981"
 DOWSON = "Dowson, D., Higginson, G. R., Elasto-hydrodynamic lubrication, Pergamon 1966: film of a line contact"
@@ -273,5 +537,3 @@ READING: list[Effect[Drive, Stiffness]] = [
     ),
 ]
 EFFECTS: list[Effect[Drive, Stiffness]] = [*MESH, *MOTION, *FRICTION, *SURFACE, *READING]
-
-__all__ = ["EFFECTS"]

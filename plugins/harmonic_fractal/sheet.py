@@ -1,6 +1,6 @@
 """The sheet, in the order an engineer reads it."""
 
-from harmonic_fractal import drawn_interface, drawn_pair, drawn_torsion
+from harmonic_fractal import figures
 from truing import Section
 
 SECTIONS = [
@@ -10,14 +10,14 @@ SECTIONS = [
         text="Form is removed, holes and spikes are left out, and each line is levelled. The structure function of a "
         "self-affine surface is a power of the lag; only where it is one over a decade of lags do D and G mean "
         "anything.",
-        blocks=drawn_interface.flanks,
+        blocks=figures.flanks,
     ),
     Section(
         "D and G of both flanks",
         "dimension", "profile_dimension", "roughness", "lag", "structure_function",
         text="Two rough flanks are taken as one against a smooth one. G is a number in metres that changes by factors "
         "with its convention; inside this calculation it is the areal one.",
-        blocks=drawn_interface.interface,
+        blocks=figures.interface,
     ),
     Section(
         "Stiffness of one pair",
@@ -27,7 +27,7 @@ SECTIONS = [
         text="Under load many small contacts form. Each has the interference and the tip radius of a wave of its own "
         "size; those below the critical area are plastic and give no stiffness. The load sets the largest contact, "
         "and all of them together the stiffness.",
-        blocks=drawn_pair.stiffness,
+        blocks=figures.stiffness,
     ),
     Section(
         "What the stiffness hangs on",
@@ -56,6 +56,6 @@ SECTIONS = [
         "rough_torsion", "catalogue_torsion", "catalogue_stiffness", "rough_share",
         text="Torsion is the integral of compliance over torque, from the reference torque on. Beside it stands what "
         "the maker's catalogue says of a drive of this size.",
-        blocks=drawn_torsion.torsion,
+        blocks=figures.torsion,
     ),
 ]  # fmt: skip
