@@ -12,15 +12,13 @@ from press_linkage.errors import (
     KINDS,
     PASSIVE,
     POLAR_ANGLES,
-    geometry_of,
     permitted_tilt,
-    position_of,
     salience,
     side_sensitivities,
     source,
     without_rounding,
 )
-from press_linkage.kinematics import Geometry, Half, crank_at, cycle_demands, smallest_sine, solve, top_crank_angle
+from press_linkage.kinematics import Half, crank_at, cycle_demands, nominal, smallest_sine, solve, top_crank_angle
 from press_linkage.quantities import Chances, Cycle, Influence, Press, Synthesis
 from truing import Allocation, Allotted, Bench, Block, Check, Odds, Sensitivities, Swept, Table, feasible
 
@@ -48,16 +46,15 @@ def sources_of(kinds: tuple[str, ...]) -> list[str]:
 def cycle(swept: Swept) -> Cycle:
     """Dead centres, stroke, and how close the press comes to a singular position; the crank must turn fully."""
     press: Press = swept.inputs
-    geometry = geometry_of(press)
-    for demand in cycle_demands(geometry):
+    for demand in cycle_demands(press):
         feasible(demand.holds, demand.sentence + SWING)
-    top = top_crank_angle(geometry)
-    bdc, tdc = position_of(press, 0.0).slider_position, position_of(press, top).slider_position
-    turn = smallest_sine(position_of(press, np.linspace(-pi, pi, 721)))
-    cosine, sine = crank_at(geometry, 0.0)
+    top = top_crank_angle(press)
+    bdc, tdc = solve(press, 0.0).slider_position, solve(press, top).slider_position
+    turn = smallest_sine(solve(press, np.linspace(-pi, pi, 721)))
+    cosine, sine = crank_at(press, 0.0)
     return Cycle(
         bdc_direction=float(np.arctan2(sine, cosine)),
-        bdc_platform_height=float(solve(geometry, 0.0).platform_height),
+        bdc_platform_height=float(solve(nominal(press), 0.0).platform_height),
         tdc_crank_angle=float(top),
         bdc_position=float(bdc),
         tdc_position=float(tdc),
@@ -69,14 +66,13 @@ def cycle(swept: Swept) -> Cycle:
 def influence(found: Sensitivities) -> Influence:
     """The nominal chain with the influence of each error, and what the sources in force do together."""
     press: Press = found.inputs
-    geometry = geometry_of(press)
-    nominal = solve(geometry, press.crank_angle)
-    by_kind = side_sensitivities(nominal.side_1)
-    shift = position_of(press).slider_position - nominal.slider_position
+    exact = solve(nominal(press))
+    by_kind = side_sensitivities(exact.side_1)
+    shift = solve(press).slider_position - exact.slider_position
     return Influence(
-        **_chain(geometry, nominal.side_1, float(press.crank_angle)),
-        platform_height=float(nominal.platform_height),
-        nominal_position=float(nominal.slider_position),
+        **_chain(press, exact.side_1, float(press.crank_angle)),
+        platform_height=float(exact.platform_height),
+        nominal_position=float(exact.slider_position),
         slider_shift=float(shift),
         **{f"influence_{kind}": float(without_rounding(value)) for kind, value in by_kind.items()},
         salience_position_key=_key_salience(found, "slider_position", KEY_POSITION, EVERY),
@@ -87,10 +83,10 @@ def influence(found: Sensitivities) -> Influence:
     )
 
 
-def _chain(geometry: Geometry, half: Half, crank_angle: float) -> dict[str, float]:
+def _chain(press: Press, half: Half, crank_angle: float) -> dict[str, float]:
     """The directions of one side and the place of its knee."""
-    cosine, sine = crank_at(geometry, 0.0)
-    shorter = geometry.knee_drive_length**2 - geometry.upper_knee_length**2
+    cosine, sine = crank_at(press, 0.0)
+    shorter = press.knee_drive_length**2 - press.upper_knee_length**2
     found = {
         "crank_direction": np.arctan2(sine, cosine) + crank_angle,
         "rod_direction": half.rod.angle,

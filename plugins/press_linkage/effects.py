@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from press_linkage.errors import face_sensitivities, position_of
-from press_linkage.kinematics import Position, slider_motion
+from press_linkage.errors import face_sensitivities
+from press_linkage.kinematics import Position, slider_motion, solve
 from press_linkage.quantities import Press, Side, Slider
 from truing import Condition, Effect, Float, Unknown
 
@@ -177,7 +177,7 @@ def slackened(press: Press, clearance: Float, forming_force: Float) -> Press:
     force = net_force(press, forming_force)
     upward = np.where(np.isnan(force), np.nan, np.where(force < 0, -1.0, 1.0))
     play = JOINTS * clearance * upward
-    sides = zip((press.side_1, press.side_2), shares_of_load(position_of(press)), strict=True)
+    sides = zip((press.side_1, press.side_2), shares_of_load(solve(press)), strict=True)
     side_1, side_2 = (
         longer(side, {kind: -play * np.sign(share) for kind, share in shares.items()}) for side, shares in sides
     )
@@ -186,7 +186,7 @@ def slackened(press: Press, clearance: Float, forming_force: Float) -> Press:
 
 def elastic_deflection(press: Press, *, compliance: Float, forming_force: Float) -> Press:
     """Rods and knee links shorten under the force that they carry like bars of one section; compliance is 1/(EA)."""
-    return pressed(press, position_of(press), compliance * net_force(press, forming_force))
+    return pressed(press, solve(press), compliance * net_force(press, forming_force))
 
 
 def joint_clearance(press: Press, *, clearance: Float, forming_force: Float) -> Press:
@@ -209,7 +209,7 @@ def slider_inertia(press: Press, *, mass_compliance: Float, speed: Float) -> Pre
     positive upward, its inertia is +m z''. ``mass_compliance`` is m/(EA), ``speed`` in turns per second; z'' is exact
     at every crank angle.
     """
-    position = position_of(press)
+    position = solve(press)
     by_angle = _closed(slider_motion(position).acceleration)
     return pressed(press, position, mass_compliance * by_angle * (TURN * speed) ** 2)
 

@@ -15,13 +15,13 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 
-from press_linkage.kinematics import Deviations, Geometry, Half, Polar, Position, demands, solve
+from press_linkage.kinematics import Half, Polar, Position, demands, solve
 from press_linkage.quantities import Press, Side, Slider
 from truing import Float, either, feasible
 
 # How far does each of the 29 errors move the slider? The loop increments of the linkage, solved twice
 
-KINDS = tuple(field.name for field in fields(Deviations))
+KINDS = tuple(field.name.removesuffix("_deviation") for field in fields(Side))
 DRIVEN = (
     "crank_radius",
     "rod_length",
@@ -34,23 +34,6 @@ DRIVEN = (
 PASSIVE = tuple(kind for kind in KINDS if kind not in DRIVEN)
 POLAR_ANGLES = ("slider_joint_angle", "crank_pivot_angle", "platform_joint_angle", "ground_pivot_angle")
 ARM = "platform_arm_deviation"
-SYMBOLS = {
-    "crank_radius": "a",
-    "rod_length": "k_R",
-    "knee_drive_length": "l_g",
-    "upper_knee_length": "l_m",
-    "lower_knee_length": "l_h",
-    "slider_half_width": "l",
-    "slider_joint_angle": "beta_2",
-    "crank_pivot_radius": "r_A",
-    "crank_pivot_angle": "alpha_1",
-    "platform_half_width": "e",
-    "platform_joint_angle": "beta_1",
-    "ground_pivot_radius": "r_M",
-    "ground_pivot_angle": "alpha_2",
-    "crank_angle": "theta_11",
-    "platform_arm": "k",
-}
 
 
 def source(kind: str, side: int) -> str:
@@ -119,7 +102,7 @@ def face_sensitivities(half: Half) -> dict[str, Float]:
 def side_sensitivities(half: Half) -> dict[str, Float]:
     """The paper's xi of one side: change of its face height per unit of each error, as if the other side followed.
 
-    Fifteen entries, the kinds of ``Deviations`` and ``platform_arm``; m/m for lengths, m/rad for angles, in the
+    Fifteen entries, the kinds of ``Side`` and ``platform_arm``; m/m for lengths, m/rad for angles, in the
     coordinates of this side (outward, downward). The slider joint angle has the sign of the face height,
     -l in nominal position; the paper writes the height of the joint with +l, which no variance can tell apart.
     """
@@ -127,11 +110,11 @@ def side_sensitivities(half: Half) -> dict[str, Float]:
     return face | {kind: face["platform_arm"] * value for kind, value in platform_sensitivities(half).items()}
 
 
-def derivatives(geometry: Geometry, position: Position) -> Derivatives:
+def derivatives(press: Press, position: Position) -> Derivatives:
     """Exact derivatives of slider position and tilt by every source, in closed form, in this position."""
     halves = {1: position.side_1, 2: position.side_2}
     faces = {side: face_sensitivities(half) for side, half in halves.items()}
-    distance = 2.0 * geometry.slider_half_width
+    distance = 2.0 * press.slider_half_width
     mean_drive = 0.5 * (faces[1]["platform_arm"] + faces[2]["platform_arm"])
     tilt_drive = (faces[1]["platform_arm"] - faces[2]["platform_arm"]) / distance
     by_position: dict[str, Float] = {ARM: mean_drive}
@@ -155,7 +138,7 @@ def _frame_sign(kind: str, side: int) -> float:
     return -1.0 if side == 2 and kind in POLAR_ANGLES else 1.0
 
 
-def loop_increments(geometry: Geometry, position: Position) -> Derivatives:
+def loop_increments(press: Press, position: Position) -> Derivatives:
     """The same derivatives from the differentiated loops I to VI as they stand, twelve equations solved numerically.
 
     The unknowns of a side are the increments of its platform height, theta_21, theta_17, theta_19, theta_18 and its
@@ -169,7 +152,7 @@ def loop_increments(geometry: Geometry, position: Position) -> Derivatives:
     increments = np.linalg.solve(matrix, causes)
     face_1, face_2 = increments[..., 5, :], increments[..., 11, :]
     mean, difference = 0.5 * (face_1 + face_2), face_1 - face_2
-    distance = np.asarray(2.0 * geometry.slider_half_width)[..., np.newaxis]
+    distance = np.asarray(2.0 * press.slider_half_width)[..., np.newaxis]
     tilt = difference / distance
     return Derivatives(
         position={name: mean[..., place] for place, name in enumerate(SOURCES)},
@@ -251,54 +234,6 @@ ROUNDING = 1e-15
 TILT_LIMITS = {"complete": radians(0.0013), "printed": radians(0.001324)}
 
 
-def geometry_of(press: Press) -> Geometry:
-    """The nominal mechanism."""
-    return Geometry(
-        crank_radius=press.crank_radius,
-        rod_length=press.rod_length,
-        platform_arm=press.platform_arm,
-        knee_drive_length=press.knee_drive_length,
-        upper_knee_length=press.upper_knee_length,
-        lower_knee_length=press.lower_knee_length,
-        slider_half_width=press.slider_half_width,
-        crank_pivot_radius=press.crank_pivot_radius,
-        platform_half_width=press.platform_half_width,
-        ground_pivot_radius=press.ground_pivot_radius,
-        ground_pivot_angle=press.ground_pivot_angle,
-    )
-
-
-def deviations_of(side: Side) -> Deviations:
-    """What is off on one side."""
-    return Deviations(
-        crank_radius=side.crank_radius_deviation,
-        rod_length=side.rod_length_deviation,
-        knee_drive_length=side.knee_drive_length_deviation,
-        upper_knee_length=side.upper_knee_length_deviation,
-        lower_knee_length=side.lower_knee_length_deviation,
-        slider_half_width=side.slider_half_width_deviation,
-        slider_joint_angle=side.slider_joint_angle_deviation,
-        crank_pivot_radius=side.crank_pivot_radius_deviation,
-        crank_pivot_angle=side.crank_pivot_angle_deviation,
-        platform_half_width=side.platform_half_width_deviation,
-        platform_joint_angle=side.platform_joint_angle_deviation,
-        ground_pivot_radius=side.ground_pivot_radius_deviation,
-        ground_pivot_angle=side.ground_pivot_angle_deviation,
-        crank_angle=side.crank_angle_deviation,
-    )
-
-
-def position_of(press: Press, crank_angle: Float | None = None) -> Position:
-    """The exact position with all deviations, at the crank angle of the inputs or at another one."""
-    return solve(
-        geometry_of(press),
-        press.crank_angle if crank_angle is None else crank_angle,
-        side_1=deviations_of(press.side_1),
-        side_2=deviations_of(press.side_2),
-        platform_arm=press.platform_arm_deviation,
-    )
-
-
 def permitted_tilt(press: Press) -> Float:
     """The tilt limit in force: the given one, otherwise that of the reading.
 
@@ -309,8 +244,8 @@ def permitted_tilt(press: Press) -> Float:
 
 def press_linkage(press: Press) -> Slider:
     """Height and tilt of the slider from the closed vector loops I to VI; every field is a number or an array (n,)."""
-    position = position_of(press)
-    for demand in demands(geometry_of(press), position):
+    position = solve(press)
+    for demand in demands(press, position):
         feasible(demand.holds, demand.sentence)
     return Slider(
         face_height_1=position.side_1.face,
@@ -323,7 +258,7 @@ def press_linkage(press: Press) -> Slider:
 
 def exact_derivatives(press: Press) -> Mapping[str, Mapping[str, Float]]:
     """Exact derivatives of position and tilt by all 29 sources, from the loop increments in closed form."""
-    found = derivatives(geometry_of(press), position_of(press))
+    found = derivatives(press, solve(press))
     return {
         result: {name: without_rounding(value) for name, value in by_source.items()}
         for result, by_source in (("slider_position", found.position), ("slider_tilt", found.tilt))

@@ -14,15 +14,12 @@ from press_linkage.errors import (
     KINDS,
     PASSIVE,
     SOURCES,
-    SYMBOLS,
     derivatives,
-    geometry_of,
-    position_of,
     salience,
     side_sensitivities,
     source,
 )
-from press_linkage.kinematics import Geometry, Half, Position, solve, top_crank_angle
+from press_linkage.kinematics import Half, Position, nominal, solve, top_crank_angle
 from press_linkage.quantities import Press, Slider
 from truing import Allotted, Record, Sensitivities
 
@@ -66,25 +63,25 @@ def places(position: Position, half: Half, sign: float) -> dict[str, Place]:
 
 def mechanism(record: "Record[Press, Slider]") -> "Figure":
     """Draw the press at the crank angle of this run, with earlier positions of its way down in grey."""
-    geometry = geometry_of(record.inputs)
+    press = nominal(record.inputs)
     crank_angle = float(record.inputs.crank_angle)
     figure = Figure(figsize=(6.4, 6.6), layout="constrained")
     panel: Any = figure.subplots()
     panel.set_aspect("equal")
     panel.invert_yaxis()
-    earlier = [float(share * top_crank_angle(geometry)) for share in GHOSTS]
+    earlier = [float(share * top_crank_angle(press)) for share in GHOSTS]
     for angle, colour in zip(earlier, PALE, strict=True):
-        ghost = solve(geometry, angle)
+        ghost = solve(press, angle)
         if np.isfinite(ghost.slider_position):
             _ghost(panel, ghost, colour)
-    position = solve(geometry, crank_angle)
-    _ways(panel, geometry)
+    position = solve(press, crank_angle)
+    _ways(panel, press)
     _frame(panel, position)
     _press(panel, position)
     _names(panel, position)
     panel.set_xlabel("y, m")
     panel.set_ylabel("z, m (downward)")
-    panel.set_xlim(-1.22 * geometry.slider_half_width, 1.22 * geometry.slider_half_width)
+    panel.set_xlim(-1.22 * press.slider_half_width, 1.22 * press.slider_half_width)
     panel.grid(alpha=0.35)
     panel.set_axisbelow(True)
     panel.set_title(_title(crank_angle, earlier), fontsize=9)
@@ -109,9 +106,9 @@ def _line(panel: Any, *points: Place, **style: Any) -> None:
     panel.plot([y for y, _ in points], [z for _, z in points], solid_capstyle="round", **style)
 
 
-def _ways(panel: Any, geometry: Geometry) -> None:
+def _ways(panel: Any, press: Press) -> None:
     """The circles of the crank pins and the way of the knees, dotted."""
-    turn = solve(geometry, np.linspace(-np.pi, np.pi, 181))
+    turn = solve(press, np.linspace(-np.pi, np.pi, 181))
     for half, sign in ((turn.side_1, 1.0), (turn.side_2, -1.0)):
         for joint, colour in ((half.pin, CRANK), (half.knee, KNEE)):
             panel.plot(sign * joint.y, joint.z, linestyle=(0, (1, 2)), linewidth=0.9, color=colour, zorder=2)
@@ -200,11 +197,13 @@ def _name(panel: Any, text: str, place: Place, colour: str = INK) -> None:
 Run = Record[Press, Slider]
 
 TURN = np.radians(np.linspace(-180.0, 180.0, 361))
-LETTERS = {
-    "a": "a", "k_R": "k_R", "l_g": "l_g", "l_m": "l_m", "l_h": "l_h", "l": "l", "beta_2": r"\beta_2", "r_A": "r_A",
-    "alpha_1": r"\alpha_1", "e": "e", "beta_1": r"\beta_1", "r_M": "r_M", "alpha_2": r"\alpha_2",
-    "theta_11": r"\theta_1", "k": "k",
+SYMBOLS = {
+    "crank_radius": "a", "rod_length": "k_R", "knee_drive_length": "l_g", "upper_knee_length": "l_m",
+    "lower_knee_length": "l_h", "slider_half_width": "l", "slider_joint_angle": r"\beta_2", "crank_pivot_radius": "r_A",
+    "crank_pivot_angle": r"\alpha_1", "platform_half_width": "e", "platform_joint_angle": r"\beta_1",
+    "ground_pivot_radius": "r_M", "ground_pivot_angle": r"\alpha_2", "crank_angle": r"\theta_1", "platform_arm": "k",
 }  # fmt: skip
+"""The paper's symbol of a kind of error, for matplotlib."""
 ROWS = 14  # room for as many bars below one another, so that both panels have bars of one height
 NOTHING = 1e-12  # a share below it is rounding
 DRAWN = {
@@ -213,21 +212,16 @@ DRAWN = {
 }  # fmt: skip
 
 
-def letter(kind: str) -> str:
-    """The paper's symbol of a kind of error, for matplotlib."""
-    return LETTERS[SYMBOLS[kind]]
-
-
 def way(press: Press) -> "Figure":
     """Draw the height of the slider over one turn of the crank, with both dead centres."""
-    top = float(top_crank_angle(geometry_of(press)))
-    height = np.asarray(position_of(press, TURN).slider_position)
+    top = float(top_crank_angle(press))
+    height = np.asarray(solve(press, TURN).slider_position)
     figure = Figure(figsize=(6.4, 2.9), layout="constrained")
     panel: Any = figure.subplots()
     panel.plot(np.degrees(TURN), height, color=BLUE)
     panel.invert_yaxis()
     for angle, name, side in ((0.0, "bottom dead centre", "top"), (top, "top dead centre", "bottom")):
-        reached = float(position_of(press, angle).slider_position)
+        reached = float(solve(press, angle).slider_position)
         if not np.isfinite(reached):
             continue
         panel.plot(np.degrees(angle), reached, "o", color=ORANGE, markersize=5, zorder=5)
@@ -250,15 +244,15 @@ def _over_the_turn(panel: Any, label: str) -> None:
 
 def over_the_turn(record: "Run") -> "Figure":
     """Draw how the influence of the lengths and the salience of the key errors run over one turn."""
-    geometry = geometry_of(record.inputs)
-    turn = solve(geometry, TURN)
+    press = nominal(record.inputs)
+    turn = solve(press, TURN)
     by_kind = side_sensitivities(turn.side_1)
     figure = Figure(figsize=(6.4, 5.0), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     for kind, (colour, dashes) in DRAWN.items():
-        upper.plot(np.degrees(TURN), by_kind[kind], color=colour, linestyle=dashes, label=rf"$\xi_{{{letter(kind)}}}$")
+        upper.plot(np.degrees(TURN), by_kind[kind], color=colour, linestyle=dashes, label=rf"$\xi_{{{SYMBOLS[kind]}}}$")
     upper.legend(ncols=6, loc="upper center", bbox_to_anchor=(0.5, 1.16), handlelength=1.6, columnspacing=1.4)
-    found = derivatives(geometry, turn)
+    found = derivatives(press, turn)
     for of, key, colour, name in (
         (found.position, KEY_POSITION, BLUE, "position, 12 key errors"),
         ({name: found.tilt[name] for kind in PASSIVE for name in _both(kind)}, KEY_TILT, ORANGE, "tilt, 10 key errors"),
@@ -297,7 +291,7 @@ def _bars(panel: Any, shares: Mapping[str, Any], key: Sequence[str], title: str)
     ranked = sorted((kind for kind in kinds if size[kind] > NOTHING), key=lambda kind: size[kind])
     colours = [BLUE if kind in key else GREY for kind in ranked]
     panel.barh(range(len(ranked)), [size[kind] for kind in ranked], color=colours, height=0.66)
-    panel.set_yticks(range(len(ranked)), [rf"$\delta {letter(kind)}$" for kind in ranked], fontsize=9)
+    panel.set_yticks(range(len(ranked)), [rf"$\delta {SYMBOLS[kind]}$" for kind in ranked], fontsize=9)
     for place, kind in enumerate(ranked):
         panel.text(size[kind], place, f" {size[kind]:.4f}", va="center", fontsize=7.5, color=INK)
     whole = sum(float(shares[name]) for kind in key for name in _both(kind))
@@ -334,5 +328,5 @@ def along_the_synthesis(allotted: "Allotted", printed: Mapping[str, Sequence[flo
 
 
 def _step(step: Any) -> str:
-    symbol = letter(step.tolerance) if step.tolerance in SYMBOLS else r"\mathrm{" + step.tolerance + "}"
+    symbol = SYMBOLS[step.tolerance] if step.tolerance in SYMBOLS else r"\mathrm{" + step.tolerance + "}"
     return f"${symbol}$\n{step.after}"

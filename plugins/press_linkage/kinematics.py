@@ -13,57 +13,18 @@ A crank angle deviation adds to the crank angle of its own side: equal ones on b
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from press_linkage.quantities import Press, Side
 from truing import Float
 
 # Where is the slider, exactly? Closed-form kinematics of the press linkage with every size off by its own deviation
 
 SERIES_LIMIT = 0.025  # rad; below it the first neglected terms are 4e-18 (cosine) and 1e-20 (sine)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Geometry:
-    """The nominal mechanism, m and rad; defaults are the paper's, with the ground pivot angle its results need."""
-
-    crank_radius: Float = 0.36
-    rod_length: Float = 1.304
-    platform_arm: Float = 0.6
-    knee_drive_length: Float = 0.868
-    upper_knee_length: Float = 1.7
-    lower_knee_length: Float = 1.6
-    slider_half_width: Float = 1.6
-    crank_pivot_radius: Float = 1.2
-    platform_half_width: Float = 0.3
-    ground_pivot_radius: Float = 1.393
-    ground_pivot_angle: Float = 0.367
-
-
-@dataclass(frozen=True, kw_only=True)
-class Deviations:
-    """How far one side is off its nominal sizes: lengths in m, angles in rad, signs as said at the top of this file."""
-
-    crank_radius: Float = 0.0
-    rod_length: Float = 0.0
-    knee_drive_length: Float = 0.0
-    upper_knee_length: Float = 0.0
-    lower_knee_length: Float = 0.0
-    slider_half_width: Float = 0.0
-    slider_joint_angle: Float = 0.0
-    crank_pivot_radius: Float = 0.0
-    crank_pivot_angle: Float = 0.0
-    platform_half_width: Float = 0.0
-    platform_joint_angle: Float = 0.0
-    ground_pivot_radius: Float = 0.0
-    ground_pivot_angle: Float = 0.0
-    crank_angle: Float = 0.0
-
-
-NONE = Deviations()
 
 
 class Point(NamedTuple):
@@ -183,40 +144,36 @@ def turned(cosine: Float, sine: Float, by: Float) -> tuple[Float, Float]:
     return cosine * more_cosine - sine * more_sine, sine * more_cosine + cosine * more_sine
 
 
-def crank_at(geometry: Geometry, crank_angle: Float) -> tuple[Float, Float]:
+def crank_at(press: Press, crank_angle: Float) -> tuple[Float, Float]:
     """Cosine and sine of theta_11 of the nominal mechanism; the crank angle counts from the bottom dead centre.
 
     The dead centre has crank and rod stretched in line. It is found from nominal sizes: deviations never move the zero.
     """
-    stretched = geometry.crank_radius + geometry.rod_length
-    cosine = (geometry.platform_half_width - geometry.crank_pivot_radius) / stretched
+    stretched = press.crank_radius + press.rod_length
+    cosine = (press.platform_half_width - press.crank_pivot_radius) / stretched
     with np.errstate(invalid="ignore"):
         sine = np.sqrt(1.0 - cosine * cosine)
     return turned(cosine, sine, crank_angle)
 
 
-def built(geometry: Geometry, crank: tuple[Float, Float], off: Deviations, *, mirror: float = 1.0) -> Parts:
+def built(press: Press, crank: tuple[Float, Float], off: Side, *, mirror: float = 1.0) -> Parts:
     """One side with its deviations; *mirror* is -1 for side 2, whose polar angles run the other way."""
-    nominal_ground = np.cos(geometry.ground_pivot_angle), np.sin(geometry.ground_pivot_angle)
+    ground = np.cos(press.ground_pivot_angle), np.sin(press.ground_pivot_angle)
+
+    def length(kind: str) -> Float:
+        made: Float = getattr(press, kind) + getattr(off, f"{kind}_deviation")
+        return made
+
     return Parts(
-        pivot=Polar(
-            geometry.crank_pivot_radius + off.crank_pivot_radius, *cosine_and_sine(mirror * off.crank_pivot_angle)
-        ),
-        crank=Polar(geometry.crank_radius + off.crank_radius, *turned(*crank, off.crank_angle)),
-        platform=Polar(
-            geometry.platform_half_width + off.platform_half_width, *cosine_and_sine(mirror * off.platform_joint_angle)
-        ),
-        ground=Polar(
-            geometry.ground_pivot_radius + off.ground_pivot_radius,
-            *turned(*nominal_ground, mirror * off.ground_pivot_angle),
-        ),
-        slider=Polar(
-            geometry.slider_half_width + off.slider_half_width, *cosine_and_sine(mirror * off.slider_joint_angle)
-        ),
-        rod=geometry.rod_length + off.rod_length,
-        drive=geometry.knee_drive_length + off.knee_drive_length,
-        upper=geometry.upper_knee_length + off.upper_knee_length,
-        lower=geometry.lower_knee_length + off.lower_knee_length,
+        pivot=Polar(length("crank_pivot_radius"), *cosine_and_sine(mirror * off.crank_pivot_angle_deviation)),
+        crank=Polar(length("crank_radius"), *turned(*crank, off.crank_angle_deviation)),
+        platform=Polar(length("platform_half_width"), *cosine_and_sine(mirror * off.platform_joint_angle_deviation)),
+        ground=Polar(length("ground_pivot_radius"), *turned(*ground, mirror * off.ground_pivot_angle_deviation)),
+        slider=Polar(length("slider_half_width"), *cosine_and_sine(mirror * off.slider_joint_angle_deviation)),
+        rod=length("rod_length"),
+        drive=length("knee_drive_length"),
+        upper=length("upper_knee_length"),
+        lower=length("lower_knee_length"),
     )
 
 
@@ -247,57 +204,55 @@ def knee_side(parts: Parts, pin: Point, rod_drop: Float, arm_end: Float) -> Half
     return Half(parts, pin, rod_drop, arm_end, knee, fold, span, lower_drop, face)
 
 
-def solve(
-    geometry: Geometry,
-    crank_angle: Float,
-    *,
-    side_1: Deviations = NONE,
-    side_2: Deviations = NONE,
-    platform_arm: Float = 0.0,
-) -> Position:
-    """The exact position of the press at one crank angle (or n of them), with the deviations of both sides.
+def nominal(press: Press) -> Press:
+    """The press without its deviations."""
+    return replace(press, platform_arm_deviation=0.0, side_1=Side(), side_2=Side())
+
+
+def solve(press: Press, crank_angle: Float | None = None) -> Position:
+    """The exact position with all deviations, at the crank angle of the inputs or at another one (or n of them).
 
     The guided platform takes the mean of the heights its two sides would set; the slider is held at y = 0 by its guides
     and takes the mean of its two face heights. Its tilt is their difference over the nominal distance of the slider
-    joints, positive when side 1 is lower. *platform_arm* is the deviation of the arm, common to both sides.
-    Where a loop does not close the heights are NaN; ``closure.demands`` gives the reason.
+    joints, positive when side 1 is lower. Where a loop does not close the heights are NaN; ``demands`` says
+    why.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
-        crank = crank_at(geometry, crank_angle)
-        parts_1 = built(geometry, crank, side_1)
-        parts_2 = built(geometry, crank, side_2, mirror=-1.0)
+        crank = crank_at(press, press.crank_angle if crank_angle is None else crank_angle)
+        parts_1 = built(press, crank, press.side_1)
+        parts_2 = built(press, crank, press.side_2, mirror=-1.0)
         pin_1, drop_1, height_1 = crank_side(parts_1)
         pin_2, drop_2, height_2 = crank_side(parts_2)
         height = 0.5 * (height_1 + height_2)
-        arm_end = height + (geometry.platform_arm + platform_arm)
+        arm_end = height + (press.platform_arm + press.platform_arm_deviation)
         half_1 = knee_side(parts_1, pin_1, drop_1, arm_end)
         half_2 = knee_side(parts_2, pin_2, drop_2, arm_end)
         return Position(
             slider_position=0.5 * (half_1.face + half_2.face),
-            slider_tilt=(half_1.face - half_2.face) / (2.0 * geometry.slider_half_width),
+            slider_tilt=(half_1.face - half_2.face) / (2.0 * press.slider_half_width),
             platform_height=height,
             side_1=half_1,
             side_2=half_2,
         )
 
 
-def top_crank_angle(geometry: Geometry) -> Float:
+def top_crank_angle(press: Press) -> Float:
     """Crank angle of the upper dead centre, crank and rod folded, rad from the lower one, in (-2 pi, 0).
 
-    Needs a crank that turns fully (``closure.rotation_demand``), otherwise NaN. The other way round it is 2 pi more.
+    Needs a crank that turns fully (``rotation_demand``), otherwise NaN. The other way round it is 2 pi more.
     """
-    cosine, sine = crank_at(geometry, 0.0)
-    folded = geometry.rod_length - geometry.crank_radius
-    rod_cosine = (geometry.platform_half_width - geometry.crank_pivot_radius) / folded
+    cosine, sine = crank_at(press, 0.0)
+    folded = press.rod_length - press.crank_radius
+    rod_cosine = (press.platform_half_width - press.crank_pivot_radius) / folded
     with np.errstate(invalid="ignore"):
         rod_sine = np.sqrt(1.0 - rod_cosine * rod_cosine)
     return np.arctan2(-rod_sine, -rod_cosine) - np.arctan2(sine, cosine)
 
 
-def stroke(geometry: Geometry) -> Float:
+def stroke(press: Press) -> Float:
     """Slider height at the lower dead centre minus that at the upper one, m, of the nominal mechanism."""
-    bottom = solve(geometry, 0.0).slider_position
-    return bottom - solve(geometry, top_crank_angle(geometry)).slider_position
+    without = nominal(press)
+    return solve(without, 0.0).slider_position - solve(without, top_crank_angle(press)).slider_position
 
 
 # What must hold for the press linkage to close: loop by loop, side by side, with the inequality that is violated
@@ -336,39 +291,39 @@ def smallest_sine(position: Position) -> Float:
     return least
 
 
-def nominal_demands(geometry: Geometry) -> Iterator[Demand]:
+def nominal_demands(press: Press) -> Iterator[Demand]:
     """What the nominal sizes must satisfy for a bottom dead centre on this branch."""
     yield Demand(
         "branch",
-        geometry.crank_pivot_radius > geometry.platform_half_width,
+        press.crank_pivot_radius > press.platform_half_width,
         "the crank pivots must lie farther out than the rod joints of the platform: "
         "crank_pivot_radius > platform_half_width",
     )
     yield Demand(
         "stretched",
-        geometry.crank_pivot_radius - geometry.platform_half_width < geometry.crank_radius + geometry.rod_length,
+        press.crank_pivot_radius - press.platform_half_width < press.crank_radius + press.rod_length,
         "loop I has no bottom dead centre: crank and rod in line do not reach the platform; it needs "
         "crank_pivot_radius - platform_half_width < crank_radius + rod_length",
     )
 
 
-def rotation_demand(geometry: Geometry) -> Demand:
+def rotation_demand(press: Press) -> Demand:
     """What a full turn of the crank needs, and with it the upper dead centre and the stroke."""
-    offset = np.abs(geometry.crank_pivot_radius - geometry.platform_half_width)
+    offset = np.abs(press.crank_pivot_radius - press.platform_half_width)
     return Demand(
         "full rotation",
-        offset + geometry.crank_radius < geometry.rod_length,
+        offset + press.crank_radius < press.rod_length,
         "loop I does not close over a full turn of the crank: it needs "
         "crank_pivot_radius - platform_half_width + crank_radius < rod_length",
     )
 
 
-def demands(geometry: Geometry, position: Position) -> Iterator[Demand]:
+def demands(press: Press, position: Position) -> Iterator[Demand]:
     """What must hold in this position with these deviations: nominal sizes, then loop by loop, side by side.
 
     They come in the order of the chain, so the first one that fails names the cause and not a consequence.
     """
-    yield from nominal_demands(geometry)
+    yield from nominal_demands(press)
     with np.errstate(invalid="ignore"):
         for side, half in ((1, position.side_1), (2, position.side_2)):
             yield _sizes(half, side)
@@ -451,15 +406,15 @@ def _slider_demands(half: Half, side: int) -> Iterator[Demand]:
     )
 
 
-def cycle_demands(geometry: Geometry, samples: int = 721) -> Iterator[Demand]:
+def cycle_demands(press: Press, samples: int = 721) -> Iterator[Demand]:
     """What a full turn of the crank demands of one nominal mechanism (plain numbers): every loop, at every angle.
 
     The loops are tried at *samples* equally spaced crank angles; none of the roots may vanish on the way, so the
     mechanism stays on its branch.
     """
-    yield rotation_demand(geometry)
-    turn = solve(geometry, np.linspace(-np.pi, np.pi, samples))
-    for name, holds, sentence in demands(geometry, turn):
+    yield rotation_demand(press)
+    turn = solve(nominal(press), np.linspace(-np.pi, np.pi, samples))
+    for name, holds, sentence in demands(press, turn):
         yield Demand(name, bool(np.all(holds)), f"over the full turn: {sentence}")
 
 

@@ -6,7 +6,7 @@ from math import degrees, isfinite
 from typing import TypeGuard
 
 from press_linkage.answers import LINKS, sources_of
-from press_linkage.errors import KINDS, POLAR_ANGLES, SOURCES, geometry_of
+from press_linkage.errors import KINDS, POLAR_ANGLES, SOURCES
 from press_linkage.figures import along_the_synthesis, mechanism, over_the_turn, salience_bars, way
 from press_linkage.kinematics import top_crank_angle
 from press_linkage.published import WHERE
@@ -31,7 +31,7 @@ MICRORADIAN_2 = 1e-12
 def travel(record: "Run") -> Sequence[Block]:
     """The way of the slider over one turn, with the effects that are on."""
     swept = record.studies.get("sweep")
-    up = -degrees(top_crank_angle(geometry_of(record.inputs)))
+    up = -degrees(top_crank_angle(record.inputs))
     caption = f"The crank turns {up:.0f}° one way and {360 - up:.0f}° the other." if isfinite(up) else "It only swings."
     press = record.inputs if swept is None else swept.inputs
     return [Drawing("Slider over one turn of the crank", partial(way, press), caption)]

@@ -5,16 +5,16 @@ University). Where a number is not printed there, it was solved independently fr
 shown; everything else is an identity that no linkage of this kind can escape.
 """
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from math import erf, sqrt
 
 import numpy as np
 import pytest
-from press_linkage_cases import AROUND, MECHANISMS, PAPER, moved, scattered, sensitivities
+from press_linkage_cases import AROUND, MECHANISMS, PAPER, SIZES, moved, off_by, scattered, sensitivities, solve
 
 from press_linkage import errors, kinematics
 from press_linkage.errors import ARM, DRIVEN, KINDS, PASSIVE, POLAR_ANGLES, SOURCES, source
-from press_linkage.kinematics import Deviations, Geometry, solve
+from press_linkage.quantities import Press
 
 
 def polar_errors(across: float, down: float, *, radius: float, angle: float) -> tuple[float, float]:
@@ -92,7 +92,7 @@ def test_sensitivity_at_bdc(kind: str, expected: float) -> None:
 
 @MECHANISMS
 @pytest.mark.parametrize("name", SOURCES)
-def test_derivatives_are_slopes_of_the_exact_kinematics(geometry: Geometry, name: str) -> None:
+def test_derivatives_are_slopes_of_the_exact_kinematics(geometry: Press, name: str) -> None:
     nominal = solve(geometry, AROUND)
     closed = errors.derivatives(geometry, nominal)
     solved = errors.loop_increments(geometry, nominal)
@@ -105,7 +105,7 @@ def test_derivatives_are_slopes_of_the_exact_kinematics(geometry: Geometry, name
 
 
 @MECHANISMS
-def test_closed_forms_hold_with_deviations_present(geometry: Geometry) -> None:
+def test_closed_forms_hold_with_deviations_present(geometry: Press) -> None:
     position = solve(
         geometry, 0.4, side_1=scattered(5e-3, 6, (40,)), side_2=scattered(5e-3, 7, (40,)), platform_arm=3e-3
     )
@@ -119,15 +119,15 @@ def test_closed_forms_hold_with_deviations_present(geometry: Geometry) -> None:
 def test_driven_chain_tilts_only_a_press_that_is_already_uneven() -> None:
     even = errors.derivatives(PAPER, solve(PAPER, AROUND)).tilt
     assert all(np.all(even[source(kind, side)] == 0.0) for kind in DRIVEN for side in (1, 2))
-    uneven = errors.derivatives(PAPER, solve(PAPER, 0.5, side_1=Deviations(lower_knee_length=1e-3))).tilt
+    uneven = errors.derivatives(PAPER, solve(PAPER, 0.5, side_1=off_by(lower_knee_length=1e-3))).tilt
     assert 0.0 < abs(uneven["rod_length_deviation_1"]) < 1e-3
 
 
 @MECHANISMS
-def test_height_is_of_degree_one_in_the_lengths(geometry: Geometry) -> None:
+def test_height_is_of_degree_one_in_the_lengths(geometry: Press) -> None:
     """Euler: the sum of sensitivity times length is the height itself, at every crank angle."""
     xi = sensitivities(geometry, AROUND)
-    lengths = [field.name for field in fields(Geometry) if field.name != "ground_pivot_angle"]
+    lengths = [name for name in SIZES if name != "ground_pivot_angle"]
     total = sum(xi[kind] * getattr(geometry, kind) for kind in lengths)
     assert total == pytest.approx(np.asarray(solve(geometry, AROUND).slider_position), abs=1e-12)
     double = replace(geometry, **{kind: 2 * getattr(geometry, kind) for kind in lengths})
@@ -137,7 +137,7 @@ def test_height_is_of_degree_one_in_the_lengths(geometry: Geometry) -> None:
 
 
 @MECHANISMS
-def test_lowering_the_whole_frame_lowers_the_slider(geometry: Geometry) -> None:
+def test_lowering_the_whole_frame_lowers_the_slider(geometry: Press) -> None:
     """A rigid motion: crank pivots and ground joints of both sides down by the same amount, in polar errors."""
     found = errors.derivatives(geometry, solve(geometry, AROUND))
     position, tilt = np.zeros_like(AROUND), np.zeros_like(AROUND)
@@ -155,7 +155,7 @@ def test_lowering_the_whole_frame_lowers_the_slider(geometry: Geometry) -> None:
 
 
 @MECHANISMS
-def test_frame_height_is_shared_by_upper_link_and_platform(geometry: Geometry) -> None:
+def test_frame_height_is_shared_by_upper_link_and_platform(geometry: Press) -> None:
     xi = sensitivities(geometry, AROUND)
     upper = solve(geometry, AROUND).side_1.upper
     assert xi["upper_knee_length"] * upper.sine + xi["platform_arm"] == pytest.approx(np.ones_like(AROUND), abs=1e-12)
@@ -163,7 +163,7 @@ def test_frame_height_is_shared_by_upper_link_and_platform(geometry: Geometry) -
 
 @MECHANISMS
 @pytest.mark.parametrize("kind", KINDS)
-def test_equal_errors_do_not_tilt_and_opposite_ones_do_not_lower(geometry: Geometry, kind: str) -> None:
+def test_equal_errors_do_not_tilt_and_opposite_ones_do_not_lower(geometry: Press, kind: str) -> None:
     found = errors.derivatives(geometry, solve(geometry, AROUND))
     sign = -1.0 if kind in POLAR_ANGLES else 1.0
     first, second = (found.position[source(kind, side)] for side in (1, 2))
@@ -174,7 +174,7 @@ def test_equal_errors_do_not_tilt_and_opposite_ones_do_not_lower(geometry: Geome
 
 @MECHANISMS
 @pytest.mark.parametrize("dead_centre", ["bottom", "top"])
-def test_dead_centres(geometry: Geometry, dead_centre: str) -> None:
+def test_dead_centres(geometry: Press, dead_centre: str) -> None:
     angle = 0.0 if dead_centre == "bottom" else kinematics.top_crank_angle(geometry)
     xi = sensitivities(geometry, angle)
     sign = 1.0 if dead_centre == "bottom" else -1.0
@@ -299,7 +299,7 @@ def test_first_order_scatter_is_enough() -> None:
     """Exact kinematics of 10^5 machines: scatter within 1 % of the first order, no shift of the mean."""
     rng = np.random.default_rng(2024)
     sd = {kind: band * 1e-3 / 6 for kind, band, _ in VARIANCES} | {"crank_angle": 0.0}
-    sides = [Deviations(**{kind: sd[kind] * rng.standard_normal(100_000) for kind in KINDS}) for _ in (1, 2)]
+    sides = [off_by(**{kind: sd[kind] * rng.standard_normal(100_000) for kind in KINDS}) for _ in (1, 2)]
     position = solve(PAPER, 0.0, side_1=sides[0], side_2=sides[1])
     found = errors.derivatives(PAPER, solve(PAPER, 0.0))
     for exact, derivative in [(position.slider_position, found.position), (position.slider_tilt, found.tilt)]:

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from press_linkage_cases import OTHER
+from press_linkage_cases import OTHER, PAPER, SIZES, off_by, solve
 
 import press_linkage
-from press_linkage import errors, kinematics
+from press_linkage import errors
 from press_linkage.effects import LINK_TEMPERATURE, link_heating
 from press_linkage.errors import press_linkage as slider_of
 from press_linkage.model import PRESS_LINKAGE
@@ -191,17 +191,17 @@ def test_every_deviation_reaches_the_exact_kinematics() -> None:
     for name in errors.SOURCES:
         moved = slider_of(PRESS_LINKAGE.inputs(**{name: 1e-4, "crank_angle": 0.5}))
         if name == errors.ARM:
-            wanted = kinematics.solve(kinematics.Geometry(), 0.5, platform_arm=1e-4)
+            wanted = solve(PAPER, 0.5, platform_arm=1e-4)
         else:
             kind, side = name.rsplit("_deviation_", 1)
-            off = {f"side_{side}": kinematics.Deviations(**{kind: 1e-4})}
-            wanted = kinematics.solve(kinematics.Geometry(), 0.5, **off)
+            off = {f"side_{side}": off_by(**{kind: 1e-4})}
+            wanted = solve(PAPER, 0.5, **off)
         assert moved.slider_position == wanted.slider_position, name
         assert moved.slider_tilt == wanted.slider_tilt, name
 
 
 def test_changed_mechanism_has_the_sensitivities_of_its_exact_kinematics() -> None:
-    names = {name: getattr(OTHER, name) for name in kinematics.Geometry.__dataclass_fields__}
+    names = {name: getattr(OTHER, name) for name in SIZES}
     found = ran(**names, crank_angle=0.3).outcomes["sensitivity"]
     assert max(found.agreement.values()) < 1e-8
     step = 1e-5
