@@ -43,10 +43,9 @@ class Made:
     )  # fmt: skip
     fractal_dimension: Float = given(2.4, "", symbol="D", note="fractal dimension of the surface, one above that of "
                                      "its profiles", source=TYPICAL, above=2, below=3)  # fmt: skip
-    fractal_roughness: Float = given(
-        1e-11, "m", symbol="G", note="fractal roughness, in the convention stated beside it", source=TYPICAL, above=0,
-        at_most=1e-3, stated_with="convention",
-    )  # fmt: skip
+    fractal_roughness: Float = given(1e-11, "m", symbol="G",
+                                     note="fractal roughness, in the convention stated beside it", source=TYPICAL,
+                                     above=0, at_most=1e-3, stated_with="convention")  # fmt: skip
     convention: Literal["areal", "one_direction", "profile"] = given(
         "areal", note="of G as stated: areal (ridges in all directions), one_direction (ridges across the trace), or "
         "profile (Weierstrass-Mandelbrot profile, with the logarithm of the density)",

@@ -38,10 +38,9 @@ class Drive:
     )  # fmt: skip
     fractal_dimension: Float = given(2.4, "", symbol="D_1", note="fractal dimension of the surface of the flank, one "
                                      "above that of its profiles", source="typical", above=2, below=3)  # fmt: skip
-    fractal_roughness: Float = given(
-        1e-11, "m", symbol="G_1", note="fractal roughness of the flank, in the convention stated beside it",
-        source="typical", above=0, at_most=1e-3, stated_with="convention",
-    )  # fmt: skip
+    fractal_roughness: Float = given(1e-11, "m", symbol="G_1",
+                                     note="fractal roughness of the flank, in the convention stated beside it",
+                                     source="typical", above=0, at_most=1e-3, stated_with="convention")  # fmt: skip
     mating_dimension: Float = given(None, "", symbol="D_2", note="fractal dimension of the mating flank; without it "
                                     "that one is smooth", above=2, below=3)  # fmt: skip
     mating_roughness: Float = given(None, "m", symbol="G_2", note="fractal roughness of the mating flank, likewise",
@@ -56,10 +55,8 @@ class Drive:
                             at_most=1000)  # fmt: skip
     longest_lag: Float = given(20.0, "um", symbol="xi_max", note="longest lag of the range in which two flanks are "
                                "added", source="a tenth of 0.2 mm", above=0, at_most=10000)  # fmt: skip
-    lags: Float = given(
-        (0.4, 0.6, 1.0, 1.6, 2.5, 4.0, 6.0, 10.0, 16.0, 20.0), "um", symbol="xi", along="lag",
-        note="lags at which the structure function is shown",
-    )  # fmt: skip
+    lags: Float = given((0.4, 0.6, 1.0, 1.6, 2.5, 4.0, 6.0, 10.0, 16.0, 20.0), "um", symbol="xi", along="lag",
+                        note="lags at which the structure function is shown")  # fmt: skip
     # Materials
     flexspline: Material = part(Material, index="1")
     circular: Material = part(Material, index="2")
@@ -96,10 +93,9 @@ class Drive:
                                source="30 % of the teeth", at_least=1, at_most=2000)  # fmt: skip
     torque: Float = given(25.0, "N*m", symbol="T", note="torque at the output; its sign is its sense",
                           source=CATALOGUE, at_least=-1e6, at_most=1e6)  # fmt: skip
-    reference_torque: Float = given(
-        1.0, "mN*m", symbol="T_0", note="torque from which the torsion counts; from 0 it would be infinite", above=0,
-        at_most=1e6,
-    )  # fmt: skip
+    reference_torque: Float = given(1.0, "mN*m", symbol="T_0",
+                                    note="torque from which the torsion counts; from 0 it would be infinite", above=0,
+                                    at_most=1e6)  # fmt: skip
     tooth_stiffness: Float = given(None, "N/m", symbol="k_t", note="bending of the teeth and rim of one pair; not "
                                    "given: rigid", above=0)  # fmt: skip
     line_contact: bool = given(False, note="whether the flanks as a whole flatten too, as two cylinders do")
@@ -107,10 +103,9 @@ class Drive:
     cup_wall: Float = given(0.35, "mm", symbol="t_c", note="wall of the cup", above=0, at_most=100)
     cup_length: Float = given(0.0, "mm", symbol="l_c", note="length of the cup that twists; 0: it is rigid",
                               at_least=0, at_most=5000)  # fmt: skip
-    drive_compliance: Float = given(
-        0.0, "urad/(N*m)", symbol="c_s", note="compliance in series with the mesh: cup, wave generator, bearing, rig",
-        at_least=0, at_most=1e6,
-    )  # fmt: skip
+    drive_compliance: Float = given(0.0, "urad/(N*m)", symbol="c_s",
+                                    note="compliance in series with the mesh: cup, wave generator, bearing, rig",
+                                    at_least=0, at_most=1e6)  # fmt: skip
     # What is asked
     required_stiffness: Float = given(None, "N/m", symbol="K_req", note="stiffness asked of the pair; not given: none",
                                       above=0, at_most=1e15)  # fmt: skip
@@ -219,10 +214,9 @@ class Stiffness:
         "um^2", symbol="A_t", note="truncated area of all contacts",
         formula="(dimension - 1) / (3 - dimension) * domain_factor**((3 - dimension) / 2) * largest_area",
     )  # fmt: skip
-    real_area: Float = found(
-        "um^2", symbol="A_r", note="real area: all of the plastic contacts, half of the truncated elastic ones",
-        formula="contact_area * (1 + max(area_ratio, 1)**((dimension - 3) / 2)) / 2",
-    )  # fmt: skip
+    real_area: Float = found("um^2", symbol="A_r",
+                             note="real area: all of the plastic contacts, half of the truncated elastic ones",
+                             formula="contact_area * (1 + max(area_ratio, 1)**((dimension - 3) / 2)) / 2")  # fmt: skip
     flank_share: Float = found("%", symbol="q_A", note="real area over the area of the flank",
                                formula="real_area / (face_width * flank_height)")  # fmt: skip
     tip_factor: Float = found("", symbol="f_t", note="factor on the stiffness by the radius of tips",
@@ -245,11 +239,10 @@ class Stiffness:
                                     "of the largest contact, or half the patch")  # fmt: skip
     clearance_multiple: Float = found("", symbol="n_b", note="amplitudes that count as clearance", digits=2,
                                       method="by clearance_rule: 1, or 2 for the whole interference")  # fmt: skip
-    clearance: Float = found(
-        "nm", symbol="b", note="clearance of equation 7, as printed; it grows with the load", source=PATENT_7,
-        formula="clearance_multiple * roughness**(dimension - 2) * sqrt(log(density))"
-        " * (2 * clearance_radius)**(3 - dimension)",
-    )  # fmt: skip
+    clearance: Float = found("nm", symbol="b", note="clearance of equation 7, as printed; it grows with the load",
+                             source=PATENT_7,
+                             formula="clearance_multiple * roughness**(dimension - 2) * sqrt(log(density))"
+                                     " * (2 * clearance_radius)**(3 - dimension)")  # fmt: skip
     rough_height: Float = found("um", symbol="S_1", note="height of the flank, lowest to highest point",
                                 method="as stated, else measured, else of its fractal patch")  # fmt: skip
     mating_rough_height: Float = found("um", symbol="S_2", note="height of the mating flank; 0 if smooth",
@@ -281,9 +274,8 @@ class Stiffness:
     line_stiffness: Float = found("N/m", symbol="k_H", note="of flanks as cylinders, where line_contact counts",
                                   source="Yang and Sun 1985",
                                   formula="pi * equivalent_modulus * face_width / 2")  # fmt: skip
-    normal_stiffness: Float = found(
-        "N/m", symbol="K_n", note="stiffness of all engaged pairs along their normals", method=SHARES
-    )
+    normal_stiffness: Float = found("N/m", symbol="K_n", note="stiffness of all engaged pairs along their normals",
+                                    method=SHARES)  # fmt: skip
     mesh_stiffness: Float = found("N*m/rad", symbol="K_mesh", note="stiffness of all engaged pairs about the axis",
                                   formula="normal_stiffness * effective_radius**2")  # fmt: skip
     mesh_torsion: Float = found("urad", symbol="theta_m", note="torsion of the mesh, from the reference torque on",
@@ -318,7 +310,6 @@ class Stiffness:
                                      method="three straight pieces", source=CATALOGUES)  # fmt: skip
     catalogue_stiffness: Float = found("N*m/rad", symbol="K_cat", note="stiffness of such a drive at the torque",
                                        method="the piece in which the torque lies", source=CATALOGUES)  # fmt: skip
-    rough_share: Float = found(
-        "%", symbol="q_theta", note="share of the catalogue's torsion that the rough contacts explain",
-        formula="cases(rough_torsion / catalogue_torsion, abs(torque) > 0, 0)",
-    )  # fmt: skip
+    rough_share: Float = found("%", symbol="q_theta",
+                               note="share of the catalogue's torsion that the rough contacts explain",
+                               formula="cases(rough_torsion / catalogue_torsion, abs(torque) > 0, 0)")  # fmt: skip

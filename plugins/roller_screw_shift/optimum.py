@@ -738,8 +738,7 @@ class Choice:
                                    method=DRAWN)  # fmt: skip
     grid_shift: Float = found("", symbol="x_E,grid", note="optimal shift of the roller on a dense grid",
                               method="a check of Box's method")  # fmt: skip
-    grid_distance: Float = found("", symbol="Delta x_grid", note="between both optima",
-                                 method="magnitude")  # fmt: skip
+    grid_distance: Float = found("", symbol="Delta x_grid", note="between both optima", method="magnitude")
     evaluations: Float = found("", symbol="n_eval", note="shifts that Box's method tried", method="drawn ones counted")
     equal_sliding_roller: Float = found("", symbol="x_E,3", note="shift of the roller at which both roots slide alike",
                                         method="whatever the limits")  # fmt: skip

@@ -175,19 +175,16 @@ class Meshing:
         formula="min((tip_radius_ring**2 - tip_radius_roller**2 - mounted_distance**2)"
         " / (2 * mounted_distance * tip_radius_roller), 1)",
     )  # fmt: skip
-    crossing_angle_roller: Float = found(
-        "deg", symbol="delta_E", note="where the tip circles cross, seen from the roller", source="equation 9",
-        formula="acos(crossing_cosine_roller)",
-    )  # fmt: skip
+    crossing_angle_roller: Float = found("deg", symbol="delta_E",
+                                         note="where the tip circles cross, seen from the roller", source="equation 9",
+                                         formula="acos(crossing_cosine_roller)")  # fmt: skip
     crossing_cosine_ring: Float = found(
         "", symbol="c_I", note="cosine of the next angle; 1 where the tip circles do not cross", source="equation 9",
         formula="min((tip_radius_ring**2 - tip_radius_roller**2 + mounted_distance**2)"
         " / (2 * mounted_distance * tip_radius_ring), 1)",
     )  # fmt: skip
-    crossing_angle_ring: Float = found(
-        "deg", symbol="delta_I", note="where the tip circles cross, seen from the ring", source="equation 9",
-        formula="acos(crossing_cosine_ring)",
-    )  # fmt: skip
+    crossing_angle_ring: Float = found("deg", symbol="delta_I", note="where the tip circles cross, seen from the ring",
+                                       source="equation 9", formula="acos(crossing_cosine_ring)")  # fmt: skip
     tip_clearance: Float = found(
         "rad", symbol="G_s", note="clearance of the tips where their circles cross, 2π to a tooth; 2π where they do "
         "not cross", source="equation 9, with its index 1 read as the roller",
@@ -209,11 +206,10 @@ class Meshing:
     )  # fmt: skip
     tips_count: Float = found("", symbol="i_a", note="1: sliding at the tips counts too, so the largest on the path of "
                               "contact; 0: at the roots alone", method="as sliding_reading has it")  # fmt: skip
-    sliding_roller: Float = found(
-        "", symbol="eta_E", note="specific sliding of the roller that counts, its largest on the path of contact",
-        formula="max(root_sliding_roller, tips_count * tip_sliding_roller)",
-        source="sliding changes in one direction along the path",
-    )  # fmt: skip
+    sliding_roller: Float = found("", symbol="eta_E",
+                                  note="specific sliding of the roller that counts, its largest on the path of contact",
+                                  formula="max(root_sliding_roller, tips_count * tip_sliding_roller)",
+                                  source="sliding changes in one direction along the path")  # fmt: skip
     root_sliding_ring: Float = found(
         "", symbol="eta_I,f", note="specific sliding at the root of the ring, where the tip of the roller meets it; "
         "magnitude", source="1 - v_E/v_I of the speeds along the flanks",
@@ -226,11 +222,10 @@ class Meshing:
         formula="abs((ring_teeth - roller_teeth) * (tan(mounted_angle) - tan(tip_angle_ring))"
         " / (roller_teeth * tan(tip_angle_ring)))",
     )  # fmt: skip
-    sliding_ring: Float = found(
-        "", symbol="eta_I", note="specific sliding of the ring that counts, its largest on the path of contact",
-        formula="max(root_sliding_ring, tips_count * tip_sliding_ring)",
-        source="sliding changes in one direction along the path",
-    )  # fmt: skip
+    sliding_ring: Float = found("", symbol="eta_I",
+                                note="specific sliding of the ring that counts, its largest on the path of contact",
+                                formula="max(root_sliding_ring, tips_count * tip_sliding_ring)",
+                                source="sliding changes in one direction along the path")  # fmt: skip
     ring_meshes: Float = found(
         "", symbol="n_I/n_E", note="meshes of a tooth of the ring while one of a roller meshes once; decides how fast "
         "either wears", formula="rollers * roller_teeth / ring_teeth", source="counts of teeth",
@@ -390,8 +385,7 @@ class Meshing:
     wear_depth: Float = found("um", symbol="h", note="wear of the roller where it is deepest", method=BASE)
     axial_shift: Float = found("um", symbol="Delta z", note="of a roller along the screw", method=BASE)
     friction_torque: Float = found("N*m", symbol="M_R", note="of the meshes, at the screw", method=BASE)
-    backlash: Float = found(
-        "um", symbol="j_t", note="arc between the free flanks at the pitch circle as mounted; below 0 the teeth jam. "
-        "Centres farther apart close an internal pair", source=INVOLUTE,
-        formula="2 * mounted_distance * (inv(working_angle) - inv(mounted_angle))",
-    )  # fmt: skip
+    backlash: Float = found("um", symbol="j_t",
+                            note="arc between the free flanks at the pitch circle as mounted; below 0 the teeth jam. "
+                                 "Centres farther apart close an internal pair", source=INVOLUTE,
+                            formula="2 * mounted_distance * (inv(working_angle) - inv(mounted_angle))")  # fmt: skip

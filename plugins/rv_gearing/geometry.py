@@ -162,11 +162,10 @@ class MeshSize:
                                          formula="contact_ratio / cos(base_helix_angle)**2")  # fmt: skip
     tooth_height: Float = found("mm", symbol="h", note="tooth height", source=ISO_21771,
                                 formula="(addendum + dedendum) * module")  # fmt: skip
-    curvature: Float = found(
-        "mm", symbol="rho_red", note="radius of relative curvature at the pitch point",
-        source="ISO 6336-2:2006, clause 12", formula="base_diameter_sun * base_diameter_planet * tan(working_angle)"
-        " / (2 * (base_diameter_sun + base_diameter_planet))",
-    )  # fmt: skip
+    curvature: Float = found("mm", symbol="rho_red", note="radius of relative curvature at the pitch point",
+                             source="ISO 6336-2:2006, clause 12",
+                             formula="base_diameter_sun * base_diameter_planet * tan(working_angle)"
+                                     " / (2 * (base_diameter_sun + base_diameter_planet))")  # fmt: skip
 
 
 def mesh_size(stage: Gearing, load: Load) -> MeshSize:

@@ -390,8 +390,7 @@ class Listed:
     group_circle_low: Float = found("mm", symbol="R_p,min", along="group_number", note="least radius of the pin circle",
                                     source="equations 3 and 4")  # fmt: skip
     group_circle_high: Float = found("mm", symbol="R_p,max", along="group_number",
-                                     note="largest radius of the pin circle",
-                                     source="equations 3 and 4")  # fmt: skip
+                                     note="largest radius of the pin circle", source="equations 3 and 4")  # fmt: skip
     group_common_first: Float = found("", symbol="g_1", along="group_number", note="largest common factor of the teeth "
                                       "of sun and planet; 1: hunting teeth")  # fmt: skip
     group_common_second: Float = found("", symbol="g_2", along="group_number",
@@ -404,9 +403,8 @@ class Listed:
                                     "better; 2: hunting teeth; 3: planets in phase; 4: neither; none: planets touch",
                                     )  # fmt: skip
     group_root_stress_sun: Float = found("MPa", symbol="sigma_F1", along="group_number", note="root stress of the sun")
-    group_root_stress_planet: Float = found(
-        "MPa", symbol="sigma_F2", along="group_number", note="root stress of the planet"
-    )
+    group_root_stress_planet: Float = found("MPa", symbol="sigma_F2", along="group_number",
+                                            note="root stress of the planet")  # fmt: skip
     group_contact_stress_sun: Float = found("MPa", symbol="sigma_H1", along="group_number",
                                             note="contact stress of the sun")  # fmt: skip
     group_contact_stress_planet: Float = found("MPa", symbol="sigma_H2", along="group_number",

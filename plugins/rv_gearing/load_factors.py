@@ -129,10 +129,9 @@ class Stiffness:
     )  # fmt: skip
     theoretical_stiffness: Float = found("N/(mm*um)", symbol="c'_th", note="stiffness of a pair of teeth, theoretical",
                                          formula="1 / tooth_compliance", source=CLAUSE_9)  # fmt: skip
-    rack_factor: Float = found(
-        "", symbol="C_B", note="basic rack factor", numeric=True, source="ISO 6336-1:2006, 9.3.1.4",
-        formula="(1 + 0.5 * (1.2 - dedendum)) * (1 - 0.02 * (20 - pressure_angle))",
-    )  # fmt: skip
+    rack_factor: Float = found("", symbol="C_B", note="basic rack factor", numeric=True,
+                               source="ISO 6336-1:2006, 9.3.1.4",
+                               formula="(1 + 0.5 * (1.2 - dedendum)) * (1 - 0.02 * (20 - pressure_angle))")  # fmt: skip
     modulus_factor: Float = found(
         "", symbol="zeta", note="moduli of both gears against steel", numeric=True, source=CLAUSE_9,
         formula="2 * young_modulus_sun * young_modulus_planet / ((young_modulus_sun + young_modulus_planet) * 206)",
@@ -201,10 +200,9 @@ class Dynamics:
         formula="4 * inertia_sun * inertia_planet / (planets * inertia_planet * base_diameter_sun**2"
         " + inertia_sun * base_diameter_planet**2)",
     )  # fmt: skip
-    resonance_speed: Float = found(
-        "rpm", symbol="n_E", note="resonance speed of the mesh", source="ISO 6336-1:2006, 6.5.3",
-        formula="sqrt(mesh_stiffness / reduced_mass) / (2 * pi * teeth_sun)",
-    )  # fmt: skip
+    resonance_speed: Float = found("rpm", symbol="n_E", note="resonance speed of the mesh",
+                                   source="ISO 6336-1:2006, 6.5.3",
+                                   formula="sqrt(mesh_stiffness / reduced_mass) / (2 * pi * teeth_sun)")  # fmt: skip
     resonance_ratio: Float = found("", symbol="N", note="mesh speed over resonance speed",
                                    source="ISO 6336-1:2006, 6.5.3", formula="mesh_speed / resonance_speed")  # fmt: skip
     resonance_limit: Float = found(
@@ -243,16 +241,14 @@ class Dynamics:
         formula="cases(0.75, total_contact_ratio <= 1.5, 0.125 * sin(pi * (total_contact_ratio - 2)) + 0.875,"
         " total_contact_ratio <= 2.5, 1)",
     )  # fmt: skip
-    dynamic_slow: Float = found(
-        "", symbol="K", note="growth of the dynamic factor below resonance", source="ISO 6336-1:2006, 6.5.4",
-        formula="0.32 * pitch_influence + profile_coefficient * profile_influence"
-        " + stiffness_coefficient * relief_influence",
-    )  # fmt: skip
-    dynamic_resonant: Float = found(
-        "", symbol="K_V,115", note="dynamic factor at resonance", source="ISO 6336-1:2006, 6.5.5",
-        formula="1 + 0.32 * pitch_influence + profile_coefficient * profile_influence"
-        " + resonance_coefficient * relief_influence",
-    )  # fmt: skip
+    dynamic_slow: Float = found("", symbol="K", note="growth of the dynamic factor below resonance",
+                                source="ISO 6336-1:2006, 6.5.4",
+                                formula="0.32 * pitch_influence + profile_coefficient * profile_influence"
+                                        " + stiffness_coefficient * relief_influence")  # fmt: skip
+    dynamic_resonant: Float = found("", symbol="K_V,115", note="dynamic factor at resonance",
+                                    source="ISO 6336-1:2006, 6.5.5",
+                                    formula="1 + 0.32 * pitch_influence + profile_coefficient * profile_influence"
+                                            " + resonance_coefficient * relief_influence")  # fmt: skip
     dynamic_fast: Float = found(
         "", symbol="K_V,150", note="dynamic factor above resonance", source="ISO 6336-1:2006, 6.5.6",
         formula="0.47 * pitch_influence + fast_coefficient * profile_influence + fast_constant",

@@ -148,8 +148,7 @@ class GearStress:
 class Strength:
     """The first stage under its load."""
 
-    contact_stress: Float = found("MPa", symbol="sigma_H", note="contact stress of the sun",
-                                  method="as of the sun")  # fmt: skip
+    contact_stress: Float = found("MPa", symbol="sigma_H", note="contact stress of the sun", method="as of the sun")
     transmission_error: Float = found("um", symbol="TE", note="along the line of action", method=BASE)
     efficiency: Float = found("", symbol="eta", note="input to output", source="equations 6 and 7 of the paper",
                               formula="mesh_efficiency * bearing_efficiency**3")  # fmt: skip

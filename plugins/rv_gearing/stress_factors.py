@@ -19,11 +19,9 @@ MPA = 1e6
 class ContactFactors:
     """Factors of the contact stress that sun and planet share, and the single contact factors of both."""
 
-    zone_factor: Float = found(
-        "", symbol="Z_H", note="zone factor; as stated where it is", source=ISO_2 + "6",
-        formula="either(stated_zone_factor, sqrt(2 * cos(base_helix_angle) * cos(working_angle)"
-        " / (cos(transverse_angle)**2 * sin(working_angle))))",
-    )  # fmt: skip
+    zone_factor: Float = found("", symbol="Z_H", note="zone factor; as stated where it is", source=ISO_2 + "6",
+                               formula="either(stated_zone_factor, sqrt(2 * cos(base_helix_angle) * cos(working_angle)"
+                                       " / (cos(transverse_angle)**2 * sin(working_angle))))")  # fmt: skip
     elasticity_factor: Float = found(
         "MPa**0.5", symbol="Z_E", note="elasticity factor; as stated where it is", source=ISO_2 + "7",
         formula="either(stated_elasticity_factor, sqrt(1 / (pi * ((1 - poisson_ratio_sun**2) / young_modulus_sun"
@@ -178,11 +176,9 @@ class GearRoot:
         "", symbol="s_Fn", note="chord of the critical section, in modules", source=ISO_3 + "6",
         formula="virtual_teeth * sin(pi / 3 - root_angle) + sqrt(3) * (root_offset / cos(root_angle) - fillet)",
     )  # fmt: skip
-    root_fillet: Float = found(
-        "", symbol="rho_F", note="radius of the fillet there, in modules", source=ISO_3 + "6",
-        formula="fillet + 2 * root_offset**2 / (cos(root_angle)"
-        " * (virtual_teeth * cos(root_angle)**2 - 2 * root_offset))",
-    )  # fmt: skip
+    root_fillet: Float = found("", symbol="rho_F", note="radius of the fillet there, in modules", source=ISO_3 + "6",
+                               formula="fillet + 2 * root_offset**2 / (cos(root_angle)"
+                                       " * (virtual_teeth * cos(root_angle)**2 - 2 * root_offset))")  # fmt: skip
     notch_parameter: Float = found("", symbol="q_s", note="notch parameter", formula="root_chord / (2 * root_fillet)",
                                    source=ISO_3 + "7")  # fmt: skip
     virtual_tip_diameter: Float = found("mm", symbol="d_an", note="tip diameter of the virtual spur gear",
@@ -273,10 +269,8 @@ class BendingFactors:
         formula="cases(1, accuracy_grade > 4 or virtual_contact_ratio <= 2.05, 2.366 - 0.666 * virtual_contact_ratio,"
         " virtual_contact_ratio <= 2.5, 0.7)",
     )  # fmt: skip
-    tip_load_factor: Float = found(
-        "", symbol="f_Ca", note="more load at the tip where its relief is missing",
-        formula="max(1 + tooth_stiffness * relief_deviation / line_load, 0)",
-    )  # fmt: skip
+    tip_load_factor: Float = found("", symbol="f_Ca", note="more load at the tip where its relief is missing",
+                                   formula="max(1 + tooth_stiffness * relief_deviation / line_load, 0)")  # fmt: skip
 
 
 def bending_factors(stage: Gearing, mesh: MeshSize, stiffness: Float, line_load: Float) -> BendingFactors:

@@ -9,18 +9,14 @@ from truing import Condition, Effect, Float, Unknown
 
 # What else must be measured before the effects of the reducer can act: each condition once, shared by its effects
 
-HOUSING_TEMPERATURE = Condition(
-    "housing_temperature", "degC", reference=20, low=15, high=60, note="of the housing with its pins, when measured"
-)  # fmt: skip
-DISC_TEMPERATURE = Condition(
-    "disc_temperature", "degC", reference=20, low=15, high=60, note="of the cycloid discs, when measured"
-)  # fmt: skip
-OIL_TEMPERATURE = Condition(
-    "oil_temperature", "degC", reference=40, low=20, high=80, note="of the lubricant at work, mean since new"
-)  # fmt: skip
-OUTPUT_ANGLE = Condition(
-    "output_angle", "deg", reference=0, low=0, high=360, note="of the output, at which the backlash is read"
-)  # fmt: skip
+HOUSING_TEMPERATURE = Condition("housing_temperature", "degC", reference=20, low=15, high=60,
+                                note="of the housing with its pins, when measured")  # fmt: skip
+DISC_TEMPERATURE = Condition("disc_temperature", "degC", reference=20, low=15, high=60,
+                             note="of the cycloid discs, when measured")  # fmt: skip
+OIL_TEMPERATURE = Condition("oil_temperature", "degC", reference=40, low=20, high=80,
+                            note="of the lubricant at work, mean since new")  # fmt: skip
+OUTPUT_ANGLE = Condition("output_angle", "deg", reference=0, low=0, high=360,
+                         note="of the output, at which the backlash is read")  # fmt: skip
 CRANK_ANGLE = Condition(
     "crank_angle", "deg", reference=0, low=0, high=360,
     note="of the throw of the crank against the housing, at which the backlash is read",

@@ -85,10 +85,9 @@ class Chances:
 
     accuracy_reliability: Float = found("%", symbol="R_T", note="share of machines within the permitted backlash",
                                         method=COUNTED)  # fmt: skip
-    normal_reliability: Float = found(
-        "%", symbol="R_N", note="the same for a normal distribution", method="first order; equation 21 is linear",
-        formula="Phi((permitted_backlash - backlash_mean) / backlash_sd)",
-    )  # fmt: skip
+    normal_reliability: Float = found("%", symbol="R_N", note="the same for a normal distribution",
+                                      method="first order; equation 21 is linear",
+                                      formula="Phi((permitted_backlash - backlash_mean) / backlash_sd)")  # fmt: skip
     backlash_mean: Float = found("arcmin", symbol="mu", note="mean of the machines", method="first order")
     backlash_sd: Float = found("arcmin", symbol="sigma", note="standard deviation of the machines",
                                method="first order")  # fmt: skip
