@@ -263,13 +263,13 @@ def tables(flank: "Flank") -> "Iterator[Block]":
 def _row(found: "Estimate", flank: "Flank") -> tuple[str | float | None, ...]:
     low, high = (found.lags[0], found.lags[-1]) if found.lags.size else (None, None)
     state = "self-affine, not used" if found.is_accepted else "refused, for comparison only"
-    known = [_known(value) for value in (found.dimension, found.roughness, found.r_squared)]
+    fit = [or_none(value) for value in (found.dimension, found.roughness, found.r_squared)]
     return (
         ALONG[found.direction],
         None if low is None else MICRO * float(low),
         None if high is None else MICRO * float(high),
-        *known,
-        _known(found.line_scatter),
+        *fit,
+        or_none(found.line_scatter),
         "used" if found.direction == flank.chosen else state,
     )
 
@@ -279,8 +279,8 @@ def _others(flank: "Flank") -> Table:
     rows = [
         (
             ALONG[found.direction],
-            *(_known(value) for value in (found.dimension, found.window_dimension, found.noise_dimension)),
-            _known(100.0 * found.noise_share),
+            *(or_none(value) for value in (found.dimension, found.window_dimension, found.noise_dimension)),
+            or_none(100.0 * found.noise_share),
         )
         for found in flank.estimates
     ]
@@ -292,7 +292,8 @@ def _others(flank: "Flank") -> Table:
     return Table(f"{flank.surface.name}: D_s by other ways, for comparison", columns, rows, ("", "", "", "", "%"), note)
 
 
-def _known(value: float) -> float | None:
+def or_none(value: float) -> float | None:
+    """Return a number, or None in place of NaN."""
     return value if value == value else None
 
 

@@ -11,6 +11,7 @@ from matplotlib import colormaps
 from matplotlib.figure import Figure
 
 from harmonic_fractal.estimate import Estimate, straight_fit
+from harmonic_fractal.figures import BLUE, GREY, INK, MICRO, NANO, ORANGE, PALE, WIDTH, quiet
 from harmonic_fractal.generators import Array
 from harmonic_fractal.made_flank import (
     FlankFile,
@@ -32,9 +33,6 @@ from truing import Block, Drawing, Model, Record, Section, Table, Words
 # The figures of a made flank: the patch, some of its lines, and its structure function beside the truth
 
 Curve = tuple[Array, Array]
-BLUE, ORANGE, GREEN, INK, GREY, PALE = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c", "#e8eff5"
-WIDTH = 6.4
-MICRO, NANO = 1e6, 1e9
 SHOWN = 5  # lines that are drawn
 
 
@@ -71,7 +69,7 @@ def lines_figure(surface: Surface) -> "Figure":
             name = f"y = {MICRO * surface.spacing_y * row:.4g} µm"
             panel.annotate(name, (1.0, place * gap), xycoords=("axes fraction", "data"), fontsize=7.5, va="center")
     panel.set_xlim(x[0], x[-1])
-    _quiet(panel, "x, µm", "height, nm" if len(chosen) == 1 else "height, nm, each line set off")
+    quiet(panel, "x, µm", "height, nm" if len(chosen) == 1 else "height, nm, each line set off")
     return figure
 
 
@@ -87,11 +85,11 @@ def structure_figure(made: Made, truth: Truth, answer: "MadeFlank", found: Estim
     for panel, over in ((upper, None), (middle, truth)):
         _curves(panel, over, curves, found)
     upper.set_yscale("log")
-    _quiet(upper, "", "S, nm²")
+    quiet(upper, "", "S, nm²")
     upper.legend(loc="best")
     low, high = middle.get_ylim()
     middle.set_ylim(max(low, 0.0), min(high, 3.0))
-    _quiet(middle, "", "S over power law")
+    quiet(middle, "", "S over power law")
     _local_slopes(lower, truth, (lags, exact), found)
     return figure
 
@@ -127,15 +125,8 @@ def _local_slopes(panel: Any, truth: Truth, exact: Curve, found: Estimate) -> No
     if found.is_accepted:
         panel.axvspan(MICRO * found.range[0], MICRO * found.range[1], color=PALE, zorder=0, label="self-affine range")
     panel.set_ylim(0.95, 2.05)
-    _quiet(panel, "lag, µm", "local dimension of profiles")
+    quiet(panel, "lag, µm", "local dimension of profiles")
     panel.legend(loc="best")
-
-
-def _quiet(panel: Any, x_label: str, y_label: str) -> None:
-    panel.set_xlabel(x_label)
-    panel.set_ylabel(y_label)
-    panel.grid(alpha=0.4)
-    panel.set_axisbelow(True)
 
 
 # The sheet of a made flank

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from harmonic_fractal.contact import Rough, contact_of, flanks_of, interface_of, pressed, together
-from harmonic_fractal.figures import BLUE, panels, quiet
+from harmonic_fractal.figures import BLUE, or_none, panels, quiet
 from harmonic_fractal.flank import Flank
 from harmonic_fractal.quantities import Drive
 from truing import (
@@ -254,16 +254,16 @@ class Propagated:
         for result in self.together:
             found, unit = self.summary(result), self.units[result]
             one = quantity(f"1 {unit}", unit)
-            numbers = {name: _known(getattr(found, name) / one) for name in ("nominal", "median")}
-            interval = [_known(end / one) for end in (found.low, found.high)]
-            shares = {"relative_sd": _known(found.relative_sd), "if_independent": _known(found.independent_sd)}
+            numbers = {name: or_none(getattr(found, name) / one) for name in ("nominal", "median")}
+            interval = [or_none(end / one) for end in (found.low, found.high)]
+            shares = {"relative_sd": or_none(found.relative_sd), "if_independent": or_none(found.independent_sd)}
             results[result] = {**numbers, "interval95": interval, "unit": unit, **shares, "failed": found.failed}
         sd = self.pairs.std(axis=0, ddof=1)
         return {
             "draws": len(self.pairs),
             "dimension_sd": float(sd[0]),
             "log_roughness_sd": float(sd[1]),
-            "correlation": _known(self.correlation),
+            "correlation": or_none(self.correlation),
             "results": results,
         }
 
@@ -341,10 +341,6 @@ def _relative_sd(values: "Array") -> float:
     known = values[np.isfinite(values)]
     mean = abs(float(known.mean())) if known.size > 1 else 0.0
     return float(known.std(ddof=1)) / mean if mean else float("nan")
-
-
-def _known(value: Any) -> float | None:
-    return float(value) if value == value else None
 
 
 def _spoken(unit: str) -> str:
@@ -451,11 +447,11 @@ def _flank_json(flank: "Flank") -> dict[str, Any]:
 
 
 def _estimate_json(found: Any) -> dict[str, Any]:
-    def known(values: Any, factor: float = 1.0) -> Any:
+    def list_of(values: Any, factor: float = 1.0) -> Any:
         return [float(value) * factor if value == value else None for value in values]
 
-    dimension, roughness, r_squared = known((found.dimension, found.roughness, found.r_squared))
-    window, with_noise, share = known((found.window_dimension, found.noise_dimension, found.noise_share))
+    dimension, roughness, r_squared = list_of((found.dimension, found.roughness, found.r_squared))
+    window, with_noise, share = list_of((found.window_dimension, found.noise_dimension, found.noise_share))
     return {
         "accepted": found.is_accepted,
         "reason": found.reason,
@@ -463,9 +459,9 @@ def _estimate_json(found: Any) -> dict[str, Any]:
         "roughness": {"value": roughness, "unit": "m", "convention": "areal"},
         "r_squared": r_squared,
         "for_comparison": {"roughness_length": window, "with_noise": with_noise, "noise_share": share},
-        "range": {"unit": "um", "values": known(found.range, 1e6)},
-        "lags": {"unit": "um", "values": known(found.lags, 1e6)},
-        "structure_function": {"unit": "um^2", "values": known(found.values, 1e12)},
-        "local_lags": {"unit": "um", "values": known(found.local_lags, 1e6)},
-        "local_dimensions": known(found.local_dimensions),
+        "range": {"unit": "um", "values": list_of(found.range, 1e6)},
+        "lags": {"unit": "um", "values": list_of(found.lags, 1e6)},
+        "structure_function": {"unit": "um^2", "values": list_of(found.values, 1e12)},
+        "local_lags": {"unit": "um", "values": list_of(found.local_lags, 1e6)},
+        "local_dimensions": list_of(found.local_dimensions),
     }

@@ -1,6 +1,7 @@
 """The sheet, in the order an engineer reads it."""
 
 from collections.abc import Sequence
+from dataclasses import fields
 from functools import partial
 from math import degrees, isfinite
 from typing import TypeGuard
@@ -10,20 +11,14 @@ from press_linkage.errors import KINDS, POLAR_ANGLES, SOURCES
 from press_linkage.figures import along_the_synthesis, mechanism, over_the_turn, salience_bars, way
 from press_linkage.kinematics import top_crank_angle
 from press_linkage.published import WHERE
-from press_linkage.quantities import Press, Slider
+from press_linkage.quantities import Influence, Press, Slider
 from truing import Block, Drawing, Record, Section, Sensitivities, Table, Words
 
 Run = Record[Press, Slider]
 
-CHAIN = (
-    "crank_direction", "platform_height", "rod_direction", "ground_distance", "knee_along", "knee_across", "knee_y",
-    "knee_z", "drive_direction", "upper_direction", "lower_direction", "nominal_position", "slider_shift",
-)  # fmt: skip
-INFLUENCES = (
-    "lower_knee_length", "upper_knee_length", "knee_drive_length", "slider_half_width", "slider_joint_angle",
-    "ground_pivot_radius", "ground_pivot_angle", "platform_arm", "rod_length", "crank_radius", "crank_angle",
-    "crank_pivot_radius", "crank_pivot_angle", "platform_half_width", "platform_joint_angle",
-)  # fmt: skip
+DECLARED = tuple(field.name for field in fields(Influence))
+INFLUENCES = tuple(name for name in DECLARED if name.startswith("influence_"))
+CHAIN = DECLARED[: DECLARED.index(INFLUENCES[0])]
 MICROMETRE_2 = 1e-12
 MICRORADIAN_2 = 1e-12
 
@@ -133,7 +128,7 @@ SECTIONS = [
     ),
     Section(
         "Influence of the errors",
-        *(f"influence_{kind}" for kind in INFLUENCES),
+        *INFLUENCES,
         text="Change of the slider face over one joint by each error of its side, from the loop increments. In the "
         "slider position each counts half (the platform arm, common to both sides, fully); in the tilt an error behind "
         "the platform counts by its share in 2 l, one of the driven chain not at all, because the platform is guided.",

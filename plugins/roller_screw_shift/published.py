@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Literal
 
+from roller_screw_shift.objectives import PRINTED_RANGES, PRINTED_WEIGHTS
 from truing import Finding, Published
 
 # What the paper prints, for comparison with what this calculation gives under the same settings
@@ -72,24 +73,27 @@ def weights() -> Iterator[Published]:
     """The printed weights beside those that the paper's rule gives from the ranges that it prints."""
     rule = only(weights="printed_ranges")
     for name, result, value, unit, limit in (
-        ("weight of the sum of the shifts", "weight_sum", "0.35", "", "2.00"),
-        ("weight of the stress difference", "weight_stress", "0.01", "1/MPa^2", "13.2 MPa"),
-        ("weight of the sliding difference", "weight_sliding", "0.81", "", "0.86"),
+        ("weight of the sum of the shifts", "weight_sum", f"{PRINTED_WEIGHTS[0]:.2f}", "", "2.00"),
+        ("weight of the stress difference", "weight_stress", f"{PRINTED_WEIGHTS[1]:.2f}", "1/MPa^2", "13.2 MPa"),
+        ("weight of the sliding difference", "weight_sliding", f"{PRINTED_WEIGHTS[2]:.2f}", "", "0.86"),
     ):
         yield differing((name, result, value, unit), RULE.format(limit=limit), rule)
 
 
 def ranges() -> Iterator[Published]:
     """Both ends of the range of each objective."""
-    yield differing(("smallest sum of the shifts", "least_sum", "2.68", ""), SUM, only())
-    yield differing(("largest sum of the shifts", "most_sum", "5.38", ""), SUM, only())
-    yield differing(("smallest stress difference", "least_stress_difference", "0.0", "MPa"), NEVER, only())
-    yield printed(("largest stress difference", "most_stress_difference", "33.2", "MPa"), "calibrated", LOAD,
-                  only())  # fmt: skip
-    yield differing(("smallest sliding difference", "least_sliding", "0.00", ""), HELD, only())
-    yield printed(("smallest sliding difference, contact ratio 1.2", "least_sliding", "0.00", ""), "predicted",
+    (least_sum, most_sum), (least_stress, most_stress), (least_sliding, most_sliding) = PRINTED_RANGES
+    low, high = f"{least_sliding:.2f}", f"{most_sliding:.2f}"
+    yield differing(("smallest sum of the shifts", "least_sum", f"{least_sum:.2f}", ""), SUM, only())
+    yield differing(("largest sum of the shifts", "most_sum", f"{most_sum:.2f}", ""), SUM, only())
+    yield differing(("smallest stress difference", "least_stress_difference", f"{least_stress:.1f}", "MPa"), NEVER,
+                    only())  # fmt: skip
+    yield printed(("largest stress difference", "most_stress_difference", f"{most_stress:.1f}", "MPa"), "calibrated",
+                  LOAD, only())  # fmt: skip
+    yield differing(("smallest sliding difference", "least_sliding", low, ""), HELD, only())
+    yield printed(("smallest sliding difference, contact ratio 1.2", "least_sliding", low, ""), "predicted",
                   REACHED, only(least_contact_ratio="1.2"))  # fmt: skip
-    yield printed(("largest sliding difference", "most_sliding", "3.08", ""), "calibrated", BOUND, only())
+    yield printed(("largest sliding difference", "most_sliding", high, ""), "calibrated", BOUND, only())
 
 
 def optima() -> Iterator[Published]:

@@ -101,13 +101,13 @@ def deviations(stage: Gearing, diameter: Float) -> tuple[Float, Float, Float]:
     return grade * pitch, grade * profile, grade * helix
 
 
-def run_in(stage: Gearing, gear: Gear, deviation: Float, velocity: Float) -> Float:
-    """Return what a gear takes off a pitch or profile deviation, m."""
+def run_in(stage: Gearing, gear: Gear, deviation: Float, velocity: Float, *, times: float = 1.0) -> Float:
+    """Return what a gear takes off a pitch or profile deviation, m; of a misalignment two ``times`` as much."""
     if stage.material != "through_hardened":
-        return np.minimum(SHARE * deviation, MOST)
+        return np.minimum(times * SHARE * deviation, times * MOST)
     limit_mpa = 1e-6 * gear.contact_limit
-    most_um = np.where(velocity <= SLOW, np.inf, np.where(velocity <= FAST, 12800.0, 6400.0) / limit_mpa)
-    return np.minimum(np.minimum(160.0 / limit_mpa, 1.0) * deviation, 1e-6 * most_um)
+    most_um = times * np.where(velocity <= SLOW, np.inf, np.where(velocity <= FAST, 12800.0, 6400.0) / limit_mpa)
+    return np.minimum(np.minimum(times * 160.0 / limit_mpa, 1.0) * deviation, 1e-6 * most_um)
 
 
 # How stiff a tooth and a mesh are. Reference: ISO 6336-1:2006, clause 9, method B, solid gears
@@ -340,7 +340,6 @@ WEIGHTS = {
     "none": (1.0, 1.0), "crowned": (1.0, 0.5), "helix_corrected": (0.1, 1.0), "crowned_and_corrected": (0.1, 0.5),
     "end_relief": (0.7, 0.7),
 }  # fmt: skip
-FACE_SHARE, FACE_MOST = 0.15, 6e-6  # of the misalignment that case-hardened and nitrided gears run in, m
 
 
 @results
@@ -416,7 +415,7 @@ def face_load_of(
     making = np.hypot(made[0].helix_deviation, made[1].helix_deviation)
     least = np.maximum(5e-12 * line_load, 0.5 * np.maximum(made[0].helix_deviation, made[1].helix_deviation))
     initial = np.maximum(1.33 * weights[0] * bent + weights[1] * making, least)
-    ran_in = 0.5 * sum(_run_in(stage, gear, initial, velocity) for gear in (stage.sun, stage.planet))
+    ran_in = 0.5 * sum(run_in(stage, gear, initial, velocity, times=2.0) for gear in (stage.sun, stage.planet))
     per_length = stiffness / (2.0 * line_load)
     settled = initial - ran_in
     alone = either(stage.stated_face_factor, face_factor(settled * per_length))
@@ -432,15 +431,6 @@ def face_load_of(
         misalignment=misaligned, misalignment_ratio=ratio, face_factor=factor, face_exponent=exponent,
         face_factor_bending=either(stage.stated_face_factor_bending, factor**exponent),
     )  # fmt: skip
-
-
-def _run_in(stage: Gearing, gear: Gear, initial: Float, velocity: Float) -> Float:
-    """Return what a gear takes off a misalignment, m."""
-    if stage.material != "through_hardened":
-        return np.minimum(FACE_SHARE * initial, FACE_MOST)
-    limit_mpa = 1e-6 * gear.contact_limit
-    most_um = np.where(velocity <= SLOW, np.inf, np.where(velocity <= FAST, 25600.0, 12800.0) / limit_mpa)
-    return np.minimum(np.minimum(320.0 / limit_mpa, 1.0) * initial, 1e-6 * most_um)
 
 
 # How unevenly the teeth in mesh, and the planets, share the load
