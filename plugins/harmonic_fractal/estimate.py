@@ -45,10 +45,7 @@ def straight_fit(lags: Array, values: Array) -> PowerLaw:
     slope = (y @ centred) / np.square(centred).sum()
     left = y - middle[..., None] - slope[..., None] * centred
     return PowerLaw(
-        slope=slope,
-        intercept=middle - slope * x.mean(),
-        noise=np.zeros_like(slope),
-        r_squared=_explained(left, y),
+        slope=slope, intercept=middle - slope * x.mean(), noise=np.zeros_like(slope), r_squared=_explained(left, y)
     )
 
 
@@ -267,10 +264,8 @@ def _mean_roughness(heights: Array, size: int) -> float:
 
 NONE = (float("nan"), float("nan"))
 SPAN = 0.2  # of the local dimensions within the range
-LOWEST, HIGHEST = (
-    1.05,
-    1.95,
-)  # smoother is a filtered surface or form, rougher is noise or beyond the correlation length
+# smoother is a filtered surface or form, rougher is noise or beyond the correlation length
+LOWEST, HIGHEST = 1.05, 1.95
 DECADE = 10.0
 
 

@@ -9,16 +9,7 @@ from matplotlib.patches import Polygon, Rectangle
 from matplotlib.patheffects import withStroke
 
 from press_linkage.answers import KEY_POSITION, KEY_TILT
-from press_linkage.errors import (
-    ARM,
-    KINDS,
-    PASSIVE,
-    SOURCES,
-    derivatives,
-    salience,
-    side_sensitivities,
-    source,
-)
+from press_linkage.errors import ARM, KINDS, PASSIVE, SOURCES, derivatives, salience, side_sensitivities, source
 from press_linkage.kinematics import Half, Position, nominal, solve, top_crank_angle
 from press_linkage.quantities import Press, Slider
 from truing import Allotted, Record, Sensitivities

@@ -194,10 +194,7 @@ def knee_side(parts: Parts, pin: Point, rod_drop: Float, arm_end: Float) -> Half
     along = 0.5 + (drive_square - parts.upper * parts.upper) * (0.5 * inverse)
     fold = drive_square * inverse - along * along
     across = np.sqrt(fold)
-    knee = Point(
-        to_ground_y * along - to_ground_z * across,
-        to_ground_z * along + to_ground_y * across + arm_end,
-    )
+    knee = Point(to_ground_y * along - to_ground_z * across, to_ground_z * along + to_ground_y * across + arm_end)
     reach = parts.slider.y - knee.y
     lower_drop = np.sqrt(parts.lower * parts.lower - reach * reach)
     face = knee.z + lower_drop - parts.slider.z

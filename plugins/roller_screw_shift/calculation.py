@@ -122,7 +122,7 @@ def roller_screw_shift(pair: Pair) -> Meshing:
         root_stress_ring=ring.stress * acting(pair) * pair.rim_factor,
         shift_sum=pair.roller_shift + geometry.ring_shift,
         stress_difference=np.abs(roller.stress - ring.stress),
-        margins=margins_at(pair, geometry),
+        **vars(margins_at(pair, geometry)),
         **dict.fromkeys(("transmission_error", "wear_depth", "axial_shift", "friction_torque"), 0.0),
         backlash=geo.backlash(geometry),
     )

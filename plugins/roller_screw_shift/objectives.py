@@ -18,7 +18,7 @@ from roller_screw_shift.geometry import (
     sliding_at_roots,
     tip_land,
 )
-from roller_screw_shift.quantities import Margins, Pair
+from roller_screw_shift.quantities import Pair
 from roller_screw_shift.strength import ring_tooth, roller_tooth
 from truing import Float, TruingError
 
@@ -56,6 +56,23 @@ def sliding_difference(pair: Pair, geometry: Geometry) -> Float:
 
 
 # The constraints g1 to g10 of the paper and of gear geometry as margins: above 0 is safe
+
+
+@dataclass(frozen=True, kw_only=True)
+class Margins:
+    """The constraints in the order of their numbers, named as the results are."""
+
+    margin_ring_base: Float
+    margin_roller_base: Float
+    margin_contact_ratio: Float
+    margin_interference: Float
+    margin_opposite_tips: Float
+    margin_roller_root: Float
+    margin_ring_root: Float
+    margin_involute: Float
+    margin_undercut: Float
+    margin_tip_land: Float
+    margin_sliding: Float
 
 
 def margins_of(pair: Pair) -> Margins:

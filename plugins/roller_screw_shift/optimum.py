@@ -14,6 +14,7 @@ from roller_screw_shift.objectives import (
     PRINTED_WEIGHTS,
     Course,
     Interval,
+    Margins,
     Ranges,
     Three,
     Values,
@@ -26,7 +27,7 @@ from roller_screw_shift.objectives import (
     total,
     weights_of,
 )
-from roller_screw_shift.quantities import Margins, Pair
+from roller_screw_shift.quantities import Pair
 from truing import Bench, Block, Check, Float, Table, TruingError, Words, found, results
 
 # The complex method of Box: the least cost within limits, by a cloud of vertices that walks, shrinks and settles

@@ -5,7 +5,7 @@ Index E is the roller (an external gear), index I the ring (an internal one). A 
 
 from typing import Literal
 
-from truing import Float, found, given, inputs, part, results
+from truing import Float, found, given, inputs, results
 
 # What the roller screw calculation is told: every quantity with unit, symbol, bounds and source
 
@@ -114,50 +114,6 @@ SUBSTITUTE = "GB/T 3480-1997: the tooth of a substitute rack, load at the tip"
 ENVELOPE = "ISO 6336-3: envelope of the rounded tip of the cutter, tangent of 60°, load at the tip"
 CUT = "0 without a cutter; else of the ring as cut: "
 RULE = "common design rule"
-
-
-@results
-class Margins:
-    """The constraints in the order of their numbers: above 0 is safe."""
-
-    margin_ring_base: Float = found("", symbol="g_1", note="tip circle of the ring outside its base circle",
-                                    formula="tip_radius_ring / base_radius_ring - 1",
-                                    source="equation 6 of the paper, not legible")  # fmt: skip
-    margin_roller_base: Float = found("", symbol="g_2", note="tip circle of the roller outside its base circle",
-                                      formula="tip_radius_roller / base_radius_roller - 1",
-                                      source="equation 7 of the paper, not legible")  # fmt: skip
-    margin_contact_ratio: Float = found("", symbol="g_3", note="contact ratio over the least",
-                                        formula="contact_ratio - least_contact_ratio", source="equation 8 of the paper",
-                                        )  # fmt: skip
-    margin_interference: Float = found("rad", symbol="g_4", note="the tips pass one another",
-                                       formula="tip_clearance - interference_margin", source="equation 9 of the paper",
-                                       )  # fmt: skip
-    margin_opposite_tips: Float = found(
-        "", symbol="g_5", note="clearance of the tips on the far side, in modules", source="equation 10 of the paper",
-        formula="(tip_radius_ring - tip_radius_roller + mounted_distance) / module - least_clearance",
-    )  # fmt: skip
-    margin_roller_root: Float = found(
-        "", symbol="g_6", note="clearance of ring tip and roller root, in modules", source="equation 11 of the paper",
-        formula="(tip_radius_ring - root_radius_roller - mounted_distance) / module - least_clearance",
-    )  # fmt: skip
-    margin_ring_root: Float = found(
-        "", symbol="g_6b", note="clearance of ring root and roller tip, in modules", source="mirror of equation 11",
-        formula="(root_radius_ring - tip_radius_roller - mounted_distance) / module - least_clearance",
-    )  # fmt: skip
-    margin_involute: Float = found(
-        "", symbol="g_7", note="the tip of the ring meets the involute of the roller", source="involute interference",
-        formula="roller_teeth * tan(mounted_angle) - ring_teeth * (tan(mounted_angle) - tan(tip_angle_ring))",
-    )  # fmt: skip
-    margin_undercut: Float = found(
-        "", symbol="g_8", note="shift of the roller over that of undercut by the rack", source=INVOLUTE,
-        formula="roller_shift - (addendum + clearance - roller_fillet * (1 - sin(pressure_angle))"
-        " - roller_teeth / 2 * sin(pressure_angle)**2)",
-    )  # fmt: skip
-    margin_tip_land: Float = found("", symbol="g_9", note="tip land of the roller over the least, in modules",
-                                   formula="tip_land / module - least_tip_land", source=RULE)  # fmt: skip
-    margin_sliding: Float = found("", symbol="g_10", note="difference of sliding under the largest",
-                                  formula="most_sliding_difference - sliding_difference",
-                                  source="keeps the range of the third objective finite")  # fmt: skip
 
 
 @results
@@ -385,7 +341,45 @@ class Meshing:
     sliding_difference: Float = found("", symbol="f_3", note="to be small: difference of the largest specific sliding",
                                       formula="abs(sliding_roller - sliding_ring)", source="equation 3 of the paper",
                                       )  # fmt: skip
-    margins: Margins = part(Margins, suffix="")
+    # Constraints: above 0 is safe
+    margin_ring_base: Float = found("", symbol="g_1", note="tip circle of the ring outside its base circle",
+                                    formula="tip_radius_ring / base_radius_ring - 1",
+                                    source="equation 6 of the paper, not legible")  # fmt: skip
+    margin_roller_base: Float = found("", symbol="g_2", note="tip circle of the roller outside its base circle",
+                                      formula="tip_radius_roller / base_radius_roller - 1",
+                                      source="equation 7 of the paper, not legible")  # fmt: skip
+    margin_contact_ratio: Float = found("", symbol="g_3", note="contact ratio over the least",
+                                        formula="contact_ratio - least_contact_ratio", source="equation 8 of the paper",
+                                        )  # fmt: skip
+    margin_interference: Float = found("rad", symbol="g_4", note="the tips pass one another",
+                                       formula="tip_clearance - interference_margin", source="equation 9 of the paper",
+                                       )  # fmt: skip
+    margin_opposite_tips: Float = found(
+        "", symbol="g_5", note="clearance of the tips on the far side, in modules", source="equation 10 of the paper",
+        formula="(tip_radius_ring - tip_radius_roller + mounted_distance) / module - least_clearance",
+    )  # fmt: skip
+    margin_roller_root: Float = found(
+        "", symbol="g_6", note="clearance of ring tip and roller root, in modules", source="equation 11 of the paper",
+        formula="(tip_radius_ring - root_radius_roller - mounted_distance) / module - least_clearance",
+    )  # fmt: skip
+    margin_ring_root: Float = found(
+        "", symbol="g_6b", note="clearance of ring root and roller tip, in modules", source="mirror of equation 11",
+        formula="(root_radius_ring - tip_radius_roller - mounted_distance) / module - least_clearance",
+    )  # fmt: skip
+    margin_involute: Float = found(
+        "", symbol="g_7", note="the tip of the ring meets the involute of the roller", source="involute interference",
+        formula="roller_teeth * tan(mounted_angle) - ring_teeth * (tan(mounted_angle) - tan(tip_angle_ring))",
+    )  # fmt: skip
+    margin_undercut: Float = found(
+        "", symbol="g_8", note="shift of the roller over that of undercut by the rack", source=INVOLUTE,
+        formula="roller_shift - (addendum + clearance - roller_fillet * (1 - sin(pressure_angle))"
+        " - roller_teeth / 2 * sin(pressure_angle)**2)",
+    )  # fmt: skip
+    margin_tip_land: Float = found("", symbol="g_9", note="tip land of the roller over the least, in modules",
+                                   formula="tip_land / module - least_tip_land", source=RULE)  # fmt: skip
+    margin_sliding: Float = found("", symbol="g_10", note="difference of sliding under the largest",
+                                  formula="most_sliding_difference - sliding_difference",
+                                  source="keeps the range of the third objective finite")  # fmt: skip
     # What effects act on
     transmission_error: Float = found("um", symbol="TE", note="along the line of action", method=BASE)
     wear_depth: Float = found("um", symbol="h", note="wear of the roller where it is deepest", method=BASE)

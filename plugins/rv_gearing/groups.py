@@ -300,8 +300,7 @@ def check_ranges(stage: Gearing) -> None:
         value = getattr(stage, name)
         feasible(value % 2 == 0, f"{name} = {value} is odd: two discs half a turn apart need an even number of pins")
     feasible(
-        stage.fewest_pins <= stage.most_pins,
-        f"fewest_pins = {stage.fewest_pins} exceeds most_pins = {stage.most_pins}",
+        stage.fewest_pins <= stage.most_pins, f"fewest_pins = {stage.fewest_pins} exceeds most_pins = {stage.most_pins}"
     )
     feasible(stage.pin_circle_low <= stage.pin_circle_high, "pin_circle_low exceeds pin_circle_high")
     feasible(stage.centre_share_low <= stage.centre_share_high, "centre_share_low exceeds centre_share_high")

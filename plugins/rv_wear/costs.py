@@ -55,12 +55,7 @@ SOURCE = "chosen to fit; Table 3 is lost"
 
 
 def factor(
-    name: str,
-    half: str,
-    why: str,
-    *,
-    grows: Literal["up", "both"] = "both",
-    on: tuple[str, ...] = (),
+    name: str, half: str, why: str, *, grows: Literal["up", "both"] = "both", on: tuple[str, ...] = ()
 ) -> Tolerance:
     """A zone of an error factor, ``half`` to either side of its middle; one that grows up keeps its lower end."""
     priced = PRICED.get(name)

@@ -10,23 +10,12 @@ from rv_wear.machines import NewMachines, chances, history, indices
 from rv_wear.optimum import LeastCosts, bought, ends, front, learnt
 from rv_wear.published import FINDINGS, PUBLISHED
 from rv_wear.sheet import SECTIONS
-from truing import (
-    Allocation,
-    Minimise,
-    Model,
-    Optimise,
-    Reliability,
-    Require,
-    Sensitivity,
-    Surrogate,
-    Sweep,
-    Vary,
-)
+from truing import Allocation, Minimise, Model, Optimise, Reliability, Require, Sensitivity, Surrogate, Sweep, Vary
 
 LITERATURE = [
     "The paper: Liu Jiang, Xiao Zhengming, Zhang Longlong, Liu Weibiao (劉江, 肖正明, 張龍隆, 劉衛標), Transmission "
     "accuracy reliability analysis and parameter optimization of RV reducer considering cycloid gear wear, Chinese "
-    "Journal of Engineering Design 29(6), 2022, p. 739.",
+    "Journal of Engineering Design 29(6), 2022, p. 739."
 ]
 
 BOX = {
