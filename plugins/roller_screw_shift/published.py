@@ -1,12 +1,16 @@
 """What the paper prints, for comparison under the same settings, and what it leaves open."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Literal
 
 from roller_screw_shift.objectives import PRINTED_RANGES, PRINTED_WEIGHTS
 from truing import Finding, Published
 
 # What the paper prints, for comparison with what this calculation gives under the same settings
+
+Obtained = Literal["predicted", "calibrated"]
+Row = tuple[str, str, str, str]  # name, result, as printed, unit
 
 TEXT = "text below Table 1"
 RULE = (
@@ -46,27 +50,18 @@ def only(**settings: str) -> Mapping[str, str]:
     return {**settings, "studies.run": '["shift"]'}
 
 
-def printed(row: tuple[str, str, str, str], obtained: str, why: str, settings: Mapping[str, str]) -> Published:
+def printed(row: Row, obtained: Obtained, why: str, settings: Mapping[str, str]) -> Published:
     """One number (name, result, as printed, unit) that comes out."""
     name, result, text, unit = row
     return Published(
         name=name, result=result, value=float(text), printed=text, unit=unit, where=TEXT, settings=settings,
-        obtained="calibrated" if obtained == "calibrated" else "predicted", why=why,
+        obtained=obtained, why=why,
     )  # fmt: skip
 
 
-def differing(
-    row: tuple[str, str, str, str],
-    why: str,
-    settings: Mapping[str, str],
-    obtained: Literal["predicted", "calibrated"] = "predicted",
-) -> Published:
+def differing(row: Row, why: str, settings: Mapping[str, str], obtained: Obtained = "predicted") -> Published:
     """One number (name, result, as printed, unit) that does not come out."""
-    name, result, text, unit = row
-    return Published(
-        name=name, result=result, value=float(text), printed=text, unit=unit, where=TEXT, settings=settings,
-        verdict="differs", why=why, obtained=obtained,
-    )  # fmt: skip
+    return replace(printed(row, obtained, why, settings), verdict="differs")
 
 
 def weights() -> Iterator[Published]:
