@@ -187,6 +187,12 @@ CLOSED_FORM = "closed form of the loop increments"
 KEPT = "first-order variances of the sources, by the sensitivity study"
 
 
+def influence_of(symbol: str, note: str, formula: str, unit: Literal["", "m/rad"] = "") -> float:
+    """Declare the change of a slider face by one error of its side."""
+    declared: float = found(unit, symbol=f"xi_{symbol}", note=note, formula=formula, source=CLOSED_FORM)
+    return declared
+
+
 @results
 class Influence:
     """One nominal side, angle by angle, with the influence of its errors; then salience and scatter of both sides."""
@@ -238,57 +244,45 @@ class Influence:
                                     formula="knee_z + lower_knee_length * sin(lower_direction)")  # fmt: skip
     slider_shift: Float = found("um", symbol="Delta S", note="slider moved by the deviations and effects in force",
                                 formula="slider_position - nominal_position")  # fmt: skip
-    influence_lower_knee_length: Float = found("", symbol="xi_lh", note="lower knee link",
-                                               formula="1 / sin(lower_direction)", source=CLOSED_FORM)  # fmt: skip
-    influence_upper_knee_length: Float = found(
-        "", symbol="xi_lm", note="upper knee link", source=CLOSED_FORM,
-        formula="sin(lower_direction - drive_direction) / "
-        "(sin(lower_direction) * sin(upper_direction - drive_direction))",
+    influence_lower_knee_length: Float = influence_of("lh", "lower knee link", "1 / sin(lower_direction)")
+    influence_upper_knee_length: Float = influence_of("lm", "upper knee link",
+                                                      "sin(lower_direction - drive_direction) / (sin(lower_direction)"
+                                                      " * sin(upper_direction - drive_direction))")  # fmt: skip
+    influence_knee_drive_length: Float = influence_of("lg", "knee drive",
+                                                      "sin(upper_direction - lower_direction) / (sin(lower_direction)"
+                                                      " * sin(upper_direction - drive_direction))")  # fmt: skip
+    influence_slider_half_width: Float = influence_of("l", "slider joint, along", "-cot(lower_direction)")
+    influence_slider_joint_angle: Float = influence_of("beta 2", "slider joint, across", "-slider_half_width", "m/rad")
+    influence_ground_pivot_radius: Float = influence_of(
+        "rM", "ground joint, along", "influence_upper_knee_length * cos(ground_pivot_angle - upper_direction)"
+    )
+    influence_ground_pivot_angle: Float = influence_of(
+        "alpha 2", "ground joint, across",
+        "-influence_upper_knee_length * ground_pivot_radius * sin(ground_pivot_angle - upper_direction)", "m/rad",
     )  # fmt: skip
-    influence_knee_drive_length: Float = found(
-        "", symbol="xi_lg", note="knee drive", source=CLOSED_FORM,
-        formula="sin(upper_direction - lower_direction) / "
-        "(sin(lower_direction) * sin(upper_direction - drive_direction))",
+    influence_platform_arm: Float = influence_of(
+        "k", "platform arm; also the slider's travel per travel of the platform",
+        "influence_knee_drive_length * sin(drive_direction)",
     )  # fmt: skip
-    influence_slider_half_width: Float = found("", symbol="xi_l", note="slider joint, along",
-                                               formula="-cot(lower_direction)", source=CLOSED_FORM)  # fmt: skip
-    influence_slider_joint_angle: Float = found("m/rad", symbol="xi_beta 2", note="slider joint, across",
-                                                formula="-slider_half_width", source=CLOSED_FORM)  # fmt: skip
-    influence_ground_pivot_radius: Float = found(
-        "", symbol="xi_rM", note="ground joint, along", source=CLOSED_FORM,
-        formula="influence_upper_knee_length * cos(ground_pivot_angle - upper_direction)",
-    )  # fmt: skip
-    influence_ground_pivot_angle: Float = found(
-        "m/rad", symbol="xi_alpha 2", note="ground joint, across", source=CLOSED_FORM,
-        formula="-influence_upper_knee_length * ground_pivot_radius * sin(ground_pivot_angle - upper_direction)",
-    )  # fmt: skip
-    influence_platform_arm: Float = found(
-        "", symbol="xi_k", note="platform arm; also the slider's travel per travel of the platform", source=CLOSED_FORM,
-        formula="influence_knee_drive_length * sin(drive_direction)",
-    )  # fmt: skip
-    influence_rod_length: Float = found("", symbol="xi_kR", note="connecting rod", source=CLOSED_FORM,
-                                        formula="influence_platform_arm / sin(rod_direction)")  # fmt: skip
-    influence_crank_radius: Float = found(
-        "", symbol="xi_a", note="crank", source=CLOSED_FORM,
-        formula="influence_rod_length * cos(crank_direction - rod_direction)",
-    )  # fmt: skip
-    influence_crank_angle: Float = found(
-        "m/rad", symbol="xi_theta 1", note="crank angle", source=CLOSED_FORM,
-        formula="-influence_rod_length * crank_radius * sin(crank_direction - rod_direction)",
-    )  # fmt: skip
-    influence_crank_pivot_radius: Float = found("", symbol="xi_rA", note="crank pivot, along", source=CLOSED_FORM,
-                                                formula="influence_rod_length * cos(rod_direction)")  # fmt: skip
-    influence_crank_pivot_angle: Float = found(
-        "m/rad", symbol="xi_alpha 1", note="crank pivot, across", source=CLOSED_FORM,
-        formula="influence_rod_length * crank_pivot_radius * sin(rod_direction)",
-    )  # fmt: skip
-    influence_platform_half_width: Float = found("", symbol="xi_e", note="rod joint on the platform, along",
-                                                 source=CLOSED_FORM,
-                                                 formula="-influence_rod_length * cos(rod_direction)")  # fmt: skip
-    influence_platform_joint_angle: Float = found(
-        "m/rad", symbol="xi_beta 1", note="rod joint on the platform, across", source=CLOSED_FORM,
-        formula="-influence_rod_length * platform_half_width * sin(rod_direction)",
-    )  # fmt: skip
+    influence_rod_length: Float = influence_of("kR", "connecting rod", "influence_platform_arm / sin(rod_direction)")
+    influence_crank_radius: Float = influence_of(
+        "a", "crank", "influence_rod_length * cos(crank_direction - rod_direction)"
+    )
+    influence_crank_angle: Float = influence_of(
+        "theta 1", "crank angle", "-influence_rod_length * crank_radius * sin(crank_direction - rod_direction)", "m/rad"
+    )
+    influence_crank_pivot_radius: Float = influence_of(
+        "rA", "crank pivot, along", "influence_rod_length * cos(rod_direction)"
+    )
+    influence_crank_pivot_angle: Float = influence_of(
+        "alpha 1", "crank pivot, across", "influence_rod_length * crank_pivot_radius * sin(rod_direction)", "m/rad"
+    )
+    influence_platform_half_width: Float = influence_of(
+        "e", "rod joint on the platform, along", "-influence_rod_length * cos(rod_direction)"
+    )
+    influence_platform_joint_angle: Float = influence_of("beta 1", "rod joint on the platform, across",
+                                                         "-influence_rod_length * platform_half_width"
+                                                         " * sin(rod_direction)", "m/rad")  # fmt: skip
     salience_position_key: Float = found(
         "", symbol="D_S", note="salience of the twelve key errors of position",
         method="their share in the sum of all sensitivities, lengths in m and angles in rad", source="Eq. (10), Fig. 2",
