@@ -8,6 +8,10 @@ from gear_geometry.pairs import involute, working_angle
 from truing import Float
 
 # Tooth roots of gears made by a rack, and of internal gears by the substitute rack: chord, fillet, arm, form factors
+#
+# All lengths are in modules. Reference: ISO 6336-3, 30 degree tangent at the root; GB/T 3480-1997 (as DIN 3990-3) for
+# the substitute rack. The same formulas serve a load at the tip (Y_Fa, Y_Sa) and one at the outer point of single
+# contact (Y_F, Y_S): they differ in the diameter at which the force acts, and are not to be mixed.
 
 TANGENT = np.pi / 3.0  # rad; 60 degrees between the tangent of 30 degrees and the normal of the tooth axis
 STEPS = 12

@@ -9,6 +9,9 @@ from harmonic_fractal.quantities import Drive, Stiffness
 from truing import Condition, Effect, Float, Unknown, column
 
 # What else must be measured before the effects of the drive can act: each condition once, for all of them
+#
+# The torque is an input of the drive; its column holds row by row. Turns, direction and peak are taken from that column
+# as it stands, so a column of commanded torque serves better than one with noise.
 
 REVERSAL_TORQUE = Condition("reversal_torque", "N*m", reference=0, derived="last_reversal of torque", low=-500,
                             high=500, note="where the torque last turned; at first where it began")  # fmt: skip

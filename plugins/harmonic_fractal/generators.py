@@ -8,6 +8,8 @@ from scipy.fft import next_fast_len
 from scipy.ndimage import gaussian_filter
 
 # Made lines and patches of known truth: Weierstrass-Mandelbrot sums of waves, and fractional Brownian motion
+#
+# All randomness comes from the generator that is handed in. Heights and places are in m; S is the structure function.
 
 Array = NDArray[np.float64]
 YAN = "Yan, Komvopoulos, Journal of Applied Physics 84 (1998), p. 3617"

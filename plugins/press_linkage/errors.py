@@ -19,8 +19,6 @@ from press_linkage.kinematics import Half, Polar, Position, demands, solve
 from press_linkage.quantities import Press, Side, Slider
 from truing import Float, either, feasible
 
-# How far does each of the 29 errors move the slider? The loop increments of the linkage, solved twice
-
 KINDS = tuple(field.name.removesuffix("_deviation") for field in fields(Side))
 DRIVEN = (
     "crank_radius",

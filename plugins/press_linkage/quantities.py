@@ -4,8 +4,6 @@ from typing import Literal
 
 from truing import Float, found, given, inputs, part, results
 
-# What the press linkage is told and what it answers: every quantity with unit, symbol, bounds and source
-
 GIVEN = "section 2.2 of the paper"
 MISPRINT = (
     "chosen so that the paper's printed results follow; the printed 0.117 rad does not describe the mechanism that the "

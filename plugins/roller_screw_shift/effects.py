@@ -10,6 +10,9 @@ from roller_screw_shift.strength import load_of
 from truing import Condition, Effect, Float, Unknown
 
 # What else must be measured before the effects of the roller screw can act: each condition once, for all of them
+#
+# The axial load is an input of the pair; its column holds row by row. The clock of the bench is the ``time`` of the
+# kernel's own effects.
 
 SCREW_SPEED = Condition("screw_speed", "rpm", reference=0, low=10, high=3000,
                         note="of the screw; the sign is its sense of turning")  # fmt: skip

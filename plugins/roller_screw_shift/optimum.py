@@ -31,6 +31,9 @@ from roller_screw_shift.quantities import Pair
 from truing import Bench, Block, Check, Float, Table, TruingError, Words, found, results
 
 # The complex method of Box: the least cost within limits, by a cloud of vertices that walks, shrinks and settles
+#
+# Sources: M. J. Box, The Computer Journal 8 (1965) 42; J. A. Guin, The Computer Journal 10 (1968) 416, for the way back
+# that ends at the best vertex. The limits need no derivative and no penalty: a point that misses one has no cost.
 
 Cost = Callable[[Values], Values]
 """Of points (n, d) their costs (n,): small is good, and not finite where a point misses a limit."""

@@ -12,6 +12,8 @@ from rv_gearing.rating import Strength
 from truing import Condition, Effect, Float, Unknown
 
 # What else must be measured before the effects of the gearing can act: each condition once, shared by its effects
+#
+# Torque, speed and the temperature of the oil are inputs of the stage; their columns hold row by row.
 
 INPUT_ANGLE = Condition(
     "input_angle", "deg", reference=0, low=0, high=39960,

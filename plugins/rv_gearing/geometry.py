@@ -14,6 +14,9 @@ from rv_gearing.quantities import Gear, Gearing
 from truing import Float, either, feasible, found, results
 
 # What the first stage carries: torque of the sun, speed relative to the carrier, and the force of one mesh
+#
+# The housing is fixed and the output turns with the carrier, so a mesh sees the sun turn by 1 - 1/i of its speed.
+# Speeds are in turns per second, everything else in SI; a value is a number or an array (n,).
 
 LEAST_LINE_LOAD = 1.0  # N/m; what an idle mesh counts as loaded with where something is divided by the load
 

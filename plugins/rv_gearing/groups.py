@@ -15,6 +15,9 @@ from rv_gearing.quantities import Gearing
 from truing import Bench, Block, Check, Float, Table, TruingError, column, either, feasible, found, results, rows
 
 # What the drive must do: ratio, efficiency, torque, and the sizes of pin circle and centre distance they ask for
+#
+# Equations 1 to 8 of the paper. Everything takes numbers or arrays that broadcast, SI, and returns the same. Torques of
+# the search are those at the output.
 
 POWER_TO_TORQUE = 9550.0 / 60000.0  # N m of a watt at one turn per second, as rounded by the paper; 1/(2 pi) to 7e-5
 

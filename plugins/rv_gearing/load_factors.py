@@ -11,6 +11,9 @@ from rv_gearing.quantities import Gear, Gearing
 from truing import Float, either, feasible, found, results
 
 # How accurately the teeth are made, and how much of it runs in
+#
+# Reference: ISO 1328-1:1995 for the deviations, at the actual module, diameter and face width instead of the mean of
+# their range, and not rounded; ISO 6336-1:2006 for running-in.
 
 ISO_1328 = "ISO 1328-1:1995"
 RUNNING_IN = "ISO 6336-1:2006, 8.3.5"

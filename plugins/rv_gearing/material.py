@@ -9,6 +9,9 @@ from rv_gearing.quantities import Gear, Gearing
 from truing import Float, either, found, results
 
 # What the treatment of the steel fixes: life curves, running-in, sensitivity to notches, roughness and size
+#
+# Values of ISO 6336-1 to -3:2006; the exponents of the life curves are those that join the points of the standard, as
+# GB/T 3480-1997 prints them.
 
 PART_2 = "ISO 6336-2:2006, clause 11"
 LIFE = "ISO 6336-3:2006, clause 12"

@@ -40,6 +40,9 @@ from rv_gearing.stress_factors import (
 from truing import Bench, Block, Check, Float, Sweep, Swept, Table, TruingError, found, part, results
 
 # What the gearing calculation answers: the duty, every factor, the stresses, and what they may be
+#
+# Factors are declared beside the functions that calculate them and stand here as parts. All names are flat outside;
+# what belongs to one gear ends with ``_sun`` or ``_planet``.
 
 BASE = "0 in the calculation; effects act here"
 PART_2 = "equation 13 of the paper; ISO 6336-2:2006, clause 5"

@@ -16,6 +16,8 @@ from rv_wear.wear import exposure_of, oil_part, unworn, wear_at, worn
 from truing import Bench, Block, Check, Float, Table, TruingError, found, results
 
 # Curves for figures and tests: plain numpy out of one reducer or of many, every Float a number or an array (n,); SI
+#
+# Curves over the phase angle have the shape (n, k), those over the time (n, t); n is 1 for one reducer.
 
 CLOSE = 1e-13  # m
 ROUNDS = 100

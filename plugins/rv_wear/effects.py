@@ -8,6 +8,9 @@ from rv_wear.quantities import Reducer, Wear
 from truing import Condition, Effect, Float, Unknown
 
 # What else must be measured before the effects of the reducer can act: each condition once, shared by its effects
+#
+# Working hours are an input of the reducer and belong to its set of discs; the clock of the bench is the ``time`` of
+# the kernel's own effects.
 
 HOUSING_TEMPERATURE = Condition("housing_temperature", "degC", reference=20, low=15, high=60,
                                 note="of the housing with its pins, when measured")  # fmt: skip

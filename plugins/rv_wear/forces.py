@@ -12,6 +12,16 @@ from rv_wear.geometry import Array, Mesh, Teeth, Truths, pitch_number
 from truing import feasible
 
 # How the pins share the torque: equations 1b to 4 with rigid take-up, solved for all meshes and positions at once
+#
+# The *slack* of a pin is its clearance over its relative arm: how far the pitch point must move until the pin touches.
+# Before each solution the least slack of a position is taken up, since the disc turns freely until the first pin
+# touches. Then pin i bears what is left of the approach:
+#
+#     F_i = (F / delta) (l_i / l_max) (delta - slack_i),   delta from F by equation 1b   (linear sharing)
+#     F_i by equation 1b from (l_i / l_max) (delta - slack_i) with its own radii          (Hertz sharing)
+#
+# The torque is convex in F, so Newton's rule with the pins that bear at the moment comes down to the answer from above;
+# each position stops for itself, so an answer does not depend on what else is calculated in the same call.
 
 CLOSE = 1e-8  # Newton's rule squares it with its last step
 ROUNDS = 100

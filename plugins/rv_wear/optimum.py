@@ -27,6 +27,9 @@ from truing import (
 )
 
 # A study of our own: the front of cost and wear without any search, the paper's Fig. 6, and its Fig. 7
+#
+# For every equidistant modification the widths of least cost that reach the goal are found; as the wear depends on the
+# modification alone, this is the front itself (the epsilon-constraint method). An evolutionary search is judged by it.
 
 Values = NDArray[np.float64]
 

@@ -29,6 +29,10 @@ from rv_wear.quantities import Reducer
 from truing import Float, either, feasible
 
 # The wear coefficient of lubricated steel rollers, and what stretches the time of wear; strictly SI
+#
+# Source: Janakiraman, Li and Kahraman, Journal of Tribology 136(3), 031602, 2014: k E' / 3.981e29 = L^1.219 G^-7.377
+# S_q^1.589 with L = W' / (E' R'), G = alpha E', S_q = R_q / R'. As load, oil and roughness stand in it as powers, oil,
+# roughness, speed and time only stretch the time of a history: depth = H(exposure).
 
 CONSTANT = 3.981e29
 LOAD, VISCOSITY, ROUGHNESS = 1.219, -7.377, 1.589
