@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from harmonic_fractal.made_model import MADE_FLANK
+from harmonic_fractal.made_sheet import MADE_FLANK
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from truing import Model, hookimpl
 

@@ -1,22 +1,183 @@
-"""From rough flanks to the stiffness of one pair, of the mesh and of the drive."""
+"""From rough flanks to the stiffness of one pair, of the mesh and of the drive, and what must hold before."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from harmonic_fractal import clearance as gap
-from harmonic_fractal.answers import Stiffness
-from harmonic_fractal.blunt import kept_share
-from harmonic_fractal.contact import Contact, Pressed, contact_of, critical_pressure, pressed
-from harmonic_fractal.feasibility import require_catalogue, require_contact, require_flank, require_surface
-from harmonic_fractal.interface import Rough, interface_of, is_accepted, spacing_of
-from harmonic_fractal.mesh import Mesh, line_stiffness, load_of_largest, mesh_of, normal_stiffness
-from harmonic_fractal.micro import elastic_sum
-from harmonic_fractal.power_law import structure_function
-from harmonic_fractal.quantities import Drive
-from harmonic_fractal.torsion import mesh_torsion
-from truing import Float, column
+from harmonic_fractal.contact import (
+    Contact,
+    Pressed,
+    Rough,
+    contact_of,
+    critical_pressure,
+    flanks_of,
+    interface_of,
+    is_accepted,
+    is_half_stated,
+    pressed,
+    range_of,
+    spacing_of,
+)
+from harmonic_fractal.mesh import Mesh, line_stiffness, load_of_largest, mesh_of, mesh_torsion, normal_stiffness
+from harmonic_fractal.micro import LEAST_DIMENSION, MOST_DIMENSION, elastic_sum
+from harmonic_fractal.quantities import SIZES, Drive, Stiffness
+from harmonic_fractal.structure import kept_share, structure_function
+from truing import Float, column, feasible
+
+# Torsional stiffness of harmonic drives as their maker's catalogues print it, size by size, in three straight pieces
+#
+# K_1 holds from 0 to T_1, K_2 to T_2, K_3 beyond. Sources: Harmonic Drive LLC, Cup Type Component Sets, CSF and CSG
+# series, tables 41 and 42 (ratios 30 and 50); Harmonic Drive AG, CHA actuators, manual 1018854 (30, 50 and above). They
+# agree where they overlap. The values are averages over many drives.
+
+Column = Literal["30", "50", "above 50"]
+UNIT = 1e3  # N m/rad
+
+# size: T_1 and T_2 in N m, then K_1, K_2, K_3 in 1e3 N m/rad for ratios of 30, of 50, and above 50
+TABLE: dict[str, tuple[float, float, dict[Column, tuple[float, float, float]]]] = {
+    "14": (2.0, 6.9, {"30": (1.9, 2.4, 3.4), "50": (3.4, 4.7, 5.7), "above 50": (4.7, 6.1, 7.1)}),
+    "17": (3.9, 12.0, {"30": (3.4, 4.4, 6.7), "50": (8.1, 11.0, 13.0), "above 50": (10.0, 14.0, 16.0)}),
+    "20": (7.0, 25.0, {"30": (5.7, 7.1, 11.0), "50": (13.0, 18.0, 23.0), "above 50": (16.0, 25.0, 29.0)}),
+    "25": (14.0, 48.0, {"30": (10.0, 13.0, 21.0), "50": (25.0, 34.0, 44.0), "above 50": (31.0, 50.0, 57.0)}),
+    "32": (29.0, 108.0, {"30": (24.0, 30.0, 49.0), "50": (54.0, 78.0, 98.0), "above 50": (67.0, 110.0, 120.0)}),
+    "40": (54.0, 196.0, {"50": (100.0, 140.0, 180.0), "above 50": (130.0, 200.0, 230.0)}),
+    "50": (108.0, 382.0, {"50": (200.0, 280.0, 340.0), "above 50": (250.0, 400.0, 440.0)}),
+    "58": (168.0, 598.0, {"50": (310.0, 440.0, 540.0), "above 50": (400.0, 610.0, 710.0)}),
+}
+
+
+class Polyline(NamedTuple):
+    """Torsion over torque in three straight pieces: where they meet, N m, and their stiffnesses, N m/rad."""
+
+    first_torque: float
+    second_torque: float
+    stiffnesses: tuple[float, float, float]
+
+    def torsion(self, torque: Float) -> Float:
+        """Return the torsion, rad, odd in the torque."""
+        size, (first, second, third) = np.abs(torque), self.stiffnesses
+        turned = np.minimum(size, self.first_torque) / first
+        turned = turned + np.clip(size - self.first_torque, 0.0, self.second_torque - self.first_torque) / second
+        return np.sign(torque) * (turned + np.maximum(size - self.second_torque, 0.0) / third)
+
+    def stiffness(self, torque: Float) -> Float:
+        """Return the stiffness of the piece in which the torque lies, N m/rad."""
+        size, (first, second, third) = np.abs(torque), self.stiffnesses
+        return np.where(size <= self.first_torque, first, np.where(size <= self.second_torque, second, third))
+
+
+def column_of(ratio: float) -> Column:
+    """Return the column of the table for a ratio: above 50, 50 from 40 on, and 30 below, the nearest of the two."""
+    if ratio > 50.0:
+        return "above 50"
+    return "50" if ratio >= 40.0 else "30"
+
+
+def polyline_of(size: SIZES, ratio: float) -> Polyline | None:
+    """Return the printed pieces of a size and a ratio, or None where the catalogues print none."""
+    first, second, columns = TABLE[size]
+    printed = columns.get(column_of(ratio))
+    if printed is None:
+        return None
+    return Polyline(first, second, (UNIT * printed[0], UNIT * printed[1], UNIT * printed[2]))
+
+
+def ratio_of(drive: Drive) -> float:
+    """Return the ratio with the circular spline at rest: half the teeth of the flexspline."""
+    return drive.flexspline_teeth / 2.0
+
+
+# What must hold before roughness, pairs and drive can be calculated: the sentence names the inputs and what to do
+
+
+def require_surface(drive: Drive, rough: Rough) -> None:
+    """Refuse what is no rough surface; NaN is none."""
+    feasible(
+        np.logical_not(is_half_stated(drive)),
+        "the mating flank is half stated: state mating_dimension and mating_roughness, or neither if it is smooth",
+    )
+    if flanks_of(drive)[1] is not None:
+        shortest, longest = range_of(drive)
+        feasible(
+            longest > shortest,
+            "two flanks are added over the lags that both have, and these have none: enlarge longest_lag beyond "
+            "sampling, or measure both flanks alike",
+        )
+    feasible(
+        np.asarray(rough.dimension) >= LEAST_DIMENSION,
+        f"the fractal dimension of both flanks together is below {LEAST_DIMENSION}, where the critical area, a power "
+        "of 2/(D - 2), loses all meaning: enlarge fractal_dimension, or look at dimension_deviation",
+    )
+    feasible(
+        np.asarray(rough.dimension) <= MOST_DIMENSION,
+        f"the fractal dimension of both flanks together is above {MOST_DIMENSION}, where the contact area, a multiple "
+        "of 1/(3 - D), loses all meaning: reduce fractal_dimension, or look at dimension_deviation",
+    )
+    feasible(
+        np.isfinite(rough.roughness) & (np.asarray(rough.roughness) > 0.0),
+        "the fractal roughness of both flanks together must be positive and finite: state fractal_roughness, and "
+        "mating_roughness with mating_dimension",
+    )
+
+
+CLOSED = ("approach", "closing_clearance", "free_play")
+"""The results that count the way of the pair from the reference load."""
+TURNED = ("mesh_torsion", "torsion", "rough_torsion", "rough_share")
+"""The results that count the torsion from the reference torque."""
+COMPARED = ("catalogue_torsion", "catalogue_stiffness", "rough_share")
+"""The results that need the catalogue."""
+
+
+def require_contact(drive: Drive, contact: Contact, mesh: Mesh) -> None:
+    """Refuse more pairs than there are teeth; without stiffness where the torsion begins nothing counts from there."""
+    feasible(
+        drive.engaged_pairs * np.asarray(mesh.engagement.factor(drive.torque)) <= drive.flexspline_teeth,
+        "more pairs are engaged than the flexspline has teeth: reduce engaged_pairs, engaged_factor or engaged_gain, "
+        "or enlarge flexspline_teeth",
+    )
+    feasible(
+        np.isfinite(contact.critical_area) & (np.asarray(contact.critical_area) > 0.0),
+        "the critical area is not a number that can be calculated with: look at fractal_roughness, hardness and the "
+        "moduli",
+    )
+    starts = np.asarray(mesh.plastic_torque) < drive.reference_torque
+    still = np.abs(drive.torque) <= drive.reference_torque
+    untouched = drive.pair_load <= load_of_largest(drive.reference_torque, mesh)
+    for holds, names in ((starts | untouched, CLOSED), (starts | still, TURNED)):
+        feasible(
+            holds,
+            "at reference_torque all contacts are plastic and have no stiffness, so what counts from there is "
+            "infinite: raise reference_torque above plastic_torque, where the first contact turns elastic, or reduce "
+            "fractal_roughness",
+            only=names,
+        )
+
+
+def require_flank(drive: Drive, one: Pressed, largest: Pressed) -> None:
+    """Refuse contacts larger than the flank: of the pair that is looked at, and of the one that carries most."""
+    flank: Float = drive.face_width * drive.flank_height
+    for pair, load in ((one, "pair_load"), (largest, "torque")):
+        feasible(
+            np.asarray(pair.real_area) <= flank,
+            f"the contact area exceeds the flank: reduce {load}, or enlarge face_width, flank_height or hardness",
+        )
+
+
+def require_catalogue(drive: Drive) -> Polyline:
+    """Return what the catalogue prints for this drive; without a comparison where it prints none."""
+    printed = polyline_of(drive.catalogue_size, ratio_of(drive))
+    feasible(
+        printed is not None,
+        f"the catalogues print no size {drive.catalogue_size} with a ratio below 40: for a comparison choose "
+        "catalogue_size 32 or smaller, or flexspline_teeth of 80 or more",
+        only=COMPARED,
+    )
+    return printed or Polyline(np.nan, np.nan, (np.nan, np.nan, np.nan))
+
+
+# From rough flanks to the stiffness of one pair, of the mesh and of the drive
 
 
 @dataclass(frozen=True)

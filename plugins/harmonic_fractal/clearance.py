@@ -7,9 +7,8 @@ closes: from the height of the unloaded surfaces the approach is taken off, the 
 import numpy as np
 
 from harmonic_fractal import micro
-from harmonic_fractal.contact import Contact, load_logarithm
+from harmonic_fractal.contact import Contact, Rough, flanks_of, load_logarithm
 from harmonic_fractal.flank import Flank
-from harmonic_fractal.interface import Rough, flanks_of
 from harmonic_fractal.quantities import Drive
 from truing import Float, either
 

@@ -1,39 +1,295 @@
-"""What the rough flanks leave out of the torsion and the stiffness of a drive, or of a measured surface.
+"""What the rough flanks leave out of the torsion and the stiffness of a drive, or of a measured surface."""
 
-They act in the order declared: first what changes flanks, pairs and springs, then what is added to the torsion, then
-the surface, then the readings. A new effect is a function beside the others and one more entry in EFFECTS.
-"""
+from dataclasses import replace
 
-from harmonic_fractal.answers import Stiffness
-from harmonic_fractal.conditions import (
-    CYCLES,
-    DIRECTION,
-    PEAK_TORQUE,
-    REVERSAL_TORQUE,
-    SPEED,
-    TEMPERATURE,
-    TIME,
-    WAVE_ANGLE,
-)
-from harmonic_fractal.effects_of_friction import (
-    first_load_set,
-    flank_wear,
-    hysteresis,
-    lost_motion,
-    thermal_preload,
-    viscous_hysteresis,
-)
-from harmonic_fractal.effects_of_mesh import (
-    asperity_smoothing,
-    engaged_pairs,
-    modulus_temperature,
-    oil_film,
-    series_compliance,
-)
-from harmonic_fractal.effects_of_motion import creep, eccentricity, ellipticity, rig_drift
-from harmonic_fractal.effects_of_surface import instrument_noise, lateral_filter, waviness
-from harmonic_fractal.quantities import Drive
-from truing import Effect, Unknown
+import numpy as np
+
+from harmonic_fractal.calculation import TABLE
+from harmonic_fractal.quantities import Drive, Stiffness
+from truing import Condition, Effect, Float, Unknown, column
+
+# What else must be measured before the effects of the drive can act: each condition once, for all of them
+#
+# The torque is an input of the drive; its column holds row by row. Turns, direction and peak are taken from that column
+# as it stands, so a column of commanded torque serves better than one with noise.
+
+REVERSAL_TORQUE = Condition("reversal_torque", "N*m", reference=0, derived="last_reversal of torque", low=-500,
+                            high=500, note="where the torque last turned; at first where it began")  # fmt: skip
+PEAK_TORQUE = Condition("peak_torque", "N*m", reference=0, derived="running_maximum of torque", low=0, high=1000,
+                        note="the largest torque so far")  # fmt: skip
+DIRECTION = Condition(
+    "direction", "", reference=0, derived="direction of torque", low=-1, high=1,
+    note="way of the torque: +1 while it grows, -1 while it falls, 0 for the mean of both",
+)  # fmt: skip
+WAVE_ANGLE = Condition("wave_angle", "deg", reference=0, low=0, high=360,
+                       note="angle of the wave generator, against the circular spline")  # fmt: skip
+TEMPERATURE = Condition("temperature", "degC", reference=20, low=-10, high=80,
+                        note="temperature of the drive and its lubricant, when measured")  # fmt: skip
+CYCLES = Condition("cycles", "", reference=0, low=0, high=1e8, note="meshes of a pair of teeth in service, since new")
+TIME = Condition("time", "h", reference=0, derived="since_start", low=0, high=100,
+                 note="time under torque, since the first row")  # fmt: skip
+SPEED = Condition("speed", "rpm", reference=0, low=0, high=6000,
+                  note="speed of the wave generator; the sign is its sense of turning")  # fmt: skip
+
+
+# What is in the structure function of a flank beside its fractal roughness: a wave, noise, a blunt instrument
+
+
+def raised(results: Stiffness, by: Float) -> Stiffness:
+    """Return the results with an amount, m², on the structure function."""
+    return replace(results, structure_function=results.structure_function + by)
+
+
+def waviness(drive: Drive, results: Stiffness, *, square: Float, wavelength: Float) -> Stiffness:
+    """A wave lies across the flank: A² (1 - cos(2 pi lag/wavelength)), with ``square`` the square of its amplitude."""
+    phase = 2.0 * np.pi * np.asarray(drive.lags) / column(wavelength)
+    return raised(results, column(square) * (1.0 - np.cos(phase)))
+
+
+def instrument_noise(drive: Drive, results: Stiffness, *, variance: Float) -> Stiffness:
+    """Every height is read with an error of its own: twice its variance at any lag."""
+    return raised(results, 2.0 * column(variance))
+
+
+def lateral_filter(drive: Drive, *, width: Float) -> Drive:
+    """The instrument averages over a spot along the line: the finest roughness is lost, waves and noise are not.
+
+    A Gaussian weight of standard deviation ``width``; two spots in a row are one whose variance is their sum.
+    """
+    return replace(drive, spot_width=np.hypot(drive.spot_width, width))
+
+
+# What the torsion owes to friction, play and the first load: terms on the angle, in its own sense of the torque
+
+MILLION = 1e6
+RATED_SPEED = 1000.0 / 60.0  # turns per second
+
+
+def turned(results: Stiffness, by: Float) -> Stiffness:
+    """Return the results with an angle, rad, on the torsion."""
+    return replace(results, torsion=results.torsion + by)
+
+
+def rated_torque(drive: Drive) -> float:
+    """Return T_2 of the size in the catalogue, N m: 25 for size 20."""
+    return TABLE[drive.catalogue_size][1]
+
+
+def held_share(
+    drive: Drive, torque_scale: Float, direction: Float, reversal_torque: Float, peak_torque: Float
+) -> Float:
+    """Return what friction holds back, in halves of its loop: 1 once it has slipped on a way up, -1 on a way down.
+
+    +-(1 - 2 exp(-|T - T_rev|/T_c)) after a turn. The first load starts in the middle and slips through in half that
+    torque, 1 - exp(-2 |T - T_rev|/T_c), as Masing's rule has it; a loop that closes at its peak meets it there.
+    """
+    sense = np.sign(direction)
+    way = np.abs(drive.torque - reversal_torque) / (torque_scale * rated_torque(drive))
+    is_first = (drive.torque >= peak_torque) & (sense > 0.0)
+    share: Float = sense * np.where(is_first, -np.expm1(-2.0 * way), 1.0 - 2.0 * np.exp(-way))
+    return share
+
+
+def hysteresis(
+    drive: Drive,
+    results: Stiffness,
+    *,
+    loop: Float,
+    torque_scale: Float,
+    direction: Float,
+    reversal_torque: Float,
+    peak_torque: Float,
+) -> Stiffness:
+    """Dry friction holds the angle back by half of the loop: behind a torque that grows, and before one that falls.
+
+    So the loop takes up energy, and is never negative. Range: every turn but that of the first load follows a branch on
+    which the friction has slipped through, so several ``torque_scale`` (in parts of T_2) long. Of the direction only
+    the sign counts.
+    """
+    return turned(results, -0.5 * loop * held_share(drive, torque_scale, direction, reversal_torque, peak_torque))
+
+
+def viscous_hysteresis(
+    drive: Drive,
+    results: Stiffness,
+    *,
+    loop: Float,
+    torque_scale: Float,
+    thinning: Float,
+    speed: Float,
+    temperature: Float,
+    direction: Float,
+    reversal_torque: Float,
+    peak_torque: Float,
+) -> Stiffness:
+    """The lubricant adds to the loop, in proportion to its viscosity and to the speed; at rest there is none of it.
+
+    ``loop`` is the width at 1000 rpm and 20 degC; the viscosity falls by exp(-``thinning`` (temperature - 20 degC)).
+    """
+    viscosity = np.exp(-thinning * (temperature - TEMPERATURE.zero))
+    width = loop * viscosity * np.abs(speed) / RATED_SPEED
+    return turned(results, -0.5 * width * held_share(drive, torque_scale, direction, reversal_torque, peak_torque))
+
+
+def crossed(drive: Drive, torque_scale: Float) -> Float:
+    """Return the share of a play that is crossed, in the sense of the torque; the scale is in parts of T_2."""
+    share: Float = np.tanh(drive.torque / (torque_scale * rated_torque(drive)))
+    return share
+
+
+def lost_motion(drive: Drive, results: Stiffness, *, play: Float, torque_scale: Float) -> Stiffness:
+    """The teeth cross their play and come to bear one after another: ``play`` to either side of the middle."""
+    return turned(results, play * crossed(drive, torque_scale))
+
+
+def flank_wear(drive: Drive, results: Stiffness, *, rate: Float, torque_scale: Float, cycles: Float) -> Stiffness:
+    """Both flanks of a pair wear in proportion to the cycles in service, and the drive gains so much play.
+
+    Depth k_w p s n of Archard on either flank, with ``rate`` the depth per million cycles at the pressure and sliding
+    of its service; 2 depths along the line of action are 2 depths/(r_p cos alpha) at the output. The gap is crossed
+    as any other play is.
+    """
+    gap = 2.0 * rate * cycles / MILLION
+    lever = drive.pitch_radius * np.cos(drive.pressure_angle)
+    return turned(results, gap / lever * crossed(drive, torque_scale))
+
+
+def thermal_preload(drive: Drive, results: Stiffness, *, expansion: Float, temperature: Float) -> Stiffness:
+    """The circular spline grows more than the flexspline, which opens a gap: the teeth turn until they bear.
+
+    A distance dr across the pitch circle opens r_p dtheta = dr tan(alpha) to either side, with
+    dr = ``expansion`` r_p (temperature - 20 degC).
+    """
+    strain = expansion * (temperature - TEMPERATURE.zero)
+    return turned(results, strain * np.tan(drive.pressure_angle) * np.sign(drive.torque))
+
+
+def first_load_set(drive: Drive, results: Stiffness, *, peak_torque: Float, **unknowns: Float) -> Stiffness:
+    """The first load leaves a set behind, and below its peak the flattened flanks are stiffer than they were.
+
+    The set is ``set`` (peak/T_2)^``exponent``, with T_2 = 25 N m for size 20; the mesh is stiffer by the share
+    ``stiffening`` wherever the torque is below the largest so far.
+    """
+    height = np.maximum(peak_torque, 0.0) / rated_torque(drive)
+    left = unknowns.get("set", 0.0) * height ** unknowns.get("exponent", 1.0)
+    again = np.abs(drive.torque) < peak_torque
+    stiffer = 1.0 + np.where(again, unknowns.get("stiffening", 0.0), 0.0)
+    return turned(replace(results, mesh_stiffness=results.mesh_stiffness * stiffer), left)
+
+
+# What turns and time bring along: an oval and an eccentric wave generator, creep, a rig that drifts
+
+
+def creep(drive: Drive, results: Stiffness, *, share: Float, time_scale: Float, time: Float) -> Stiffness:
+    """The twist goes on under torque: by ``share`` of itself each time that the time grows e-fold.
+
+    Only what is elastic creeps: the mesh and what is in series with it.
+    """
+    beyond = np.sign(drive.torque) * np.maximum(np.abs(drive.torque) - drive.reference_torque, 0.0)
+    elastic = results.mesh_torsion + results.series_compliance * beyond
+    return turned(results, share * elastic * np.log1p(np.maximum(time, 0.0) / time_scale))
+
+
+def ellipticity(drive: Drive, results: Stiffness, *, wave_angle: Float, **unknowns: Float) -> Stiffness:
+    """The two lobes of the wave generator are not alike: two waves per turn, of the angle and of the stiffness."""
+
+    def wave(name: str) -> Float:
+        cosine, sine = unknowns.get(f"{name}cosine", 0.0), unknowns.get(f"{name}sine", 0.0)
+        return cosine * np.cos(2.0 * wave_angle) + sine * np.sin(2.0 * wave_angle)
+
+    stiffer = replace(results, mesh_stiffness=results.mesh_stiffness * (1.0 + wave("stiffness_")))
+    return turned(stiffer, wave(""))
+
+
+def eccentricity(drive: Drive, results: Stiffness, *, cosine: Float, sine: Float, wave_angle: Float) -> Stiffness:
+    """The wave generator is off its axis: one wave of the angle per turn."""
+    return turned(results, cosine * np.cos(wave_angle) + sine * np.sin(wave_angle))
+
+
+def rig_drift(drive: Drive, results: Stiffness, *, rate: Float, time: Float) -> Stiffness:
+    """The rig moves on with time, whatever the torque; the drive does not."""
+    return turned(results, rate * time)
+
+
+# What makes the drive softer or stiffer than its flanks: springs in series, pairs, film, smoothing, heat
+
+FILM_EXPONENT = 0.67  # of viscosity times speed in the thickness of the film
+LOAD_EXPONENT = -0.07  # of the load in it
+FILM_THINNING = 0.035  # 1/K, of the viscosity
+LEAST_TORQUE = 1e-3  # N*m, from which it is counted
+LEAST_GAP = 0.1  # over the film at 1000 rpm and 20 degC: without oil the asperities hold the flanks so far apart
+YIELDING = 0.02  # likewise: by which the gap grows while the load of the asperities falls by e (Persson 2007)
+STEPS = 8  # of Newton's iteration for the gap; six do, from any speed
+
+
+def series_compliance(drive: Drive, *, compliance: Float) -> Drive:
+    """Cup, wave generator, its bearing and the rig twist in proportion to the torque, beside the mesh."""
+    return replace(drive, drive_compliance=drive.drive_compliance + compliance)
+
+
+def engaged_pairs(drive: Drive, *, gain: Float, torque_scale: Float) -> Drive:
+    """The flexspline gives way until more pairs touch: the share ``gain`` more of them at a large torque.
+
+    The torsion is added up with the pairs that there are on the way. Beside a gain that is stated, both are one gain
+    of their sum, under their mean torque.
+    """
+    both = drive.engaged_gain + gain
+    share = np.where(both > 0.0, gain / np.where(both > 0.0, both, 1.0), 0.0)
+    scale = drive.engaged_torque + share * (torque_scale * rated_torque(drive) - drive.engaged_torque)
+    return replace(drive, engaged_gain=both, engaged_torque=scale)
+
+
+def oil_film(drive: Drive, *, stiffness: Float, speed: Float, temperature: Float) -> Drive:
+    """The oil between the flanks carries beside their asperities, the stiffer the thinner it is; at rest it is gone.
+
+    ``stiffness`` is that of a film which fills the flank of a pair at 1000 rpm, 20 degC and T_2 of the catalogue, 25 N
+    m for size 20: modulus of compression times flank over thickness. Alone it would be as thick as (viscosity
+    speed)^0.67 torque^-0.07 says; the asperities hold the flanks apart at a tenth of that, and the film shares the load
+    with them. The asperities' own stiffness is that under the whole load, which is too much by what the film carries.
+    """
+    flow = np.exp(-FILM_THINNING * (temperature - TEMPERATURE.zero)) * np.abs(speed) / RATED_SPEED
+    load = np.maximum(np.abs(drive.torque), LEAST_TORQUE) / rated_torque(drive)
+    gap, share = shared(flow**FILM_EXPONENT * load**LOAD_EXPONENT)
+    return replace(drive, film_stiffness=drive.film_stiffness + stiffness * share / gap)
+
+
+def shared(alone: Float) -> tuple[Float, Float]:
+    """Return the gap between flanks, over the film at 1000 rpm, and the share of the load that the film carries.
+
+    ``alone`` is how thick the film would be without asperities. At a fixed gap h it carries in proportion to viscosity
+    times speed (Reynolds), so (alone/h)^(1/0.67), and the asperities exp(-(h - h_r)/gamma); together that is all of it.
+    The sum is convex and falls over h, so Newton's iteration closes in from below.
+    """
+    gap = np.maximum(alone, LEAST_GAP)
+    for _ in range(STEPS):
+        asperities, film = np.exp((LEAST_GAP - gap) / YIELDING), (alone / gap) ** (1.0 / FILM_EXPONENT)
+        gap = gap + (asperities + film - 1.0) / (asperities / YIELDING + film / (FILM_EXPONENT * gap))
+    return gap, (alone / gap) ** (1.0 / FILM_EXPONENT)
+
+
+def asperity_smoothing(drive: Drive, *, dimension: Float, roughness: Float, cycle_scale: Float, cycles: Float) -> Drive:
+    """The finest asperities go first: the dimension rises and G falls, until the flanks have run in.
+
+    ``roughness`` is by how much ln G falls.
+    """
+    run_in = -np.expm1(-cycles / cycle_scale)
+    return replace(
+        drive,
+        dimension_deviation=drive.dimension_deviation + dimension * run_in,
+        roughness_deviation=drive.roughness_deviation - roughness * run_in,
+    )
+
+
+def modulus_temperature(drive: Drive, *, softening: Float, temperature: Float) -> Drive:
+    """Warm steel is softer, by the share ``softening`` per kelvin: flanks, teeth and all that twists."""
+    left = 1.0 - softening * (temperature - TEMPERATURE.zero)
+    return replace(drive, modulus_factor=drive.modulus_factor * left)
+
+
+# What the rough flanks leave out of the torsion and the stiffness of a drive, or of a measured surface
+#
+# They act in the order declared: first what changes flanks, pairs and springs, then what is added to the torsion, then
+# the surface, then the readings. A new effect is a function beside the others and one more entry in EFFECTS.
 
 ARCHARD = "Archard, J. F., Contact and rubbing of flat surfaces, Journal of Applied Physics 24 (1953) 981"
 DOWSON = "Dowson, D., Higginson, G. R., Elasto-hydrodynamic lubrication, Pergamon 1966: film of a line contact"
@@ -55,223 +311,135 @@ def wave(limit: float, unit: str, prefix: str = "", of: str = "the torsion") -> 
 
 
 MESH: list[Effect[Drive, Stiffness]] = [
-    Effect(
-        "series_compliance",
-        on_inputs=series_compliance,
-        unknowns=[
-            Unknown("compliance", 0, 1000, "urad/(N*m)", note="1 over a stiffness; 1.4 to 530 in the catalogue"),
-        ],
-        looks_like="the torsion grows in proportion to the torque, alike in both senses; nothing of the mesh itself",
-        why="cup, wave generator, its bearing and the test rig are springs in series with the mesh, and much softer",
-        source=CATALOGUE,
-    ),
-    Effect(
-        "engaged_pairs",
-        on_inputs=engaged_pairs,
-        unknowns=[
-            Unknown("gain", 0, 2, "", note="of pairs at a large torque, over those stated; 1.7 from 15 to 40 %"),
-            Unknown("torque_scale", 0.04, 8, "", note=f"torque after which 63 % of them have come to bear, {PARTS}"),
-        ],
-        looks_like="the mesh stiffens with the torque more than its flanks do, most where its teeth bend",
-        why="the flexspline gives way under its load and lays more teeth against those of the circular spline",
-        source="parallel pairs of teeth: at one torque the stiffness grows with their number to the power 1 - m",
-    ),
-    Effect(
-        "oil_film",
-        on_inputs=oil_film,
-        needs=[SPEED, TEMPERATURE],
-        acts_at_reference=True,
-        unknowns=[
-            Unknown("stiffness", 0, 200, "kN/um", note="of a pair full of oil at 1000 rpm, 20 degC, T_2; 5 to 60"),
-        ],
-        looks_like="the mesh is stiffer while it turns, most at a low speed and with warm oil, by one amount at any "
-        "torque; it is lost again where it creeps, and nothing is left at rest",
-        why="oil between the flanks cannot leave in time and carries beside the asperities",
-        source=f"{DOWSON}; share of a film at a fixed gap: Reynolds 1886; load shared with asperities: Johnson, K. L., "
-        "Greenwood, J. A., Poon, S. Y., A simple theory of asperity contact in elastohydrodynamic lubrication, Wear 19 "
-        "(1972) 91",
-    ),
-    Effect(
-        "asperity_smoothing",
-        on_inputs=asperity_smoothing,
-        needs=[CYCLES],
-        unknowns=[
-            Unknown("dimension", 0, 0.2, "", note="by which D rises; 0.02 to 0.1"),
-            Unknown("roughness", 0, 5, "", note="by which ln G falls; 0.7 to 2.3"),
-            Unknown("cycle_scale", 1e3, 1e7, "", note="cycles after which 63 % is done"),
-        ],
-        looks_like="the mesh stiffens with the cycles, soon and then no more; the structure function falls with them",
-        why="the first load cycles flatten the highest asperities of new flanks",
-        source="running-in of machined surfaces: D rises and G falls",
-    ),
-    Effect(
-        "modulus_temperature",
-        on_inputs=modulus_temperature,
-        needs=[TEMPERATURE],
-        unknowns=[Unknown("softening", 0, 2e-3, "1/K", note="of steel 2.5e-4 to 4e-4")],
-        looks_like="torsion too large by one share when warm, of flanks, teeth and cup alike",
-        why="Young's modulus falls with the temperature",
-        source="handbook: elasticity of steel over temperature",
-    ),
-]
+    Effect("series_compliance", on_inputs=series_compliance,
+           unknowns=[Unknown("compliance", 0, 1000, "urad/(N*m)",
+                             note="1 over a stiffness; 1.4 to 530 in the catalogue")],
+           looks_like="the torsion grows in proportion to the torque, alike in both senses; nothing of the mesh "
+                      "itself",
+           why="cup, wave generator, its bearing and the test rig are springs in series with the mesh, and much "
+               "softer",
+           source=CATALOGUE),
+    Effect("engaged_pairs", on_inputs=engaged_pairs,
+           unknowns=[Unknown("gain", 0, 2, "",
+                             note="of pairs at a large torque, over those stated; 1.7 from 15 to 40 %"),
+                     Unknown("torque_scale", 0.04, 8, "",
+                             note=f"torque after which 63 % of them have come to bear, {PARTS}")],
+           looks_like="the mesh stiffens with the torque more than its flanks do, most where its teeth bend",
+           why="the flexspline gives way under its load and lays more teeth against those of the circular spline",
+           source="parallel pairs of teeth: at one torque the stiffness grows with their number to the power 1 - m"),
+    Effect("oil_film", on_inputs=oil_film, needs=[SPEED, TEMPERATURE], acts_at_reference=True,
+           unknowns=[Unknown("stiffness", 0, 200, "kN/um",
+                             note="of a pair full of oil at 1000 rpm, 20 degC, T_2; 5 to 60")],
+           looks_like="the mesh is stiffer while it turns, most at a low speed and with warm oil, by one amount at "
+                      "any torque; it is lost again where it creeps, and nothing is left at rest",
+           why="oil between the flanks cannot leave in time and carries beside the asperities",
+           source=f"{DOWSON}; share of a film at a fixed gap: Reynolds 1886; load shared with asperities: Johnson, "
+                  "K. L., Greenwood, J. A., Poon, S. Y., A simple theory of asperity contact in elastohydrodynamic "
+                  "lubrication, Wear 19 (1972) 91"),
+    Effect("asperity_smoothing", on_inputs=asperity_smoothing, needs=[CYCLES],
+           unknowns=[Unknown("dimension", 0, 0.2, "", note="by which D rises; 0.02 to 0.1"),
+                     Unknown("roughness", 0, 5, "", note="by which ln G falls; 0.7 to 2.3"),
+                     Unknown("cycle_scale", 1e3, 1e7, "", note="cycles after which 63 % is done")],
+           looks_like="the mesh stiffens with the cycles, soon and then no more; the structure function falls with "
+                      "them",
+           why="the first load cycles flatten the highest asperities of new flanks",
+           source="running-in of machined surfaces: D rises and G falls"),
+    Effect("modulus_temperature", on_inputs=modulus_temperature, needs=[TEMPERATURE],
+           unknowns=[Unknown("softening", 0, 2e-3, "1/K", note="of steel 2.5e-4 to 4e-4")],
+           looks_like="torsion too large by one share when warm, of flanks, teeth and cup alike",
+           why="Young's modulus falls with the temperature",
+           source="handbook: elasticity of steel over temperature"),
+]  # fmt: skip
 MOTION: list[Effect[Drive, Stiffness]] = [
-    Effect(
-        "creep",
-        on_results=creep,
-        needs=[TIME],
-        unknowns=[
-            Unknown("share", 0, 0.2, "", note="of the elastic torsion, per e-fold of time; 0.002 to 0.02"),
-            Unknown("time_scale", 1e-3, 10, "h", note="time from which it counts"),
-        ],
-        looks_like="the torsion grows with time in proportion to itself, fast at first and ever more slowly",
-        why="joints, bearing and bonded cup settle under a torque that stays",
-        source="logarithmic creep",
-    ),
-    Effect(
-        "ellipticity",
-        on_results=ellipticity,
-        needs=[WAVE_ANGLE],
-        acts_at_reference=True,
-        unknowns=[
-            *wave(1000, "urad"),
-            *wave(0.5, "", "stiffness_", "the mesh stiffness, as a share of it"),
-        ],
-        parts=[("cosine", "sine"), ("stiffness_cosine", "stiffness_sine")],
-        looks_like="two waves per turn of the wave generator, of the torsion at any torque, or of the mesh stiffness",
-        why="the two lobes of the wave generator, or the bores it sits in, are not alike",
-        source="second harmonic of the shape of the wave generator",
-    ),
-    Effect(
-        "eccentricity",
-        on_results=eccentricity,
-        needs=[WAVE_ANGLE],
-        acts_at_reference=True,
-        unknowns=wave(1000, "urad"),
-        looks_like="one wave of the torsion per turn of the wave generator, at any torque",
-        why="the wave generator, or its coupling, is off the axis of the drive",
-        source="first harmonic of an eccentricity",
-    ),
-]
+    Effect("creep", on_results=creep, needs=[TIME],
+           unknowns=[Unknown("share", 0, 0.2, "", note="of the elastic torsion, per e-fold of time; 0.002 to 0.02"),
+                     Unknown("time_scale", 1e-3, 10, "h", note="time from which it counts")],
+           looks_like="the torsion grows with time in proportion to itself, fast at first and ever more slowly",
+           why="joints, bearing and bonded cup settle under a torque that stays",
+           source="logarithmic creep"),
+    Effect("ellipticity", on_results=ellipticity, needs=[WAVE_ANGLE], acts_at_reference=True,
+           unknowns=[*wave(1000, "urad"), *wave(0.5, "", "stiffness_", "the mesh stiffness, as a share of it")],
+           parts=[("cosine", "sine"), ("stiffness_cosine", "stiffness_sine")],
+           looks_like="two waves per turn of the wave generator, of the torsion at any torque, or of the mesh "
+                      "stiffness",
+           why="the two lobes of the wave generator, or the bores it sits in, are not alike",
+           source="second harmonic of the shape of the wave generator"),
+    Effect("eccentricity", on_results=eccentricity, needs=[WAVE_ANGLE], acts_at_reference=True,
+           unknowns=wave(1000, "urad"),
+           looks_like="one wave of the torsion per turn of the wave generator, at any torque",
+           why="the wave generator, or its coupling, is off the axis of the drive",
+           source="first harmonic of an eccentricity"),
+]  # fmt: skip
 FRICTION: list[Effect[Drive, Stiffness]] = [
-    Effect(
-        "hysteresis",
-        on_results=hysteresis,
-        needs=[DIRECTION, REVERSAL_TORQUE, PEAK_TORQUE],
-        unknowns=[Unknown("loop", 0, 2000, "urad", note="whole width; 290 to 870 (1 to 3 arcmin)"), FRICTION_SCALE],
-        looks_like="the torsion is smaller on the way up than on the way down at the same torque, and turns round "
-        "within a short way of it",
-        why="teeth, bearing and cup rub before they slip",
-        source=f"{MASING}; {CATALOGUE}",
-    ),
-    Effect(
-        "viscous_hysteresis",
-        on_results=viscous_hysteresis,
-        needs=[SPEED, TEMPERATURE, DIRECTION, REVERSAL_TORQUE, PEAK_TORQUE],
-        acts_at_reference=True,
-        unknowns=[
-            Unknown("loop", 0, 2000, "urad", note="whole width at 1000 rpm and 20 degC, beside that at rest"),
-            FRICTION_SCALE,
-            Unknown("thinning", 0.01, 0.08, "1/K", note="of the lubricant's viscosity; 0.02 to 0.05"),
-        ],
-        looks_like="a loop of the torsion that is wider the faster and the colder the drive runs; none at rest",
-        why="the lubricant drags in proportion to its viscosity and to the speed",
-        source=f"viscous drag; {MASING}",
-    ),
-    Effect(
-        "lost_motion",
-        on_results=lost_motion,
-        unknowns=[Unknown("play", 0, 1000, "urad", note="half of it; to 290 (1 arcmin) in catalogues"), PLAY_SCALE],
-        looks_like="the torsion jumps about no torque, and is shifted in its sense by one amount at larger ones",
-        why="the teeth have play, which they cross one after another",
-        source=CATALOGUE,
-    ),
-    Effect(
-        "first_load_set",
-        on_results=first_load_set,
-        needs=[PEAK_TORQUE],
-        unknowns=[
-            Unknown("set", 0, 300, "urad", note="after a load of T_2 in the catalogue; 6 to 60"),
-            Unknown("exponent", 1, 1.5, "", note="power of the peak torque"),
-            Unknown("stiffening", 0, 2, "", note="of the mesh below the peak; 0.1 to 0.6"),
-        ],
-        parts=[("set", "exponent"), ("stiffening",)],
-        looks_like="a torsion that stays when the torque goes, and grows only with a new peak; a mesh that is stiffer "
-        "below the peak than it was when it was reached",
-        why="the highest asperities flow under the first load, and lie flat from then on",
-        source="plastic contact of rough surfaces",
-    ),
-    Effect(
-        "flank_wear",
-        on_results=flank_wear,
-        needs=[CYCLES],
-        unknowns=[
-            Unknown("rate", 0, 20, "um", note="depth on either flank per million cycles in service"),
-            PLAY_SCALE,
-        ],
-        looks_like="a lost motion that grows in proportion to the cycles",
-        why="the flanks slide on one another with every wave",
-        source=ARCHARD,
-    ),
-    Effect(
-        "thermal_preload",
-        on_results=thermal_preload,
-        needs=[TEMPERATURE],
-        unknowns=[
-            Unknown(
-                "expansion", -20, 20, "um/(m*K)", note="linear, of the circular spline less that of the flexspline"
-            ),
-        ],
-        looks_like="a lost motion that grows, or shrinks, in proportion to the temperature",
-        why="the two splines are of different metal and move apart, or together, as they get warm",
-        source="linear expansion; play of teeth that move apart, 2 tan(alpha) times the distance",
-    ),
-]
+    Effect("hysteresis", on_results=hysteresis, needs=[DIRECTION, REVERSAL_TORQUE, PEAK_TORQUE],
+           unknowns=[Unknown("loop", 0, 2000, "urad", note="whole width; 290 to 870 (1 to 3 arcmin)"), FRICTION_SCALE],
+           looks_like="the torsion is smaller on the way up than on the way down at the same torque, and turns round "
+                      "within a short way of it",
+           why="teeth, bearing and cup rub before they slip",
+           source=f"{MASING}; {CATALOGUE}"),
+    Effect("viscous_hysteresis", on_results=viscous_hysteresis,
+           needs=[SPEED, TEMPERATURE, DIRECTION, REVERSAL_TORQUE, PEAK_TORQUE], acts_at_reference=True,
+           unknowns=[Unknown("loop", 0, 2000, "urad",
+                             note="whole width at 1000 rpm and 20 degC, beside that at rest"),
+                     FRICTION_SCALE,
+                     Unknown("thinning", 0.01, 0.08, "1/K", note="of the lubricant's viscosity; 0.02 to 0.05")],
+           looks_like="a loop of the torsion that is wider the faster and the colder the drive runs; none at rest",
+           why="the lubricant drags in proportion to its viscosity and to the speed",
+           source=f"viscous drag; {MASING}"),
+    Effect("lost_motion", on_results=lost_motion,
+           unknowns=[Unknown("play", 0, 1000, "urad", note="half of it; to 290 (1 arcmin) in catalogues"), PLAY_SCALE],
+           looks_like="the torsion jumps about no torque, and is shifted in its sense by one amount at larger ones",
+           why="the teeth have play, which they cross one after another",
+           source=CATALOGUE),
+    Effect("first_load_set", on_results=first_load_set, needs=[PEAK_TORQUE],
+           unknowns=[Unknown("set", 0, 300, "urad", note="after a load of T_2 in the catalogue; 6 to 60"),
+                     Unknown("exponent", 1, 1.5, "", note="power of the peak torque"),
+                     Unknown("stiffening", 0, 2, "", note="of the mesh below the peak; 0.1 to 0.6")],
+           parts=[("set", "exponent"), ("stiffening",)],
+           looks_like="a torsion that stays when the torque goes, and grows only with a new peak; a mesh that is "
+                      "stiffer below the peak than it was when it was reached",
+           why="the highest asperities flow under the first load, and lie flat from then on",
+           source="plastic contact of rough surfaces"),
+    Effect("flank_wear", on_results=flank_wear, needs=[CYCLES],
+           unknowns=[Unknown("rate", 0, 20, "um", note="depth on either flank per million cycles in service"),
+                     PLAY_SCALE],
+           looks_like="a lost motion that grows in proportion to the cycles",
+           why="the flanks slide on one another with every wave",
+           source=ARCHARD),
+    Effect("thermal_preload", on_results=thermal_preload, needs=[TEMPERATURE],
+           unknowns=[Unknown("expansion", -20, 20, "um/(m*K)",
+                             note="linear, of the circular spline less that of the flexspline")],
+           looks_like="a lost motion that grows, or shrinks, in proportion to the temperature",
+           why="the two splines are of different metal and move apart, or together, as they get warm",
+           source="linear expansion; play of teeth that move apart, 2 tan(alpha) times the distance"),
+]  # fmt: skip
 SURFACE: list[Effect[Drive, Stiffness]] = [
-    Effect(
-        "lateral_filter",
-        on_inputs=lateral_filter,
-        unknowns=[
-            Unknown("width", 0, 20, "um", note="standard deviation of its weight; 0.187 of the cutoff of ISO 16610-21"),
-        ],
-        looks_like="the structure function is too low, by a share at lags below a few widths and by one amount above",
-        why="a stylus, a spot of light or a filter averages over the finest roughness",
-        source="Gaussian weight on a power law; ISO 16610-21",
-    ),
-    Effect(
-        "waviness",
-        on_results=waviness,
-        unknowns=[
-            Unknown("square", 0, 4, "um^2", note="of its amplitude A, since it enters so; A is 0.05 to 1 um"),
-            Unknown("wavelength", 3, 3000, "um", note="30 to 500"),
-        ],
-        looks_like="the structure function has a hump at half a wavelength, and a dip at a whole one",
-        why="chatter and feed of the tool leave waves on a flank",
-        source="structure function of a sine",
-    ),
-]
+    Effect("lateral_filter", on_inputs=lateral_filter,
+           unknowns=[Unknown("width", 0, 20, "um",
+                             note="standard deviation of its weight; 0.187 of the cutoff of ISO 16610-21")],
+           looks_like="the structure function is too low, by a share at lags below a few widths and by one amount "
+                      "above",
+           why="a stylus, a spot of light or a filter averages over the finest roughness",
+           source="Gaussian weight on a power law; ISO 16610-21"),
+    Effect("waviness", on_results=waviness,
+           unknowns=[Unknown("square", 0, 4, "um^2",
+                             note="of its amplitude A, since it enters so; A is 0.05 to 1 um"),
+                     Unknown("wavelength", 3, 3000, "um", note="30 to 500")],
+           looks_like="the structure function has a hump at half a wavelength, and a dip at a whole one",
+           why="chatter and feed of the tool leave waves on a flank",
+           source="structure function of a sine"),
+]  # fmt: skip
 READING: list[Effect[Drive, Stiffness]] = [
-    Effect(
-        "rig_drift",
-        on_reading=rig_drift,
-        needs=[TIME],
-        unknowns=[Unknown("rate", -500, 500, "urad/h", note="1 to 30")],
-        looks_like="the torsion moves with time, whatever the torque, as with a sensor that drifts",
-        why="the rig gets warm and bends",
-        source="linear growth with time",
-    ),
-    Effect(
-        "instrument_noise",
-        on_reading=instrument_noise,
-        unknowns=[
-            Unknown(
-                "variance", 0, 1e4, "nm^2", note="square of the noise of one height, since it enters so; 1 to 2500"
-            ),
-        ],
-        looks_like="the structure function is too high by one amount at any lag, which is an offset",
-        why="every height has the noise of its instrument",
-        source="structure function of white noise: twice its variance",
-    ),
-]
+    Effect("rig_drift", on_reading=rig_drift, needs=[TIME],
+           unknowns=[Unknown("rate", -500, 500, "urad/h", note="1 to 30")],
+           looks_like="the torsion moves with time, whatever the torque, as with a sensor that drifts",
+           why="the rig gets warm and bends",
+           source="linear growth with time"),
+    Effect("instrument_noise", on_reading=instrument_noise,
+           unknowns=[Unknown("variance", 0, 1e4, "nm^2",
+                             note="square of the noise of one height, since it enters so; 1 to 2500")],
+           looks_like="the structure function is too high by one amount at any lag, which is an offset",
+           why="every height has the noise of its instrument",
+           source="structure function of white noise: twice its variance"),
+]  # fmt: skip
 EFFECTS: list[Effect[Drive, Stiffness]] = [*MESH, *MOTION, *FRICTION, *SURFACE, *READING]
-
-__all__ = ["EFFECTS"]

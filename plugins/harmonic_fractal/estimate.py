@@ -1,25 +1,331 @@
-"""From the lines of a surface to fractal dimension and roughness: settings, and what was found."""
+"""From the lines of a surface to fractal dimension and roughness: settings, fits, and what was found."""
 
 from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from harmonic_fractal.fitting import PowerLaw, noise_fit, straight_fit
-from harmonic_fractal.lags import SHARE, Steps, fit_steps, local_steps, stated_steps
-from harmonic_fractal.power_law import log_roughness_of
-from harmonic_fractal.resampling import block_weights, units_of
-from harmonic_fractal.roughness_length import roughness_length_of
 from harmonic_fractal.structure import (
+    CACHED,
+    SHARE,
+    Array,
+    Steps,
     StructureFunction,
+    fit_steps,
+    local_steps,
+    log_roughness_of,
     mean_squares,
+    piece_sums,
+    stated_steps,
     structure_function_of,
 )
 from harmonic_fractal.surface import Direction, Lines
-from harmonic_fractal.verdict import DECADE, NONE, local_dimensions, no_range, self_affine_range, span_of
 
-Array = NDArray[np.float64]
+# Straight lines through ln S over ln lag, with or without the noise of the instrument, many at once
+
+FLATTEST, STEEPEST = 0.02, 1.98  # bounds of the exponent where the noise is fitted too
+ROUNDS = 60
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PowerLaw:
+    """S = exp(intercept) lag^slope + 2 noise^2, each of shape (...): lag in m, S in m^2, noise in m."""
+
+    slope: Array
+    intercept: Array
+    noise: Array
+    r_squared: Array
+
+
+def straight_fit(lags: Array, values: Array) -> PowerLaw:
+    """Fit ln S (..., k) by a straight line over ln lag (k,), least squares, all lags alike; NaN in S gives NaN."""
+    x, y = np.log(lags), np.log(values)
+    centred = x - x.mean()
+    middle = y.mean(axis=-1)
+    slope = (y @ centred) / np.square(centred).sum()
+    left = y - middle[..., None] - slope[..., None] * centred
+    return PowerLaw(
+        slope=slope, intercept=middle - slope * x.mean(), noise=np.zeros_like(slope), r_squared=_explained(left, y)
+    )
+
+
+def noise_fit(lags: Array, values: Array) -> PowerLaw:
+    """Fit S (..., k) by A lag^s + 2 sigma^2, least squares of ln S; 0.02 < s < 1.98 and sigma >= 0.
+
+    White noise of the instrument, of standard deviation sigma in every height, adds 2 sigma^2 to S at every lag.
+    Levenberg's and Marquardt's method on the exponent and on the share of noise, all curves at once; A is solved for
+    in between. It starts twice, without noise and with the slope of the longer half of the lags and the noise that is
+    then missing at the shortest; the better end counts.
+    """
+    x, y = np.log(lags), np.log(values)
+    x = x - x.mean()
+    flat = y.reshape(-1, y.shape[-1])
+    half = x >= x[x.size // 2]
+    starts = [straight_fit(np.exp(x[part]), np.exp(flat[:, part])).slope for part in (x == x, half)]
+    ends = []
+    for start, share in zip(starts, (0.0, 0.5), strict=True):
+        slope = np.clip(start, 0.1, 1.9)
+        ends.append(_refined(x, flat, np.stack([slope, share * np.exp(slope * x[0])], axis=-1)))
+    costs = [np.square(_residuals(x, flat, end)).sum(axis=-1) for end in ends]
+    best = np.where((costs[1] < costs[0])[:, None], ends[1], ends[0])
+    amplitude = (flat - _shape(x, best)).mean(axis=-1)
+    shape = y.shape[:-1]
+    return PowerLaw(
+        slope=best[:, 0].reshape(shape),
+        intercept=(amplitude - best[:, 0] * np.log(lags).mean()).reshape(shape),
+        noise=np.sqrt(np.exp(amplitude) * best[:, 1] / 2.0).reshape(shape),
+        r_squared=_explained(_residuals(x, flat, best), flat).reshape(shape),
+    )
+
+
+def _refined(x: Array, y: Array, found: Array) -> Array:
+    """Improve (slope, share of noise) (n, 2) until nothing changes; a step that makes it worse is shortened."""
+    damping = np.full(len(found), 1e-3)
+    cost = np.square(_residuals(x, y, found)).sum(axis=-1)
+    for _ in range(ROUNDS):
+        trial = _stepped(x, y, found, damping)
+        trial_cost = np.square(_residuals(x, y, trial)).sum(axis=-1)
+        better = trial_cost < cost
+        found = np.where(better[:, None], trial, found)
+        settled = bool(np.all(cost - trial_cost <= 1e-14 * cost) and np.all(better | (damping > 1.0)))
+        cost = np.where(better, trial_cost, cost)
+        damping = np.where(better, damping / 5.0, damping * 5.0)
+        if settled:
+            break
+    return found
+
+
+def _stepped(x: Array, y: Array, found: Array, damping: Array) -> Array:
+    power = np.exp(found[:, :1] * x)
+    whole = power + found[:, 1:]
+    jacobian = np.stack([x * power / whole, 1.0 / whole], axis=-1)
+    jacobian = jacobian - jacobian.mean(axis=1, keepdims=True)
+    gradient = np.einsum("nki,nk->ni", jacobian, _residuals(x, y, found))
+    held = (found[:, 1] <= 0.0) & (gradient[:, 1] <= 0.0)
+    jacobian[held, :, 1] = 0.0
+    gradient[held, 1] = 0.0
+    normal = np.einsum("nki,nkj->nij", jacobian, jacobian)
+    diagonal = np.einsum("nii->ni", normal)
+    diagonal += damping[:, None] * diagonal + 1e-30
+    change = np.linalg.solve(normal, gradient[..., None])[..., 0]
+    low, high = np.array([FLATTEST, 0.0]), np.array([STEEPEST, np.inf])
+    clipped: Array = np.clip(found + change, low, high)
+    return clipped
+
+
+def _shape(x: Array, found: Array) -> Array:
+    shape: Array = np.log(np.exp(found[:, :1] * x) + found[:, 1:])
+    return shape
+
+
+def _residuals(x: Array, y: Array, found: Array) -> Array:
+    left = y - _shape(x, found)
+    centred: Array = left - left.mean(axis=-1, keepdims=True)
+    return centred
+
+
+def _explained(left: Array, y: Array) -> Array:
+    spread = np.square(y - y.mean(axis=-1, keepdims=True)).sum(axis=-1)
+    left_over = np.square(left).sum(axis=-1)
+    explained: Array = np.divide(spread - left_over, spread, out=np.full(spread.shape, np.nan), where=spread > 0)
+    return explained
+
+
+# How far D and G scatter: blocks of neighbouring lines, or of neighbouring pieces of them, drawn anew many times
+
+ENOUGH_LINES = 20
+LINES_TOGETHER = 10
+PIECES = 50  # of all lines, across them
+FEWEST_BLOCKS = 4
+MOST_UNITS = 2000  # more lines are taken together by neighbours, so that samples of any map fit into memory
+
+
+def units_of(heights: Array, curve: StructureFunction, steps: Steps, block: int) -> tuple[StructureFunction, int]:
+    """Return what is resampled, its structure function (units, k), and how many neighbours are drawn together.
+
+    Blocks of ``block`` lines where that is asked for (not 0). Else of ten lines, where there are twenty lines or more
+    and they are independent. Else of pieces: the lines, few or alike, are cut across into 50 pieces, all lines of a
+    piece together, and as many neighbouring pieces are drawn together as the longest lag reaches over. At most a
+    quarter of the units, so that there are four blocks to draw.
+
+    Lines of one patch are seldom independent, and blocks of ten of them then see half of the scatter only: a fractal
+    patch is correlated over its whole height. Pieces as long as the longest lag see 0.6 to 0.9 of it.
+    """
+    if block or (len(curve.sums) >= ENOUGH_LINES and are_independent(curve)):
+        together = -(-len(curve.sums) // MOST_UNITS)
+        groups = _grouped(curve, together)
+        return groups, _at_most(-(-(block or LINES_TOGETHER) // together), len(groups.sums))
+    pieces = StructureFunction(curve.lags, *piece_sums(heights, steps, PIECES))
+    reach = steps[-1] * len(pieces.sums) / (heights.shape[1] - steps[-1])
+    return pieces, _at_most(int(np.ceil(reach)), len(pieces.sums))
+
+
+def are_independent(curve: StructureFunction) -> bool:
+    """Tell whether what a line says about the slope has nothing to do with what its neighbour says (5 % level)."""
+    scores = _scores(curve)
+    return bool(scores[1:] @ scores[:-1] <= 1.96 * (scores @ scores) / np.sqrt(len(scores)))
+
+
+def block_weights(units: int, block: int, samples: int, seed: int) -> Array:
+    """Return how often every unit (lines, say) stands in every sample (samples, units): blocks of neighbours.
+
+    The blocks begin anywhere and the last is continued by the first (circular block bootstrap, Politis and Romano
+    1992). One block fewer is drawn than the units hold, which makes the variance that of the units and not the
+    (blocks - 1)/blocks of it (Rao and Wu 1988).
+    """
+    generator = np.random.default_rng(seed)
+    drawn = max(1, round(units / block) - 1)
+    starts = generator.multinomial(drawn, np.full(units, 1.0 / units), size=samples).astype(float)
+    weights = np.zeros_like(starts)
+    for shift in range(block):
+        weights += np.roll(starts, shift, axis=1)
+    return weights
+
+
+def _grouped(curve: StructureFunction, together: int) -> StructureFunction:
+    if together == 1:
+        return curve
+    starts = np.arange(0, len(curve.sums), together)
+    return StructureFunction(curve.lags, np.add.reduceat(curve.sums, starts), np.add.reduceat(curve.counts, starts))
+
+
+def _at_most(block: int, units: int) -> int:
+    return max(1, min(block, units // FEWEST_BLOCKS))
+
+
+def _scores(curve: StructureFunction) -> Array:
+    """Return how far every line pulls the slope of ln S over ln lag, to first order; their sum is 0."""
+    x = np.log(curve.lags)
+    pull = (x - x.mean()) / (curve.pooled * curve.pairs)
+    scores: Array = (curve.sums - curve.pooled * curve.counts) @ pull
+    return scores
+
+
+# The roughness-length method: how the roughness of a piece of a line grows with its length (Malinverno 1990)
+
+SHORTEST = 8  # points of a window
+WINDOW_SHARE = 0.1  # of a line: the longest window
+COUNT = 12
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RoughnessLength:
+    """Windows (k,) in m, mean roughness in them (k,) in m, and the profile dimension that their power law says."""
+
+    windows: Array
+    roughness: Array
+    dimension: float
+
+
+def roughness_length_of(heights: Array, spacing: float) -> RoughnessLength:
+    """Read the profile dimension from lines (lines, points), m, by the roughness-length method.
+
+    Of every window of w points the straight line is removed, rho = sqrt(sum r^2/(w-2)); its mean over all windows
+    grows as w^(2-D_s). Windows of 8 points to a tenth of a line, evenly in their logarithm; those that hold a point
+    that was not measured are left out, and windows that overlap by half count too. It gives no G: that comes from
+    the structure function. NaN where a line is too short for two lengths of windows.
+    """
+    sizes = window_sizes(heights.shape[1])
+    roughness = np.array([_mean_roughness(heights, int(size)) for size in sizes])
+    known = np.isfinite(roughness) & (roughness > 0)
+    windows = sizes[known] * spacing
+    dimension = float("nan")
+    if known.sum() > 1:
+        dimension = 2.0 - float(np.polyfit(np.log(windows), np.log(roughness[known]), 1)[0])
+    return RoughnessLength(windows=windows, roughness=roughness[known], dimension=dimension)
+
+
+def window_sizes(points: int) -> Steps:
+    """Return the lengths of windows, in points, for a line of so many points."""
+    longest = int(WINDOW_SHARE * points * (1 + 1e-9))
+    if longest < SHORTEST:
+        return np.empty(0, dtype=np.int64)
+    return np.unique(np.round(np.geomspace(SHORTEST, longest, COUNT))).astype(np.int64)
+
+
+def _mean_roughness(heights: Array, size: int) -> float:
+    """Return the mean over all windows of the standard deviation about each window's own straight line, m."""
+    views = np.lib.stride_tricks.sliding_window_view(heights, size, axis=1)[:, :: size // 2]
+    x = np.arange(size) - (size - 1) / 2.0
+    total, count = 0.0, 0
+    rows = max(1, CACHED // (views.shape[1] * size))
+    for first in range(0, len(views), rows):
+        window = views[first : first + rows].reshape(-1, size)
+        left = window - window.mean(axis=1, keepdims=True)
+        left -= ((left @ x) / (x @ x))[:, None] * x
+        rough = np.sqrt(np.einsum("ij,ij->i", left, left) / (size - 2))
+        known = np.isfinite(rough)
+        total += float(rough[known].sum())
+        count += int(known.sum())
+    return float(mean_squares(np.array(total), np.array(count)))
+
+
+# Whether there is a self-affine range: a decade of lags over which the local dimension stays the same
+
+NONE = (float("nan"), float("nan"))
+SPAN = 0.2  # of the local dimensions within the range
+# smoother is a filtered surface or form, rougher is noise or beyond the correlation length
+LOWEST, HIGHEST = 1.05, 1.95
+DECADE = 10.0
+
+
+def local_dimensions(lags: Array, values: Array) -> tuple[Array, Array]:
+    """Return the geometric means of neighbouring lags (j,), m, and the profile dimension between them (j,).
+
+    ``values`` (j + 1,) is S, m^2; the dimension is NaN where it is missing or not positive.
+    """
+    logarithms = np.log(np.where(values > 0, values, np.nan))
+    slopes = np.diff(logarithms) / np.diff(np.log(lags))
+    return np.sqrt(lags[1:] * lags[:-1]), 2.0 - slopes / 2.0
+
+
+def self_affine_range(lags: Array, dimensions: Array) -> tuple[float, float]:
+    """Return the longest range of lags, m, that is self-affine; NaN and NaN where there is none.
+
+    ``dimensions`` (j,) belong to the steps between the lags (j + 1,). A range holds at least a decade; its local
+    dimensions span less than 0.2 and lie within 1.05 and 1.95. Of ranges of the same length the one of shorter lags.
+    """
+    best = NONE
+    for first in range(len(dimensions)):
+        for last in range(first, len(dimensions)):
+            low, high = float(lags[first]), float(lags[last + 1])
+            longer = (
+                high / low > best[1] / best[0] * (1 + 1e-9) if best is not NONE else high >= DECADE * low * (1 - 1e-9)
+            )
+            if longer and is_self_affine(dimensions[first : last + 1]):
+                best = (low, high)
+    return best
+
+
+def is_self_affine(dimensions: Array) -> bool:
+    """Tell whether local dimensions are those of one power law: within 1.05 and 1.95, and less than 0.2 apart."""
+    low, high = float(np.min(dimensions)), float(np.max(dimensions))
+    return low >= LOWEST and high <= HIGHEST and high - low < SPAN
+
+
+def no_range(lags: Array, dimensions: Array) -> str:
+    """Say in words why there is no self-affine range."""
+    known = np.isfinite(dimensions)
+    if not known.any():
+        return (
+            "no self-affine range: no local slope of the structure function could be taken, because hardly a lag has "
+            "100 pairs of points or a difference of height; take longer lines, or more of them"
+        )
+    low, high = float(dimensions[known].min()), float(dimensions[known].max())
+    return (
+        f"no self-affine range: over no decade of lags does the local dimension of the profile vary by less than "
+        f"{SPAN:g} and stay within {LOWEST:g} to {HIGHEST:g}; it runs from {low:.2f} to {high:.2f} over lags of "
+        f"{span_of(lags[0], lags[-1])}"
+    )
+
+
+def span_of(shortest: float, longest: float) -> str:
+    """Say from where to where lags, m, run."""
+    return f"{shortest * 1e6:.4g} um to {longest * 1e6:.4g} um"
+
+
+# From the lines of a surface to fractal dimension and roughness: settings, and what was found
+
 FEWEST_POINTS = 64  # of a line
 FEWEST_LAGS = 8
 FEWEST_PAIRS = 100

@@ -1,12 +1,15 @@
-"""Made lines and patches of known truth: Weierstrass-Mandelbrot sums of waves, and fractional Brownian motion.
-
-All randomness comes from the generator that is handed in. Heights and places are in m; S is the structure function.
-"""
+"""Made lines and patches of known truth, and what an instrument and levelling make of them."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import next_fast_len
+from scipy.ndimage import gaussian_filter
+
+# Made lines and patches of known truth: Weierstrass-Mandelbrot sums of waves, and fractional Brownian motion
+#
+# All randomness comes from the generator that is handed in. Heights and places are in m; S is the structure function.
 
 Array = NDArray[np.float64]
 YAN = "Yan, Komvopoulos, Journal of Applied Physics 84 (1998), p. 3617"
@@ -127,3 +130,135 @@ def _increments(exponent: float, step: float, points: int) -> Array:
     k = np.arange(points, dtype=np.float64)
     powers = (k + 1.0) ** exponent - 2.0 * k**exponent + np.abs(k - 1.0) ** exponent
     return np.asarray(0.5 * step * powers, dtype=np.float64)
+
+
+# Made patches of fractional Brownian motion: alike in all directions, Gaussian, with an exact power law
+
+STEIN = "Stein, Journal of Computational and Graphical Statistics 11 (2002), p. 587"
+
+
+def brownian_surface(dimension: float, step: float, shape: tuple[int, int], rng: np.random.Generator) -> Array:
+    """Make a patch of fractional Brownian motion on a square grid: heights ``shape`` (rows, points), 0 at its corner.
+
+    ``dimension`` D_s (1 to 2) is that of its profiles, ``step`` the structure function at one spacing, m^2: at any
+    distance of r spacings, in any direction, it is step r^(4-2 D_s), exactly. A stationary field whose covariance ends
+    within a circle is made by circulant embedding, and an inclined plane of random slopes is added (Stein 2002).
+    """
+    rows, points = shape
+    exponent = 4.0 - 2.0 * dimension
+    unit = float(np.hypot(rows, points))  # the law holds up to this distance, in spacings
+    side = field_side(dimension, shape)
+    away = np.minimum(np.arange(side), side - np.arange(side)) / unit
+    covariance, slope = _covariance(np.hypot(away[:, None], away[None, :]), exponent, _reach(dimension))
+    spectrum = np.maximum(np.fft.rfft2(covariance).real, 0.0)
+    field = np.fft.irfft2(np.sqrt(spectrum) * np.fft.rfft2(rng.standard_normal((side, side))), s=(side, side))
+    heights = field[:rows, :points] - field[0, 0]
+    tilts = rng.standard_normal(2) * np.sqrt(2.0 * slope) / unit
+    heights = heights + tilts[0] * np.arange(rows)[:, None] + tilts[1] * np.arange(points)
+    return np.asarray(heights * np.sqrt(0.5 * step * unit**exponent), dtype=np.float64)
+
+
+def _covariance(distance: Array, exponent: float, reach: float) -> tuple[Array, float]:
+    """Return the covariance of the stationary field at distances in units, and its share of the square of these."""
+    tail = 0.0 if reach <= 1.0 else exponent * (2.0 - exponent) / (3.0 * reach * (reach**2 - 1.0))
+    slope = 0.5 * (exponent - tail * (reach - 1.0) ** 2 * (reach + 2.0))
+    level = tail * (reach - 1.0) ** 3 + 1.0 - slope
+    inside = level - distance**exponent + slope * distance**2
+    outside = tail * np.maximum(reach - distance, 0.0) ** 3 / np.maximum(distance, 1.0)
+    return np.where(distance <= 1.0, inside, outside), slope
+
+
+def field_side(dimension: float, shape: tuple[int, int]) -> int:
+    """Return the side, in points, of the square field from which a patch of this shape is cut."""
+    least = 2.0 * _reach(dimension) * float(np.hypot(*shape))
+    return 2 * int(next_fast_len(int(np.ceil(least / 2.0)) + 1, real=True))
+
+
+def _reach(dimension: float) -> float:
+    """Return where the covariance of the field ends, in units; smooth surfaces need it to end later."""
+    return 1.0 if dimension >= 1.25 else 2.0
+
+
+# What levelling does to a structure function: each line loses its own straight line, and S its long lags
+
+
+def levelled_structure(every: Array) -> Array:
+    """Return S (n,) to be expected of lines of n points once each has lost its least-squares straight line.
+
+    ``every`` (n,) is the true S at 0, 1, ... n - 1 spacings, of a power law or of any other surface whose increments
+    are alike everywhere. With the direction q of the straight line (of length 1) and m = K q, K the matrix of -S/2, a
+    step of k changes q by the same c k everywhere, and S(k) loses 2 c k mean(m(i+k) - m(i)) - (c k)^2 q m: exact. The
+    products with K are convolutions, so that long lines cost little. At a tenth of a line levelling takes a quarter of
+    S where D_s is 1.3, and 3 % where it is 1.7: so it raises the dimension that is found.
+    """
+    points = every.size
+    steps = np.arange(points, dtype=np.float64)
+    slope = np.sqrt(12.0 / (points * (points**2 - 1.0)))  # of q over the number of the point
+    direction = slope * (steps - 0.5 * (points - 1))
+    kernel = -0.5 * np.concatenate([every[:0:-1], every])
+    size = 3 * points
+    product = np.fft.irfft(np.fft.rfft(kernel, size) * np.fft.rfft(direction, size), size)[points - 1 : 2 * points - 1]
+    weight = float(direction @ product)
+    sums = np.concatenate([[0.0], np.cumsum(product)])
+    rise = ((sums[-1] - sums[:-1]) - sums[:0:-1]) / (points - steps)  # mean of m(i + k) - m(i) over all i
+    step = slope * steps
+    return np.asarray(every - 2.0 * step * rise + step**2 * weight, dtype=np.float64)
+
+
+# What an instrument makes of a surface: lateral filter, noise, steps of its scale, spikes and holes
+
+ISO_16610 = "ISO 16610-21"
+DEVIATION = float(np.sqrt(np.log(2.0) / 2.0) / np.pi)  # of the Gaussian weight over the wave that is halved, 0.1874
+REACH = 4.0  # standard deviations to which the weight is taken
+
+
+@dataclass(frozen=True, kw_only=True)
+class Instrument:
+    """A profilometer: everything 0 is a perfect one.
+
+    ``cutoff`` is the wave length, m, of which half the amplitude passes the Gaussian lateral filter; ``noise`` the
+    standard deviation of the height of each point, m; ``step`` the smallest difference of height it tells, m.
+    ``spikes`` and ``holes`` are shares of the points, each alone; a spike stands ``spike_height``, m, up or down.
+    """
+
+    cutoff: float = 0.0
+    noise: float = 0.0
+    step: float = 0.0
+    spikes: float = 0.0
+    spike_height: float = 0.0
+    holes: float = 0.0
+
+    def margin(self, spacing: float) -> int:
+        """Return how many points beyond its edge the filter needs on each side."""
+        return int(np.ceil(REACH * DEVIATION * self.cutoff / spacing))
+
+
+def as_measured(
+    heights: Array, spacing: float, instrument: Instrument, rng: np.random.Generator, *, across: bool = True
+) -> Array:
+    """Return heights (rows, points), m, as the instrument gives them, NaN in its holes.
+
+    The filter takes ``instrument.margin(spacing)`` points away on each side; without ``across`` it acts along the rows
+    only, and takes nothing away across them. Order: filter, noise, steps, spikes, holes.
+    """
+    seen = _filtered(heights, spacing, instrument, across=across)
+    seen = seen + instrument.noise * rng.standard_normal(seen.shape)
+    if instrument.step > 0.0:
+        seen = np.round(seen / instrument.step) * instrument.step
+    flat = seen.ravel()
+    order = rng.permutation(flat.size)
+    spikes, holes = (round(share * flat.size) for share in (instrument.spikes, instrument.holes))
+    flat[order[:spikes]] += instrument.spike_height * rng.choice([-1.0, 1.0], spikes)
+    flat[order[flat.size - holes :]] = np.nan
+    return np.asarray(flat.reshape(seen.shape), dtype=np.float64)
+
+
+def _filtered(heights: Array, spacing: float, instrument: Instrument, *, across: bool) -> Array:
+    """Weigh with a Gaussian along the rows, and across them where asked, and cut the margin off."""
+    margin = instrument.margin(spacing)
+    if not margin:
+        return heights.copy()
+    deviation = DEVIATION * instrument.cutoff / spacing
+    seen = gaussian_filter(heights, (deviation if across else 0.0, deviation), truncate=REACH)
+    rows = slice(margin, -margin) if across else slice(None)
+    return np.asarray(seen[rows, margin:-margin], dtype=np.float64)

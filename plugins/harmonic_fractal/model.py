@@ -4,13 +4,9 @@ from pathlib import Path
 
 from harmonic_fractal.calculation import harmonic_fractal
 from harmonic_fractal.effects import EFFECTS
-from harmonic_fractal.findings import FINDINGS
-from harmonic_fractal.published import PUBLISHED
-from harmonic_fractal.sections import SECTIONS
-from harmonic_fractal.slopes import SOURCES, slopes
-from harmonic_fractal.tolerances import TOLERANCES
-from harmonic_fractal.uncertainty import Uncertainty
-from harmonic_fractal.validity import Validity
+from harmonic_fractal.published import FINDINGS, PUBLISHED
+from harmonic_fractal.sheet import SECTIONS
+from harmonic_fractal.uncertainty import SOURCES, TOLERANCES, Uncertainty, Validity, slopes
 from truing import Maximise, Model, Optimise, Reliability, Require, Sensitivity, Sweep, Vary
 
 LITERATURE = [

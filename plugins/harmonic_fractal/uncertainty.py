@@ -1,18 +1,147 @@
-"""A study of our own: how far the finite number of measured lines leaves stiffness and torsion open."""
+"""What scatters, how far the finite number of measured lines leaves the answer open, and where laws end."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
+from math import nan
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from harmonic_fractal.drawn_look import BLUE, panels, quiet
+from harmonic_fractal.contact import Rough, contact_of, flanks_of, interface_of, pressed, together
+from harmonic_fractal.figures import BLUE, or_none, panels, quiet
+from harmonic_fractal.flank import Flank
 from harmonic_fractal.quantities import Drive
-from harmonic_fractal.tolerances import FLANKS, flank_samples
-from truing import Bench, Block, Check, Drawing, Table, TruingError, Words, quantity
+from truing import (
+    Bench,
+    Block,
+    Check,
+    Drawing,
+    Float,
+    Sensitivities,
+    Table,
+    Tolerance,
+    TruingError,
+    Words,
+    drawn,
+    found,
+    lognormal,
+    normal,
+    quantity,
+    results,
+)
+
+# What scatters: the estimate of D and G from a measured flank, the materials, and the compliance around the mesh
+
+Pairs = NDArray[np.float64]
+FLANKS = (
+    "surface", "mating_surface", "fractal_dimension", "fractal_roughness", "mating_dimension", "mating_roughness",
+    "convention", "density", "sampling", "longest_lag",
+)  # fmt: skip
+"""The inputs that make up the interface of both flanks."""
+
+
+def flank_samples(rng: np.random.Generator, rows: int, **flanks: Any) -> Mapping[str, Any]:
+    """Draw pairs of D and ln G of both flanks together, each from the bootstrap pairs of its measured lines.
+
+    Returns deviations (rows,) from the estimate by name of their input; nothing where no flank was measured. Errors of
+    D and ln G hang together closely, so they are never drawn apart. The mean of the pairs counts as the estimate.
+    """
+    pairs = [_centred(flanks["surface"]), _centred(flanks["mating_surface"])]
+    if not any(len(found) for found in pairs):
+        return {}
+    drive = replace(Drive(), **flanks)
+    first, second = flanks_of(drive)
+    sampled = _shifted(first, _some(pairs[0], rng, rows)), _shifted(second, _some(pairs[1], rng, rows))
+    middle, both = together(first, second, drive), together(sampled[0] or first, sampled[1], drive)
+    return {
+        "dimension_deviation": both.dimension - middle.dimension,
+        "roughness_deviation": np.log(both.roughness / middle.roughness),
+    }
+
+
+def _centred(flank: "Flank | None") -> Pairs:
+    """Return the pairs (B, 2) of a flank less their mean."""
+    pairs = np.empty((0, 2)) if flank is None else flank.resampled
+    return pairs - pairs.mean(axis=0) if len(pairs) else pairs
+
+
+def _some(pairs: Pairs, rng: np.random.Generator, rows: int) -> Pairs:
+    """Draw so many pairs; none if there are none."""
+    return pairs[rng.integers(len(pairs), size=rows)] if len(pairs) else pairs
+
+
+def _shifted(rough: Rough | None, pairs: Pairs) -> Rough | None:
+    """Return a flank with these deviations of D and ln G (rows, 2); as it is without any."""
+    if rough is None or not len(pairs):
+        return rough
+    return Rough(dimension=rough.dimension + pairs[:, 0], roughness=rough.roughness * np.exp(pairs[:, 1]))
+
+
+def share_of_compliance(rng: np.random.Generator, rows: int, *, drive_compliance: float) -> Mapping[str, Any]:
+    """Draw a hundredth of the compliance around the mesh; nothing where that is 0."""
+    if not drive_compliance:
+        return {}
+    return {"drive_compliance": 0.01 * drive_compliance * rng.standard_normal(rows)}
+
+
+TOLERANCES = [
+    Tolerance(
+        "estimate", drawn(flank_samples, of=FLANKS), on=["dimension_deviation", "roughness_deviation"],
+        why="D and ln G come from a finite number of lines: pairs from resampled blocks of them, where a flank was "
+        "measured", source="bootstrap of the measured lines",
+    ),
+    Tolerance("hardness", lognormal(sd="6 %"), why="batch scatter on the certificate", source="typical"),
+    Tolerance(
+        "youngs_modulus", normal(sd="1 %"), on=["youngs_modulus_flexspline", "youngs_modulus_circular"],
+        why="from melt to melt of one steel", source="typical",
+    ),
+    Tolerance(
+        "drive_compliance", drawn(share_of_compliance, of=["drive_compliance"]),
+        why="a standard deviation of 1 % of what is stated", source="typical of a bench",
+    ),
+]  # fmt: skip
+
+
+# What the stiffness of a pair hangs on: its logarithmic derivatives, from the study 'sensitivity'
+
+NOTE = "relative change of the stiffness of the pair"
+SOURCES = (
+    "dimension_deviation", "roughness_deviation", "hardness", "youngs_modulus_flexspline", "youngs_modulus_circular",
+    "pair_load", "torque", "engaged_factor", "drive_compliance",
+)  # fmt: skip
+
+
+@results
+class Slopes:
+    """By how much the stiffness of one pair changes, in parts of itself."""
+
+    slope_dimension: Float = found("", symbol="k_D", note=f"{NOTE} per unit of D at the same G", method="differences")
+    slope_roughness: Float = found("", symbol="k_G", note=f"{NOTE} per ln G", method="differences")
+    slope_hardness: Float = found("", symbol="k_H", note=f"{NOTE} per ln H", method="differences")
+    slope_load: Float = found("", symbol="k_F", note=f"{NOTE} per ln F; the load exponent m", method="differences")
+
+
+def slopes(found_by: Sensitivities) -> Slopes:
+    """Divide the derivatives by the stiffness; a source that the study was not asked for has none."""
+    drive: Drive = found_by.inputs
+    stiffness = float(pressed(drive.pair_load, contact_of(drive, interface_of(drive))).stiffness)
+    derivative = found_by.derivatives.get("stiffness", {})
+
+    def relative(source: str, by: Float = 1.0) -> float:
+        return derivative.get(source, nan) * float(by) / stiffness if stiffness else nan
+
+    return Slopes(
+        slope_dimension=relative("dimension_deviation"),
+        slope_roughness=relative("roughness_deviation"),
+        slope_hardness=relative("hardness", drive.hardness),
+        slope_load=relative("pair_load", drive.pair_load),
+    )
+
+
+# A study of our own: how far the finite number of measured lines leaves stiffness and torsion open
 
 Array = NDArray[np.float64]
 
@@ -125,16 +254,16 @@ class Propagated:
         for result in self.together:
             found, unit = self.summary(result), self.units[result]
             one = quantity(f"1 {unit}", unit)
-            numbers = {name: _known(getattr(found, name) / one) for name in ("nominal", "median")}
-            interval = [_known(end / one) for end in (found.low, found.high)]
-            shares = {"relative_sd": _known(found.relative_sd), "if_independent": _known(found.independent_sd)}
+            numbers = {name: or_none(getattr(found, name) / one) for name in ("nominal", "median")}
+            interval = [or_none(end / one) for end in (found.low, found.high)]
+            shares = {"relative_sd": or_none(found.relative_sd), "if_independent": or_none(found.independent_sd)}
             results[result] = {**numbers, "interval95": interval, "unit": unit, **shares, "failed": found.failed}
         sd = self.pairs.std(axis=0, ddof=1)
         return {
             "draws": len(self.pairs),
             "dimension_sd": float(sd[0]),
             "log_roughness_sd": float(sd[1]),
-            "correlation": _known(self.correlation),
+            "correlation": or_none(self.correlation),
             "results": results,
         }
 
@@ -214,10 +343,6 @@ def _relative_sd(values: "Array") -> float:
     return float(known.std(ddof=1)) / mean if mean else float("nan")
 
 
-def _known(value: Any) -> float | None:
-    return float(value) if value == value else None
-
-
 def _spoken(unit: str) -> str:
     """Write a unit as it is printed."""
     return unit.replace("*", "·").replace("urad", "µrad").replace("um", "µm")
@@ -229,3 +354,114 @@ def pairs_figure(pairs: "Array") -> "Figure":
     panel.plot(pairs[:, 0], pairs[:, 1], ".", color=BLUE, markersize=2.5, alpha=0.5, rasterized=True)
     quiet(panel, "deviation of D", "deviation of ln G")
     return figure
+
+
+# A study of our own: what was measured badly, refused, or carried beyond what the laws were made for
+
+RESOLVED = 0.3  # radius of the critical area over the sampling interval
+PLASTIC = 0.5  # share of the load on plastic contacts
+BODIES = {"surface": "fractal_dimension and fractal_roughness", "mating_surface": "mating_dimension, if it is stated"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Validity:
+    """Collect what its reader must know of every measured flank and of the contact that follows."""
+
+    name: str = "validity"
+    gives: Callable[[Any], Any] | None = None
+
+    def run(self, bench: "Bench") -> "Valid":
+        """Look at the flanks and at the answers."""
+        drive: Drive = bench.inputs
+        beyond = [*_of_flanks(drive), *_of_contact(bench.answers)]
+        return Valid(name=self.name, inputs=drive, beyond=tuple(beyond))
+
+
+def _of_flanks(drive: Drive) -> Iterator[str]:
+    for name, stated in BODIES.items():
+        flank: Flank | None = getattr(drive, name)
+        if flank is None:
+            continue
+        if flank.used is None:
+            yield f"{name} is refused, the contact is that of {stated}: {flank.reason}"
+        elif flank.surface.is_profile:
+            yield f"{name} is one profile: that it looks the same in all directions is assumed"
+        elif flank.chosen != "both" and not any("direction" in sentence for sentence in flank.warnings):
+            yield f"{name} is taken along {flank.chosen} only"
+        yield from (f"{name}: {sentence}" for sentence in flank.warnings)
+
+
+def _of_contact(answers: Any) -> Iterator[str]:
+    share, stiffness = float(answers["resolved_share"]), float(answers["stiffness"])
+    if share < RESOLVED:
+        yield (
+            f"extrapolated below resolution: the stiffness hangs on contacts of {share:.2g} sampling intervals radius, "
+            f"less than {RESOLVED:g}"
+        )
+    if stiffness == 0.0:
+        yield "all contacts of the pair are plastic at pair_load, and the model gives it no stiffness"
+    elif float(answers["plastic_share"]) > PLASTIC:
+        yield (
+            f"{float(answers['plastic_share']):.0%} of the load is on plastic contacts, to which the model gives no "
+            "stiffness"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Valid:
+    """What was found; ``inputs`` are those of the run, as effects leave them."""
+
+    name: str
+    inputs: Drive
+    beyond: tuple[str, ...]
+
+    def as_json(self) -> dict[str, Any]:
+        """Return every flank with what each direction says, and what is beyond its range."""
+        flanks = {name: _flank_json(flank) for name in BODIES if (flank := getattr(self.inputs, name)) is not None}
+        return {"flanks": flanks, "beyond": list(self.beyond)}
+
+    def blocks(self) -> Sequence[Block]:
+        """Return nothing: the sections say it where it belongs."""
+        return ()
+
+    def checks(self) -> "Sequence[Check]":
+        """Return nothing: a refused surface fails the check of surface_accepted."""
+        return ()
+
+    def warnings(self) -> Sequence[str]:
+        """Return what is beyond its range."""
+        return [f"study '{self.name}': {text}" for text in self.beyond]
+
+
+def _flank_json(flank: "Flank") -> dict[str, Any]:
+    return {
+        "file": flank.surface.name,
+        "chosen": flank.chosen,
+        "reason": flank.reason,
+        "missing": flank.missing,
+        "spikes": flank.spiked,
+        "sq": {"unit": "um", "raw": flank.sq_raw * 1e6, "plane": flank.sq_plane * 1e6,
+               "second_order": flank.sq_second_order * 1e6},
+        "directions": {found.direction: _estimate_json(found) for found in flank.estimates},
+    }  # fmt: skip
+
+
+def _estimate_json(found: Any) -> dict[str, Any]:
+    def list_of(values: Any, factor: float = 1.0) -> Any:
+        return [float(value) * factor if value == value else None for value in values]
+
+    dimension, roughness, r_squared = list_of((found.dimension, found.roughness, found.r_squared))
+    window, with_noise, share = list_of((found.window_dimension, found.noise_dimension, found.noise_share))
+    return {
+        "accepted": found.is_accepted,
+        "reason": found.reason,
+        "profile_dimension": dimension,
+        "roughness": {"value": roughness, "unit": "m", "convention": "areal"},
+        "r_squared": r_squared,
+        "for_comparison": {"roughness_length": window, "with_noise": with_noise, "noise_share": share},
+        "range": {"unit": "um", "values": list_of(found.range, 1e6)},
+        "lags": {"unit": "um", "values": list_of(found.lags, 1e6)},
+        "structure_function": {"unit": "um^2", "values": list_of(found.values, 1e12)},
+        "local_lags": {"unit": "um", "values": list_of(found.local_lags, 1e6)},
+        "local_dimensions": list_of(found.local_dimensions),
+    }

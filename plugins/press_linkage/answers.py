@@ -1,16 +1,28 @@
-"""What each study gives back as results of the press linkage."""
+"""What each study gives back as results, and a study of our own: both readings of the paper."""
 
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import nan, pi
+from typing import Any
 
 import numpy as np
 
-from press_linkage.closure import cycle_demands, smallest_sine
-from press_linkage.increments import ARM, KINDS, PASSIVE, POLAR_ANGLES, salience, side_sensitivities, source
-from press_linkage.influence import Influence
-from press_linkage.kinematics import Geometry, Half, crank_at, solve, top_crank_angle
-from press_linkage.mechanism import geometry_of, position_of, without_rounding
-from press_linkage.quantities import Chances, Cycle, Press, Synthesis
-from truing import Allotted, Odds, Sensitivities, Swept, feasible
+from press_linkage.errors import (
+    ARM,
+    KINDS,
+    PASSIVE,
+    POLAR_ANGLES,
+    permitted_tilt,
+    salience,
+    side_sensitivities,
+    source,
+    without_rounding,
+)
+from press_linkage.kinematics import Half, crank_at, cycle_demands, nominal, smallest_sine, solve, top_crank_angle
+from press_linkage.quantities import Chances, Cycle, Influence, Press, Synthesis
+from truing import Allocation, Allotted, Bench, Block, Check, Odds, Sensitivities, Swept, Table, feasible
+
+# What each study gives back as results of the press linkage
 
 EVERY = (*KINDS, "platform_arm")
 KEY_TILT = (
@@ -34,16 +46,15 @@ def sources_of(kinds: tuple[str, ...]) -> list[str]:
 def cycle(swept: Swept) -> Cycle:
     """Dead centres, stroke, and how close the press comes to a singular position; the crank must turn fully."""
     press: Press = swept.inputs
-    geometry = geometry_of(press)
-    for demand in cycle_demands(geometry):
+    for demand in cycle_demands(press):
         feasible(demand.holds, demand.sentence + SWING)
-    top = top_crank_angle(geometry)
-    bdc, tdc = position_of(press, 0.0).slider_position, position_of(press, top).slider_position
-    turn = smallest_sine(position_of(press, np.linspace(-pi, pi, 721)))
-    cosine, sine = crank_at(geometry, 0.0)
+    top = top_crank_angle(press)
+    bdc, tdc = solve(press, 0.0).slider_position, solve(press, top).slider_position
+    turn = smallest_sine(solve(press, np.linspace(-pi, pi, 721)))
+    cosine, sine = crank_at(press, 0.0)
     return Cycle(
         bdc_direction=float(np.arctan2(sine, cosine)),
-        bdc_platform_height=float(solve(geometry, 0.0).platform_height),
+        bdc_platform_height=float(solve(nominal(press), 0.0).platform_height),
         tdc_crank_angle=float(top),
         bdc_position=float(bdc),
         tdc_position=float(tdc),
@@ -55,14 +66,13 @@ def cycle(swept: Swept) -> Cycle:
 def influence(found: Sensitivities) -> Influence:
     """The nominal chain with the influence of each error, and what the sources in force do together."""
     press: Press = found.inputs
-    geometry = geometry_of(press)
-    nominal = solve(geometry, press.crank_angle)
-    by_kind = side_sensitivities(nominal.side_1)
-    shift = position_of(press).slider_position - nominal.slider_position
+    exact = solve(nominal(press))
+    by_kind = side_sensitivities(exact.side_1)
+    shift = solve(press).slider_position - exact.slider_position
     return Influence(
-        **_chain(geometry, nominal.side_1, float(press.crank_angle)),
-        platform_height=float(nominal.platform_height),
-        nominal_position=float(nominal.slider_position),
+        **_chain(press, exact.side_1, float(press.crank_angle)),
+        platform_height=float(exact.platform_height),
+        nominal_position=float(exact.slider_position),
         slider_shift=float(shift),
         **{f"influence_{kind}": float(without_rounding(value)) for kind, value in by_kind.items()},
         salience_position_key=_key_salience(found, "slider_position", KEY_POSITION, EVERY),
@@ -73,10 +83,10 @@ def influence(found: Sensitivities) -> Influence:
     )
 
 
-def _chain(geometry: Geometry, half: Half, crank_angle: float) -> dict[str, float]:
+def _chain(press: Press, half: Half, crank_angle: float) -> dict[str, float]:
     """The directions of one side and the place of its knee."""
-    cosine, sine = crank_at(geometry, 0.0)
-    shorter = geometry.knee_drive_length**2 - geometry.upper_knee_length**2
+    cosine, sine = crank_at(press, 0.0)
+    shorter = press.knee_drive_length**2 - press.upper_knee_length**2
     found = {
         "crank_direction": np.arctan2(sine, cosine) + crank_angle,
         "rod_direction": half.rod.angle,
@@ -138,3 +148,87 @@ def synthesis(allotted: Allotted) -> Synthesis:
         tilt_reliability_final=allotted.final.get("slider_tilt", nan),
         **coefficients,
     )
+
+
+# A study of our own: the same press under both readings of the paper's tolerances, side by side
+
+READINGS = ("printed", "complete")
+CHECKS = {"slider_position": "position", "slider_tilt": "tilt"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Readings:
+    """Reliability and synthesis under the readings ``printed`` and ``complete``, first order.
+
+    ``finest`` is the finest grade of the synthesis.
+    """
+
+    finest: str = "IT5"
+    name: str = "readings"
+    gives: Callable[[Any], Any] | None = None
+
+    def run(self, bench: "Bench") -> "Compared":
+        """Allocate under each reading; whatever the inputs file says of tolerances holds for both."""
+        study = Allocation(of="slider_position", finest=self.finest, draws=1, name=self.name)
+        found = {}
+        for place, reading in enumerate(READINGS):
+            press = replace(bench.setup.inputs, reading=reading)
+            answers = {**bench.answers, "permitted_tilt": permitted_tilt(press)}
+            setup = replace(bench.setup, inputs=press)
+            told = _part(bench, self.name, place)
+            own = replace(bench, setup=setup, answers=answers, progress=told)
+            found[reading] = study.run(own)
+        return Compared(found, self.finest)
+
+
+def _part(bench: "Bench", name: str, place: int) -> Callable[[str, int, int], None]:
+    """Return what reports the study of one reading as its part of this one."""
+    done = bench.part(name, place / len(READINGS), (place + 1) / len(READINGS))
+    return lambda task, step, steps: done(step, steps)
+
+
+@dataclass(frozen=True)
+class Compared:
+    """What each reading comes to."""
+
+    by_reading: Mapping[str, Allotted]
+    finest: str = "IT5"
+
+    def as_json(self) -> dict[str, Any]:
+        """Return reliabilities before and after, adjustments, and whether the goals are reached."""
+        return {
+            reading: {
+                "start": dict(found.start),
+                "final": dict(found.final),
+                "adjustments": found.adjustments,
+                "reached": found.reached,
+            }
+            for reading, found in self.by_reading.items()
+        }
+
+    def table(self) -> Table:
+        """Return both readings as a table of the sheet."""
+        rows: list[tuple[str | int | float | bool, ...]] = []
+        for reading, found in self.by_reading.items():
+            chances = [100 * chance[check] for check in CHECKS for chance in (found.start, found.final)]
+            rows.append((reading, *chances, found.adjustments, found.reached))
+        columns = [f"{name} {when}" for name in CHECKS.values() for when in ("start", "final")]
+        return Table(
+            "Reliability under both readings",
+            ("reading", *columns, "adjustments", "goals reached"),
+            rows,
+            ("", "%", "%", "%", "%", "", ""),
+            f"First order, links down to {self.finest}. Tolerances that the inputs file states hold for both.",
+        )
+
+    def blocks(self) -> Sequence[Block]:
+        """Return nothing: a section of the sheet shows the table."""
+        return ()
+
+    def checks(self) -> "Sequence[Check]":
+        """Return nothing: only the reading of the inputs decides limits."""
+        return ()
+
+    def warnings(self) -> Sequence[str]:
+        """Return nothing."""
+        return ()

@@ -1,6 +1,7 @@
-"""Where is the slider, exactly? Closed-form kinematics of the press linkage with every size off by its own deviation.
+"""Where is the slider, exactly; when do the loops close; and how does the slider accelerate?
 
-Plain numpy: every field and argument is an SI float or an array (n,); nothing loops over samples.
+Closed form, every size off by its own deviation. Plain numpy: every field and argument is an SI float or an array (n,);
+nothing loops over samples.
 
 Frame: O midway between the two crank pivots, y horizontal, z vertical and positive downward, angles from +y toward +z.
 Side 1 lies at y > 0. Side 2 is its mirror image and is solved in mirrored coordinates (outward is positive), so both
@@ -11,55 +12,19 @@ polar angles of the frame on both sides, so on side 2, where they count from pi,
 A crank angle deviation adds to the crank angle of its own side: equal ones on both sides advance the stroke.
 """
 
-from dataclasses import dataclass
-from typing import NamedTuple, TypeAlias
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-Float: TypeAlias = "float | NDArray[np.float64]"
+from press_linkage.quantities import Press, Side
+from truing import Float
+
+# Where is the slider, exactly? Closed-form kinematics of the press linkage with every size off by its own deviation
 
 SERIES_LIMIT = 0.025  # rad; below it the first neglected terms are 4e-18 (cosine) and 1e-20 (sine)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Geometry:
-    """The nominal mechanism, m and rad; defaults are the paper's, with the ground pivot angle its results need."""
-
-    crank_radius: Float = 0.36
-    rod_length: Float = 1.304
-    platform_arm: Float = 0.6
-    knee_drive_length: Float = 0.868
-    upper_knee_length: Float = 1.7
-    lower_knee_length: Float = 1.6
-    slider_half_width: Float = 1.6
-    crank_pivot_radius: Float = 1.2
-    platform_half_width: Float = 0.3
-    ground_pivot_radius: Float = 1.393
-    ground_pivot_angle: Float = 0.367
-
-
-@dataclass(frozen=True, kw_only=True)
-class Deviations:
-    """How far one side is off its nominal sizes: lengths in m, angles in rad, signs as said at the top of this file."""
-
-    crank_radius: Float = 0.0
-    rod_length: Float = 0.0
-    knee_drive_length: Float = 0.0
-    upper_knee_length: Float = 0.0
-    lower_knee_length: Float = 0.0
-    slider_half_width: Float = 0.0
-    slider_joint_angle: Float = 0.0
-    crank_pivot_radius: Float = 0.0
-    crank_pivot_angle: Float = 0.0
-    platform_half_width: Float = 0.0
-    platform_joint_angle: Float = 0.0
-    ground_pivot_radius: Float = 0.0
-    ground_pivot_angle: Float = 0.0
-    crank_angle: Float = 0.0
-
-
-NONE = Deviations()
 
 
 class Point(NamedTuple):
@@ -179,40 +144,36 @@ def turned(cosine: Float, sine: Float, by: Float) -> tuple[Float, Float]:
     return cosine * more_cosine - sine * more_sine, sine * more_cosine + cosine * more_sine
 
 
-def crank_at(geometry: Geometry, crank_angle: Float) -> tuple[Float, Float]:
+def crank_at(press: Press, crank_angle: Float) -> tuple[Float, Float]:
     """Cosine and sine of theta_11 of the nominal mechanism; the crank angle counts from the bottom dead centre.
 
     The dead centre has crank and rod stretched in line. It is found from nominal sizes: deviations never move the zero.
     """
-    stretched = geometry.crank_radius + geometry.rod_length
-    cosine = (geometry.platform_half_width - geometry.crank_pivot_radius) / stretched
+    stretched = press.crank_radius + press.rod_length
+    cosine = (press.platform_half_width - press.crank_pivot_radius) / stretched
     with np.errstate(invalid="ignore"):
         sine = np.sqrt(1.0 - cosine * cosine)
     return turned(cosine, sine, crank_angle)
 
 
-def built(geometry: Geometry, crank: tuple[Float, Float], off: Deviations, *, mirror: float = 1.0) -> Parts:
+def built(press: Press, crank: tuple[Float, Float], off: Side, *, mirror: float = 1.0) -> Parts:
     """One side with its deviations; *mirror* is -1 for side 2, whose polar angles run the other way."""
-    nominal_ground = np.cos(geometry.ground_pivot_angle), np.sin(geometry.ground_pivot_angle)
+    ground = np.cos(press.ground_pivot_angle), np.sin(press.ground_pivot_angle)
+
+    def length(kind: str) -> Float:
+        made: Float = getattr(press, kind) + getattr(off, f"{kind}_deviation")
+        return made
+
     return Parts(
-        pivot=Polar(
-            geometry.crank_pivot_radius + off.crank_pivot_radius, *cosine_and_sine(mirror * off.crank_pivot_angle)
-        ),
-        crank=Polar(geometry.crank_radius + off.crank_radius, *turned(*crank, off.crank_angle)),
-        platform=Polar(
-            geometry.platform_half_width + off.platform_half_width, *cosine_and_sine(mirror * off.platform_joint_angle)
-        ),
-        ground=Polar(
-            geometry.ground_pivot_radius + off.ground_pivot_radius,
-            *turned(*nominal_ground, mirror * off.ground_pivot_angle),
-        ),
-        slider=Polar(
-            geometry.slider_half_width + off.slider_half_width, *cosine_and_sine(mirror * off.slider_joint_angle)
-        ),
-        rod=geometry.rod_length + off.rod_length,
-        drive=geometry.knee_drive_length + off.knee_drive_length,
-        upper=geometry.upper_knee_length + off.upper_knee_length,
-        lower=geometry.lower_knee_length + off.lower_knee_length,
+        pivot=Polar(length("crank_pivot_radius"), *cosine_and_sine(mirror * off.crank_pivot_angle_deviation)),
+        crank=Polar(length("crank_radius"), *turned(*crank, off.crank_angle_deviation)),
+        platform=Polar(length("platform_half_width"), *cosine_and_sine(mirror * off.platform_joint_angle_deviation)),
+        ground=Polar(length("ground_pivot_radius"), *turned(*ground, mirror * off.ground_pivot_angle_deviation)),
+        slider=Polar(length("slider_half_width"), *cosine_and_sine(mirror * off.slider_joint_angle_deviation)),
+        rod=length("rod_length"),
+        drive=length("knee_drive_length"),
+        upper=length("upper_knee_length"),
+        lower=length("lower_knee_length"),
     )
 
 
@@ -233,64 +194,276 @@ def knee_side(parts: Parts, pin: Point, rod_drop: Float, arm_end: Float) -> Half
     along = 0.5 + (drive_square - parts.upper * parts.upper) * (0.5 * inverse)
     fold = drive_square * inverse - along * along
     across = np.sqrt(fold)
-    knee = Point(
-        to_ground_y * along - to_ground_z * across,
-        to_ground_z * along + to_ground_y * across + arm_end,
-    )
+    knee = Point(to_ground_y * along - to_ground_z * across, to_ground_z * along + to_ground_y * across + arm_end)
     reach = parts.slider.y - knee.y
     lower_drop = np.sqrt(parts.lower * parts.lower - reach * reach)
     face = knee.z + lower_drop - parts.slider.z
     return Half(parts, pin, rod_drop, arm_end, knee, fold, span, lower_drop, face)
 
 
-def solve(
-    geometry: Geometry,
-    crank_angle: Float,
-    *,
-    side_1: Deviations = NONE,
-    side_2: Deviations = NONE,
-    platform_arm: Float = 0.0,
-) -> Position:
-    """The exact position of the press at one crank angle (or n of them), with the deviations of both sides.
+def nominal(press: Press) -> Press:
+    """The press without its deviations."""
+    return replace(press, platform_arm_deviation=0.0, side_1=Side(), side_2=Side())
+
+
+def solve(press: Press, crank_angle: Float | None = None) -> Position:
+    """The exact position with all deviations, at the crank angle of the inputs or at another one (or n of them).
 
     The guided platform takes the mean of the heights its two sides would set; the slider is held at y = 0 by its guides
     and takes the mean of its two face heights. Its tilt is their difference over the nominal distance of the slider
-    joints, positive when side 1 is lower. *platform_arm* is the deviation of the arm, common to both sides.
-    Where a loop does not close the heights are NaN; ``closure.demands`` gives the reason.
+    joints, positive when side 1 is lower. Where a loop does not close the heights are NaN; ``demands`` says
+    why.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
-        crank = crank_at(geometry, crank_angle)
-        parts_1 = built(geometry, crank, side_1)
-        parts_2 = built(geometry, crank, side_2, mirror=-1.0)
+        crank = crank_at(press, press.crank_angle if crank_angle is None else crank_angle)
+        parts_1 = built(press, crank, press.side_1)
+        parts_2 = built(press, crank, press.side_2, mirror=-1.0)
         pin_1, drop_1, height_1 = crank_side(parts_1)
         pin_2, drop_2, height_2 = crank_side(parts_2)
         height = 0.5 * (height_1 + height_2)
-        arm_end = height + (geometry.platform_arm + platform_arm)
+        arm_end = height + (press.platform_arm + press.platform_arm_deviation)
         half_1 = knee_side(parts_1, pin_1, drop_1, arm_end)
         half_2 = knee_side(parts_2, pin_2, drop_2, arm_end)
         return Position(
             slider_position=0.5 * (half_1.face + half_2.face),
-            slider_tilt=(half_1.face - half_2.face) / (2.0 * geometry.slider_half_width),
+            slider_tilt=(half_1.face - half_2.face) / (2.0 * press.slider_half_width),
             platform_height=height,
             side_1=half_1,
             side_2=half_2,
         )
 
 
-def top_crank_angle(geometry: Geometry) -> Float:
+def top_crank_angle(press: Press) -> Float:
     """Crank angle of the upper dead centre, crank and rod folded, rad from the lower one, in (-2 pi, 0).
 
-    Needs a crank that turns fully (``closure.rotation_demand``), otherwise NaN. The other way round it is 2 pi more.
+    Needs a crank that turns fully (``rotation_demand``), otherwise NaN. The other way round it is 2 pi more.
     """
-    cosine, sine = crank_at(geometry, 0.0)
-    folded = geometry.rod_length - geometry.crank_radius
-    rod_cosine = (geometry.platform_half_width - geometry.crank_pivot_radius) / folded
+    cosine, sine = crank_at(press, 0.0)
+    folded = press.rod_length - press.crank_radius
+    rod_cosine = (press.platform_half_width - press.crank_pivot_radius) / folded
     with np.errstate(invalid="ignore"):
         rod_sine = np.sqrt(1.0 - rod_cosine * rod_cosine)
     return np.arctan2(-rod_sine, -rod_cosine) - np.arctan2(sine, cosine)
 
 
-def stroke(geometry: Geometry) -> Float:
+def stroke(press: Press) -> Float:
     """Slider height at the lower dead centre minus that at the upper one, m, of the nominal mechanism."""
-    bottom = solve(geometry, 0.0).slider_position
-    return bottom - solve(geometry, top_crank_angle(geometry)).slider_position
+    without = nominal(press)
+    return solve(without, 0.0).slider_position - solve(without, top_crank_angle(press)).slider_position
+
+
+# What must hold for the press linkage to close: loop by loop, side by side, with the inequality that is violated
+#
+# Every demand is a condition (one truth value, or one per sample) with the sentence for the engineer. A condition that
+# meets NaN does not hold.
+
+SINGULAR = 1e-6  # sine of an angle between two links below which the position is undetermined
+NEARLY_SINGULAR = 0.05  # below it the sensitivities exceed 20: worth a warning
+
+
+class Demand(NamedTuple):
+    """What must hold: a name, where it holds, and the sentence for the engineer where it does not."""
+
+    name: str
+    holds: "bool | NDArray[np.bool_]"
+    sentence: str
+
+
+def knee_sine(half: Half) -> Float:
+    """Sine of the angle between knee drive and upper link, theta_19 - theta_17; NaN where loop II is open."""
+    return np.sqrt(half.knee_fold) * half.knee_span / (half.parts.drive * half.parts.upper)
+
+
+def smallest_sine(position: Position) -> Float:
+    """How far the press is from a singular position: the least sine that a height is divided by, both sides.
+
+    Zero is singular; below NEARLY_SINGULAR an error of a link reaches the slider more than twentyfold.
+    """
+    least: Float = np.inf
+    with np.errstate(invalid="ignore"):
+        for half in (position.side_1, position.side_2):
+            least = np.minimum(least, half.rod_drop / half.parts.rod)
+            least = np.minimum(least, half.lower_drop / half.parts.lower)
+            least = np.minimum(least, knee_sine(half))
+    return least
+
+
+def nominal_demands(press: Press) -> Iterator[Demand]:
+    """What the nominal sizes must satisfy for a bottom dead centre on this branch."""
+    yield Demand(
+        "branch",
+        press.crank_pivot_radius > press.platform_half_width,
+        "the crank pivots must lie farther out than the rod joints of the platform: "
+        "crank_pivot_radius > platform_half_width",
+    )
+    yield Demand(
+        "stretched",
+        press.crank_pivot_radius - press.platform_half_width < press.crank_radius + press.rod_length,
+        "loop I has no bottom dead centre: crank and rod in line do not reach the platform; it needs "
+        "crank_pivot_radius - platform_half_width < crank_radius + rod_length",
+    )
+
+
+def rotation_demand(press: Press) -> Demand:
+    """What a full turn of the crank needs, and with it the upper dead centre and the stroke."""
+    offset = np.abs(press.crank_pivot_radius - press.platform_half_width)
+    return Demand(
+        "full rotation",
+        offset + press.crank_radius < press.rod_length,
+        "loop I does not close over a full turn of the crank: it needs "
+        "crank_pivot_radius - platform_half_width + crank_radius < rod_length",
+    )
+
+
+def demands(press: Press, position: Position) -> Iterator[Demand]:
+    """What must hold in this position with these deviations: nominal sizes, then loop by loop, side by side.
+
+    They come in the order of the chain, so the first one that fails names the cause and not a consequence.
+    """
+    yield from nominal_demands(press)
+    with np.errstate(invalid="ignore"):
+        for side, half in ((1, position.side_1), (2, position.side_2)):
+            yield _sizes(half, side)
+        for side, half in ((1, position.side_1), (2, position.side_2)):
+            yield from _rod_demands(half, side)
+        yield Demand(
+            "platform arm",
+            position.side_1.arm_end > position.platform_height,
+            "the platform arm with its deviation must be longer than zero",
+        )
+        for side, half in ((1, position.side_1), (2, position.side_2)):
+            yield from _knee_demands(half, side)
+            yield from _slider_demands(half, side)
+
+
+def _sizes(half: Half, side: int) -> Demand:
+    """Every length of one side is positive, its deviation included."""
+    parts = half.parts
+    holds = parts.rod > 0.0
+    for length in (parts.drive, parts.upper, parts.lower, *(polar.length for polar in _polars(parts))):
+        holds = holds & (length > 0.0)
+    return Demand(f"sizes {side}", holds, f"side {side}: every length with its deviation must be greater than zero")
+
+
+def _polars(parts: Parts) -> tuple[Polar, ...]:
+    """The parts whose direction is known before the loops are solved."""
+    return parts.pivot, parts.crank, parts.platform, parts.ground, parts.slider
+
+
+def _rod_demands(half: Half, side: int) -> Iterator[Demand]:
+    """Loop I (VI on side 2): the rod reaches the platform, and not in a horizontal position."""
+    loop = "I" if side == 1 else "VI"
+    yield Demand(
+        f"loop {loop}",
+        half.rod_drop >= 0.0,
+        f"loop {loop}, side {side} does not close: the rod cannot reach the platform, it needs "
+        "|e cos(beta_1) - y_B| < k_R (horizontal distance of its ends below rod_length)",
+    )
+    yield Demand(
+        f"singular {loop}",
+        half.rod_drop >= SINGULAR * half.parts.rod,
+        f"loop {loop}, side {side} is singular: the rod is horizontal (|sin(theta_2{side})| < 1e-6), "
+        "the platform height is undetermined",
+    )
+
+
+def _knee_demands(half: Half, side: int) -> Iterator[Demand]:
+    """Loop II (V on side 2): knee drive and upper link meet, and not in line."""
+    loop = "II" if side == 1 else "V"
+    yield Demand(
+        f"loop {loop}",
+        half.knee_fold >= 0.0,
+        f"loop {loop}, side {side} does not close: the knee drive is open, it needs "
+        "|l_m - l_g| < |M - B_5| < l_m + l_g "
+        "(distance from platform arm to ground pivot between difference and sum of "
+        "upper_knee_length and knee_drive_length)",
+    )
+    links = half.parts.drive * half.parts.upper
+    yield Demand(
+        f"singular {loop}",
+        half.knee_fold * (half.knee_span * half.knee_span) >= (SINGULAR * SINGULAR) * (links * links),
+        f"loop {loop}, side {side} is singular: platform arm, knee and ground pivot lie in line "
+        f"(|sin(theta_{side}9 - theta_{side}7)| < 1e-6)",
+    )
+
+
+def _slider_demands(half: Half, side: int) -> Iterator[Demand]:
+    """Loop III (IV on side 2): the lower link reaches the slider, and not in a horizontal position."""
+    loop = "III" if side == 1 else "IV"
+    yield Demand(
+        f"loop {loop}",
+        half.lower_drop >= 0.0,
+        f"loop {loop}, side {side} does not close: the lower link cannot reach the slider, it needs "
+        "|l - y_G| < l_h (horizontal distance of its ends below lower_knee_length)",
+    )
+    yield Demand(
+        f"singular {loop}",
+        half.lower_drop >= SINGULAR * half.parts.lower,
+        f"loop {loop}, side {side} is singular: the lower link is horizontal (|sin(theta_{side}8)| < 1e-6)",
+    )
+
+
+def cycle_demands(press: Press, samples: int = 721) -> Iterator[Demand]:
+    """What a full turn of the crank demands of one nominal mechanism (plain numbers): every loop, at every angle.
+
+    The loops are tried at *samples* equally spaced crank angles; none of the roots may vanish on the way, so the
+    mechanism stays on its branch.
+    """
+    yield rotation_demand(press)
+    turn = solve(nominal(press), np.linspace(-np.pi, np.pi, samples))
+    for name, holds, sentence in demands(press, turn):
+        yield Demand(name, bool(np.all(holds)), f"over the full turn: {sentence}")
+
+
+# How does the slider accelerate? The loops differentiated twice, exact in any position, numbers or arrays (n,)
+#
+# Speeds and accelerations are those of cranks that both turn at 1 rad/s: first and second derivatives by the crank
+# angle, m/rad and m/rad^2.
+
+
+class Motion(NamedTuple):
+    """Velocity and acceleration along one line, or of a point."""
+
+    speed: Float
+    acceleration: Float
+
+
+def _dot(one: Point, other: Point) -> Float:
+    return one.y * other.y + one.z * other.z
+
+
+def platform_motion(half: Half) -> Motion:
+    """Loop I: the platform as this side alone would move it, downward.
+
+    The rod keeps its length, so rod · rod' = 0 and rod · rod'' + rod' · rod' = 0 with E on a vertical line.
+    """
+    crank, rod = half.parts.crank, half.rod
+    pin = Point(-crank.z, crank.y)  # velocity of B, a quarter turn ahead of the crank
+    speed = _dot(pin, Point(rod.y, rod.z)) / rod.z
+    swing = Point(-pin.y, speed - pin.z)
+    pull = Point(-crank.y, -crank.z)  # acceleration of B, towards A
+    return Motion(speed, (_dot(pull, Point(rod.y, rod.z)) - _dot(swing, swing)) / rod.z)
+
+
+def face_motion(half: Half, platform: Motion) -> Motion:
+    """Loops II and III: the slider face over one joint, downward, for a given motion of the platform."""
+    drive, upper, lower = (Point(link.y, link.z) for link in (half.drive, half.upper, half.lower))
+    quarter = Point(-upper.z, upper.y)
+    across = _dot(drive, quarter)
+    turning = drive.z * platform.speed / across
+    knee = Point(turning * quarter.y, turning * quarter.z)
+    swing = Point(knee.y, knee.z - platform.speed)
+    inward = turning * turning * _dot(drive, upper)
+    gain = (drive.z * platform.acceleration + inward - _dot(swing, swing)) / across
+    pull = Point(gain * quarter.y - turning * turning * upper.y, gain * quarter.z - turning * turning * upper.z)
+    speed = _dot(lower, knee) / lower.z
+    swing = Point(-knee.y, speed - knee.z)
+    return Motion(speed, (_dot(lower, pull) - _dot(swing, swing)) / lower.z)
+
+
+def slider_motion(position: Position) -> Motion:
+    """First and second derivative of the slider position by the crank angle, with the deviations that are present."""
+    own = [platform_motion(half) for half in (position.side_1, position.side_2)]
+    platform = Motion(*(0.5 * (one + other) for one, other in zip(*own, strict=True)))
+    faces = [face_motion(half, platform) for half in (position.side_1, position.side_2)]
+    return Motion(*(0.5 * (one + other) for one, other in zip(*faces, strict=True)))

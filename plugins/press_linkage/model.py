@@ -2,15 +2,11 @@
 
 from pathlib import Path
 
-from press_linkage.answers import chances, cycle, influence, synthesis
+from press_linkage.answers import Readings, chances, cycle, influence, synthesis
 from press_linkage.effects import EFFECTS
-from press_linkage.findings import FINDINGS
-from press_linkage.increments import source
-from press_linkage.mechanism import exact_derivatives, press_linkage
-from press_linkage.published import PUBLISHED
-from press_linkage.quantities import Press, Slider
-from press_linkage.readings import Readings
-from press_linkage.sections import SECTIONS
+from press_linkage.errors import exact_derivatives, press_linkage, source
+from press_linkage.published import FINDINGS, PUBLISHED
+from press_linkage.sheet import SECTIONS
 from truing import (
     Allocation,
     Model,
@@ -121,5 +117,3 @@ PRESS_LINKAGE = Model(
     summary="Where is the slider of a servo press with 29 small errors, how reliably does it stay within its limits, "
     "and which tolerance is worth tightening?",
 )
-
-__all__ = ["PRESS_LINKAGE", "Press", "Slider"]

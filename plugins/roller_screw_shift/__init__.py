@@ -1,8 +1,7 @@
 """Planetary roller screw: the profile shift of roller and ring, and what it does to strength and sliding."""
 
-from roller_screw_shift.answers import Meshing
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
-from roller_screw_shift.quantities import Pair
+from roller_screw_shift.quantities import Meshing, Pair
 from truing import Model, hookimpl
 
 

@@ -1,22 +1,221 @@
-"""What the paper leaves out of the pair, and what is measured of it that is 0 in the calculation.
+"""What the paper leaves out of the pair, and what is measured of it that is 0 in the calculation."""
 
-They act in the order declared: first what changes the load of a tooth or the place of the parts, then what is added to
-a result. A new effect is a function beside the others and one more entry in EFFECTS.
-"""
+from dataclasses import replace
 
-from roller_screw_shift.answers import Meshing
-from roller_screw_shift.conditions import CYCLES, SCREW_ANGLE, SCREW_SPEED, TEMPERATURE
-from roller_screw_shift.effects_of_flanks import flank_wear, mesh_friction, thermal_centre_distance
-from roller_screw_shift.effects_of_load import (
-    face_misalignment,
-    interrupted_tooth,
-    mesh_resonance,
-    rim_compliance,
-    roller_load_sharing,
-)
-from roller_screw_shift.effects_of_motion import axial_migration, carrier_runout, roller_runout
-from roller_screw_shift.quantities import Pair
-from truing import Effect, Unknown
+import numpy as np
+
+from gear_geometry.mesh_load import face_factor, shaken_by_error
+from roller_screw_shift.quantities import Meshing, Pair
+from roller_screw_shift.strength import load_of
+from truing import Condition, Effect, Float, Unknown
+
+# What else must be measured before the effects of the roller screw can act: each condition once, for all of them
+#
+# The axial load is an input of the pair; its column holds row by row. The clock of the bench is the ``time`` of the
+# kernel's own effects.
+
+SCREW_SPEED = Condition("screw_speed", "rpm", reference=0, low=10, high=3000,
+                        note="of the screw; the sign is its sense of turning")  # fmt: skip
+TEMPERATURE = Condition("temperature", "degC", reference=20, low=15, high=80,
+                        note="of nut, rollers and lubricant, when measured")  # fmt: skip
+SCREW_ANGLE = Condition(
+    "screw_angle", "deg", reference=0, low=0, high=36000,
+    note="of the screw, counted on over its turns: the carrier is back at its place after 8 turns of the screw only",
+)  # fmt: skip
+CYCLES = Condition(
+    "cycles", "", reference=0, low=0, high=5e6,
+    note="load cycles of a tooth of the roller since new, all under the axial load of the row",
+)  # fmt: skip
+
+
+# What changes the load of a tooth, or how the root bears it: tilt, resonance, sharing, cut teeth, a soft rim
+
+LEAST_FORCE = 1e-3  # N, of an idle mesh: even that touches somewhere
+
+
+def line_stiffness(pair: Pair) -> Float:
+    """Return the force by which a mesh answers to an approach of the flanks, N/m."""
+    return pair.mesh_stiffness * pair.face_width
+
+
+def mean_force(pair: Pair) -> Float:
+    """Return the tangential load of a mesh at the mean, N, never quite 0."""
+    return np.maximum(load_of(pair).tangential_force, LEAST_FORCE)
+
+
+def face_misalignment(pair: Pair, *, misalignment: Float, per_load: Float) -> Pair:
+    """The teeth do not meet along their whole width: by so much at any load, and by so much per newton of axial load.
+
+    A load that reverses tilts the roller the other way, from where it stands without any.
+    """
+    gap = np.abs(misalignment + per_load * pair.axial_load)
+    uneven = face_factor(gap * line_stiffness(pair) / (2.0 * mean_force(pair)))
+    return replace(pair, face_load_factor=pair.face_load_factor * uneven)
+
+
+def mesh_resonance(
+    pair: Pair, *, excitation: Float, resonance_speed: Float, damping: Float, screw_speed: Float
+) -> Pair:
+    """Roller and mesh swing as one degree of freedom that the teeth shake once per mesh.
+
+    The load in motion is that at rest and ``excitation`` N² / sqrt((1 - N²)² + (2 zeta N)²) of it: nothing at rest, a
+    peak of excitation/(2 zeta) at the resonance, and ``excitation`` far above it, where the roller stands still and the
+    error of the teeth alone works the mesh.
+    """
+    swing = excitation * shaken_by_error(screw_speed / resonance_speed, damping)
+    return replace(pair, dynamic_factor=pair.dynamic_factor * (1.0 + swing))
+
+
+def roller_load_sharing(pair: Pair, *, lead: Float) -> Pair:
+    """The flank of this roller stands ahead of the mean of the others: it carries more, until its mesh has given way.
+
+    All rollers move with a rigid carrier, so that this one takes ``lead`` (n_r - 1)/n_r times the stiffness of its mesh
+    more than the mean. One that stays behind by much carries nothing.
+    """
+    ahead = lead * (pair.rollers - 1) / pair.rollers
+    share = np.maximum(1.0 + ahead * line_stiffness(pair) / mean_force(pair), 0.0)
+    return replace(pair, sharing_factor=pair.sharing_factor * share)
+
+
+def interrupted_tooth(pair: Pair, *, lost: Float, phase: Float, screw_angle: Float) -> Pair:
+    """The thread of the roller runs through its teeth: where it meets the ring, less of the face carries.
+
+    The share that does not carry is lost (1 + cos(roller angle - phase))/2: nothing where the groove is on the far
+    side, ``lost`` where it is in the middle of the mesh. The angle of the roller is counted against the carrier.
+    """
+    there = load_of(pair).roller_order * screw_angle - phase
+    missing = 0.5 * lost * (1.0 + np.cos(there))
+    return replace(pair, carrying_share=pair.carrying_share * (1.0 - missing))
+
+
+def rim_compliance(pair: Pair, *, softness: Float) -> Pair:
+    """A thin rim bends under its teeth: the root of the ring bears so much more stress than in a solid one."""
+    return replace(pair, rim_factor=pair.rim_factor * (1.0 + softness))
+
+
+# What the turning screw brings along: runout of roller and carrier, a roller that creeps along the screw
+
+TURN = 2.0 * np.pi
+
+
+def with_wave(meshing: Meshing, angle: Float, cosine: Float, sine: Float) -> Meshing:
+    """Return the results with one harmonic of an angle on the transmission error."""
+    wave = cosine * np.cos(angle) + sine * np.sin(angle)
+    return replace(meshing, transmission_error=meshing.transmission_error + wave)
+
+
+def roller_runout(pair: Pair, meshing: Meshing, *, cosine: Float, sine: Float, screw_angle: Float) -> Meshing:
+    """The teeth of the roller are off its axis: one wave per turn of the roller against the carrier."""
+    return with_wave(meshing, load_of(pair).roller_order * screw_angle, cosine, sine)
+
+
+def carrier_runout(pair: Pair, meshing: Meshing, *, cosine: Float, sine: Float, screw_angle: Float) -> Meshing:
+    """The carrier is off the axis of the ring: one wave per turn of the carrier."""
+    return with_wave(meshing, load_of(pair).carrier_order * screw_angle, cosine, sine)
+
+
+def axial_migration(pair: Pair, meshing: Meshing, *, mismatch: Float, screw_angle: Float) -> Meshing:
+    """Teeth and threads do not keep the same ratio: the roller creeps by a share of the lead with every turn."""
+    creep = mismatch * pair.lead * screw_angle / TURN
+    return replace(meshing, axial_shift=meshing.axial_shift + creep)
+
+
+# What the flanks do to one another, and heat to their distance: wear, friction, a centre distance that grows
+
+MILLION = 1e6
+RATED_FORCE = 51.943  # N, of a mesh under 10 kN of axial load
+LEAST_SPEED = 1.0 / 60.0  # turns per second: below it friction is that at one turn per minute
+ROUGHNESS = 0.8  # um, Ra of the flanks
+DENSITY = 0.88  # g/cm³ of the oil
+VISCOSITY_AT_FORTY = 100.0  # mm²/s, ISO VG 100
+FORTY = 313.15  # K
+SLOPE = 3.567  # of its viscosity over temperature: 11.1 mm²/s at 100 degC
+ADDED = 0.7  # mm²/s, in the law of the viscosity
+
+
+def thermal_centre_distance(pair: Pair, *, expansion: Float, temperature: Float) -> Pair:
+    """The threads that hold the rollers at their distance expand, and the ring does not, or by less."""
+    growth = expansion * pair.centre_distance * (temperature - TEMPERATURE.zero)
+    return replace(pair, centre_distance_deviation=pair.centre_distance_deviation + growth)
+
+
+def flank_wear(pair: Pair, meshing: Meshing, *, rate: Float, cycles: Float) -> Meshing:
+    """Flanks wear with load, sliding and meshes: the roller by its cycles, the ring by those of all rollers.
+
+    ``rate`` is the depth after a million cycles with 51.943 N on the mesh and a specific sliding of 1. While a flank
+    passes the contact of width 2b it slides by 2b times its specific sliding. The depth is the roller's deepest; the
+    backlash grows by what both flanks lose where they touch, at the worse end of the path, as an arc.
+    """
+    worn = rate * load_of(pair).tangential_force / RATED_FORCE * cycles / MILLION
+    deepest = np.maximum(meshing.root_sliding_roller, meshing.tip_sliding_roller)
+    at_ring_tip = meshing.root_sliding_roller + meshing.ring_meshes * meshing.tip_sliding_ring
+    at_roller_tip = meshing.tip_sliding_roller + meshing.ring_meshes * meshing.root_sliding_ring
+    gap = worn * np.maximum(at_ring_tip, at_roller_tip) / np.cos(meshing.mounted_angle)
+    return replace(meshing, wear_depth=meshing.wear_depth + worn * deepest, backlash=meshing.backlash + gap)
+
+
+def mesh_friction(pair: Pair, meshing: Meshing, *, factor: Float, screw_speed: Float, temperature: Float) -> Meshing:
+    """The flanks rub: the torque that it takes to turn the screw against it has the sign of the speed.
+
+    ``factor`` is the friction over that of the formula.
+    """
+    torque = factor * np.sign(screw_speed) * friction_torque(pair, meshing, np.abs(screw_speed), temperature)
+    return replace(meshing, friction_torque=meshing.friction_torque + torque)
+
+
+def friction_torque(pair: Pair, meshing: Meshing, speed: Float, temperature: Float) -> Float:
+    """Return the torque at the screw, N m, by which the meshes of all rollers with one ring rub; speed in turns/s.
+
+    Loss of power: tangential force times speed of the pitch circles times mu times the loss factor of the mesh.
+    """
+    load = load_of(pair)
+    pitch_speed = (
+        load.carrier_order * meshing.base_radius_ring / np.cos(meshing.mounted_angle)
+    )  # per rad/s of the screw
+    friction = mean_friction(pair, meshing, pitch_speed * TURN * np.maximum(speed, LEAST_SPEED), temperature)
+    return pair.rollers * load.tangential_force * pitch_speed * friction * loss_factor(pair, meshing)
+
+
+def loss_factor(pair: Pair, meshing: Meshing) -> Float:
+    """Return the loss of power of a mesh over its power and mu: sliding, with the load shared evenly by the pairs.
+
+    pi (1/z_E - 1/z_I) (1 - eps + eps_E² + eps_I²) of a spur pair with 1 <= eps <= 2. Reference: Ohlendorf 1958.
+    """
+    working = np.tan(meshing.mounted_angle)
+    at_roller_tip = pair.roller_teeth * (np.tan(meshing.tip_angle_roller) - working) / TURN
+    at_ring_tip = pair.ring_teeth * (working - np.tan(meshing.tip_angle_ring)) / TURN
+    both = 1.0 - at_roller_tip - at_ring_tip + at_roller_tip**2 + at_ring_tip**2
+    return np.pi * (1.0 / pair.roller_teeth - 1.0 / pair.ring_teeth) * both
+
+
+def mean_friction(pair: Pair, meshing: Meshing, pitch_speed: Float, temperature: Float) -> Float:
+    """Return the mean coefficient of friction of the flanks, from the pitch point; speed in m/s, temperature in K.
+
+    0.048 (F_bt/b / (v_S rho))^0.2 eta^-0.05 Ra^0.25 with N/mm, m/s, mm, mPa s and um. Fitted to gear drives with
+    larger line loads than a roller has; the factor of the effect takes up what that does.
+    Reference: ISO/TR 14179-2.
+    """
+    sine = np.sin(meshing.mounted_angle)
+    roller = meshing.base_radius_roller * np.tan(meshing.mounted_angle)
+    ring = meshing.base_radius_ring * np.tan(meshing.mounted_angle)
+    radius_mm = 1e3 * roller * ring / (ring - roller)
+    line_load = 1e-3 * load_of(pair).tangential_force / (np.cos(pair.pressure_angle) * pair.face_width)  # N/mm
+    together = 2.0 * pitch_speed * sine
+    oil = (DENSITY * viscosity(temperature)) ** -0.05
+    mean: Float = 0.048 * (line_load / (together * radius_mm)) ** 0.2 * oil * ROUGHNESS**0.25
+    return mean
+
+
+def viscosity(temperature: Float) -> Float:
+    """Return the kinematic viscosity of the oil, mm²/s: log log (nu + 0.7) falls with log T. Reference: ASTM D341."""
+    found: Float = 10.0 ** (np.log10(VISCOSITY_AT_FORTY + ADDED) * (temperature / FORTY) ** -SLOPE) - ADDED
+    return found
+
+
+# What the paper leaves out of the pair, and what is measured of it that is 0 in the calculation
+#
+# They act in the order declared: first what changes the load of a tooth or the place of the parts, then what is added
+# to a result. A new effect is a function beside the others and one more entry in EFFECTS.
 
 ARCHARD = "Archard, J. F., Contact and rubbing of flat surfaces, Journal of Applied Physics 24 (1953) 981"
 HARMONIC = "first harmonic of an eccentricity; kinematics of the screw with its nut at rest"
@@ -35,143 +234,90 @@ def wave(of: str) -> list[Unknown]:
 
 
 LOAD: list[Effect[Pair, Meshing]] = [
-    Effect(
-        "face_misalignment",
-        on_inputs=face_misalignment,
-        unknowns=[
-            Unknown("misalignment", 0, 20, "um", note="gap at one end of the face without load; 0.2 to 2 mrad of tilt"),
-            Unknown("per_load", 0, 2, "um/kN", note="what the gap gains with the axial load"),
-        ],
-        parts=[("misalignment",), ("per_load",)],
-        looks_like="both root stresses too high by one amount at any load, like an offset or a roller ahead of the "
-        "others, and by less than that at small loads, where a part of the face lifts off; a tilt by the load is like "
-        "a gain of both",
-        why="the roller is tilted in its carrier, and bends and tilts further under its load",
-        source="ISO 6336-1, method C: face load factor of a misaligned pair",
-    ),
-    Effect(
-        "mesh_resonance",
-        on_inputs=mesh_resonance,
-        needs=[SCREW_SPEED],
-        unknowns=[
-            Unknown("excitation", 0, 0.5, "", note="error of the teeth times stiffness over the load; 0.02 to 0.1"),
-            Unknown("resonance_speed", 200, 6000, "rpm", note="of the screw"),
-            Unknown("damping", 0.03, 0.3, "", note="damping ratio; 0.04 to 0.1"),
-        ],
-        looks_like="both root stresses have a peak at one speed of the screw, by the same share at any load",
-        why="the teeth shake the rollers on the stiffness of their mesh, once per tooth",
-        source="one degree of freedom shaken by its base: displacement of the mesh",
-    ),
-    Effect(
-        "roller_load_sharing",
-        on_inputs=roller_load_sharing,
-        unknowns=[
-            Unknown("lead", -20, 20, "um", note="of the flank of this roller before the mean of the others; 1 to 5"),
-        ],
-        looks_like="both root stresses off by one amount at any load, like an offset; a roller that stays behind "
-        "carries nothing at small loads",
-        why="the teeth of the rollers do not stand alike to their threads, so that some carry more than others",
-        source="rollers on a rigid carrier: equilibrium of loads by the stiffness of their meshes",
-    ),
-    Effect(
-        "interrupted_tooth",
-        on_inputs=interrupted_tooth,
-        needs=[SCREW_ANGLE],
-        acts_at_reference=True,
-        unknowns=[
-            Unknown("lost", 0, 0.9, "", note="share of the face that does not carry where it is least; 0.2 to 0.5"),
-            Unknown("phase", 180, 540, "deg", note="angle of the roller at which that is, and one turn away"),
-        ],
-        looks_like="both root stresses swing once per turn of the roller, in proportion to the load, with crests "
-        "narrower than their troughs",
-        why="the thread of a roller runs through the teeth at its ends",
-        source="geometry: share of the face that a groove takes from it",
-    ),
-    Effect(
-        "rim_compliance",
-        on_inputs=rim_compliance,
-        unknowns=[Unknown("softness", 0, 1.5, "", note="rim factor less 1; 0.17 with a rim of 3 modules, 0.64 of 2")],
-        looks_like="the root stress of the ring is too high by one share, and nothing else: as with a gain of its "
-        "gauge, which another gauge or a weight on the tooth tells apart",
-        why="the ring is thin behind its teeth and bends as a whole",
-        source="ISO 6336-3: rim factor Y_B = 1.15 ln(8.324 m/s_R) of an internal gear, 1.75 < s_R/m < 3.5",
-    ),
-]
+    Effect("face_misalignment", on_inputs=face_misalignment,
+           unknowns=[Unknown("misalignment", 0, 20, "um",
+                             note="gap at one end of the face without load; 0.2 to 2 mrad of tilt"),
+                     Unknown("per_load", 0, 2, "um/kN", note="what the gap gains with the axial load")],
+           parts=[("misalignment",), ("per_load",)],
+           looks_like="both root stresses too high by one amount at any load, like an offset or a roller ahead of "
+                      "the others, and by less than that at small loads, where a part of the face lifts off; a tilt "
+                      "by the load is like a gain of both",
+           why="the roller is tilted in its carrier, and bends and tilts further under its load",
+           source="ISO 6336-1, method C: face load factor of a misaligned pair"),
+    Effect("mesh_resonance", on_inputs=mesh_resonance, needs=[SCREW_SPEED],
+           unknowns=[Unknown("excitation", 0, 0.5, "",
+                             note="error of the teeth times stiffness over the load; 0.02 to 0.1"),
+                     Unknown("resonance_speed", 200, 6000, "rpm", note="of the screw"),
+                     Unknown("damping", 0.03, 0.3, "", note="damping ratio; 0.04 to 0.1")],
+           looks_like="both root stresses have a peak at one speed of the screw, by the same share at any load",
+           why="the teeth shake the rollers on the stiffness of their mesh, once per tooth",
+           source="one degree of freedom shaken by its base: displacement of the mesh"),
+    Effect("roller_load_sharing", on_inputs=roller_load_sharing,
+           unknowns=[Unknown("lead", -20, 20, "um",
+                             note="of the flank of this roller before the mean of the others; 1 to 5")],
+           looks_like="both root stresses off by one amount at any load, like an offset; a roller that stays behind "
+                      "carries nothing at small loads",
+           why="the teeth of the rollers do not stand alike to their threads, so that some carry more than others",
+           source="rollers on a rigid carrier: equilibrium of loads by the stiffness of their meshes"),
+    Effect("interrupted_tooth", on_inputs=interrupted_tooth, needs=[SCREW_ANGLE], acts_at_reference=True,
+           unknowns=[Unknown("lost", 0, 0.9, "",
+                             note="share of the face that does not carry where it is least; 0.2 to 0.5"),
+                     Unknown("phase", 180, 540, "deg",
+                             note="angle of the roller at which that is, and one turn away")],
+           looks_like="both root stresses swing once per turn of the roller, in proportion to the load, with crests "
+                      "narrower than their troughs",
+           why="the thread of a roller runs through the teeth at its ends",
+           source="geometry: share of the face that a groove takes from it"),
+    Effect("rim_compliance", on_inputs=rim_compliance,
+           unknowns=[Unknown("softness", 0, 1.5, "",
+                             note="rim factor less 1; 0.17 with a rim of 3 modules, 0.64 of 2")],
+           looks_like="the root stress of the ring is too high by one share, and nothing else: as with a gain of its "
+                      "gauge, which another gauge or a weight on the tooth tells apart",
+           why="the ring is thin behind its teeth and bends as a whole",
+           source="ISO 6336-3: rim factor Y_B = 1.15 ln(8.324 m/s_R) of an internal gear, 1.75 < s_R/m < 3.5"),
+]  # fmt: skip
 HEAT: list[Effect[Pair, Meshing]] = [
-    Effect(
-        "thermal_centre_distance",
-        on_inputs=thermal_centre_distance,
-        needs=[TEMPERATURE],
-        unknowns=[
-            Unknown(
-                "expansion", -40, 40, "um/(m*K)", note="linear, of screw and nut less that of the ring; steel 11.5"
-            ),
-        ],
-        looks_like="the backlash shrinks as the screw gets warm and comes back when it cools: 0.2 um per kelvin with "
-        "steel beside a cold ring; a thermal drift of its gauge looks the same",
-        why="the threads hold the rollers at their distance, and are warmer than the ring, or of another metal",
-        source="linear expansion; backlash of an internal involute pair, ISO 21771",
-    ),
-]
+    Effect("thermal_centre_distance", on_inputs=thermal_centre_distance, needs=[TEMPERATURE],
+           unknowns=[Unknown("expansion", -40, 40, "um/(m*K)",
+                             note="linear, of screw and nut less that of the ring; steel 11.5")],
+           looks_like="the backlash shrinks as the screw gets warm and comes back when it cools: 0.2 um per kelvin "
+                      "with steel beside a cold ring; a thermal drift of its gauge looks the same",
+           why="the threads hold the rollers at their distance, and are warmer than the ring, or of another metal",
+           source="linear expansion; backlash of an internal involute pair, ISO 21771"),
+]  # fmt: skip
 ROTATION: list[Effect[Pair, Meshing]] = [
-    Effect(
-        "roller_runout",
-        on_results=roller_runout,
-        needs=[SCREW_ANGLE],
-        acts_at_reference=True,
-        unknowns=wave("roller"),
-        looks_like="transmission error with one wave per turn of the roller against the carrier, 1.875 per turn of the "
-        "screw",
-        why="the teeth of a roller are off the axis of its thread",
-        source=HARMONIC,
-    ),
-    Effect(
-        "carrier_runout",
-        on_results=carrier_runout,
-        needs=[SCREW_ANGLE],
-        acts_at_reference=True,
-        unknowns=wave("carrier"),
-        looks_like="transmission error with one wave per turn of the carrier, 0.375 per turn of the screw",
-        why="the ring is off the axis of the nut, or the carrier off that of the screw",
-        source=HARMONIC,
-    ),
-    Effect(
-        "axial_migration",
-        on_results=axial_migration,
-        needs=[SCREW_ANGLE],
-        unknowns=[
-            Unknown("mismatch", -5, 5, "um/mm", note="creep of the roller per turn of the screw over the lead; to 2")
-        ],
-        looks_like="the roller moves along the screw in proportion to the angle turned, and back when that goes back",
-        why="the teeth keep one ratio, the pitch diameters of the threads as made another",
-        source="kinematics of the planetary roller screw",
-    ),
-]
+    Effect("roller_runout", on_results=roller_runout, needs=[SCREW_ANGLE], acts_at_reference=True,
+           unknowns=wave("roller"),
+           looks_like="transmission error with one wave per turn of the roller against the carrier, 1.875 per turn "
+                      "of the screw",
+           why="the teeth of a roller are off the axis of its thread",
+           source=HARMONIC),
+    Effect("carrier_runout", on_results=carrier_runout, needs=[SCREW_ANGLE], acts_at_reference=True,
+           unknowns=wave("carrier"),
+           looks_like="transmission error with one wave per turn of the carrier, 0.375 per turn of the screw",
+           why="the ring is off the axis of the nut, or the carrier off that of the screw",
+           source=HARMONIC),
+    Effect("axial_migration", on_results=axial_migration, needs=[SCREW_ANGLE],
+           unknowns=[Unknown("mismatch", -5, 5, "um/mm",
+                             note="creep of the roller per turn of the screw over the lead; to 2")],
+           looks_like="the roller moves along the screw in proportion to the angle turned, and back when that goes "
+                      "back",
+           why="the teeth keep one ratio, the pitch diameters of the threads as made another",
+           source="kinematics of the planetary roller screw"),
+]  # fmt: skip
 FLANKS: list[Effect[Pair, Meshing]] = [
-    Effect(
-        "flank_wear",
-        on_results=flank_wear,
-        needs=[CYCLES],
-        unknowns=[
-            Unknown("rate", 0, 50, "um", note="depth per million cycles at 51.943 N and a specific sliding of 1"),
-        ],
-        looks_like="the depth of wear grows with load and cycles, whatever the time, and the backlash about twice as "
-        "fast with ten rollers of a fifth of the ring's teeth",
-        why="flanks slide on one another away from the pitch point",
-        source=ARCHARD,
-    ),
-    Effect(
-        "mesh_friction",
-        on_results=mesh_friction,
-        needs=[SCREW_SPEED, TEMPERATURE],
-        acts_at_reference=True,
-        unknowns=[Unknown("factor", 0, 20, "", note="friction over that of the formula")],
-        looks_like="torque against the turning that grows a little more than in proportion to the load, falls slowly "
-        "with the speed and hardly rises with the temperature",
-        why="flanks slide on one another away from the pitch point",
-        source=FRICTION,
-    ),
-]
+    Effect("flank_wear", on_results=flank_wear, needs=[CYCLES],
+           unknowns=[Unknown("rate", 0, 50, "um",
+                             note="depth per million cycles at 51.943 N and a specific sliding of 1")],
+           looks_like="the depth of wear grows with load and cycles, whatever the time, and the backlash about twice "
+                      "as fast with ten rollers of a fifth of the ring's teeth",
+           why="flanks slide on one another away from the pitch point",
+           source=ARCHARD),
+    Effect("mesh_friction", on_results=mesh_friction, needs=[SCREW_SPEED, TEMPERATURE], acts_at_reference=True,
+           unknowns=[Unknown("factor", 0, 20, "", note="friction over that of the formula")],
+           looks_like="torque against the turning that grows a little more than in proportion to the load, falls "
+                      "slowly with the speed and hardly rises with the temperature",
+           why="flanks slide on one another away from the pitch point",
+           source=FRICTION),
+]  # fmt: skip
 EFFECTS: list[Effect[Pair, Meshing]] = [*LOAD, *HEAT, *ROTATION, *FLANKS]
-
-__all__ = ["EFFECTS"]

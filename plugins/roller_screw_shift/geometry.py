@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gear_geometry.involute import involute
 from gear_geometry.pairs import (
     clear_of_base,
     internal_contact_ratio,
     internal_sliding,
     internal_tip_sliding,
+    involute,
     shift_per_tooth,
     working_angle_at,
 )

@@ -3,14 +3,21 @@
 from pathlib import Path
 
 from roller_screw_shift.calculation import roller_screw_shift
-from roller_screw_shift.choice import choice
 from roller_screw_shift.effects import EFFECTS
-from roller_screw_shift.findings import FINDINGS
-from roller_screw_shift.published import PUBLISHED
-from roller_screw_shift.sections import SECTIONS
-from roller_screw_shift.shifts import Shifting
-from roller_screw_shift.tolerances import TOLERANCES
-from truing import Maximise, Minimise, Model, Optimise, Require, Vary
+from roller_screw_shift.optimum import Shifting, choice
+from roller_screw_shift.published import FINDINGS, PUBLISHED
+from roller_screw_shift.sheet import SECTIONS
+from truing import Maximise, Minimise, Model, Optimise, Require, Tolerance, Vary, plus_minus
+
+# How the parts of the pair scatter; the design itself (both shifts) is computed from the nominals
+
+TOLERANCES = [
+    Tolerance("face_width", plus_minus("0.05 mm"), why="usual for turned parts of this size"),
+    Tolerance("centre_distance_deviation", plus_minus("10 um"), why="pitch diameters of the threads, as mounted"),
+]
+
+
+# The pair of roller and ring as truing knows it: function, error sources, goals, studies and sheet
 
 LITERATURE = [
     "The paper: Gao Yang, Yang Jiajun, Liang Han, Deng Bo, Zhu Jisheng (高揚, 楊家軍, 梁漢, 鄧波, 朱繼生), "

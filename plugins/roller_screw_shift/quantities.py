@@ -1,12 +1,16 @@
-"""What the roller screw calculation is told: every quantity with unit, symbol, bounds and source.
+"""What the roller screw calculation is told and what it answers: every quantity with unit, symbol, bounds and source.
 
-The roller (external end gear) and the ring (internal gear) are named; no index is used, because those of the paper
-contradict one another. A shift of the ring is positive outward.
+Index E is the roller (an external gear), index I the ring (an internal one). A margin above 0 is safe.
 """
 
 from typing import Literal
 
-from truing import Float, given, inputs
+from truing import Float, found, given, inputs, results
+
+# What the roller screw calculation is told: every quantity with unit, symbol, bounds and source
+#
+# The roller (external end gear) and the ring (internal gear) are named; no index is used, because those of the paper
+# contradict one another. A shift of the ring is positive outward.
 
 PAPER = "the paper"
 SET = "Table 1 of the paper is lost; one self-consistent set"
@@ -100,3 +104,291 @@ class Pair:
         0.0, "um", symbol="Delta a", note="neutral 0: centres farther apart than without backlash; "
         "above 0 the teeth of an internal pair jam, below 0 they have backlash", at_least=-1000, at_most=1000,
     )  # fmt: skip
+
+
+# What the roller screw calculation answers: geometry, strength, objectives, constraints and what effects act on
+#
+# Index E is the roller (an external gear), index I the ring (an internal one). A margin above 0 is safe.
+
+BASE = "0 in the calculation; effects act here"
+INVOLUTE = "ISO 21771"
+TOOTH = "ISO 6336-3: rack, tangent of 30°, load at the tip"
+SUBSTITUTE = "GB/T 3480-1997: the tooth of a substitute rack, load at the tip"
+ENVELOPE = "ISO 6336-3: envelope of the rounded tip of the cutter, tangent of 60°, load at the tip"
+CUT = "0 without a cutter; else of the ring as cut: "
+RULE = "common design rule"
+
+
+@results
+class Meshing:
+    """The pair of roller and ring at one profile shift; objectives and margins, and the stress under the load."""
+
+    # Geometry of the pair
+    working_angle: Float = found(
+        "deg", symbol="alpha_w", note="working pressure angle without backlash", source=INVOLUTE,
+        formula="acos(module * (ring_teeth - roller_teeth) * cos(pressure_angle) / (2 * centre_distance))",
+    )  # fmt: skip
+    shift_difference: Float = found(
+        "", symbol="D", note="x_I - x_E, fixed by the centre distance because there is no backlash", source=INVOLUTE,
+        formula="(ring_teeth - roller_teeth) * (inv(working_angle) - inv(pressure_angle)) / (2 * tan(pressure_angle))",
+    )  # fmt: skip
+    ring_shift: Float = found("", symbol="x_I", formula="roller_shift + shift_difference", source=INVOLUTE,
+                              note="profile shift of the ring; positive outward, larger tip and root circle "
+                              "(ISO 21771 counts it the other way)")  # fmt: skip
+    mounted_distance: Float = found("mm", symbol="a_m", note="centre distance as mounted",
+                                    formula="centre_distance + centre_distance_deviation")  # fmt: skip
+    mounted_angle: Float = found(
+        "deg", symbol="alpha_m", note="working pressure angle as mounted", source=INVOLUTE,
+        formula="acos(module * (ring_teeth - roller_teeth) * cos(pressure_angle) / (2 * mounted_distance))",
+    )  # fmt: skip
+    base_radius_roller: Float = found("mm", symbol="r_bE", note="base circle of the roller",
+                                      formula="module * roller_teeth * cos(pressure_angle) / 2")  # fmt: skip
+    base_radius_ring: Float = found("mm", symbol="r_bI", note="base circle of the ring",
+                                    formula="module * ring_teeth * cos(pressure_angle) / 2")  # fmt: skip
+    tip_radius_roller: Float = found("mm", symbol="r_aE", note="tip circle of the roller, not truncated",
+                                     formula="module * (roller_teeth / 2 + addendum + roller_shift)")  # fmt: skip
+    tip_radius_ring: Float = found("mm", symbol="r_aI", note="tip circle of the ring, not truncated",
+                                   formula="module * (ring_teeth / 2 - addendum + ring_shift)")  # fmt: skip
+    root_radius_roller: Float = found(
+        "mm", symbol="r_fE", note="root circle of the roller",
+        formula="module * (roller_teeth / 2 - addendum - clearance + roller_shift)",
+    )  # fmt: skip
+    root_radius_ring: Float = found(
+        "mm", symbol="r_fI", note="root circle of the ring; a shaper leaves a slightly different one",
+        formula="module * (ring_teeth / 2 + addendum + clearance + ring_shift)",
+    )  # fmt: skip
+    tip_angle_roller: Float = found("deg", symbol="alpha_aE", note="pressure angle at the tip of the roller",
+                                    formula="acos(base_radius_roller / tip_radius_roller)")  # fmt: skip
+    tip_angle_ring: Float = found("deg", symbol="alpha_aI", note="pressure angle at the tip of the ring",
+                                  formula="acos(base_radius_ring / tip_radius_ring)")  # fmt: skip
+    contact_ratio: Float = found(
+        "", symbol="epsilon", note="contact ratio", source="equation 8 of the paper, not legible; ISO 21771",
+        formula="(roller_teeth * (tan(tip_angle_roller) - tan(mounted_angle))"
+        " - ring_teeth * (tan(tip_angle_ring) - tan(mounted_angle))) / (2 * pi)",
+    )  # fmt: skip
+    half_angle_roller: Float = found(
+        "deg", symbol="gamma", note="half the angle of the tooth of the roller at its tip", source=INVOLUTE,
+        formula="(pi / 2 + 2 * roller_shift * tan(pressure_angle)) / roller_teeth + inv(pressure_angle)"
+        " - inv(tip_angle_roller)",
+    )  # fmt: skip
+    tip_land: Float = found("mm", symbol="s_a", note="width of the tip of the roller's tooth", source=INVOLUTE,
+                            formula="2 * tip_radius_roller * half_angle_roller")  # fmt: skip
+    crossing_cosine_roller: Float = found(
+        "", symbol="c_E", note="cosine of the next angle; 1 where the tip circles do not cross", source="equation 9",
+        formula="min((tip_radius_ring**2 - tip_radius_roller**2 - mounted_distance**2)"
+        " / (2 * mounted_distance * tip_radius_roller), 1)",
+    )  # fmt: skip
+    crossing_angle_roller: Float = found("deg", symbol="delta_E",
+                                         note="where the tip circles cross, seen from the roller", source="equation 9",
+                                         formula="acos(crossing_cosine_roller)")  # fmt: skip
+    crossing_cosine_ring: Float = found(
+        "", symbol="c_I", note="cosine of the next angle; 1 where the tip circles do not cross", source="equation 9",
+        formula="min((tip_radius_ring**2 - tip_radius_roller**2 + mounted_distance**2)"
+        " / (2 * mounted_distance * tip_radius_ring), 1)",
+    )  # fmt: skip
+    crossing_angle_ring: Float = found("deg", symbol="delta_I", note="where the tip circles cross, seen from the ring",
+                                       source="equation 9", formula="acos(crossing_cosine_ring)")  # fmt: skip
+    tip_clearance: Float = found(
+        "rad", symbol="G_s", note="clearance of the tips where their circles cross, 2π to a tooth; 2π where they do "
+        "not cross", source="equation 9, with its index 1 read as the roller",
+        formula="cases(roller_teeth * (crossing_angle_roller + inv(tip_angle_roller))"
+        " - ring_teeth * (crossing_angle_ring + inv(tip_angle_ring))"
+        " + (ring_teeth - roller_teeth) * inv(mounted_angle),"
+        " mounted_distance + tip_radius_roller > tip_radius_ring, 2 * pi)",
+    )  # fmt: skip
+    root_sliding_roller: Float = found(
+        "", symbol="eta_E,f", note="specific sliding at the root of the roller, where the tip of the ring meets it; "
+        "magnitude", source="1 - v_I/v_E of the speeds along the flanks",
+        formula="abs((ring_teeth - roller_teeth) * (tan(mounted_angle) - tan(tip_angle_ring)) / margin_involute)",
+    )  # fmt: skip
+    tip_sliding_roller: Float = found(
+        "", symbol="eta_E,a", note="specific sliding at the tip of the roller; magnitude",
+        source="1 - v_I/v_E of the speeds along the flanks",
+        formula="abs((ring_teeth - roller_teeth) * (tan(tip_angle_roller) - tan(mounted_angle))"
+        " / (ring_teeth * tan(tip_angle_roller)))",
+    )  # fmt: skip
+    tips_count: Float = found("", symbol="i_a", note="1: sliding at the tips counts too, so the largest on the path of "
+                              "contact; 0: at the roots alone", method="as sliding_reading has it")  # fmt: skip
+    sliding_roller: Float = found("", symbol="eta_E",
+                                  note="specific sliding of the roller that counts, its largest on the path of contact",
+                                  formula="max(root_sliding_roller, tips_count * tip_sliding_roller)",
+                                  source="sliding changes in one direction along the path")  # fmt: skip
+    root_sliding_ring: Float = found(
+        "", symbol="eta_I,f", note="specific sliding at the root of the ring, where the tip of the roller meets it; "
+        "magnitude", source="1 - v_E/v_I of the speeds along the flanks",
+        formula="abs((ring_teeth - roller_teeth) * (tan(tip_angle_roller) - tan(mounted_angle))"
+        " / (ring_teeth * tan(mounted_angle) + roller_teeth * (tan(tip_angle_roller) - tan(mounted_angle))))",
+    )  # fmt: skip
+    tip_sliding_ring: Float = found(
+        "", symbol="eta_I,a", note="specific sliding at the tip of the ring; magnitude",
+        source="1 - v_E/v_I of the speeds along the flanks",
+        formula="abs((ring_teeth - roller_teeth) * (tan(mounted_angle) - tan(tip_angle_ring))"
+        " / (roller_teeth * tan(tip_angle_ring)))",
+    )  # fmt: skip
+    sliding_ring: Float = found("", symbol="eta_I",
+                                note="specific sliding of the ring that counts, its largest on the path of contact",
+                                formula="max(root_sliding_ring, tips_count * tip_sliding_ring)",
+                                source="sliding changes in one direction along the path")  # fmt: skip
+    ring_meshes: Float = found(
+        "", symbol="n_I/n_E", note="meshes of a tooth of the ring while one of a roller meshes once; decides how fast "
+        "either wears", formula="rollers * roller_teeth / ring_teeth", source="counts of teeth",
+    )  # fmt: skip
+    # Strength of the roots
+    tangential_force: Float = found("N", symbol="F_t", note="load of one mesh", formula="tangential_share * "
+                                    "abs(axial_load)")  # fmt: skip
+    fillet_offset_roller: Float = found(
+        "", symbol="E", note="from the middle of the gap of the rack to the centre of its fillet", source=TOOTH,
+        formula="pi / 4 - (addendum + clearance) * tan(pressure_angle)"
+        " - (1 - sin(pressure_angle)) * roller_fillet / cos(pressure_angle)",
+    )  # fmt: skip
+    fillet_height_roller: Float = found(
+        "", symbol="G", note="of the centre of the fillet over the pitch line", source=TOOTH,
+        formula="roller_fillet - addendum - clearance + roller_shift",
+    )  # fmt: skip
+    tangent_constant_roller: Float = found("", symbol="H", note="constant of the next equation", source=TOOTH,
+                                           formula="2 / roller_teeth * (pi / 2 - fillet_offset_roller) - pi / 3",
+                                           )  # fmt: skip
+    tangent_angle_roller: Float = found(
+        "deg", symbol="theta", note="where the tangent of 30° touches the fillet", source=TOOTH,
+        formula="tangent_angle_roller == 2 * fillet_height_roller / roller_teeth * tan(tangent_angle_roller)"
+        " - tangent_constant_roller",
+    )  # fmt: skip
+    root_chord_roller: Float = found(
+        "", symbol="s_FE*", note="critical section of the roller, in modules", source=TOOTH,
+        formula="roller_teeth * sin(pi / 3 - tangent_angle_roller)"
+        " + sqrt(3) * (fillet_height_roller / cos(tangent_angle_roller) - roller_fillet)",
+    )  # fmt: skip
+    root_fillet_roller: Float = found(
+        "", symbol="rho_FE*", note="radius of its fillet there, in modules", source=TOOTH,
+        formula="roller_fillet + 2 * fillet_height_roller**2 / (cos(tangent_angle_roller)"
+        " * (roller_teeth * cos(tangent_angle_roller)**2 - 2 * fillet_height_roller))",
+    )  # fmt: skip
+    load_angle_roller: Float = found("deg", symbol="alpha_FE", note="of the load at the tip of the roller",
+                                     formula="tip_angle_roller - half_angle_roller", source=TOOTH)  # fmt: skip
+    bending_arm_roller: Float = found(
+        "", symbol="h_FE*", note="bending arm of the roller, in modules", source=TOOTH,
+        formula="((cos(half_angle_roller) - sin(half_angle_roller) * tan(load_angle_roller))"
+        " * 2 * tip_radius_roller / module - roller_teeth * cos(pi / 3 - tangent_angle_roller)"
+        " - fillet_height_roller / cos(tangent_angle_roller) + roller_fillet) / 2",
+    )  # fmt: skip
+    form_factor_roller: Float = found(
+        "", symbol="Y_Fa,E", note="form factor of the roller", source=TOOTH,
+        formula="6 * bending_arm_roller * cos(load_angle_roller) / (root_chord_roller**2 * cos(pressure_angle))",
+    )  # fmt: skip
+    notch_roller: Float = found("", symbol="q_s,E", note="notch parameter of the roller; stated for 1 to 8",
+                                formula="root_chord_roller / (2 * root_fillet_roller)", source=TOOTH)  # fmt: skip
+    stress_correction_roller: Float = found(
+        "", symbol="Y_Sa,E", note="stress correction factor of the roller", source=TOOTH,
+        formula="(1.2 + 0.13 * root_chord_roller / bending_arm_roller)"
+        " * notch_roller**(1 / (1.21 + 2.3 * bending_arm_roller / root_chord_roller))",
+    )  # fmt: skip
+    cut_chord_ring: Float = found("", symbol="s_FI,0*", note=CUT + "critical section, in modules", method=ENVELOPE)
+    cut_fillet_ring: Float = found("", symbol="rho_FI,0*", note=CUT + "radius of the fillet there", method=ENVELOPE)
+    cut_arm_ring: Float = found("", symbol="h_FI,0*", note=CUT + "bending arm, in modules", method=ENVELOPE)
+    cut_angle_ring: Float = found("deg", symbol="alpha_FI,0", note=CUT + "angle of the load at the tip",
+                                  method=ENVELOPE)  # fmt: skip
+    root_chord_ring: Float = found(
+        "", symbol="s_FI*", note="critical section of the ring, in modules", source=SUBSTITUTE,
+        formula="cases(cut_chord_ring, cutter_teeth > 0,"
+        " 2 * (pi / 4 + (addendum + clearance - ring_fillet) * tan(pressure_angle)"
+        " + ring_fillet / cos(pressure_angle) - ring_fillet * cos(pi / 6)))",
+    )  # fmt: skip
+    root_fillet_ring: Float = found("", symbol="rho_FI*", note="radius of its fillet there, in modules",
+                                    formula="cases(cut_fillet_ring, cutter_teeth > 0, ring_fillet)",
+                                    source=SUBSTITUTE)  # fmt: skip
+    load_angle_ring: Float = found("deg", symbol="alpha_FI", note="of the load at the tip of the ring",
+                                   formula="cases(cut_angle_ring, cutter_teeth > 0, pressure_angle)",
+                                   source=SUBSTITUTE)  # fmt: skip
+    bending_arm_ring: Float = found(
+        "", symbol="h_FI*", note="bending arm of the ring, in modules", source=SUBSTITUTE,
+        formula="cases(cut_arm_ring, cutter_teeth > 0, 2 * addendum + clearance"
+        " - (pi / 4 - addendum * tan(pressure_angle)) * tan(pressure_angle) - ring_fillet / 2)",
+    )  # fmt: skip
+    form_factor_ring: Float = found(
+        "", symbol="Y_Fa,I", note="form factor of the ring; as a rack it depends on neither teeth nor shift",
+        source=SUBSTITUTE,
+        formula="6 * bending_arm_ring * cos(load_angle_ring) / (root_chord_ring**2 * cos(pressure_angle))",
+    )  # fmt: skip
+    notch_ring: Float = found("", symbol="q_s,I", note="notch parameter of the ring; stated for 1 to 8",
+                              formula="root_chord_ring / (2 * root_fillet_ring)", source=SUBSTITUTE)  # fmt: skip
+    stress_correction_ring: Float = found(
+        "", symbol="Y_Sa,I", note="stress correction factor of the ring", source=SUBSTITUTE,
+        formula="(1.2 + 0.13 * root_chord_ring / bending_arm_ring)"
+        " * notch_ring**(1 / (1.21 + 2.3 * bending_arm_ring / root_chord_ring))",
+    )  # fmt: skip
+    nominal_stress_roller: Float = found(
+        "MPa", symbol="sigma_F0,E", note="nominal root stress of the roller", source="equation 2, its textbook form",
+        formula="tangential_force / (face_width * module) * form_factor_roller * stress_correction_roller",
+    )  # fmt: skip
+    nominal_stress_ring: Float = found(
+        "MPa", symbol="sigma_F0,I", note="nominal root stress of the ring", source="equation 2, its textbook form",
+        formula="tangential_force / (face_width * module) * form_factor_ring * stress_correction_ring",
+    )  # fmt: skip
+    root_stress_roller: Float = found(
+        "MPa", symbol="sigma_FE", note="root stress of the roller",
+        formula="nominal_stress_roller * face_load_factor * dynamic_factor * sharing_factor / carrying_share",
+    )  # fmt: skip
+    root_stress_ring: Float = found(
+        "MPa", symbol="sigma_FI", note="root stress of the ring",
+        formula="nominal_stress_ring * face_load_factor * dynamic_factor * sharing_factor * rim_factor"
+        " / carrying_share",
+    )  # fmt: skip
+    # Objectives
+    shift_sum: Float = found("", symbol="f_1", note="to be large: sum of the shifts; the difference is fixed",
+                             formula="roller_shift + ring_shift", source="equation 1 of the paper, not legible",
+                             )  # fmt: skip
+    stress_difference: Float = found(
+        "MPa", symbol="f_2", note="to be small: difference of the nominal root stresses, without neutral factors",
+        formula="abs(nominal_stress_roller - nominal_stress_ring)", source="equation 2 of the paper",
+    )  # fmt: skip
+    sliding_difference: Float = found("", symbol="f_3", note="to be small: difference of the largest specific sliding",
+                                      formula="abs(sliding_roller - sliding_ring)", source="equation 3 of the paper",
+                                      )  # fmt: skip
+    # Constraints: above 0 is safe
+    margin_ring_base: Float = found("", symbol="g_1", note="tip circle of the ring outside its base circle",
+                                    formula="tip_radius_ring / base_radius_ring - 1",
+                                    source="equation 6 of the paper, not legible")  # fmt: skip
+    margin_roller_base: Float = found("", symbol="g_2", note="tip circle of the roller outside its base circle",
+                                      formula="tip_radius_roller / base_radius_roller - 1",
+                                      source="equation 7 of the paper, not legible")  # fmt: skip
+    margin_contact_ratio: Float = found("", symbol="g_3", note="contact ratio over the least",
+                                        formula="contact_ratio - least_contact_ratio", source="equation 8 of the paper",
+                                        )  # fmt: skip
+    margin_interference: Float = found("rad", symbol="g_4", note="the tips pass one another",
+                                       formula="tip_clearance - interference_margin", source="equation 9 of the paper",
+                                       )  # fmt: skip
+    margin_opposite_tips: Float = found(
+        "", symbol="g_5", note="clearance of the tips on the far side, in modules", source="equation 10 of the paper",
+        formula="(tip_radius_ring - tip_radius_roller + mounted_distance) / module - least_clearance",
+    )  # fmt: skip
+    margin_roller_root: Float = found(
+        "", symbol="g_6", note="clearance of ring tip and roller root, in modules", source="equation 11 of the paper",
+        formula="(tip_radius_ring - root_radius_roller - mounted_distance) / module - least_clearance",
+    )  # fmt: skip
+    margin_ring_root: Float = found(
+        "", symbol="g_6b", note="clearance of ring root and roller tip, in modules", source="mirror of equation 11",
+        formula="(root_radius_ring - tip_radius_roller - mounted_distance) / module - least_clearance",
+    )  # fmt: skip
+    margin_involute: Float = found(
+        "", symbol="g_7", note="the tip of the ring meets the involute of the roller", source="involute interference",
+        formula="roller_teeth * tan(mounted_angle) - ring_teeth * (tan(mounted_angle) - tan(tip_angle_ring))",
+    )  # fmt: skip
+    margin_undercut: Float = found(
+        "", symbol="g_8", note="shift of the roller over that of undercut by the rack", source=INVOLUTE,
+        formula="roller_shift - (addendum + clearance - roller_fillet * (1 - sin(pressure_angle))"
+        " - roller_teeth / 2 * sin(pressure_angle)**2)",
+    )  # fmt: skip
+    margin_tip_land: Float = found("", symbol="g_9", note="tip land of the roller over the least, in modules",
+                                   formula="tip_land / module - least_tip_land", source=RULE)  # fmt: skip
+    margin_sliding: Float = found("", symbol="g_10", note="difference of sliding under the largest",
+                                  formula="most_sliding_difference - sliding_difference",
+                                  source="keeps the range of the third objective finite")  # fmt: skip
+    # What effects act on
+    transmission_error: Float = found("um", symbol="TE", note="along the line of action", method=BASE)
+    wear_depth: Float = found("um", symbol="h", note="wear of the roller where it is deepest", method=BASE)
+    axial_shift: Float = found("um", symbol="Delta z", note="of a roller along the screw", method=BASE)
+    friction_torque: Float = found("N*m", symbol="M_R", note="of the meshes, at the screw", method=BASE)
+    backlash: Float = found("um", symbol="j_t",
+                            note="arc between the free flanks at the pitch circle as mounted; below 0 the teeth jam. "
+                                 "Centres farther apart close an internal pair", source=INVOLUTE,
+                            formula="2 * mounted_distance * (inv(working_angle) - inv(mounted_angle))")  # fmt: skip

@@ -1,24 +1,267 @@
-"""What the rating of the first stage leaves out, and what is measured of the stage that it does not calculate.
+"""What the rating of the first stage leaves out, and what is measured of the stage that it does not give."""
 
-They act in the order declared: first what changes the load of a tooth, then what is added to a result. A new effect is
-a function beside the others and one more entry in EFFECTS.
-"""
+from dataclasses import replace
 
-from rv_gearing.answers import Strength
-from rv_gearing.conditions import INPUT_ANGLE, TIME
-from rv_gearing.effects_of_friction import flash_temperature
-from rv_gearing.effects_of_load import (
-    crowned_contact,
-    face_misalignment,
-    planet_load_sharing,
-    relief_error,
-    structural_resonance,
-)
-from rv_gearing.effects_of_oil import centre_distance_growth, speed_dependent_loss
-from rv_gearing.effects_of_rotation import mesh_ripple, output_eccentricity, planet_runout, ratio_drift, sun_runout
-from rv_gearing.effects_of_torque import lost_motion, mesh_stiffening, wear_drift, wind_up
+import numpy as np
+
+from gear_geometry.mesh_load import shaken_by_error
+from rv_gearing.geometry import Load, load_of
+from rv_gearing.groups import centre_distance_of
 from rv_gearing.quantities import Gearing
-from truing import Effect, Unknown
+from rv_gearing.rating import Strength
+from truing import Condition, Effect, Float, Unknown
+
+# What else must be measured before the effects of the gearing can act: each condition once, shared by its effects
+#
+# Torque, speed and the temperature of the oil are inputs of the stage; their columns hold row by row.
+
+INPUT_ANGLE = Condition(
+    "input_angle", "deg", reference=0, low=0, high=39960,
+    note="of the sun, counted on over its turns; at a ratio of 111 one turn of the output is 39960 degrees",
+)  # fmt: skip
+TIME = Condition("time", "h", reference=0, low=0, high=6000, note="at work since new")
+
+
+# What changes the load of a tooth and so every stress: misalignment, resonance, sharing, width and tip that carry
+
+LEAST_FORCE = 1e-3  # N, of an idle mesh: even that touches somewhere
+
+
+def face_misalignment(stage: Gearing, *, misalignment: Float, per_load: Float) -> Gearing:
+    """The teeth do not meet along their whole width: by so much at any load, and by so much per newton of a mesh."""
+    out_of_line = misalignment + per_load * load_of(stage).tangential_force
+    return replace(stage, extra_misalignment=stage.extra_misalignment + out_of_line)
+
+
+def structural_resonance(stage: Gearing, *, strength: Float, resonance_speed: Float, damping: Float) -> Gearing:
+    """Shaft, carrier or housing answers to the meshing teeth as one degree of freedom that their error shakes.
+
+    ``strength`` is the error, by the stiffness that it works against, over the load: the dynamic factor gains
+    ``strength`` N² / sqrt((1 - N²)² + (2 zeta N)²), nothing at rest and strength/(2 zeta) at the resonance. Speeds are
+    those of the sun relative to the carrier, which the frequency of the mesh follows.
+    """
+    answer = strength * shaken_by_error(load_of(stage).mesh_speed / resonance_speed, damping)
+    return replace(stage, extra_dynamic_factor=stage.extra_dynamic_factor + answer)
+
+
+def planet_load_sharing(stage: Gearing, *, lead: Float) -> Gearing:
+    """One planet is ahead of the mean of all and is loaded more, until its mesh has given way by as much."""
+    return replace(stage, sharing_error=stage.sharing_error + lead)
+
+
+def crowned_contact(stage: Gearing, *, full_line_load: Float) -> Gearing:
+    """Crowned teeth touch over a width that grows with the cube root of the force, until the whole face carries.
+
+    Of a parabola, on a bed of springs and on Hertz's half space alike. The mean over this width is what is raised; how
+    uneven the load is across it stays with the face load factor.
+    """
+    force = np.maximum(load_of(stage).tangential_force, LEAST_FORCE)
+    share = np.cbrt(force / np.maximum(force, full_line_load * stage.face_width))
+    return replace(stage, carrying_share=stage.carrying_share * share)
+
+
+def relief_error(stage: Gearing, *, missing: Float) -> Gearing:
+    """The tip is relieved by less than was meant, or by more: the tooth takes its load nearer to the tip, or lower."""
+    return replace(stage, relief_deviation=stage.relief_deviation + missing)
+
+
+# What the angle of the sun brings into the transmission error: runouts, teeth, the output, and a miscount
+#
+# The orders of the gears count the turns of the sun against the carrier, those of the output the turns of the housing's
+# frame. Angles in rad, errors in m along the line of action.
+
+
+def wave(angle: Float, cosine: Float, sine: Float) -> Float:
+    """Return one harmonic of an angle."""
+    return cosine * np.cos(angle) + sine * np.sin(angle)
+
+
+def relative_angle(load: Load, input_angle: Float) -> Float:
+    """Return the angle of the sun against the carrier, which turns with the output."""
+    return input_angle * (1.0 - 1.0 / load.ratio)
+
+
+def with_error(strength: Strength, error: Float) -> Strength:
+    """Return the results with so much more transmission error."""
+    return replace(strength, transmission_error=strength.transmission_error + error)
+
+
+def sun_runout(stage: Gearing, strength: Strength, *, cosine: Float, sine: Float, input_angle: Float) -> Strength:
+    """The teeth of the sun are off its axis: one wave per turn against the carrier."""
+    return with_error(strength, wave(relative_angle(load_of(stage), input_angle), cosine, sine))
+
+
+def planet_runout(stage: Gearing, strength: Strength, *, cosine: Float, sine: Float, input_angle: Float) -> Strength:
+    """The teeth of a planet are off its axis: one wave per turn of the planet, z1/z2 of the sun's."""
+    load = load_of(stage)
+    return with_error(strength, wave(relative_angle(load, input_angle) * load.sun / load.planet, cosine, sine))
+
+
+def mesh_ripple(
+    stage: Gearing,
+    strength: Strength,
+    *,
+    cosine: Float,
+    sine: Float,
+    second_cosine: Float,
+    second_sine: Float,
+    input_angle: Float,
+) -> Strength:
+    """Every tooth of the sun passes once per turn and brings the error of its flank, and that of half its pitch."""
+    load = load_of(stage)
+    teeth = load.sun * relative_angle(load, input_angle)
+    return with_error(strength, wave(teeth, cosine, sine) + wave(2.0 * teeth, second_cosine, second_sine))
+
+
+def output_eccentricity(
+    stage: Gearing,
+    strength: Strength,
+    *,
+    cosine: Float,
+    sine: Float,
+    tooth_cosine: Float,
+    tooth_sine: Float,
+    input_angle: Float,
+) -> Strength:
+    """The output, or what it is measured on, is off its axis; and the teeth of the discs pass once per turn of it."""
+    load = load_of(stage)
+    output = input_angle / load.ratio
+    of_teeth = wave((load.pins - 1.0) * output, tooth_cosine, tooth_sine)
+    return with_error(strength, wave(output, cosine, sine) + of_teeth)
+
+
+def ratio_drift(stage: Gearing, strength: Strength, *, miscount: Float, input_angle: Float) -> Strength:
+    """The angles of input and output are counted in another ratio than that of the teeth: an error that adds up."""
+    return with_error(strength, miscount * input_angle * load_of(stage).base_radii[0])
+
+
+# How warm the flanks get where they slide on one another
+
+BLOK_FACTOR = 1.11  # for the heat of a Hertzian contact over its full width
+CONTACT_COEFFICIENT = 13784.0  # N/(m s^0.5 K) of steel: root of 50 W/(m K) times 3.8 MJ/(m³ K)
+TURN = 2.0 * np.pi
+
+
+def flash_temperature(stage: Gearing, strength: Strength, *, friction: Float) -> Strength:
+    """The flanks are warmer than the oil by the flash of that end of the path of contact where it is the greater.
+
+    Every tooth is taken to carry the whole line load at the ends of its path, so the friction that is found is that of
+    a mesh in which the second pair of teeth does not help.
+    """
+    rise = friction * flash_of(stage, strength)
+    return replace(strength, flank_temperature=strength.flank_temperature + rise)
+
+
+def flash_of(stage: Gearing, strength: Strength) -> Float:
+    """Return the flash temperature per coefficient of friction, K: 1.11 w |v_1^1/2 - v_2^1/2| / ((2 b_H)^1/2 B_M).
+
+    Transverse section, both gears of steel; w is the line load along the normal with the application factor alone, v
+    the speeds of the flanks along themselves. Reference: Blok 1937, ISO/TS 6336-20.
+    """
+    speed = TURN * strength.duty.mesh_speed
+    force = strength.duty.line_load / np.cos(strength.mesh.transverse_angle)
+    found: list[Float] = []
+    for sun, planet in ends_of_path(strength):
+        width = 2.0 * half_width(stage, force, sun * planet / (sun + planet))
+        slip = np.abs(np.sqrt(speed * sun) - np.sqrt(speed * planet / strength.mesh.tooth_ratio))
+        found.append(BLOK_FACTOR * force * slip / (np.sqrt(width) * CONTACT_COEFFICIENT))
+    return np.maximum(found[0], found[1])
+
+
+def ends_of_path(strength: Strength) -> tuple[tuple[Float, Float], tuple[Float, Float]]:
+    """Return the radii of curvature of sun and planet, m, where contact begins and where it ends."""
+    sun, planet = strength.sun, strength.planet
+    tips = [0.5 * gear.size.base_diameter * np.tan(gear.size.tip_angle) for gear in (sun, planet)]
+    return (np.maximum(sun.size.start_curvature, 0.0), tips[1]), (tips[0], np.maximum(planet.size.start_curvature, 0.0))
+
+
+def half_width(stage: Gearing, force: Float, radius: Float) -> Float:
+    """Return the Hertzian half width, m, under a line load (N/m), at this radius of both flanks together."""
+    soft = sum((1.0 - gear.poisson_ratio**2) / gear.young_modulus for gear in (stage.sun, stage.planet))
+    return np.sqrt(4.0 * force * radius * soft / np.pi)
+
+
+# What follows the oil: how far its heat drives the gears apart, and what it holds back at any torque
+
+ROOM = 293.15  # K: at 20 degC the gears are as far apart as on the drawing
+FORTY = 313.15  # K, at which the viscosity of an oil is stated
+SLOPE = 3.567  # of an ISO VG 100 oil with viscosity index 95: 100 mm²/s at 40 degC and 11.1 mm²/s at 100 degC
+MM2_S = 1e-6
+ADDED = 0.7  # mm²/s, in the law
+REFERENCE = 100.0 * MM2_S * 1000.0 / 60.0  # m²/s times turns per second: 100 mm²/s at 1000 r/min
+LEAST_TORQUE = 1e-9  # N m, of an idle sun
+
+
+def centre_distance_growth(stage: Gearing, *, expansion: Float) -> Gearing:
+    """Housing and carrier part sun and planet as they get warm; ``expansion`` is theirs less that of the gears."""
+    load = load_of(stage)
+    growth = expansion * centre_distance_of(stage, load.sun, load.planet) * (stage.oil_temperature - ROOM)
+    return replace(stage, centre_distance_deviation=stage.centre_distance_deviation + growth)
+
+
+def viscosity_at_work(stage: Gearing) -> Float:
+    """Return the kinematic viscosity at the temperature of the oil, m²/s: log log (nu + 0.7) falls with log T.
+
+    For mineral oils of viscosity index about 95, 0 to 150 degC; others have another slope. Reference: ASTM D341.
+    """
+    at_forty = np.log10(stage.viscosity / MM2_S + ADDED)
+    return MM2_S * (10.0 ** (at_forty * (stage.oil_temperature / FORTY) ** -SLOPE) - ADDED)
+
+
+def speed_dependent_loss(stage: Gearing, strength: Strength, *, constant: Float, viscous: Float) -> Strength:
+    """Seals, bearings and oil hold the sun back at any torque: efficiency less M_0/T_1, not below 0.
+
+    ``viscous`` is the part of M_0 that grows with viscosity times speed to the power 2/3, at 100 mm²/s and 1000 r/min.
+    T_1 is the torque that was calculated without M_0, so the loss is meant to be small beside it.
+    """
+    load = load_of(stage)
+    product = viscosity_at_work(stage) * load.input_speed
+    held_back = constant + viscous * np.cbrt(product / REFERENCE) ** 2
+    loss = held_back / np.maximum(load.sun_torque, LEAST_TORQUE)
+    return replace(strength, efficiency=np.maximum(strength.efficiency - loss, 0.0))
+
+
+# What torque and time bring into the transmission error and the backlash: twist, play, deflection of teeth, wear
+
+
+def wind_up(stage: Gearing, strength: Strength, *, compliance: Float) -> Strength:
+    """The shaft of the sun twists in proportion to its torque, to the side to which it turns."""
+    load = load_of(stage)
+    return with_error(strength, compliance * load.sun_torque * load.direction)
+
+
+def lost_motion(stage: Gearing, strength: Strength, *, play: Float, torque_scale: Float) -> Strength:
+    """The torque takes up the play to one side or the other; about zero torque it does so gradually.
+
+    At ``torque_scale`` of the output 76 % (tanh 1) of half the play is taken up.
+    """
+    load = load_of(stage)
+    torque = load.direction * load.sun_torque * load.ratio * load.efficiency
+    moved = with_error(strength, 0.5 * play * np.tanh(torque / torque_scale))
+    return replace(moved, backlash=strength.backlash + play)
+
+
+def wear_drift(stage: Gearing, strength: Strength, *, rate: Float, time: Float) -> Strength:
+    """Every loaded flank loses a depth in proportion to the time; torque lays the teeth on one flank or the other."""
+    depth = rate * time
+    moved = with_error(strength, load_of(stage).direction * depth)
+    return replace(moved, backlash=strength.backlash + 2.0 * depth)
+
+
+def mesh_stiffening(stage: Gearing, strength: Strength, *, share: Float) -> Strength:
+    """Teeth give way under their line load; below 100 N/mm they are softer, so the first newtons move them most.
+
+    At a share of 1 by the line load with the application factor over the mesh stiffness of the rating.
+    """
+    load = load_of(stage)
+    deflection = strength.duty.line_load / strength.stiffness.mesh_stiffness
+    return with_error(strength, share * load.direction * deflection)
+
+
+# What the rating of the first stage leaves out, and what is measured of the stage that it does not calculate
+#
+# They act in the order declared: first what changes the load of a tooth, then what is added to a result. A new effect
+# is a function beside the others and one more entry in EFFECTS.
 
 FACE = "face load factor of ISO 6336-1, method C, for a misalignment that grows with the load"
 RESONANCE = "one degree of freedom shaken by an error of position: Den Hartog, Mechanical vibrations, ch. 2"
@@ -36,7 +279,7 @@ BLOK = (
 ARCHARD = "Archard, J. F., Contact and rubbing of flat surfaces, Journal of Applied Physics 24 (1953) 981"
 
 
-def wave(cosine: str, sine: str, of: str) -> list[Unknown]:
+def wave_unknowns(cosine: str, sine: str, of: str) -> list[Unknown]:
     """Declare both parts of one harmonic."""
     return [
         Unknown(cosine, -1000, 1000, "um", note=f"in proportion to the cosine of {of}"),
@@ -45,192 +288,123 @@ def wave(cosine: str, sine: str, of: str) -> list[Unknown]:
 
 
 LOAD: list[Effect[Gearing, Strength]] = [
-    Effect(
-        "face_misalignment",
-        on_inputs=face_misalignment,
-        unknowns=[
-            Unknown("misalignment", -3, 100, "um", note="over the face width, beside that of the tolerances"),
-            Unknown("per_load", -3, 100, "um/kN", note="what it gains with the tangential force of a mesh"),
-        ],
-        parts=[("misalignment",), ("per_load",)],
-        looks_like="all stresses too high by a share that falls with the load; with shafts that bend, by one share at "
-        "any load, which the tolerances or a gain of the gauge may be as well",
-        why="sun and planet axes are not parallel: bores of the carrier, bearing play, and a shaft that bends",
-        source=FACE,
-    ),
-    Effect(
-        "structural_resonance",
-        on_inputs=structural_resonance,
-        unknowns=[
-            Unknown("strength", 0, 2, "", note="error of the mesh times stiffness over load: gain far above it"),
-            Unknown("resonance_speed", 200, 5000, "rpm", note="of the sun relative to the carrier"),
-            Unknown("damping", 0.03, 0.3, "", note="damping ratio"),
-        ],
-        looks_like="all stresses have a peak at one speed of the input, by the same share at any load; nothing at rest "
-        "and below the peak four times as much at twice the speed",
-        why="shaft, carrier or housing have a frequency of their own, which the teeth of the sun meet at that speed",
-        source=RESONANCE,
-    ),
-    Effect(
-        "planet_load_sharing",
-        on_inputs=planet_load_sharing,
-        unknowns=[Unknown("lead", 0, 100, "um", note="of one planet before the mean of all, along the line of action")],
-        looks_like="all stresses too high at small loads, hardly at large ones; root stresses by nearly the same "
-        "amount at any load, like an offset",
-        why="planets stand unevenly on their cranks; the first one to touch carries until its mesh has given way",
-        source=STIFFNESS,
-    ),
-    Effect(
-        "crowned_contact",
-        on_inputs=crowned_contact,
-        unknowns=[Unknown("full_line_load", 0, 200, "N/mm", note="force over width from which all of it carries")],
-        looks_like="all stresses too high at small loads, and right from some load on",
-        why="crowned teeth touch in the middle of their width; the contact grows with the load",
-        source="Hertz, point contact of crowned flanks that spreads over the face; width as the cube root of the force",
-    ),
-    Effect(
-        "relief_error",
-        on_inputs=relief_error,
-        unknowns=[Unknown("missing", -50, 50, "um", note="of the relief of the tip")],
-        looks_like="root stresses off by the same amount at any load, like an offset; contact stress as calculated",
-        why="the tips were ground back less than was meant, or more: the load meets the tooth higher, or lower",
-        source=STIFFNESS,
-    ),
-    Effect(
-        "centre_distance_growth",
-        on_inputs=centre_distance_growth,
-        unknowns=[
-            Unknown(
-                "expansion", -40, 40, "um/(m*K)", note="linear, of housing and carrier less that of the gears; "
-                "aluminium less steel 12",
-            )
-        ],
-        looks_like="the backlash grows with the temperature of the oil, back and forth, and never with the hours",
-        why="the parts that hold the gears apart expand more than the gears, or get warmer",
-        source="linear expansion; backlash of an involute pair on its working centre distance, ISO 21771",
-    ),
+    Effect("face_misalignment", on_inputs=face_misalignment,
+           unknowns=[Unknown("misalignment", -3, 100, "um",
+                             note="over the face width, beside that of the tolerances"),
+                     Unknown("per_load", -3, 100, "um/kN", note="what it gains with the tangential force of a mesh")],
+           parts=[("misalignment",), ("per_load",)],
+           looks_like="all stresses too high by a share that falls with the load; with shafts that bend, by one "
+                      "share at any load, which the tolerances or a gain of the gauge may be as well",
+           why="sun and planet axes are not parallel: bores of the carrier, bearing play, and a shaft that bends",
+           source=FACE),
+    Effect("structural_resonance", on_inputs=structural_resonance,
+           unknowns=[Unknown("strength", 0, 2, "",
+                             note="error of the mesh times stiffness over load: gain far above it"),
+                     Unknown("resonance_speed", 200, 5000, "rpm", note="of the sun relative to the carrier"),
+                     Unknown("damping", 0.03, 0.3, "", note="damping ratio")],
+           looks_like="all stresses have a peak at one speed of the input, by the same share at any load; nothing at "
+                      "rest and below the peak four times as much at twice the speed",
+           why="shaft, carrier or housing have a frequency of their own, which the teeth of the sun meet at that "
+               "speed",
+           source=RESONANCE),
+    Effect("planet_load_sharing", on_inputs=planet_load_sharing,
+           unknowns=[Unknown("lead", 0, 100, "um",
+                             note="of one planet before the mean of all, along the line of action")],
+           looks_like="all stresses too high at small loads, hardly at large ones; root stresses by nearly the same "
+                      "amount at any load, like an offset",
+           why="planets stand unevenly on their cranks; the first one to touch carries until its mesh has given way",
+           source=STIFFNESS),
+    Effect("crowned_contact", on_inputs=crowned_contact,
+           unknowns=[Unknown("full_line_load", 0, 200, "N/mm", note="force over width from which all of it carries")],
+           looks_like="all stresses too high at small loads, and right from some load on",
+           why="crowned teeth touch in the middle of their width; the contact grows with the load",
+           source="Hertz, point contact of crowned flanks that spreads over the face; width as the cube root of the "
+                  "force"),
+    Effect("relief_error", on_inputs=relief_error,
+           unknowns=[Unknown("missing", -50, 50, "um", note="of the relief of the tip")],
+           looks_like="root stresses off by the same amount at any load, like an offset; contact stress as calculated",
+           why="the tips were ground back less than was meant, or more: the load meets the tooth higher, or lower",
+           source=STIFFNESS),
+    Effect("centre_distance_growth", on_inputs=centre_distance_growth,
+           unknowns=[Unknown("expansion", -40, 40, "um/(m*K)",
+                             note="linear, of housing and carrier less that of the gears; aluminium less steel 12")],
+           looks_like="the backlash grows with the temperature of the oil, back and forth, and never with the hours",
+           why="the parts that hold the gears apart expand more than the gears, or get warmer",
+           source="linear expansion; backlash of an involute pair on its working centre distance, ISO 21771"),
 ]  # fmt: skip
 OIL: list[Effect[Gearing, Strength]] = [
-    Effect(
-        "speed_dependent_loss",
-        on_results=speed_dependent_loss,
-        unknowns=[
-            Unknown("constant", 0, 50, "N*m", note="holding back the sun at any speed: seals, preload"),
-            Unknown("viscous", 0, 50, "N*m", note="holding back the sun at 100 mm²/s and 1000 r/min; as the power 2/3"),
-        ],
-        looks_like="efficiency falls towards small torques, and the more so the faster and the colder",
-        why="seals, preloaded bearings and oil hold back an idle reducer too; catalogues print less than the formula",
-        source=PALMGREN,
-    ),
-    Effect(
-        "flash_temperature",
-        on_results=flash_temperature,
-        unknowns=[Unknown("friction", 0, 0.5, "", note="mean coefficient of the flanks; 0.03 to 0.1 in oil")],
-        looks_like="flanks warmer than the oil, with the load to the power 3/4 and the root of the speed",
-        why="flanks slide on one another at the ends of the path of contact, and friction heats them",
-        source=BLOK,
-    ),
-]
+    Effect("speed_dependent_loss", on_results=speed_dependent_loss,
+           unknowns=[Unknown("constant", 0, 50, "N*m", note="holding back the sun at any speed: seals, preload"),
+                     Unknown("viscous", 0, 50, "N*m",
+                             note="holding back the sun at 100 mm²/s and 1000 r/min; as the power 2/3")],
+           looks_like="efficiency falls towards small torques, and the more so the faster and the colder",
+           why="seals, preloaded bearings and oil hold back an idle reducer too; catalogues print less than the "
+               "formula",
+           source=PALMGREN),
+    Effect("flash_temperature", on_results=flash_temperature,
+           unknowns=[Unknown("friction", 0, 0.5, "", note="mean coefficient of the flanks; 0.03 to 0.1 in oil")],
+           looks_like="flanks warmer than the oil, with the load to the power 3/4 and the root of the speed",
+           why="flanks slide on one another at the ends of the path of contact, and friction heats them",
+           source=BLOK),
+]  # fmt: skip
 ROTATION: list[Effect[Gearing, Strength]] = [
-    Effect(
-        "sun_runout",
-        on_results=sun_runout,
-        needs=[INPUT_ANGLE],
-        acts_at_reference=True,
-        unknowns=wave("cosine", "sine", "the angle of the sun against the carrier"),
-        looks_like="transmission error with one wave per turn of the sun against the carrier, a little slower than the "
-        "input shaft",
-        why="the teeth of the sun are off the axis on which it turns",
-        source=HARMONIC,
-    ),
-    Effect(
-        "planet_runout",
-        on_results=planet_runout,
-        needs=[INPUT_ANGLE],
-        acts_at_reference=True,
-        unknowns=wave("cosine", "sine", "the angle of the planet"),
-        looks_like="transmission error with one wave per turn of the planet, z1/z2 of those of the sun",
-        why="the teeth of a planet are off the axis of its crank",
-        source=HARMONIC,
-    ),
-    Effect(
-        "mesh_ripple",
-        on_results=mesh_ripple,
-        needs=[INPUT_ANGLE],
-        acts_at_reference=True,
-        unknowns=[
-            *wave("cosine", "sine", "the passing teeth"),
-            *wave("second_cosine", "second_sine", "the passing teeth, twice a tooth"),
-        ],
-        parts=[("cosine", "sine"), ("second_cosine", "second_sine")],
-        looks_like="a fast ripple of the transmission error: one wave, or two, for every tooth of the sun that passes",
-        why="one pair of teeth and two carry in turn, and flanks have errors of form",
-        source="kinematics of the mesh",
-    ),
-    Effect(
-        "output_eccentricity",
-        on_results=output_eccentricity,
-        needs=[INPUT_ANGLE],
-        acts_at_reference=True,
-        unknowns=[
-            *wave("cosine", "sine", "the angle of the output"),
-            *wave("tooth_cosine", "tooth_sine", "the passing teeth of the discs"),
-        ],
-        parts=[("cosine", "sine"), ("tooth_cosine", "tooth_sine")],
-        looks_like="a slow wave of the transmission error over one turn of the output, or one for every tooth of the "
-        "discs",
-        why="carrier or encoder of the output are off their axis; errors of the second stage come through to the first",
-        source=HARMONIC,
-    ),
-    Effect(
-        "ratio_drift",
-        on_results=ratio_drift,
-        needs=[INPUT_ANGLE],
-        unknowns=[Unknown("miscount", -1e-3, 1e-3, "", note="of the ratio, relative")],
-        looks_like="transmission error in proportion to the angle that was turned, and it never comes back",
-        why="the ratio in the evaluation is rounded, or an encoder loses counts: an error of counting alone",
-        source="kinematics: relative error of the ratio times angle and base radius of the sun",
-    ),
-]
+    Effect("sun_runout", on_results=sun_runout, needs=[INPUT_ANGLE], acts_at_reference=True,
+           unknowns=wave_unknowns("cosine", "sine", "the angle of the sun against the carrier"),
+           looks_like="transmission error with one wave per turn of the sun against the carrier, a little slower "
+                      "than the input shaft",
+           why="the teeth of the sun are off the axis on which it turns",
+           source=HARMONIC),
+    Effect("planet_runout", on_results=planet_runout, needs=[INPUT_ANGLE], acts_at_reference=True,
+           unknowns=wave_unknowns("cosine", "sine", "the angle of the planet"),
+           looks_like="transmission error with one wave per turn of the planet, z1/z2 of those of the sun",
+           why="the teeth of a planet are off the axis of its crank",
+           source=HARMONIC),
+    Effect("mesh_ripple", on_results=mesh_ripple, needs=[INPUT_ANGLE], acts_at_reference=True,
+           unknowns=[*wave_unknowns("cosine", "sine", "the passing teeth"),
+                     *wave_unknowns("second_cosine", "second_sine", "the passing teeth, twice a tooth")],
+           parts=[("cosine", "sine"), ("second_cosine", "second_sine")],
+           looks_like="a fast ripple of the transmission error: one wave, or two, for every tooth of the sun that "
+                      "passes",
+           why="one pair of teeth and two carry in turn, and flanks have errors of form",
+           source="kinematics of the mesh"),
+    Effect("output_eccentricity", on_results=output_eccentricity, needs=[INPUT_ANGLE], acts_at_reference=True,
+           unknowns=[*wave_unknowns("cosine", "sine", "the angle of the output"),
+                     *wave_unknowns("tooth_cosine", "tooth_sine", "the passing teeth of the discs")],
+           parts=[("cosine", "sine"), ("tooth_cosine", "tooth_sine")],
+           looks_like="a slow wave of the transmission error over one turn of the output, or one for every tooth of "
+                      "the discs",
+           why="carrier or encoder of the output are off their axis; errors of the second stage come through to the "
+               "first",
+           source=HARMONIC),
+    Effect("ratio_drift", on_results=ratio_drift, needs=[INPUT_ANGLE],
+           unknowns=[Unknown("miscount", -1e-3, 1e-3, "", note="of the ratio, relative")],
+           looks_like="transmission error in proportion to the angle that was turned, and it never comes back",
+           why="the ratio in the evaluation is rounded, or an encoder loses counts: an error of counting alone",
+           source="kinematics: relative error of the ratio times angle and base radius of the sun"),
+]  # fmt: skip
 TORQUE: list[Effect[Gearing, Strength]] = [
-    Effect(
-        "wind_up",
-        on_results=wind_up,
-        unknowns=[Unknown("compliance", 0, 100, "um/(N*m)", note="at the base circle of the sun, by its torque")],
-        looks_like="transmission error in proportion to the torque, with its sign",
-        why="the shaft between the encoder and the sun twists",
-        source="Hooke's law",
-    ),
-    Effect(
-        "lost_motion",
-        on_results=lost_motion,
-        unknowns=[
-            Unknown("play", 0, 1000, "um", note="along the line of action, from flank to flank"),
-            Unknown("torque_scale", 1, 500, "N*m", note="at the output; at it 76 % of the play is taken up"),
-        ],
-        looks_like="transmission error jumps where the torque changes its sign, and stays; so much more backlash",
-        why="teeth, splines and bearings have play, which the torque takes up to one side or the other",
-        source="lost motion of catalogues; hyperbolic tangent for the rounded jump",
-    ),
-    Effect(
-        "wear_drift",
-        on_results=wear_drift,
-        needs=[TIME],
-        unknowns=[Unknown("rate", 0, 50, "nm/h", note="that each loaded flank loses")],
-        looks_like="transmission error drifts with the hours, to the side of the torque; the backlash grows twice as "
-        "fast",
-        why="flanks wear, or peel by micropitting",
-        source=ARCHARD,
-    ),
-    Effect(
-        "mesh_stiffening",
-        on_results=mesh_stiffening,
-        unknowns=[Unknown("share", 0, 10, "", note="of the calculated deflection of the teeth")],
-        looks_like="transmission error grows with the torque, with its sign, faster about zero than farther out",
-        why="teeth give way, and the more so while they hardly touch",
-        source=STIFFNESS,
-    ),
-]
+    Effect("wind_up", on_results=wind_up,
+           unknowns=[Unknown("compliance", 0, 100, "um/(N*m)", note="at the base circle of the sun, by its torque")],
+           looks_like="transmission error in proportion to the torque, with its sign",
+           why="the shaft between the encoder and the sun twists",
+           source="Hooke's law"),
+    Effect("lost_motion", on_results=lost_motion,
+           unknowns=[Unknown("play", 0, 1000, "um", note="along the line of action, from flank to flank"),
+                     Unknown("torque_scale", 1, 500, "N*m",
+                             note="at the output; at it 76 % of the play is taken up")],
+           looks_like="transmission error jumps where the torque changes its sign, and stays; so much more backlash",
+           why="teeth, splines and bearings have play, which the torque takes up to one side or the other",
+           source="lost motion of catalogues; hyperbolic tangent for the rounded jump"),
+    Effect("wear_drift", on_results=wear_drift, needs=[TIME],
+           unknowns=[Unknown("rate", 0, 50, "nm/h", note="that each loaded flank loses")],
+           looks_like="transmission error drifts with the hours, to the side of the torque; the backlash grows twice "
+                      "as fast",
+           why="flanks wear, or peel by micropitting",
+           source=ARCHARD),
+    Effect("mesh_stiffening", on_results=mesh_stiffening,
+           unknowns=[Unknown("share", 0, 10, "", note="of the calculated deflection of the teeth")],
+           looks_like="transmission error grows with the torque, with its sign, faster about zero than farther out",
+           why="teeth give way, and the more so while they hardly touch",
+           source=STIFFNESS),
+]  # fmt: skip
 EFFECTS: list[Effect[Gearing, Strength]] = [*LOAD, *OIL, *ROTATION, *TORQUE]
-
-__all__ = ["EFFECTS"]

@@ -1,30 +1,159 @@
-"""The search for tooth numbers: every sun, planet and pin number that meets the five conditions of the paper.
+"""The duty of the drive, and the search for tooth numbers that meet it.
 
-The conditions: one tooth fewer on the disc than pins (in the ratio itself), an even number of pins so that two discs
-half a turn apart share one ring of them, ratio within its tolerance, sun of at least ``fewest_sun_teeth`` and planet of
-at least ``least_tooth_ratio`` times as many, centre distance within the window that the output torque admits.
+What the drive must do; which groups are better; every sun, planet and pin number that meets the five conditions of the
+paper; and the study that shows them.
 """
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rv_gearing.duty import (
-    centre_distance_of,
-    centre_distance_window,
-    efficiency_of,
-    output_torque,
-    pin_circle_window,
-    ratio_of,
-    torque_of,
-)
-from rv_gearing.preference import preference_of
 from rv_gearing.quantities import Gearing
-from truing import Float, column, either, feasible
+from truing import Bench, Block, Check, Float, Table, TruingError, column, either, feasible, found, results, rows
+
+# What the drive must do: ratio, efficiency, torque, and the sizes of pin circle and centre distance they ask for
+#
+# Equations 1 to 8 of the paper. Everything takes numbers or arrays that broadcast, SI, and returns the same. Torques of
+# the search are those at the output.
+
+POWER_TO_TORQUE = 9550.0 / 60000.0  # N m of a watt at one turn per second, as rounded by the paper; 1/(2 pi) to 7e-5
+
+
+def torque_of(power: Float, speed: Float) -> Float:
+    """Return the torque, N m, of a power (W) at a speed (turns per second), with the paper's 9550."""
+    return POWER_TO_TORQUE * power / speed
+
+
+def ratio_of(sun: Float, planet: Float, pins: Float) -> Float:
+    """Return input turns over output turns, equation 1: output by the carrier, one tooth fewer on the disc than pins.
+
+    The product of planet and pins comes first, so that a ratio that is a whole number is one exactly.
+    """
+    return 1.0 + planet * pins / sun
+
+
+def mesh_efficiency(stage: Gearing, tooth_ratio: Float, pins: Float) -> Float:
+    """Return the efficiency of both meshes, eta_16 of equation 8, for planet teeth over sun teeth and a pin number.
+
+    It is the ratio with a lossy mesh over the ratio without, i~/i; with both mesh efficiencies at 1 it is 1.
+    """
+    k = pins / (pins - 1.0)
+    sharing = tooth_ratio * k
+    lossy = k - stage.cycloid_efficiency
+    return (k - 1.0) * (lossy + sharing * stage.involute_efficiency) / (lossy * (k - 1.0 + sharing))
+
+
+def efficiency_of(stage: Gearing, sun: Float, planet: Float, pins: Float) -> Float:
+    """Return the efficiency from input to output, equations 6 and 7: both meshes and three bearings."""
+    return mesh_efficiency(stage, planet / sun, pins) * stage.bearing_efficiency**3
+
+
+def output_torque(stage: Gearing, efficiency: Float) -> Float:
+    """Return the torque at the output, N m, that the power gives at the output speed."""
+    return torque_of(stage.power, stage.output_speed) * efficiency
+
+
+def pin_circle_factors(stage: Gearing) -> tuple[Float, Float]:
+    """Return the least and the largest factor of the pin circle in force: one and the same for one pin circle."""
+    high = stage.pin_circle_low if stage.window == "one_pin_circle" else stage.pin_circle_high
+    return stage.pin_circle_low, high
+
+
+def centre_distance_of(stage: Gearing, sun: Float, planet: Float) -> Float:
+    """Return the centre distance of the reference circles, m; profile shifts come on top of it."""
+    return 0.5 * stage.module * (sun + planet) / np.cos(stage.helix_angle)
+
+
+def centre_distance_window(stage: Gearing, torque: Float) -> tuple[Float, Float]:
+    """Return the least and the largest centre distance, m, that pin circles for this output torque admit."""
+    low, high = pin_circle_factors(stage)
+    size = np.cbrt(torque)
+    return stage.centre_share_low * low * size, stage.centre_share_high * high * size
+
+
+def pin_circle_window(stage: Gearing, torque: Float, centre_distance: Float) -> tuple[Float, Float]:
+    """Return the least and the largest radius of the pin circle, m, for this torque and this centre distance.
+
+    The first exceeds the second where there is none.
+    """
+    low, high = pin_circle_factors(stage)
+    size = np.cbrt(torque)
+    return (
+        np.maximum(centre_distance / stage.centre_share_high, low * size),
+        np.minimum(centre_distance / stage.centre_share_low, high * size),
+    )
+
+
+# Which groups are better: which teeth meet, how many kinds of planet a stage needs, and whether its planets share
+#
+# The paper calls some of its groups better "for accuracy of transmission and distribution of load", and gives no rule.
+# Read here: hunting teeth spread every error over every tooth, and planets that mesh in phase carry alike at any
+# moment. Derived on the theory page. A value is an array (groups,), numbers of teeth are whole.
 
 Values = NDArray[np.float64]
+
+HUNTING_IN_PHASE, HUNTING, IN_PHASE, NEITHER = 1.0, 2.0, 3.0, 4.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Preference:
+    """Common factors of both meshes, kinds of planet, phases in which they mesh, and the preference: 1 is best."""
+
+    common_first: "Values"
+    common_second: "Values"
+    planet_kinds: "Values"
+    mesh_phases: "Values"
+    preference: "Values"
+
+
+def preference_of(stage: Gearing, sun: "Values", planet: "Values", pins: "Values") -> Preference:
+    """Return what speaks for each group; the preference is NaN where neighbouring planets would touch."""
+    planets = stage.planets
+    first, second = np.gcd(_whole(sun), _whole(planet)), np.gcd(_whole(pins) - 1, _whole(pins))
+    kinds = planets // np.gcd(_whole(sun + planet), planets)
+    phases = planets // np.gcd(_whole(sun), planets)
+    found = np.where(
+        (first == 1) & (second == 1),
+        np.where(phases == 1, HUNTING_IN_PHASE, HUNTING),
+        np.where(phases == 1, IN_PHASE, NEITHER),
+    )
+    return Preference(
+        common_first=first.astype(float), common_second=second.astype(float), planet_kinds=kinds.astype(float),
+        mesh_phases=phases.astype(float), preference=np.where(_touching(stage, sun, planet), np.nan, found),
+    )  # fmt: skip
+
+
+def _whole(teeth: "Values") -> "NDArray[np.int64]":
+    return np.rint(teeth).astype(np.int64)
+
+
+def _touching(stage: Gearing, sun: "Values", planet: "Values") -> "NDArray[np.bool_]":
+    """Where the tip circles of two neighbouring planets of one plane meet, without regard to backlash."""
+    if stage.planets == 1:
+        return np.zeros(len(sun), dtype=bool)
+    apart = (sun + planet) / np.cos(stage.helix_angle) * np.sin(np.pi / stage.planets)  # in modules
+    tip = planet / np.cos(stage.helix_angle) + 2.0 * (stage.addendum + stage.planet.shift)
+    return np.asarray(apart <= tip)
+
+
+def reason_of(common: float, phases: float, kinds: float, preference: float) -> str:
+    """Say why a group has its preference."""
+    teeth = "hunting teeth" if common == 1 else f"a tooth meets only one in {common:.0f} of the other gear"
+    shares = "planets in phase" if phases == 1 else f"planets in {phases:.0f} phases"
+    alike = "and alike" if kinds == 1 else f"and of {kinds:.0f} kinds"
+    if np.isnan(preference):
+        return "neighbouring planets would touch"
+    return f"{'better: ' if preference == HUNTING_IN_PHASE else ''}{teeth}; {shares} {alike}"
+
+
+# The search for tooth numbers: every sun, planet and pin number that meets the five conditions of the paper
+#
+# The conditions: one tooth fewer on the disc than pins (in the ratio itself), an even number of pins so that two discs
+# half a turn apart share one ring of them, ratio within its tolerance, sun of at least ``fewest_sun_teeth`` and planet
+# of at least ``least_tooth_ratio`` times as many, centre distance within the window that the output torque admits.
 
 ROUNDING = 1e-12  # a limit that is met exactly is met
 MOST_TRIED = 4_000_000  # sets of tooth numbers in one search
@@ -174,8 +303,7 @@ def check_ranges(stage: Gearing) -> None:
         value = getattr(stage, name)
         feasible(value % 2 == 0, f"{name} = {value} is odd: two discs half a turn apart need an even number of pins")
     feasible(
-        stage.fewest_pins <= stage.most_pins,
-        f"fewest_pins = {stage.fewest_pins} exceeds most_pins = {stage.most_pins}",
+        stage.fewest_pins <= stage.most_pins, f"fewest_pins = {stage.fewest_pins} exceeds most_pins = {stage.most_pins}"
     )
     feasible(stage.pin_circle_low <= stage.pin_circle_high, "pin_circle_low exceeds pin_circle_high")
     feasible(stage.centre_share_low <= stage.centre_share_high, "centre_share_low exceeds centre_share_high")
@@ -216,3 +344,272 @@ def _picked(values: Float, place: "NDArray[np.intp]", shape: tuple[int, ...]) ->
     """The value at each place, NaN at -1; a number for a number."""
     picked = np.append(np.asarray(values, dtype=float), np.nan)[place].reshape(shape)
     return picked if shape else float(picked)
+
+
+# A study of our own: all groups of tooth numbers that meet the five conditions, sorted as wished, with strength
+
+Column = Literal[
+    "group", "sun", "planet", "pins", "ratio", "deviation", "torque", "centre_distance", "circle_low", "circle_high",
+    "common_first", "common_second", "planet_kinds", "mesh_phases", "preference", "root_stress_sun",
+    "root_stress_planet", "contact_stress_sun", "contact_stress_planet", "root_safety_sun", "root_safety_planet",
+    "contact_safety_sun", "contact_safety_planet",
+]  # fmt: skip
+STRENGTH: tuple[Column, ...] = (
+    "root_stress_sun", "root_stress_planet", "contact_stress_sun", "contact_stress_planet", "root_safety_sun",
+    "root_safety_planet", "contact_safety_sun", "contact_safety_planet",
+)  # fmt: skip
+SIZES: tuple[Column, ...] = (
+    "sun", "planet", "pins", "ratio", "deviation", "torque", "centre_distance", "circle_low", "circle_high",
+)  # fmt: skip
+MEETING: tuple[Column, ...] = ("common_first", "common_second", "planet_kinds", "mesh_phases", "preference")
+PERMITTED = (
+    "permitted_root_stress_sun", "permitted_root_stress_planet", "permitted_contact_stress_sun",
+    "permitted_contact_stress_planet",
+)  # fmt: skip
+PRINTED = {"deviation": ("%", 100.0), "torque": ("N*m", 1.0)} | dict.fromkeys(
+    ("centre_distance", "circle_low", "circle_high"), ("mm", 1e3)
+)
+EXACT = 1e-12
+SCATTER = 0.004  # of the efficiency of a bearing: four standard deviations of its tolerance
+CONDITIONS = "meets all five conditions of section 2 of the paper"
+
+
+@results
+class Listed:
+    """The groups as a table, in the order asked for."""
+
+    group_count: Float = found("", symbol="N", note="groups of tooth numbers", method=CONDITIONS)
+    exact_count: Float = found("", symbol="N_0", note="of them with just the wanted ratio", method="counted")
+    group_number: Float = rows("number of the group")
+    group_sun_teeth: Float = found("", symbol="Z_1", along="group_number", note="teeth of the sun")
+    group_planet_teeth: Float = found("", symbol="Z_2", along="group_number", note="teeth of the planet")
+    group_pins: Float = found("", symbol="Z_5", along="group_number", note="pins")
+    group_ratio: Float = found("", symbol="i", along="group_number", note="ratio", source="equation 1")
+    group_deviation: Float = found("%", symbol="Delta i", along="group_number", note="deviation of the ratio",
+                                   source="equation 2")  # fmt: skip
+    group_torque: Float = found("N*m", symbol="T", along="group_number", note="output torque", source="equation 5")
+    group_centre_distance: Float = found("mm", symbol="a_0", along="group_number", note="centre distance")
+    group_circle_low: Float = found("mm", symbol="R_p,min", along="group_number", note="least radius of the pin circle",
+                                    source="equations 3 and 4")  # fmt: skip
+    group_circle_high: Float = found("mm", symbol="R_p,max", along="group_number",
+                                     note="largest radius of the pin circle", source="equations 3 and 4")  # fmt: skip
+    group_common_first: Float = found("", symbol="g_1", along="group_number", note="largest common factor of the teeth "
+                                      "of sun and planet; 1: hunting teeth")  # fmt: skip
+    group_common_second: Float = found("", symbol="g_2", along="group_number",
+                                       note="largest common factor of the teeth of a disc and the pins")  # fmt: skip
+    group_planet_kinds: Float = found("", symbol="n_k", along="group_number", note="kinds of planet, by the angle "
+                                      "between crank and teeth, for equal spacing; 1: all alike")  # fmt: skip
+    group_mesh_phases: Float = found("", symbol="n_f", along="group_number", note="phases in which the planets mesh; "
+                                     "1: all carry alike at any moment")  # fmt: skip
+    group_preference: Float = found("", symbol="r", along="group_number", note="1: hunting teeth and planets in phase, "
+                                    "better; 2: hunting teeth; 3: planets in phase; 4: neither; none: planets touch",
+                                    )  # fmt: skip
+    group_root_stress_sun: Float = found("MPa", symbol="sigma_F1", along="group_number", note="root stress of the sun")
+    group_root_stress_planet: Float = found("MPa", symbol="sigma_F2", along="group_number",
+                                            note="root stress of the planet")  # fmt: skip
+    group_contact_stress_sun: Float = found("MPa", symbol="sigma_H1", along="group_number",
+                                            note="contact stress of the sun")  # fmt: skip
+    group_contact_stress_planet: Float = found("MPa", symbol="sigma_H2", along="group_number",
+                                               note="contact stress of the planet")  # fmt: skip
+    group_root_safety_sun: Float = found("", symbol="S_F1", along="group_number", note="safety of the sun, breakage")
+    group_root_safety_planet: Float = found("", symbol="S_F2", along="group_number",
+                                            note="safety of the planet, breakage")  # fmt: skip
+    group_contact_safety_sun: Float = found("", symbol="S_H1", along="group_number", note="safety of the sun, pitting")
+    group_contact_safety_planet: Float = found("", symbol="S_H2", along="group_number",
+                                               note="safety of the planet, pitting")  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Search:
+    """List all groups, sorted by one column; ``exact_only`` keeps those with just the wanted ratio."""
+
+    sort_by: Column = "group"
+    descending: bool = False
+    exact_only: bool = False
+    name: str = "search"
+    gives: Callable[[Any], Any] | None = None
+
+    def __post_init__(self) -> None:
+        if self.sort_by not in ("group", *SIZES, *MEETING, *STRENGTH):
+            raise TruingError(f"study '{self.name}': the groups have no column '{self.sort_by}'")
+
+    def run(self, bench: "Bench") -> "Found":
+        """Search with the duty of the inputs, and rate every group in one call."""
+        stage: Gearing = bench.inputs
+        groups = search(stage)
+        numbers = np.arange(1.0, len(groups) + 1.0)
+        exact = np.abs(groups.deviation) <= EXACT
+        kept = np.flatnonzero(exact) if self.exact_only else np.arange(len(groups))
+        shown = Found(
+            name=self.name,
+            inputs=stage,
+            count=len(groups),
+            exact=int(np.sum(exact)),
+            groups=groups.at(kept),
+            numbers=numbers[kept],
+            strength=_strength(bench, groups.at(kept)),
+            rated=_rated(stage, groups),
+            stable=_stable(stage, groups),
+            sort_by=self.sort_by,
+            descending=self.descending,
+        )
+        return shown.sorted()
+
+
+def _strength(bench: "Bench", groups: Groups) -> dict[str, "Values"]:
+    """Stresses and safeties of every group under the load of the inputs; NaN where a group cannot be rated."""
+    asked = (*STRENGTH, *PERMITTED)
+    known = [name for name in asked if name in bench.setup.model.own_result_fields]
+    columns = {"sun_teeth": groups.sun, "planet_teeth": groups.planet, "pin_teeth": groups.pins}
+    answers = bench.rows(columns, len(groups), *known) if len(groups) else {}
+    return {name: np.asarray(answers.get(name, np.full(len(groups), np.nan))) for name in asked}
+
+
+def _rated(stage: Gearing, groups: Groups) -> int | None:
+    """The number of the group that is rated, None where its teeth are stated and in none."""
+    teeth = chosen_teeth(stage)
+    same = (groups.sun == teeth.sun) & (groups.planet == teeth.planet) & (groups.pins == teeth.pins)
+    return int(np.argmax(same)) + 1 if np.any(same) else None
+
+
+def _stable(stage: Gearing, groups: Groups) -> bool:
+    """Whether the number of the rated group stays with that group while the efficiency scatters a little."""
+    if not np.isnan(stage.sun_teeth):
+        return True
+    own = [each[: stage.group] for each in (groups.sun, groups.planet, groups.pins)]
+    for factor in (1.0 - SCATTER, 1.0 + SCATTER):
+        other = search(replace(stage, bearing_efficiency=np.minimum(stage.bearing_efficiency * factor, 1.0)))
+        others = (other.sun, other.planet, other.pins)
+        if not all(np.array_equal(one, two[: stage.group]) for one, two in zip(own, others, strict=True)):
+            return False
+    return True
+
+
+@dataclass(frozen=True, kw_only=True)
+class Found:
+    """Groups with their numbers and strength, (groups,) in SI; how many there are in all; which is rated.
+
+    ``stable`` says that the rated number keeps its teeth while the efficiency of the bearings scatters.
+    """
+
+    name: str
+    inputs: Gearing
+    count: int
+    exact: int
+    groups: Groups
+    numbers: "Values"
+    strength: Mapping[str, "Values"]
+    rated: int | None
+    stable: bool
+    sort_by: Column
+    descending: bool
+
+    def column(self, name: Column) -> "Values":
+        """Return one column, SI."""
+        if name == "group":
+            return self.numbers
+        return self.strength[name] if name in self.strength else np.asarray(getattr(self.groups, name))
+
+    def sorted(self) -> "Found":
+        """Return the same in the order that was asked for; a deviation counts by its size, NaN comes last."""
+        key = self.column(self.sort_by)
+        key = np.abs(key) if self.sort_by == "deviation" else key
+        order = np.argsort(-key if self.descending else key, kind="stable")
+        return replace(
+            self,
+            groups=self.groups.at(order),
+            numbers=self.numbers[order],
+            strength={name: values[order] for name, values in self.strength.items()},
+        )
+
+    def as_json(self) -> Mapping[str, Any]:
+        """Return counts, the rated group and every column in its printed unit; null where there is no answer."""
+        columns = {}
+        for name in ("group", *SIZES, *MEETING, *STRENGTH):
+            unit, factor = printed_in(name)
+            values = [float(value) * factor if np.isfinite(value) else None for value in self.column(name)]
+            columns[name] = {"unit": unit, "values": values}
+        return {
+            "count": self.count,
+            "exact": self.exact,
+            "rated": self.rated,
+            "sort_by": self.sort_by,
+            "descending": self.descending,
+            "groups": columns,
+            "reasons": self.reasons(),
+        }
+
+    def reasons(self) -> list[str]:
+        """Say of every group why it has its preference."""
+        told = ("common_first", "mesh_phases", "planet_kinds", "preference")
+        asked = zip(*(getattr(self.groups, name) for name in told), strict=True)
+        return [reason_of(*map(float, values)) for values in asked]
+
+    def blocks(self) -> Sequence[Block]:
+        """Return nothing: the section on the search shows tables and figures where they are read."""
+        return ()
+
+    def checks(self) -> "Sequence[Check]":
+        """Return nothing: a list decides no limit."""
+        return ()
+
+    def warnings(self) -> Sequence[str]:
+        """Say that there is no group, or that none is the one that is rated."""
+        if not self.count:
+            return [f"study '{self.name}': no group of tooth numbers meets all conditions"]
+        if self.rated is None:
+            return [
+                f"study '{self.name}': the stated teeth are none of the {self.count} groups that meet all conditions"
+            ]
+        if not self.stable:
+            return [
+                f"study '{self.name}': a group lies so near the edge of the window that number {self.rated} is another "
+                "one with a slightly different efficiency; state sun_teeth, planet_teeth and pin_teeth instead"
+            ]
+        return ()
+
+
+def printed_in(name: str) -> tuple[str, float]:
+    """The unit a column is printed in, and the factor from SI to it."""
+    return ("MPa", 1e-6) if "stress" in name else PRINTED.get(name, ("", 1.0))
+
+
+def listed(found: Found) -> Listed:
+    """The table as results of the run."""
+    names: dict[str, Column] = {"group_sun_teeth": "sun", "group_planet_teeth": "planet"}
+    columns = {f"group_{name}": found.column(name) for name in (*SIZES[2:], *MEETING, *STRENGTH)}
+    return Listed(
+        group_count=float(found.count),
+        exact_count=float(found.exact),
+        group_number=found.numbers,
+        **{name: found.column(column) for name, column in names.items()},
+        **columns,
+    )
+
+
+# Ratios of a reducer of this size in its maker's catalogue, and teeth that give all of them at one centre distance
+#
+# The catalogue prints ratios and no teeth. With 40 pins and sun and planet of 75 teeth together all five come out.
+
+PINS = 40
+RATIOS = ((81.0, 25, 50), (111.0, 20, 55), (127.7, 18, 57), (161.0, 15, 60), (175.2, 14, 61))  # printed, sun, planet
+MODULE = 1.25e-3  # m, of the paper
+TORQUE = 1078.0  # N m, of the catalogue at 15 turns per minute
+
+
+def catalogue_table(stage: Gearing) -> Table:
+    """Return the ratios of the catalogue beside those of the teeth, and their centre distance with this module."""
+    rows = []
+    for printed, sun, planet in RATIOS:
+        ratio = float(ratio_of(sun, planet, PINS))
+        centre = 1e3 * float(centre_distance_of(stage, sun, planet))
+        rows.append((printed, sun, planet, PINS, ratio, round(100.0 * (ratio / printed - 1.0), 3), centre))
+    return Table(
+        "Ratios of the RV-110E in the catalogue of its maker",
+        ("catalogue", "sun", "planet", "pins", "ratio", "deviation", "centre distance"),
+        rows,
+        ("", "", "", "", "", "%", "mm"),
+        "Shaft rotation. The catalogue prints no teeth; these are inferred: of all sums of sun and planet up to 100, "
+        "75 alone gives all five ratios with 40 pins. Suns of 14 and 15 teeth need profile shift, which the rule of at "
+        "least 17 teeth does not know.",
+    )

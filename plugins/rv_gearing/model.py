@@ -2,15 +2,23 @@
 
 from pathlib import Path
 
-from rv_gearing.calculation import rv_gearing
-from rv_gearing.capacity import Capacity, Safeties, rating
 from rv_gearing.effects import EFFECTS
-from rv_gearing.findings import FINDINGS
-from rv_gearing.published import PUBLISHED
-from rv_gearing.search import Search, listed
-from rv_gearing.sections import SECTIONS
-from rv_gearing.tolerances import TOLERANCES
-from truing import Model, Reliability, Require, Sensitivity
+from rv_gearing.groups import Search, listed
+from rv_gearing.published import FINDINGS, PUBLISHED
+from rv_gearing.rating import Capacity, Safeties, rating, rv_gearing
+from rv_gearing.sheet import SECTIONS
+from truing import Model, Reliability, Require, Sensitivity, Tolerance, normal
+
+# How the parts of the first stage scatter
+
+TOLERANCES = [
+    Tolerance("face_width", normal(sd="0.033 mm"), why="±0.1 mm"),
+    Tolerance("shift", normal(sd="0.01"), on=["shift_sun", "shift_planet"], why="tooth thickness, in modules"),
+    Tolerance("bearing_efficiency", normal(sd="0.001"), why="of bearings of one kind"),
+]
+
+
+# The gearing as truing knows it: function, error sources, goals, studies and sheet
 
 LITERATURE = [
     "The paper: Han Linshan, Wei Guo, Li Tongtong (韓林山, 魏國, 李彤彤), Automatic gear calculation and strength "

@@ -36,9 +36,8 @@ class Gear:
     """What belongs to one gear alone: sun or planet."""
 
     shift: Float = given(0.0, "", symbol="x", note="profile shift, in modules", source=LOST, at_least=-1.5, at_most=2)
-    bore_ratio: Float = given(
-        0.0, "", symbol="q", note="bore over mean diameter, for its inertia", source=LOST, at_least=0, below=1
-    )
+    bore_ratio: Float = given(0.0, "", symbol="q", note="bore over mean diameter, for its inertia", source=LOST,
+                              at_least=0, below=1)  # fmt: skip
     contact_limit: Float = positive(1500.0, "MPa", "sigma_Hlim", "endurance limit for contact stress, ISO 6336-5")
     bending_limit: Float = positive(460.0, "MPa", "sigma_Flim", "nominal endurance limit for bending, ISO 6336-5")
     young_modulus: Float = positive(206.0, "GPa", "E", "modulus of steel")
@@ -63,10 +62,9 @@ class Gearing:
     power: Float = positive(2.26, "kW", "P", "input power", PAPER)
     output_speed: Float = positive(15.0, "r/min", "n", "speed of the output", PAPER)
     target_ratio: Float = given(111.0, "", symbol="i_p", note="wanted ratio", source=PAPER, above=1)
-    ratio_tolerance: Float = given(
-        0.01, "", symbol="Delta i_p", note="permitted relative deviation; the paper names 0.01 to 0.04", source=PAPER,
-        above=0, at_most=0.2,
-    )  # fmt: skip
+    ratio_tolerance: Float = given(0.01, "", symbol="Delta i_p",
+                                   note="permitted relative deviation; the paper names 0.01 to 0.04", source=PAPER,
+                                   above=0, at_most=0.2)  # fmt: skip
     module: Float = given(1.25, "mm", symbol="m_n", note="normal module", source=PAPER, above=0, below=100)
     fewest_pins: int = given(40, symbol="Z_5,min", note="fewest pins that are tried, even",
                              source="reading of the lost flow chart", at_least=4, at_most=1000)  # fmt: skip
@@ -74,9 +72,8 @@ class Gearing:
                            source="reading of the lost flow chart", at_least=4, at_most=1000)  # fmt: skip
     fewest_sun_teeth: int = given(17, symbol="Z_1,min", note="fewest teeth of the sun: no undercut without shift",
                                   source=PAPER, at_least=6, at_most=1000)  # fmt: skip
-    least_tooth_ratio: Float = given(
-        1.5, "", symbol="u_min", note="least teeth of the planet over those of the sun", source=PAPER, at_least=1
-    )
+    least_tooth_ratio: Float = given(1.5, "", symbol="u_min", note="least teeth of the planet over those of the sun",
+                                     source=PAPER, at_least=1)  # fmt: skip
     involute_efficiency: Float = share(0.992, "eta_H1", "mesh efficiency of sun and planet")
     cycloid_efficiency: Float = share(0.998, "eta_H6", "mesh efficiency of disc and pins")
     bearing_efficiency: Float = share(0.99, "eta_B", "of each of the three bearings: crank, its support, carrier")
@@ -95,21 +92,16 @@ class Gearing:
     pin_teeth: Float = given(None, "", symbol="Z_5", note="pins; without them those of the group, or fewest_pins",
                              at_least=4, at_most=1000, whole=True)  # fmt: skip
     # The load of the first stage
-    load_torque: Float = given(
-        None, "N*m", symbol="T_2", note="torque at the output, with the sign of its direction; without it that of the "
-        "power",
-    )  # fmt: skip
+    load_torque: Float = given(None, "N*m", symbol="T_2",
+                               note="torque at the output, with the sign of its direction; without it that of the "
+                                    "power")  # fmt: skip
     input_speed: Float = given(None, "rpm", symbol="n_in", note="speed of the sun; without it that of the output speed",
                                above=0)  # fmt: skip
     stated_sun_torque: Float = given(None, "N*m", symbol="T_1,st", note="torque of the sun, in place of all the above",
                                      at_least=0)  # fmt: skip
-    stated_mesh_speed: Float = given(
-        None,
-        "rpm",
-        symbol="n_rel,st",
-        note="speed of the sun relative to the carrier, in place of all the above",
-        above=0,
-    )
+    stated_mesh_speed: Float = given(None, "rpm", symbol="n_rel,st",
+                                     note="speed of the sun relative to the carrier, in place of all the above",
+                                     above=0)  # fmt: skip
     planets: int = given(2, symbol="n_p", note="planets that share the torque", source=LOST, at_least=1, at_most=12)
     application_factor: Float = positive(1.25, "", "K_A", "1 uniform, 1.25 light, 1.5 moderate, 1.75 heavy shocks")
     planet_load_factor: Float = given(
@@ -123,9 +115,8 @@ class Gearing:
     face_width: Float = given(12.0, "mm", symbol="b", note="common face width", source=LOST, above=0, below=LARGEST)
     addendum: Float = positive(1.0, "", "h_a*", "addendum of the rack, in modules")
     dedendum: Float = positive(1.25, "", "h_f*", "dedendum of the rack, in modules")
-    fillet: Float = given(
-        0.38, "", symbol="rho_f*", note="fillet radius of the rack", source=LOST, at_least=0, at_most=1
-    )
+    fillet: Float = given(0.38, "", symbol="rho_f*", note="fillet radius of the rack", source=LOST, at_least=0,
+                          at_most=1)  # fmt: skip
     accuracy_grade: int = given(6, symbol="Q", note="grade of ISO 1328-1:1995", source=LOST, at_least=1, at_most=12)
     flank_form: Literal["none", "crowned", "helix_corrected", "crowned_and_corrected", "end_relief"] = given(
         "crowned", note="how the flank is modified along its width"

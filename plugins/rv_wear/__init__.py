@@ -1,8 +1,7 @@
 """RV reducer: cycloid wear, backlash over the years, its reliability, and what better tolerances cost."""
 
-from rv_wear.answers import Wear
 from rv_wear.model import RV_WEAR
-from rv_wear.quantities import Reducer
+from rv_wear.quantities import Reducer, Wear
 from truing import Model, hookimpl
 
 

@@ -2,36 +2,20 @@
 
 from pathlib import Path
 
-from rv_wear.bill import Costs, cost
 from rv_wear.calculation import rv_wear
-from rv_wear.chances import chances, history, indices
+from rv_wear.costs import TOLERANCES, Costs, cost
+from rv_wear.discs import Modifications, Validity, trend
 from rv_wear.effects import EFFECTS
-from rv_wear.findings import FINDINGS
-from rv_wear.front import bought, ends, front, learnt
-from rv_wear.least_costs import LeastCosts
-from rv_wear.modifications import Modifications, trend
-from rv_wear.new_machines import NewMachines
-from rv_wear.published import PUBLISHED
-from rv_wear.sections import SECTIONS
-from rv_wear.tolerances import TOLERANCES
-from rv_wear.validity import Validity
-from truing import (
-    Allocation,
-    Minimise,
-    Model,
-    Optimise,
-    Reliability,
-    Require,
-    Sensitivity,
-    Surrogate,
-    Sweep,
-    Vary,
-)
+from rv_wear.machines import NewMachines, chances, history, indices
+from rv_wear.optimum import LeastCosts, bought, ends, front, learnt
+from rv_wear.published import FINDINGS, PUBLISHED
+from rv_wear.sheet import SECTIONS
+from truing import Allocation, Minimise, Model, Optimise, Reliability, Require, Sensitivity, Surrogate, Sweep, Vary
 
 LITERATURE = [
     "The paper: Liu Jiang, Xiao Zhengming, Zhang Longlong, Liu Weibiao (劉江, 肖正明, 張龍隆, 劉衛標), Transmission "
     "accuracy reliability analysis and parameter optimization of RV reducer considering cycloid gear wear, Chinese "
-    "Journal of Engineering Design 29(6), 2022, p. 739.",
+    "Journal of Engineering Design 29(6), 2022, p. 739."
 ]
 
 BOX = {

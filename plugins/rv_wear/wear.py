@@ -1,17 +1,485 @@
-"""Largest wear of the disc after its working time, and the forces of the unworn mesh."""
+"""Wear of the flank, step by step, for many meshes at once, and the largest wear after the working time."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
-from rv_wear import coefficient
-from rv_wear.courses import all_unworn
-from rv_wear.feasibility import holding, refuse
-from rv_wear.history import MOST_STEPS
-from rv_wear.mesh import distinct, mesh_of, some_of
+from rv_wear import geometry
+from rv_wear.forces import Loads, holding, refuse, shared, start_scale
+from rv_wear.geometry import (
+    Array,
+    Choices,
+    Film,
+    Mesh,
+    Teeth,
+    columns_of,
+    distinct,
+    longest_arm_angle,
+    mesh_of,
+    part_of,
+    relative_radius,
+    some_of,
+    teeth_of,
+    with_columns,
+)
 from rv_wear.quantities import Reducer
-from rv_wear.reading import Meshes, depth_at
 from truing import Float, either, feasible
+
+# The wear coefficient of lubricated steel rollers, and what stretches the time of wear; strictly SI
+#
+# Source: Janakiraman, Li and Kahraman, Journal of Tribology 136(3), 031602, 2014: k E' / 3.981e29 = L^1.219 G^-7.377
+# S_q^1.589 with L = W' / (E' R'), G = alpha E', S_q = R_q / R'. As load, oil and roughness stand in it as powers, oil,
+# roughness, speed and time only stretch the time of a history: depth = H(exposure).
+
+CONSTANT = 3.981e29
+LOAD, VISCOSITY, ROUGHNESS = 1.219, -7.377, 1.589
+
+
+def lubricant_part(modulus: Float, pressure_viscosity: Float, roughness: Float) -> Float:
+    """What oil and surfaces do to the coefficient: 3.981e29 / E' G^-7.377 R_q^1.589, in m^1.589/Pa."""
+    return CONSTANT / modulus * (pressure_viscosity * modulus) ** VISCOSITY * roughness**ROUGHNESS
+
+
+def contact_part(modulus: Float, line_load: Float, relative_radius: Float) -> Float:
+    """What force and radius do to the coefficient: L^1.219 R'^-1.589, in m^-1.589."""
+    return (line_load / (modulus * relative_radius)) ** LOAD * relative_radius**-ROUGHNESS
+
+
+def wear_coefficient(modulus: Float, line_load: Float, relative_radius: Float, oil: Float, roughness: Float) -> Float:
+    """Coefficient k, 1/Pa, for E' (Pa), W' (N/m), R' (m), pressure-viscosity coefficient (1/Pa) and R_q (m)."""
+    return lubricant_part(modulus, oil, roughness) * contact_part(modulus, line_load, relative_radius)
+
+
+def unworn_share(film_ratio: Float) -> Float:
+    """Share of the wear that a film leaves: 1 below Lambda 0.5, 0 above 3."""
+    return np.clip((3.0 - film_ratio) / 2.5, 0.0, 1.0)
+
+
+def film_number(mesh: Mesh, speed: Float, relative_radius: Float) -> Float:
+    """Film ratio Lambda but for its load: Lambda = number W^-0.13 with W = F / (B E' R').
+
+    Dowson and Higginson's least film 2.65 R' U^0.7 G^0.54 W^-0.13 over the roughness; *speed* is the mean speed of the
+    two surfaces against the contact, m/s.
+    """
+    film, modulus = mesh.film, mesh.equivalent_modulus
+    assert film is not None
+    drive = (film.viscosity * speed / (modulus * relative_radius)) ** 0.7
+    oil = (film.pressure_viscosity * modulus) ** 0.54
+    return film.factor * 2.65 * relative_radius * drive * oil / film.roughness
+
+
+# Wear of the flank, step by step: forces, wear, new profile, new forces; equations 13 to 16 for all meshes at once
+#
+# A history is told over the *exposure* x: number of meshings times everything that multiplies the wear coefficient at
+# every contact alike (oil, roughness, factors). A step ends where the fastest point has lost the threshold depth, so
+# its steps are the same whoever asks and however far; between two of them wear grows in proportion to the exposure,
+# which is exactly the paper's shortened last step. The largest wear is taken from the flank as it is within the step:
+# where another point overtakes within it, the history has a node at the crossing.
+
+MOST_STEPS = 4000
+SLIGHT = 1e-6  # N; a smaller force does not wear
+NEVER = 1e200  # exposure of a step in which nothing wears
+
+Rate = Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class State:
+    """The disc at the beginning of a step: exposure (m,), wear and its growth (pins, phases, m), how long it lasts.
+
+    ``teeth`` holds the pins that bear, and the arrays hold the same; the others have no wear yet. ``lasts`` is an
+    exposure (m,), ``grown`` and ``after`` what wears in the step and what is worn at its end.
+    """
+
+    teeth: Teeth
+    loads: Loads
+    exposure: Array
+    wear: Array
+    rate: Array
+    lasts: Array
+    grown: Array
+    after: Array
+
+
+@dataclass(frozen=True)
+class Histories:
+    """Nodes (n, m) of exposure and largest wear, and the phase angle of the deepest point up to each node."""
+
+    exposure: Array
+    depth: Array
+    angle: Array
+
+
+def growth(teeth: Teeth, unworn: Loads) -> Rate:
+    """Return the function that gives the growth of wear per exposure from the pin forces, equation 13."""
+    mesh = teeth.mesh
+    modulus = np.asarray(mesh.equivalent_modulus)
+    by_load = np.asarray(geometry.sliding_ratio(mesh, teeth.angle)) / mesh.width
+    if mesh.choices.wear_coefficient == "pitch_point":
+        factor = _at_pitch_point(teeth, unworn) * by_load
+        return lambda force: factor * force
+    by_load = by_load * contact_part(modulus, 1.0 / mesh.width, teeth.relative_radius)
+    bare = _power_law(by_load, 1.0 + LOAD)
+    if mesh.film is None:
+        return bare
+    turning = 2.0 * np.pi * mesh.film.speed
+    carried = geometry.rolling_speed(mesh, teeth.angle) - 0.5 * geometry.sliding_speed(mesh, teeth.angle)
+    number = film_number(mesh, np.abs(carried) * turning, teeth.relative_radius)
+    line = number * (mesh.width * modulus * teeth.relative_radius) ** 0.13
+
+    def with_film(force: Array) -> Array:
+        return bare(force) * unworn_share(line * np.maximum(force, SLIGHT) ** -0.13)
+
+    return with_film
+
+
+def _power_law(factor: Array, power: float) -> Rate:
+    """Factor times force to a power, 0 for a force of 0; its power would take three times as long as any other."""
+    slight = np.full_like(factor, SLIGHT)
+    least = (slight.reshape(-1)[:8] ** power)[0]
+
+    def rate_of(force: Array) -> Array:
+        rate = np.maximum(force, slight)
+        np.power(rate, power, out=rate)
+        rate -= least
+        rate *= factor
+        return rate
+
+    return rate_of
+
+
+def _at_pitch_point(teeth: Teeth, unworn: Loads) -> Array:
+    """What force and radius do to the coefficient at the longest arm, where the unworn force is largest; (m,)."""
+    mesh = teeth.mesh
+    radius = relative_radius(mesh, longest_arm_angle(mesh))
+    line_load = unworn.scale.max(axis=0) / mesh.width
+    return np.asarray(contact_part(mesh.equivalent_modulus, line_load, radius))
+
+
+def states(teeth: Teeth) -> Iterator[State]:
+    """The disc at the beginning of every step, without end."""
+    unworn = shared(teeth, teeth.slack, start_scale(teeth))
+    part, clear = around(teeth, unworn.force)
+    rate_of = growth(part, unworn)
+    wear, exposure, last = np.zeros_like(part.slack), np.zeros(teeth.count), unworn.scale
+    loads = Loads(unworn.scale, unworn.approach, unworn.taken, unworn.force[part.pins])
+    while True:
+        rate = rate_of(loads.force)
+        lasts = _lasts(teeth, rate)
+        grown = rate * lasts
+        after = wear + grown
+        yield State(part, loads, exposure, wear, rate, lasts, grown, after)
+        wear = after
+        exposure = exposure + lasts
+        guess, last = np.maximum(2.0 * loads.scale - last, 0.5 * loads.scale), loads.scale
+        loads = shared(part, _slack(part, wear), guess)
+        while np.any(clear - loads.taken <= loads.approach):
+            wider, clear = widened(teeth, part)
+            wear = _put(wear, part, wider)
+            part, rate_of = wider, growth(wider, unworn)
+            loads = shared(part, _slack(part, wear), guess)
+
+
+def _slack(teeth: Teeth, wear: Array) -> Array:
+    slack = wear * teeth.per_arm
+    slack += teeth.slack
+    return slack
+
+
+def _lasts(teeth: Teeth, rate: Array) -> Array:
+    fastest = rate.max(axis=(0, 1))
+    return np.where(fastest > 0.0, teeth.mesh.threshold / np.maximum(fastest, 1.0 / NEVER), NEVER)
+
+
+def around(teeth: Teeth, force: Array) -> tuple[Teeth, Array]:
+    """The pins that bear somewhere, and the least slack (phases, m) of the others, which stay as they are."""
+    bearing = np.flatnonzero((force > 0.0).any(axis=(1, 2)))
+    pins = slice(int(bearing[0]), int(bearing[-1]) + 1)
+    return part_of(teeth, pins), _least_outside(teeth, pins)
+
+
+def widened(teeth: Teeth, part: Teeth) -> tuple[Teeth, Array]:
+    """One pin more at either end, as far as there are any."""
+    pins = slice(max(part.pins.start - 1, 0), min(part.pins.stop + 1, len(teeth.angle)))
+    return part_of(teeth, pins), _least_outside(teeth, pins)
+
+
+def _least_outside(teeth: Teeth, pins: slice) -> Array:
+    outside = np.concatenate([teeth.slack[: pins.start], teeth.slack[pins.stop :]])
+    least: Array = outside.min(axis=0, initial=np.inf)
+    return least
+
+
+def _put(values: Array, part: Teeth, whole: Teeth) -> Array:
+    """Put what is known of a part of the pins among more of them; 0 elsewhere."""
+    wide = np.zeros_like(whole.slack)
+    start = part.first - whole.first
+    wide[start : start + len(values)] = values
+    return wide
+
+
+def histories(teeth: Teeth, reach: Array) -> Histories:
+    """Histories of all meshes to an exposure (m,) each, or to the largest number of steps."""
+    nodes: list[tuple[Array, Array, Array]] = []
+    deepest = np.zeros(0, dtype=np.intp)
+    for count, state in enumerate(states(teeth), 1):
+        if not nodes:
+            deepest = _flat(state.rate).argmax(axis=0) + state.teeth.first * teeth.angle.shape[1]
+            nodes.append((state.exposure, np.zeros(teeth.count), teeth.angle.reshape(-1)[deepest]))
+        deepest, added = _step(state, deepest, teeth.angle.reshape(-1))
+        nodes.extend(added)
+        if np.all(nodes[-1][0] >= reach) or count == MOST_STEPS:
+            break
+    exposure, depth, angle = (np.array(column) for column in zip(*nodes, strict=True))
+    return Histories(exposure, depth, angle)
+
+
+def _flat(values: Array) -> Array:
+    return values.reshape(-1, values.shape[-1])
+
+
+def _step(
+    state: State, leader: NDArray[np.intp], angle: Array
+) -> tuple[NDArray[np.intp], list[tuple[Array, Array, Array]]]:
+    """The deepest point after a step, and the nodes where it is overtaken (else half way) and at the end of the step.
+
+    Points are counted over all pins and positions.
+    """
+    before, grown, after = _flat(state.wear), _flat(state.grown), _flat(state.after)
+    meshes = np.arange(len(state.lasts))
+    offset = state.teeth.first * state.teeth.angle.shape[1]
+    old = leader - offset
+    start, lead, top = before[old, meshes], grown[old, meshes], after.max(axis=0)
+    part, new = np.full(len(meshes), 0.5), old
+    passed = np.flatnonzero(after[old, meshes] < top)
+    if len(passed):
+        new = old.copy()
+        new[passed] = after[:, passed].argmax(axis=0)
+        behind = start[passed] - before[new[passed], passed]
+        part[passed] = np.clip(behind / (grown[new[passed], passed] - lead[passed]), 0.0, 1.0)
+    middle = (state.exposure + part * state.lasts, start + part * lead, angle[leader])
+    return new + offset, [middle, (state.exposure + state.lasts, top, angle[new + offset])]
+
+
+def wear_at(teeth: Teeth, exposure: Array) -> Array:
+    """Wear of the whole flank (pins, phases, m) at an exposure (m,) each, with the shortened last step of the paper."""
+    found = np.zeros_like(teeth.slack)
+    for count, state in enumerate(states(teeth), 1):
+        left = exposure - state.exposure
+        within = (left >= 0.0) & ((left < state.lasts) | (count == MOST_STEPS))
+        if within.any():
+            here = np.where(within, state.wear + state.rate * left, 0.0)
+            found = np.where(within, _put(here, state.teeth, teeth), found)
+        if np.all(exposure < state.exposure + state.lasts) or count == MOST_STEPS:
+            break
+    return found
+
+
+# Forces and histories of many meshes, which each are calculated once; those of a few are remembered
+
+CHUNK = 256  # meshes at a time: their contacts stay in the cache of a core
+FEW = 8  # so many meshes are calculated and remembered one by one
+FEW_REMEMBERED = 64
+GROUPS_REMEMBERED = 8  # a fit asks for the same rows again and again
+FINENESS = 32  # a history reaches to the next power of two ^ (1 / 32), so that batches ask for the same one
+SHORTEST = 1e-9
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Unworn:
+    """The new mesh: forces (N), approach (m), pressure (Pa), contact part of the wear coefficient; one per mesh (m,).
+
+    ``first_step`` is the exposure until the first reconstruction, ``lowest_equidistant`` the bound of equation 17.
+    """
+
+    scale: Array
+    approach: Array
+    largest_force: Array
+    loaded_pins: Array
+    pressure: Array
+    contact_part: Array
+    lowest_equidistant: Array
+    first_step: Array
+
+
+@dataclass(frozen=True)
+class Key:
+    """Meshes as something to remember an answer by: their numbers as bytes, how many they are, and their choices."""
+
+    numbers: bytes
+    count: int
+    choices: Choices
+    has_film: bool
+
+
+def key_of(mesh: Mesh, places: NDArray[np.intp]) -> Key:
+    """Some of many meshes (m,)."""
+    table = np.stack([np.asarray(column)[places] for column in columns_of(mesh)])
+    return Key(table.tobytes(), len(places), mesh.choices, mesh.film is not None)
+
+
+def mesh_from(key: Key) -> Mesh:
+    """The meshes of a key."""
+    film = Film(0.0, 0.0, 0.0, 0.0, 0.0) if key.has_film else None
+    blank = Mesh(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, key.choices, film)
+    return with_columns(blank, list(np.frombuffer(key.numbers).reshape(-1, key.count)))
+
+
+def unworn(mesh: Mesh) -> Unworn:
+    """Solve the new meshes (m,) at every position of the disc."""
+    teeth = teeth_of(mesh)
+    loads = shared(teeth, teeth.slack, start_scale(teeth))
+    force = loads.force.reshape(-1, teeth.count)
+    at_pitch_point = geometry.relative_radius(teeth.mesh, geometry.longest_arm_angle(teeth.mesh))
+    scale = loads.scale.max(axis=0)
+    fastest = growth(teeth, loads)(loads.force).max(axis=(0, 1))
+    return Unworn(
+        scale=scale,
+        approach=loads.approach.max(axis=0),
+        largest_force=force.max(axis=0),
+        loaded_pins=(loads.force > 0.0).sum(axis=0).max(axis=0).astype(float),
+        pressure=np.asarray(geometry.mean_pressure(teeth.mesh, loads.force, teeth.relative_radius)).max(axis=(0, 1)),
+        contact_part=np.asarray(contact_part(teeth.mesh.equivalent_modulus, scale / teeth.mesh.width, at_pitch_point)),
+        lowest_equidistant=np.asarray(geometry.lowest_equidistant(teeth.mesh)),
+        first_step=np.where(fastest > 0.0, teeth.mesh.threshold / np.maximum(fastest, 1.0 / NEVER), NEVER),
+    )
+
+
+def history(key: Key, power: int) -> Histories:
+    """Histories of the meshes of a key, each over 2 ^ (power / FINENESS) times the exposure of its first step."""
+    teeth = teeth_of(mesh_from(key))
+    return histories(teeth, next(states(teeth)).lasts * 2.0 ** (power / FINENESS))
+
+
+unworn_of_one = lru_cache(maxsize=FEW_REMEMBERED)(lambda key: unworn(mesh_from(key)))
+unworn_of_group = lru_cache(maxsize=GROUPS_REMEMBERED)(lambda key: unworn(mesh_from(key)))
+history_of_one = lru_cache(maxsize=FEW_REMEMBERED)(history)
+history_of_group = lru_cache(maxsize=GROUPS_REMEMBERED)(history)
+
+
+def groups(order: NDArray[np.intp]) -> list[NDArray[np.intp]]:
+    """Part meshes into groups that are calculated at once; a few of them are alone each."""
+    size = CHUNK if len(order) > FEW else 1
+    return [order[start : start + size] for start in range(0, len(order), size)]
+
+
+def all_unworn(mesh: Mesh, count: int) -> Unworn:
+    """The new meshes, all of them."""
+    if count == 0:
+        return unworn_of_nothing()
+    solve = unworn_of_group if count > FEW else unworn_of_one
+    parts = [solve(key_of(mesh, places)) for places in groups(np.arange(count))]
+    names = Unworn.__dataclass_fields__
+    return Unworn(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+
+
+def unworn_of_nothing() -> Unworn:
+    """The answer where no mesh can be calculated."""
+    return Unworn(*(np.empty(0) for _ in Unworn.__dataclass_fields__))
+
+
+def all_histories(mesh: Mesh, reach: Array, first_step: Array) -> Iterator[tuple[NDArray[np.intp], Histories]]:
+    """Histories to an exposure (m,) each, in groups of about the same length: the places of their meshes, and they."""
+    steps = np.maximum(reach / first_step, SHORTEST)
+    follow = history_of_group if len(reach) > FEW else history_of_one
+    order = np.argsort(steps, kind="stable") if len(reach) > CHUNK else np.arange(len(reach))
+    for places in groups(order):
+        power = int(np.ceil(FINENESS * np.log2(steps[places].max()) + ROUNDING))
+        yield places, follow(key_of(mesh, places), power)
+
+
+# Reading wear off the histories: which exposure of which mesh a row of a batch has, and how deep it has worn
+
+FEW_ROWS = 4  # so many rows of a mesh are read together with those of the others
+
+
+@dataclass(frozen=True)
+class Meshes:
+    """The distinct meshes that can be calculated, and for every row its place among them (-1: none, None: all one)."""
+
+    mesh: Mesh
+    count: int
+    place: NDArray[np.intp] | None
+
+    def to_rows(self, values: Array) -> Float:
+        """Give every row the value of its mesh; NaN where it has none."""
+        if self.place is None:
+            return np.float64(values[0]) if self.count else np.float64(np.nan)
+        return np.append(values, np.nan)[self.place]
+
+
+def depth_at(meshes: Meshes, new: Unworn, exposure: Float) -> tuple[Float, Float]:
+    """Largest wear (m) and its phase angle at an exposure of every row; NaN where a row has no mesh or goes too far."""
+    rows = np.atleast_1d(np.asarray(exposure, dtype=float))
+    if meshes.place is not None:
+        return _of_many(meshes, meshes.place, new, np.broadcast_to(rows, meshes.place.shape))
+    depth = angle = np.full(rows.shape, np.nan)
+    for _, history in all_histories(meshes.mesh, _reach(rows, None, meshes.count), new.first_step):
+        depth, angle = _read(history, 0, rows)
+    return (depth, angle) if np.ndim(exposure) else (np.float64(depth[0]), np.float64(angle[0]))
+
+
+def _of_many(meshes: Meshes, place: NDArray[np.intp], new: Unworn, rows: Array) -> tuple[Array, Array]:
+    """Read every row from the history of its own mesh."""
+    depth, angle = np.full(rows.shape, np.nan), np.full(rows.shape, np.nan)
+    order = np.argsort(place, kind="stable")
+    ends = np.searchsorted(place[order], np.arange(meshes.count + 1))
+    for places, history in all_histories(meshes.mesh, _reach(rows, place, meshes.count), new.first_step):
+        parts = [order[ends[mesh] : ends[mesh + 1]] for mesh in places]
+        mine = np.concatenate(parts)
+        if len(mine) <= FEW_ROWS * len(places):
+            columns = np.repeat(np.arange(len(places)), [len(part) for part in parts])
+            depth[mine], angle[mine] = _read_each(history, columns, rows[mine])
+            continue
+        for column, part in enumerate(parts):
+            depth[part], angle[part] = _read(history, column, rows[part])
+    return depth, angle
+
+
+def _read_each(history: Histories, columns: NDArray[np.intp], exposure: Array) -> tuple[Array, Array]:
+    """Depth and angle at exposures (n,), each of its own mesh; the depth is NaN beyond the last node."""
+    last = len(history.exposure) - 1
+    nodes = history.exposure[:, columns]
+    passed = np.minimum((nodes <= exposure).sum(axis=0), last)
+    before = np.maximum(passed - 1, 0), columns
+    after = passed, columns
+    slope = (history.depth[after] - history.depth[before]) / (history.exposure[after] - history.exposure[before])
+    depth = slope * (exposure - history.exposure[before]) + history.depth[before]
+    at = np.minimum((nodes < exposure).sum(axis=0), last)
+    return np.where(exposure <= nodes[-1], depth, np.nan), history.angle[at, columns]
+
+
+def _reach(rows: Array, place: NDArray[np.intp] | None, count: int) -> Array:
+    """How far (m,) the histories are asked for; a row without a number asks for nothing."""
+    reach = np.zeros(count)
+    if place is None:
+        most = rows.max(initial=0.0)
+        reach[:] = most if np.isfinite(most) else rows.max(initial=0.0, where=np.isfinite(rows))
+    else:
+        asked = (place >= 0) & np.isfinite(rows)
+        np.maximum.at(reach, place[asked], rows[asked])
+    return reach
+
+
+def _read(history: Histories, column: int, exposure: Array) -> tuple[Array, Array]:
+    """Depth and angle at exposures (n,) of one mesh; the depth is NaN beyond the last node."""
+    nodes, depths, angles = (values[:, column] for values in (history.exposure, history.depth, history.angle))
+    if len(exposure) > len(nodes) and np.isfinite(exposure).all():  # most rows of a batch lie close together
+        first, last = np.searchsorted(nodes, [exposure.min(), exposure.max()])
+        kept = slice(max(first - 1, 0), last + 1)
+        nodes, depths, angles = nodes[kept], depths[kept], angles[kept]
+    depth = np.interp(exposure, nodes, depths, right=np.nan)
+    turns = np.flatnonzero(angles[1:] != angles[:-1])
+    if not len(turns):
+        return depth, np.full(exposure.shape, angles[-1])
+    return depth, np.append(angles[turns], angles[-1])[np.searchsorted(nodes[turns], exposure)]
+
+
+# Largest wear of the disc after its working time, and the forces of the unworn mesh
 
 TOO_FAR = (
     f"the wear needs more than {MOST_STEPS} reconstructions of the profile: check output_torque, pressure_viscosity, "
@@ -99,7 +567,7 @@ def meshes_of(reducer: Reducer) -> Meshes:
 def oil_part(reducer: Reducer) -> Float:
     """What oil, surfaces and the neutral factor do to the wear coefficient of every contact alike, m^1.589/Pa."""
     modulus = reducer.young_modulus / (1.0 - reducer.poisson_ratio**2)
-    part = coefficient.lubricant_part(modulus, reducer.pressure_viscosity, reducer.composite_roughness)
+    part = lubricant_part(modulus, reducer.pressure_viscosity, reducer.composite_roughness)
     return part * reducer.wear_rate_factor
 
 

@@ -14,8 +14,7 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from harmonic_fractal.generators import Array, Waves, brownian_profiles, weierstrass_surface
-from harmonic_fractal.generators_brownian import brownian_surface
+from harmonic_fractal.generators import Array, Waves, brownian_profiles, brownian_surface, weierstrass_surface
 
 SPACING = 0.4e-6
 X, Y = SPACING * np.arange(501.0), SPACING * np.arange(251.0)

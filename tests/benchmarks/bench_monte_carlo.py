@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from press_linkage.increments import SOURCES
+from press_linkage.errors import SOURCES
 from truing import Reliability, normal
 from truing.calculation import calculate
 from truing.executors import SerialExecutor, open_executor

@@ -8,18 +8,19 @@ alternately, and the peak of the memory used.
 import sys
 import time
 import tracemalloc
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from press_linkage.closure import demands
-from press_linkage.increments import KINDS, SOURCES
-from press_linkage.kinematics import Deviations, Geometry, solve
+from press_linkage.errors import ARM, KINDS, SOURCES, source
+from press_linkage.kinematics import demands, solve
+from press_linkage.quantities import Press, Side
 
 BATCH = 2**14
 SD = np.full((len(SOURCES), 1), 20e-6)
-GEOMETRY = Geometry()
+PRESS = Press()
 CRANK_ANGLE = 0.1
 
 
@@ -40,14 +41,11 @@ def draw(rng: np.random.Generator, store: np.ndarray) -> np.ndarray:
 def scatter(drawn: np.ndarray) -> tuple[float, float, bool]:
     """Sums of position and tilt over one batch, and whether every machine of it closes."""
     errors = drawn * SD
-    position = solve(
-        GEOMETRY,
-        CRANK_ANGLE,
-        side_1=Deviations(**dict(zip(KINDS, errors[:14], strict=True))),
-        side_2=Deviations(**dict(zip(KINDS, errors[14:28], strict=True))),
-        platform_arm=errors[28],
-    )
-    closes = all(np.all(demand.holds) for demand in demands(GEOMETRY, position))
+    off = dict(zip(SOURCES, errors, strict=True))
+    sides = [Side(**{f"{kind}_deviation": off[source(kind, side)] for kind in KINDS}) for side in (1, 2)]
+    press = replace(PRESS, side_1=sides[0], side_2=sides[1], platform_arm_deviation=off[ARM], crank_angle=CRANK_ANGLE)
+    position = solve(press)
+    closes = all(np.all(demand.holds) for demand in demands(press, position))
     return float(np.sum(position.slider_position)), float(np.sum(position.slider_tilt)), closes
 
 

@@ -13,13 +13,11 @@ from math import acos, cos, pi, sin, sqrt, tan
 
 import numpy as np
 
-from roller_screw_shift.best_shifts import READINGS, box_optimum, field_of, grid_optimum
-from roller_screw_shift.box import Plan
 from roller_screw_shift.calculation import roller_screw_shift
-from roller_screw_shift.courses import course_of
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
+from roller_screw_shift.objectives import course_of, weights_of
+from roller_screw_shift.optimum import READINGS, Plan, box_optimum, field_of, grid_optimum
 from roller_screw_shift.quantities import Pair
-from roller_screw_shift.weighing import weights_of
 
 SHIFTS = 100_000
 SINGLE = 200  # of them one by one; the time of each hardly varies

@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from rv_gearing.calculation import rv_gearing
 from rv_gearing.model import RV_GEARING
 from rv_gearing.quantities import Gearing
+from rv_gearing.rating import rv_gearing
 
 STAGES = 100_000
 ALONE = 200  # of them one by one; their time hardly varies

@@ -14,8 +14,8 @@ from dataclasses import replace
 
 import pytest
 
-from rv_wear.courses import history_of_group, history_of_one, unworn_of_group, unworn_of_one
 from rv_wear.model import BOX, RV_WEAR
+from rv_wear.wear import history_of_group, history_of_one, unworn_of_group, unworn_of_one
 from truing import Optimise, Surrogate
 from truing.calculation import calculate
 from truing.setup import Setup, default_setup

@@ -17,10 +17,9 @@ from math import acos, cos, log, pi, sin, sqrt
 import numpy as np
 import pytest
 
-from rv_wear.courses import history_of_group, history_of_one, unworn_of_group, unworn_of_one
 from rv_wear.model import RV_WEAR
 from rv_wear.quantities import Reducer
-from rv_wear.wear import worn
+from rv_wear.wear import history_of_group, history_of_one, unworn_of_group, unworn_of_one, worn
 from truing import Reliability
 from truing.calculation import calculate
 from truing.kernel import Kernel

@@ -22,8 +22,7 @@ from pytest_benchmark.fixture import BenchmarkFixture  # noqa: E402
 
 from harmonic_fractal.estimate import Estimation, estimate_of  # noqa: E402
 from harmonic_fractal.generators import brownian_profiles  # noqa: E402
-from harmonic_fractal.lags import fit_steps  # noqa: E402
-from harmonic_fractal.structure import structure_sums  # noqa: E402
+from harmonic_fractal.structure import fit_steps, structure_sums  # noqa: E402
 from harmonic_fractal.surface import Lines  # noqa: E402
 
 POINTS, LOOPED, HOLES = 1024, 8, 0.03

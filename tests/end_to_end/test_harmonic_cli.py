@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from harmonic_fractal.power_law import structure_function
+from harmonic_fractal.structure import structure_function
 from shared import Calc
 
 SURFACES = Path(__file__).parents[1] / "data" / "surfaces"

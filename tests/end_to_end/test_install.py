@@ -92,7 +92,7 @@ def test_the_wheel_names_its_commands_and_plugins(wheel: Path) -> None:
     for name in ("harmonic_fractal", "press_linkage", "roller_screw_shift", "rv_gearing", "rv_wear"):
         assert f"{name} = {name}" in text
     assert "gear_geometry" not in text  # no plugin: what they share
-    assert {"gear_geometry/__init__.py", "gear_geometry/involute.py"} <= set(archive.namelist())
+    assert {"gear_geometry/__init__.py", "gear_geometry/pairs.py"} <= set(archive.namelist())
     assert any(name.endswith("licenses/LICENSE") for name in archive.namelist())
 
 

@@ -6,48 +6,64 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from press_linkage import increments
-from press_linkage.increments import ARM, KINDS, POLAR_ANGLES
-from press_linkage.kinematics import Deviations, Geometry, Position, solve
+from press_linkage import errors, kinematics
+from press_linkage.errors import ARM, KINDS, POLAR_ANGLES
+from press_linkage.kinematics import Position
+from press_linkage.quantities import Press, Side
+from truing import Float
 
-PAPER = Geometry()
-OTHER = Geometry(
-    crank_radius=0.25,
-    rod_length=1.1,
-    platform_arm=0.45,
-    knee_drive_length=0.95,
-    upper_knee_length=1.5,
-    lower_knee_length=1.35,
-    slider_half_width=1.25,
-    crank_pivot_radius=0.8,
-    platform_half_width=0.35,
-    ground_pivot_radius=1.2,
-    ground_pivot_angle=0.3,
-)
+PAPER = Press()
+SIZES = {
+    "crank_radius": 0.25,
+    "rod_length": 1.1,
+    "platform_arm": 0.45,
+    "knee_drive_length": 0.95,
+    "upper_knee_length": 1.5,
+    "lower_knee_length": 1.35,
+    "slider_half_width": 1.25,
+    "crank_pivot_radius": 0.8,
+    "platform_half_width": 0.35,
+    "ground_pivot_radius": 1.2,
+    "ground_pivot_angle": 0.3,
+}
+OTHER = Press(**SIZES)
 MECHANISMS = pytest.mark.parametrize("geometry", [PAPER, OTHER], ids=["paper", "other"])
 AROUND = np.radians([-140.3, -90.0, -40.0, -10.0, 0.0, 10.0, 40.0, 90.0, 150.0])
 
 
-def scattered(size: float, seed: int, shape: tuple[int, ...] = ()) -> Deviations:
+def off_by(**kinds: Float) -> Side:
+    """One side that is off by these deviations, named without ``_deviation``."""
+    return Side(**{f"{kind}_deviation": value for kind, value in kinds.items()})
+
+
+def solve(
+    press: Press, angle: Float, *, side_1: Side | None = None, side_2: Side | None = None, platform_arm: Float = 0.0
+) -> Position:
+    """The exact position of a mechanism with these deviations."""
+    off = replace(press, side_1=side_1 or Side(), side_2=side_2 or Side(), platform_arm_deviation=platform_arm)
+    return kinematics.solve(off, angle)
+
+
+def scattered(size: float, seed: int, shape: tuple[int, ...] = ()) -> Side:
     """One side with every error present."""
     rng = np.random.default_rng(seed)
-    return Deviations(**{kind: size * rng.standard_normal(shape) for kind in KINDS})
+    return off_by(**{kind: size * rng.standard_normal(shape) for kind in KINDS})
 
 
-def moved(geometry: Geometry, angle: NDArray[np.float64], name: str, by: float) -> Position:
+def moved(geometry: Press, angle: NDArray[np.float64], name: str, by: float) -> Position:
     """The exact position with one of the 29 sources off by a given amount."""
     if name == ARM:
         return solve(geometry, angle, platform_arm=by)
     kind, side = name.rsplit("_deviation_", 1)
-    return solve(geometry, angle, **{f"side_{side}": Deviations(**{kind: by})})
+    return solve(geometry, angle, **{f"side_{side}": off_by(**{kind: by})})
 
 
-def sensitivities(geometry: Geometry, angle: float | NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+def sensitivities(geometry: Press, angle: float | NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
     """The paper's xi of side 1, as arrays."""
-    found = increments.side_sensitivities(solve(geometry, angle).side_1)
+    found = errors.side_sensitivities(solve(geometry, angle).side_1)
     return {kind: np.asarray(value) for kind, value in found.items()}
 
 
-def mirrored(off: Deviations) -> Deviations:
+def mirrored(off: Side) -> Side:
     """The same errors on the other side: polar angles of the frame change their sign."""
-    return replace(off, **{kind: -getattr(off, kind) for kind in POLAR_ANGLES})
+    return replace(off, **{f"{kind}_deviation": -getattr(off, f"{kind}_deviation") for kind in POLAR_ANGLES})

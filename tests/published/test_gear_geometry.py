@@ -14,14 +14,15 @@ from traced_gears import (
     swept_root,
 )
 
-from gear_geometry.involute import angle_of_involute, involute
 from gear_geometry.mesh_load import face_factor, shaken_by_error
 from gear_geometry.pairs import (
+    angle_of_involute,
     base_helix_angle,
     clear_of_base,
     external_contact_ratio,
     internal_contact_ratio,
     internal_sliding,
+    involute,
     shift_per_tooth,
     transverse_angle,
     working_angle,

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from gear_geometry.cut_rings import Cutter, cut_ring_arm, cut_ring_root
-from gear_geometry.roots import Arm, Root
+from gear_geometry.roots import Arm, Cutter, Root, cut_ring_arm, cut_ring_root
 
 ALPHA = np.radians(20.0)
 CASES = [

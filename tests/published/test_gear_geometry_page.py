@@ -5,9 +5,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gear_geometry.cut_rings import Cutter, cut_ring_arm, cut_ring_root
 from gear_geometry.pairs import external_contact_ratio, working_angle
-from gear_geometry.roots import Arm, Rack, Root, external_arm, external_root, form_factor, ring_arm, ring_root
+from gear_geometry.roots import (
+    Arm,
+    Cutter,
+    Rack,
+    Root,
+    cut_ring_arm,
+    cut_ring_root,
+    external_arm,
+    external_root,
+    form_factor,
+    ring_arm,
+    ring_root,
+)
 from gear_geometry.roots import stress_correction as correction
 
 PAGE = (Path(__file__).parents[2] / "docs" / "explanation" / "gear_geometry.md").read_text(encoding="utf-8")

@@ -15,13 +15,11 @@ from scipy.integrate import quad
 from scipy.linalg import solve_banded
 from scipy.optimize import brentq
 
-from harmonic_fractal.blunt import kept_share
 from harmonic_fractal.calculation import harmonic_fractal
-from harmonic_fractal.effects import EFFECTS
-from harmonic_fractal.effects_of_friction import held_share
-from harmonic_fractal.effects_of_mesh import oil_film
+from harmonic_fractal.effects import EFFECTS, held_share, oil_film
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.quantities import Drive
+from harmonic_fractal.structure import kept_share
 from truing import Effect, Kernel
 from truing.diagnosis.reading import read_records
 from truing.inputs_file import read_setup

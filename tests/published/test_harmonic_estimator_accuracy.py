@@ -10,14 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from harmonic_fractal.cleaning import spikes_of
-from harmonic_fractal.estimate import Estimation, estimate_of
-from harmonic_fractal.fitting import noise_fit, straight_fit
+from harmonic_fractal.estimate import Estimation, estimate_of, noise_fit, straight_fit
 from harmonic_fractal.generators import brownian_profiles
-from harmonic_fractal.lags import fit_steps
-from harmonic_fractal.power_law import constant, converted, log_roughness_of
-from harmonic_fractal.structure import mean_squares, structure_sums
-from harmonic_fractal.surface import Lines
+from harmonic_fractal.structure import constant, converted, fit_steps, log_roughness_of, mean_squares, structure_sums
+from harmonic_fractal.surface import Lines, spikes_of
 
 SEED = 20221210  # fixed before the first comparison
 SPACING, ROUGHNESS, DENSITY = 0.4e-6, 1e-9, 1.5

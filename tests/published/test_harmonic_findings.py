@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from harmonic_fractal.answers import Stiffness
 from harmonic_fractal.calculation import harmonic_fractal
-from harmonic_fractal.findings import FINDINGS
 from harmonic_fractal.model import HARMONIC_FRACTAL
-from harmonic_fractal.power_law import constant, converted
+from harmonic_fractal.published import FINDINGS
+from harmonic_fractal.quantities import Stiffness
+from harmonic_fractal.structure import constant, converted
 
 ROUGHER: dict[str, Any] = {"fractal_dimension": 2.5, "fractal_roughness": "1e-9 m", "reference_torque": "50 mN*m"}
 

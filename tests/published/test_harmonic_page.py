@@ -9,18 +9,16 @@ import numpy as np
 import pytest
 from scipy.special import gamma
 
-from harmonic_fractal.calculation import harmonic_fractal
-from harmonic_fractal.catalogue import TABLE, polyline_of
-from harmonic_fractal.cleaning import without_form, without_line
+from harmonic_fractal.calculation import TABLE, harmonic_fractal, polyline_of
 from harmonic_fractal.clearance import patch_rms
-from harmonic_fractal.fitting import noise_fit, straight_fit
+from harmonic_fractal.contact import Rough
+from harmonic_fractal.estimate import noise_fit, straight_fit
 from harmonic_fractal.flank import read_flank
 from harmonic_fractal.generators import Waves, brownian_profiles, profile_sum
-from harmonic_fractal.interface import Rough
 from harmonic_fractal.micro import domain_factor
 from harmonic_fractal.model import HARMONIC_FRACTAL
-from harmonic_fractal.power_law import log_roughness_of, structure_function
-from harmonic_fractal.structure import structure_sums
+from harmonic_fractal.structure import log_roughness_of, structure_function, structure_sums
+from harmonic_fractal.surface import without_form, without_line
 
 ROOT = Path(__file__).parents[2]
 SURFACES = ROOT / "tests" / "data" / "surfaces"

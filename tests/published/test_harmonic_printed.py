@@ -11,10 +11,8 @@ import numpy as np
 import pytest
 
 from harmonic_fractal import clearance
-from harmonic_fractal.calculation import harmonic_fractal
-from harmonic_fractal.catalogue import column_of, polyline_of
-from harmonic_fractal.contact import contact_of, pressed
-from harmonic_fractal.interface import Rough, interface_of
+from harmonic_fractal.calculation import column_of, harmonic_fractal, polyline_of
+from harmonic_fractal.contact import Rough, contact_of, interface_of, pressed
 from harmonic_fractal.mesh import line_stiffness, load_of_largest, mesh_of, normal_stiffness
 from harmonic_fractal.micro import domain_factor
 from harmonic_fractal.model import HARMONIC_FRACTAL

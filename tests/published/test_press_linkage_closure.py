@@ -4,21 +4,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from press_linkage_cases import AROUND, MECHANISMS, PAPER
+from press_linkage_cases import AROUND, MECHANISMS, PAPER, off_by, solve
 
-from press_linkage import closure, kinematics
-from press_linkage.kinematics import Deviations, Geometry, solve
+from press_linkage import kinematics
+from press_linkage.quantities import Press
 
 
-def broken(geometry: Geometry, angle: float = 0.0, **off: object) -> list[closure.Demand]:
+def broken(geometry: Press, angle: float = 0.0, **off: object) -> list[kinematics.Demand]:
     """The demands that do not hold."""
     position = solve(geometry, angle, **off)
-    return [demand for demand in closure.demands(geometry, position) if not np.all(demand.holds)]
+    return [demand for demand in kinematics.demands(geometry, position) if not np.all(demand.holds)]
 
 
 @MECHANISMS
-def test_nothing_is_wrong_over_the_whole_turn(geometry: Geometry) -> None:
-    assert [demand.name for demand in closure.cycle_demands(geometry) if not demand.holds] == []
+def test_nothing_is_wrong_over_the_whole_turn(geometry: Press) -> None:
+    assert [demand.name for demand in kinematics.cycle_demands(geometry) if not demand.holds] == []
 
 
 # What is wrong, where, what is said first
@@ -26,14 +26,14 @@ IMPOSSIBLE = [
     ({"crank_pivot_radius": 0.2}, 0.0, {}, "branch", "crank_pivot_radius > platform_half_width"),
     ({"crank_pivot_radius": 2.5}, 0.0, {}, "stretched", "rod_length"),
     ({"rod_length": 1.0}, -130.0, {}, "loop I", "loop I, side 1 does not close"),
-    ({}, -122.0, {"side_2": Deviations(rod_length=-0.3)}, "loop VI", "loop VI, side 2 does not close"),
+    ({}, -122.0, {"side_2": off_by(rod_length=-0.3)}, "loop VI", "loop VI, side 2 does not close"),
     ({"upper_knee_length": 0.5}, 0.0, {}, "loop II", "|l_m - l_g| < |M - B_5| < l_m + l_g"),
     ({"upper_knee_length": 3.5}, 0.0, {}, "loop II", "loop II, side 1 does not close"),
-    ({}, 0.0, {"side_2": Deviations(knee_drive_length=-0.7)}, "loop V", "loop V, side 2 does not close"),
+    ({}, 0.0, {"side_2": off_by(knee_drive_length=-0.7)}, "loop V", "loop V, side 2 does not close"),
     ({"lower_knee_length": 0.7}, 0.0, {}, "loop III", "loop III, side 1 does not close"),
-    ({}, 0.0, {"side_2": Deviations(lower_knee_length=-0.9)}, "loop IV", "|l - y_G| < l_h"),
-    ({}, 0.0, {"side_1": Deviations(crank_radius=-0.4)}, "sizes 1", "side 1"),
-    ({}, 0.0, {"side_2": Deviations(slider_half_width=-1.7)}, "sizes 2", "side 2"),
+    ({}, 0.0, {"side_2": off_by(lower_knee_length=-0.9)}, "loop IV", "|l - y_G| < l_h"),
+    ({}, 0.0, {"side_1": off_by(crank_radius=-0.4)}, "sizes 1", "side 1"),
+    ({}, 0.0, {"side_2": off_by(slider_half_width=-1.7)}, "sizes 2", "side 2"),
     ({}, 0.0, {"platform_arm": -0.7}, "platform arm", "platform arm"),
 ]
 
@@ -48,11 +48,11 @@ def test_impossible_mechanisms_are_named(
 
 
 def test_nan_does_not_pass() -> None:
-    names = {demand.name for demand in broken(PAPER, side_1=Deviations(rod_length=np.nan))}
+    names = {demand.name for demand in broken(PAPER, side_1=off_by(rod_length=np.nan))}
     assert {"sizes 1", "loop I", "loop II", "loop III"} <= names
 
 
-def singular(kind: str, short: float) -> tuple[Geometry, float]:
+def singular(kind: str, short: float) -> tuple[Press, float]:
     """A mechanism whose named link is longer by *short* than the position in which it stands in line."""
     nominal = solve(PAPER, 0.0)
     if kind == "lower_knee_length":
@@ -85,22 +85,26 @@ def test_smallest_sine_warns_before_a_singular_position(kind: str) -> None:
     position = solve(geometry, angle)
     angles = [position.side_1.rod.angle, position.side_1.lower.angle]
     angles.append(position.side_1.upper.angle - position.side_1.drive.angle)
-    assert closure.smallest_sine(position) == pytest.approx(np.min(np.abs(np.sin(angles))), abs=1e-9)
-    assert closure.smallest_sine(position) < closure.NEARLY_SINGULAR < closure.smallest_sine(solve(PAPER, AROUND)).min()
+    assert kinematics.smallest_sine(position) == pytest.approx(np.min(np.abs(np.sin(angles))), abs=1e-9)
+    assert (
+        kinematics.smallest_sine(position)
+        < kinematics.NEARLY_SINGULAR
+        < kinematics.smallest_sine(solve(PAPER, AROUND)).min()
+    )
 
 
 def test_full_rotation_is_a_demand_of_the_cycle_only() -> None:
     short = replace(PAPER, rod_length=1.25)
     assert broken(short) == []
-    assert not closure.rotation_demand(short).holds
+    assert not kinematics.rotation_demand(short).holds
     assert np.isnan(kinematics.stroke(short))
-    assert not next(iter(closure.cycle_demands(short))).holds
+    assert not next(iter(kinematics.cycle_demands(short))).holds
 
 
 def test_a_failed_row_keeps_its_neighbours() -> None:
-    off = Deviations(lower_knee_length=np.array([0.0, -1.0, 1e-4]))
+    off = off_by(lower_knee_length=np.array([0.0, -1.0, 1e-4]))
     position = solve(PAPER, 0.0, side_1=off)
     assert np.isfinite(position.slider_position).tolist() == [True, False, True]
-    holds = {demand.name: demand.holds for demand in closure.demands(PAPER, position)}
+    holds = {demand.name: demand.holds for demand in kinematics.demands(PAPER, position)}
     assert np.asarray(holds["loop III"]).tolist() == [True, False, True]
     assert np.all(holds["loop IV"])

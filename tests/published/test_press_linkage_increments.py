@@ -5,16 +5,16 @@ University). Where a number is not printed there, it was solved independently fr
 shown; everything else is an identity that no linkage of this kind can escape.
 """
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from math import erf, sqrt
 
 import numpy as np
 import pytest
-from press_linkage_cases import AROUND, MECHANISMS, PAPER, moved, scattered, sensitivities
+from press_linkage_cases import AROUND, MECHANISMS, PAPER, SIZES, moved, off_by, scattered, sensitivities, solve
 
-from press_linkage import increments, kinematics
-from press_linkage.increments import ARM, DRIVEN, KINDS, PASSIVE, POLAR_ANGLES, SOURCES, source
-from press_linkage.kinematics import Deviations, Geometry, solve
+from press_linkage import errors, kinematics
+from press_linkage.errors import ARM, DRIVEN, KINDS, PASSIVE, POLAR_ANGLES, SOURCES, source
+from press_linkage.quantities import Press
 
 
 def polar_errors(across: float, down: float, *, radius: float, angle: float) -> tuple[float, float]:
@@ -92,10 +92,10 @@ def test_sensitivity_at_bdc(kind: str, expected: float) -> None:
 
 @MECHANISMS
 @pytest.mark.parametrize("name", SOURCES)
-def test_derivatives_are_slopes_of_the_exact_kinematics(geometry: Geometry, name: str) -> None:
+def test_derivatives_are_slopes_of_the_exact_kinematics(geometry: Press, name: str) -> None:
     nominal = solve(geometry, AROUND)
-    closed = increments.derivatives(geometry, nominal)
-    solved = increments.loop_increments(geometry, nominal)
+    closed = errors.derivatives(geometry, nominal)
+    solved = errors.loop_increments(geometry, nominal)
     up, down = moved(geometry, AROUND, name, 1e-6), moved(geometry, AROUND, name, -1e-6)
     for result in ("position", "tilt"):
         exact = getattr(closed, result)[name] * np.ones_like(AROUND)
@@ -105,29 +105,29 @@ def test_derivatives_are_slopes_of_the_exact_kinematics(geometry: Geometry, name
 
 
 @MECHANISMS
-def test_closed_forms_hold_with_deviations_present(geometry: Geometry) -> None:
+def test_closed_forms_hold_with_deviations_present(geometry: Press) -> None:
     position = solve(
         geometry, 0.4, side_1=scattered(5e-3, 6, (40,)), side_2=scattered(5e-3, 7, (40,)), platform_arm=3e-3
     )
-    closed = increments.derivatives(geometry, position)
-    solved = increments.loop_increments(geometry, position)
+    closed = errors.derivatives(geometry, position)
+    solved = errors.loop_increments(geometry, position)
     for name in SOURCES:
         assert closed.position[name] == pytest.approx(solved.position[name], abs=1e-12)
         assert closed.tilt[name] == pytest.approx(solved.tilt[name], abs=1e-12)
 
 
 def test_driven_chain_tilts_only_a_press_that_is_already_uneven() -> None:
-    even = increments.derivatives(PAPER, solve(PAPER, AROUND)).tilt
+    even = errors.derivatives(PAPER, solve(PAPER, AROUND)).tilt
     assert all(np.all(even[source(kind, side)] == 0.0) for kind in DRIVEN for side in (1, 2))
-    uneven = increments.derivatives(PAPER, solve(PAPER, 0.5, side_1=Deviations(lower_knee_length=1e-3))).tilt
+    uneven = errors.derivatives(PAPER, solve(PAPER, 0.5, side_1=off_by(lower_knee_length=1e-3))).tilt
     assert 0.0 < abs(uneven["rod_length_deviation_1"]) < 1e-3
 
 
 @MECHANISMS
-def test_height_is_of_degree_one_in_the_lengths(geometry: Geometry) -> None:
+def test_height_is_of_degree_one_in_the_lengths(geometry: Press) -> None:
     """Euler: the sum of sensitivity times length is the height itself, at every crank angle."""
     xi = sensitivities(geometry, AROUND)
-    lengths = [field.name for field in fields(Geometry) if field.name != "ground_pivot_angle"]
+    lengths = [name for name in SIZES if name != "ground_pivot_angle"]
     total = sum(xi[kind] * getattr(geometry, kind) for kind in lengths)
     assert total == pytest.approx(np.asarray(solve(geometry, AROUND).slider_position), abs=1e-12)
     double = replace(geometry, **{kind: 2 * getattr(geometry, kind) for kind in lengths})
@@ -137,9 +137,9 @@ def test_height_is_of_degree_one_in_the_lengths(geometry: Geometry) -> None:
 
 
 @MECHANISMS
-def test_lowering_the_whole_frame_lowers_the_slider(geometry: Geometry) -> None:
+def test_lowering_the_whole_frame_lowers_the_slider(geometry: Press) -> None:
     """A rigid motion: crank pivots and ground joints of both sides down by the same amount, in polar errors."""
-    found = increments.derivatives(geometry, solve(geometry, AROUND))
+    found = errors.derivatives(geometry, solve(geometry, AROUND))
     position, tilt = np.zeros_like(AROUND), np.zeros_like(AROUND)
     for side in (1, 2):
         for place, radius, angle in [
@@ -155,7 +155,7 @@ def test_lowering_the_whole_frame_lowers_the_slider(geometry: Geometry) -> None:
 
 
 @MECHANISMS
-def test_frame_height_is_shared_by_upper_link_and_platform(geometry: Geometry) -> None:
+def test_frame_height_is_shared_by_upper_link_and_platform(geometry: Press) -> None:
     xi = sensitivities(geometry, AROUND)
     upper = solve(geometry, AROUND).side_1.upper
     assert xi["upper_knee_length"] * upper.sine + xi["platform_arm"] == pytest.approx(np.ones_like(AROUND), abs=1e-12)
@@ -163,8 +163,8 @@ def test_frame_height_is_shared_by_upper_link_and_platform(geometry: Geometry) -
 
 @MECHANISMS
 @pytest.mark.parametrize("kind", KINDS)
-def test_equal_errors_do_not_tilt_and_opposite_ones_do_not_lower(geometry: Geometry, kind: str) -> None:
-    found = increments.derivatives(geometry, solve(geometry, AROUND))
+def test_equal_errors_do_not_tilt_and_opposite_ones_do_not_lower(geometry: Press, kind: str) -> None:
+    found = errors.derivatives(geometry, solve(geometry, AROUND))
     sign = -1.0 if kind in POLAR_ANGLES else 1.0
     first, second = (found.position[source(kind, side)] for side in (1, 2))
     assert first == pytest.approx(sign * second, abs=1e-15)
@@ -174,7 +174,7 @@ def test_equal_errors_do_not_tilt_and_opposite_ones_do_not_lower(geometry: Geome
 
 @MECHANISMS
 @pytest.mark.parametrize("dead_centre", ["bottom", "top"])
-def test_dead_centres(geometry: Geometry, dead_centre: str) -> None:
+def test_dead_centres(geometry: Press, dead_centre: str) -> None:
     angle = 0.0 if dead_centre == "bottom" else kinematics.top_crank_angle(geometry)
     xi = sensitivities(geometry, angle)
     sign = 1.0 if dead_centre == "bottom" else -1.0
@@ -206,7 +206,7 @@ POSITION_SHARES = {
 @pytest.mark.parametrize(("kind", "share"), POSITION_SHARES.items())
 @pytest.mark.parametrize("side", [1, 2])
 def test_share_in_the_slider_position(kind: str, share: float, side: int) -> None:
-    shares = increments.salience(increments.derivatives(PAPER, solve(PAPER, 0.0)).position)
+    shares = errors.salience(errors.derivatives(PAPER, solve(PAPER, 0.0)).position)
     assert shares[source(kind, side)] == pytest.approx(share, abs=5.001e-5)
     assert shares[ARM] == pytest.approx(0.0178, abs=5.001e-5)
 
@@ -220,14 +220,14 @@ KEY = [
 
 @pytest.mark.parametrize(("result", "kinds", "printed", "ours"), KEY, ids=["position", "tilt"])
 def test_salience_of_the_key_sources(result: str, kinds: list[str], printed: float, ours: float) -> None:
-    derivative = getattr(increments.derivatives(PAPER, solve(PAPER, 0.0)), result)
-    shares = increments.salience(derivative)
+    derivative = getattr(errors.derivatives(PAPER, solve(PAPER, 0.0)), result)
+    shares = errors.salience(derivative)
     assert sum(shares.values()) == pytest.approx(1.0, abs=1e-14)
     key = sum(shares[source(kind, side)] for kind in kinds for side in (1, 2))
     assert key == pytest.approx(ours, abs=5.001e-5)
     assert key == pytest.approx(printed, rel=0.0012)
     assert set(sorted(shares, key=shares.get)[-2 * len(kinds) :]) == {source(k, s) for k in kinds for s in (1, 2)}
-    assert increments.salience({name: 7.0 * value for name, value in derivative.items()}) == pytest.approx(shares)
+    assert errors.salience({name: 7.0 * value for name, value in derivative.items()}) == pytest.approx(shares)
 
 
 # Starting tolerances of the paper's Table 3, total bands in mm (installation: plus and minus, so doubled), and the
@@ -251,7 +251,7 @@ VARIANCES = [
 
 @pytest.mark.parametrize(("kind", "band", "variance"), VARIANCES)
 def test_variance_at_the_start(kind: str, band: float, variance: float) -> None:
-    found = increments.derivatives(PAPER, solve(PAPER, 0.0)).position
+    found = errors.derivatives(PAPER, solve(PAPER, 0.0)).position
     ours = sum((1e3 * band / 6 * found[source(kind, side)]) ** 2 for side in (1, 2))
     assert ours == pytest.approx(variance, abs=0.0501)
 
@@ -285,7 +285,7 @@ RELIABILITIES = [
 def test_reliabilities(bands: tuple[float, ...], position: float, tilt: float) -> None:
     installed = ("slider_half_width", "ground_pivot_radius", "crank_pivot_radius", "platform_half_width")
     band = dict(zip(LINKS, bands, strict=True)) | dict.fromkeys(installed, 0.1)
-    found = increments.derivatives(PAPER, solve(PAPER, 0.0))
+    found = errors.derivatives(PAPER, solve(PAPER, 0.0))
     for derivative, limit, printed in [
         (found.position, 0.02e-3, position),
         (found.tilt, np.radians(0.001324), tilt),
@@ -299,9 +299,9 @@ def test_first_order_scatter_is_enough() -> None:
     """Exact kinematics of 10^5 machines: scatter within 1 % of the first order, no shift of the mean."""
     rng = np.random.default_rng(2024)
     sd = {kind: band * 1e-3 / 6 for kind, band, _ in VARIANCES} | {"crank_angle": 0.0}
-    sides = [Deviations(**{kind: sd[kind] * rng.standard_normal(100_000) for kind in KINDS}) for _ in (1, 2)]
+    sides = [off_by(**{kind: sd[kind] * rng.standard_normal(100_000) for kind in KINDS}) for _ in (1, 2)]
     position = solve(PAPER, 0.0, side_1=sides[0], side_2=sides[1])
-    found = increments.derivatives(PAPER, solve(PAPER, 0.0))
+    found = errors.derivatives(PAPER, solve(PAPER, 0.0))
     for exact, derivative in [(position.slider_position, found.position), (position.slider_tilt, found.tilt)]:
         first_order = sqrt(sum((sd[kind] * derivative[source(kind, side)]) ** 2 for kind in KINDS for side in (1, 2)))
         assert np.std(exact) == pytest.approx(first_order, rel=0.01)

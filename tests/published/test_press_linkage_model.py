@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from press_linkage_cases import OTHER
+from press_linkage_cases import OTHER, PAPER, SIZES, off_by, solve
 
 import press_linkage
-from press_linkage import increments, kinematics
+from press_linkage import errors
 from press_linkage.effects import LINK_TEMPERATURE, link_heating
-from press_linkage.mechanism import press_linkage as slider_of
+from press_linkage.errors import press_linkage as slider_of
 from press_linkage.model import PRESS_LINKAGE
 from press_linkage.quantities import Press
 from shared import ROUNDING
@@ -182,30 +182,30 @@ def test_tilt_limit_in_radians_would_always_be_kept() -> None:
 
 def test_all_29_sources_are_inputs_with_a_tolerance() -> None:
     scattering = [name for tolerance in PRESS_LINKAGE.tolerances.values() for name in tolerance.on]
-    assert sorted(scattering) == sorted(increments.SOURCES)
+    assert sorted(scattering) == sorted(errors.SOURCES)
     assert len(set(scattering)) == 29
-    assert set(increments.SOURCES) <= set(PRESS_LINKAGE.input_fields)
+    assert set(errors.SOURCES) <= set(PRESS_LINKAGE.input_fields)
 
 
 def test_every_deviation_reaches_the_exact_kinematics() -> None:
-    for name in increments.SOURCES:
+    for name in errors.SOURCES:
         moved = slider_of(PRESS_LINKAGE.inputs(**{name: 1e-4, "crank_angle": 0.5}))
-        if name == increments.ARM:
-            wanted = kinematics.solve(kinematics.Geometry(), 0.5, platform_arm=1e-4)
+        if name == errors.ARM:
+            wanted = solve(PAPER, 0.5, platform_arm=1e-4)
         else:
             kind, side = name.rsplit("_deviation_", 1)
-            off = {f"side_{side}": kinematics.Deviations(**{kind: 1e-4})}
-            wanted = kinematics.solve(kinematics.Geometry(), 0.5, **off)
+            off = {f"side_{side}": off_by(**{kind: 1e-4})}
+            wanted = solve(PAPER, 0.5, **off)
         assert moved.slider_position == wanted.slider_position, name
         assert moved.slider_tilt == wanted.slider_tilt, name
 
 
 def test_changed_mechanism_has_the_sensitivities_of_its_exact_kinematics() -> None:
-    names = {name: getattr(OTHER, name) for name in kinematics.Geometry.__dataclass_fields__}
+    names = {name: getattr(OTHER, name) for name in SIZES}
     found = ran(**names, crank_angle=0.3).outcomes["sensitivity"]
     assert max(found.agreement.values()) < 1e-8
     step = 1e-5
-    for name in increments.SOURCES:
+    for name in errors.SOURCES:
         ends = [slider_of(PRESS_LINKAGE.inputs(**names, crank_angle=0.3, **{name: by})) for by in (step, -step)]
         by_position = (ends[0].slider_position - ends[1].slider_position) / (2 * step)
         by_tilt = (ends[0].slider_tilt - ends[1].slider_tilt) / (2 * step)

@@ -5,17 +5,18 @@ University). Where a number is not printed there, it was solved independently fr
 shown; everything else is an identity that no linkage of this kind can escape.
 """
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from math import factorial
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from press_linkage_cases import AROUND, MECHANISMS, PAPER, mirrored, scattered
+from press_linkage_cases import AROUND, MECHANISMS, PAPER, SIZES, mirrored, off_by, scattered, solve
 
 from press_linkage import kinematics
-from press_linkage.increments import KINDS
-from press_linkage.kinematics import Deviations, Geometry, Half, Position, solve
+from press_linkage.errors import KINDS
+from press_linkage.kinematics import Half, Position
+from press_linkage.quantities import Press, Side
 
 
 def test_bottom_dead_centre() -> None:
@@ -35,7 +36,7 @@ def test_top_dead_centre_and_stroke() -> None:
 
 
 @MECHANISMS
-def test_stroke_is_what_a_full_turn_covers(geometry: Geometry) -> None:
+def test_stroke_is_what_a_full_turn_covers(geometry: Press) -> None:
     path = np.asarray(solve(geometry, np.linspace(-np.pi, np.pi, 200_001)).slider_position)
     assert kinematics.stroke(geometry) == pytest.approx(path.max() - path.min(), abs=1e-8)
 
@@ -51,11 +52,11 @@ def test_range_of_the_links_over_a_turn() -> None:
     assert [np.min(side.knee.y), np.max(side.knee.y)] == pytest.approx([0.139, 0.856], abs=5.001e-4)
 
 
-def loops(geometry: Geometry, position: Position, side: int, off: Deviations, arm: float) -> list[NDArray]:
+def loops(geometry: Press, position: Position, side: int, off: Side, arm: float) -> list[NDArray]:
     """What is left of the three loops of one side, in the frame, from angles and complex exponentials alone."""
     half: Half = position.side_1 if side == 1 else position.side_2
-    own = {field.name: getattr(geometry, field.name) for field in fields(Geometry)}
-    size = {kind: own[kind] + getattr(off, kind) for kind in own if hasattr(off, kind)}
+    own = {name: getattr(geometry, name) for name in SIZES}
+    size = {kind: own[kind] + getattr(off, f"{kind}_deviation") for kind in own if kind != "platform_arm"}
 
     def turn(angle: object) -> NDArray[np.complex128]:
         return np.exp(1j * np.asarray(angle))
@@ -63,10 +64,10 @@ def loops(geometry: Geometry, position: Position, side: int, off: Deviations, ar
     def in_frame(angle: object) -> object:
         return angle if side == 1 else np.pi - np.asarray(angle)
 
-    ground = size["ground_pivot_radius"] * turn(in_frame(own["ground_pivot_angle"]) + off.ground_pivot_angle)
-    pivot = size["crank_pivot_radius"] * turn(in_frame(0.0) + off.crank_pivot_angle)
-    platform = size["platform_half_width"] * turn(in_frame(0.0) + off.platform_joint_angle)
-    slider = size["slider_half_width"] * turn(in_frame(0.0) + off.slider_joint_angle)
+    ground = size["ground_pivot_radius"] * turn(in_frame(own["ground_pivot_angle"]) + off.ground_pivot_angle_deviation)
+    pivot = size["crank_pivot_radius"] * turn(in_frame(0.0) + off.crank_pivot_angle_deviation)
+    platform = size["platform_half_width"] * turn(in_frame(0.0) + off.platform_joint_angle_deviation)
+    slider = size["slider_half_width"] * turn(in_frame(0.0) + off.slider_joint_angle_deviation)
     crank = size["crank_radius"] * turn(in_frame(half.parts.crank.angle))
     rod = size["rod_length"] * turn(in_frame(half.rod.angle))
     drive = size["knee_drive_length"] * turn(in_frame(half.drive.angle))
@@ -83,7 +84,7 @@ def loops(geometry: Geometry, position: Position, side: int, off: Deviations, ar
 @MECHANISMS
 @pytest.mark.parametrize("side", [1, 2])
 @pytest.mark.parametrize("size", [0.0, 2e-3])
-def test_loops_close(geometry: Geometry, side: int, size: float) -> None:
+def test_loops_close(geometry: Press, side: int, size: float) -> None:
     angles = np.linspace(-np.pi, np.pi, 50, endpoint=False)
     one, two = scattered(size, 1), scattered(size, 2)
     position = solve(geometry, angles, side_1=one, side_2=two, platform_arm=size)
@@ -92,7 +93,7 @@ def test_loops_close(geometry: Geometry, side: int, size: float) -> None:
 
 
 @MECHANISMS
-def test_platform_takes_the_mean_height_and_slider_the_mean_face(geometry: Geometry) -> None:
+def test_platform_takes_the_mean_height_and_slider_the_mean_face(geometry: Press) -> None:
     one, two = scattered(2e-3, 3), scattered(2e-3, 4)
     both = solve(geometry, AROUND, side_1=one, side_2=two)
     alone = [solve(geometry, AROUND, side_1=one), solve(geometry, AROUND, side_2=two)]
@@ -105,8 +106,8 @@ def test_platform_takes_the_mean_height_and_slider_the_mean_face(geometry: Geome
 
 
 @MECHANISMS
-def test_crank_deviation_is_a_crank_angle(geometry: Geometry) -> None:
-    both = Deviations(crank_angle=0.01)
+def test_crank_deviation_is_a_crank_angle(geometry: Press) -> None:
+    both = off_by(crank_angle=0.01)
     assert solve(geometry, AROUND, side_1=both, side_2=both).slider_position == pytest.approx(
         solve(geometry, AROUND + 0.01).slider_position, abs=1e-14
     )
@@ -122,11 +123,11 @@ def test_signs_of_a_raised_joint(side: int) -> None:
     """A positive polar angle lowers a joint at y > 0 and raises it at y < 0; a lower slider joint raises the face."""
     by = 1e-4
     lower = -1.0 if side == 1 else 1.0
-    off = {f"side_{side}": Deviations(slider_joint_angle=by)}
+    off = {f"side_{side}": off_by(slider_joint_angle=by)}
     assert solve(PAPER, 0.0, **off).slider_position - solve(PAPER, 0.0).slider_position == pytest.approx(
         0.5 * lower * 1.6 * by, rel=1e-3
     )
-    off = {f"side_{side}": Deviations(ground_pivot_angle=by)}
+    off = {f"side_{side}": off_by(ground_pivot_angle=by)}
     assert solve(PAPER, 0.0, **off).slider_position - solve(PAPER, 0.0).slider_position == pytest.approx(
         -0.5 * lower * 1.255145 * by, rel=1e-3
     )
@@ -138,7 +139,7 @@ def test_height_at_bdc_to_eight_digits() -> None:
 
 @MECHANISMS
 @pytest.mark.parametrize("seed", [11, 12, 13])
-def test_mirror_image(geometry: Geometry, seed: int) -> None:
+def test_mirror_image(geometry: Press, seed: int) -> None:
     one, two = scattered(3e-3, seed), scattered(3e-3, seed + 50)
     there = solve(geometry, AROUND, side_1=one, side_2=two, platform_arm=1e-3)
     back = solve(geometry, AROUND, side_1=mirrored(two), side_2=mirrored(one), platform_arm=1e-3)
@@ -179,11 +180,13 @@ def test_larger_angles_leave_the_series(outlier: float) -> None:
 
 @MECHANISMS
 @pytest.mark.parametrize("size", [1e-4, 8e-3, 3e-2])
-def test_batch_equals_loop(geometry: Geometry, size: float) -> None:
+def test_batch_equals_loop(geometry: Press, size: float) -> None:
     one, two = scattered(size, 21, (25,)), scattered(size, 22, (25,))
     batch = solve(geometry, 0.3, side_1=one, side_2=two, platform_arm=size)
     for row in range(25):
-        first, second = (Deviations(**{kind: getattr(off, kind)[row] for kind in KINDS}) for off in (one, two))
+        first, second = (
+            off_by(**{kind: getattr(off, f"{kind}_deviation")[row] for kind in KINDS}) for off in (one, two)
+        )
         single = solve(geometry, 0.3, side_1=first, side_2=second, platform_arm=size)
         assert single.slider_position == pytest.approx(batch.slider_position[row], abs=1e-14)
         assert single.slider_tilt == pytest.approx(batch.slider_tilt[row], abs=1e-14)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from roller_screw_shift.box import Plan, complex_method
+from roller_screw_shift.optimum import Plan, complex_method
 from shared import ROUNDING
 from truing import TruingError
 

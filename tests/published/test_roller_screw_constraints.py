@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from roller_screw_shift.answers import Meshing
-from roller_screw_shift.constraints import Margins, margins_of, undercut_limit
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
-from roller_screw_shift.objectives import objectives_of
-from roller_screw_shift.quantities import Pair
+from roller_screw_shift.objectives import Margins, margins_of, objectives_of, undercut_limit
+from roller_screw_shift.quantities import Meshing, Pair
 from truing.errors import InfeasibleError
 from truing.evaluate import evaluate_rows
 from truing.setup import default_setup

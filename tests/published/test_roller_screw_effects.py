@@ -13,8 +13,7 @@ import numpy as np
 import pytest
 
 from roller_screw_shift.calculation import roller_screw_shift
-from roller_screw_shift.effects import EFFECTS
-from roller_screw_shift.effects_of_flanks import friction_torque, loss_factor, mean_friction, viscosity
+from roller_screw_shift.effects import EFFECTS, friction_torque, loss_factor, mean_friction, viscosity
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
 from roller_screw_shift.quantities import Pair
 from truing import Effect

@@ -11,14 +11,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from roller_screw_shift import drawn
-from roller_screw_shift.drawn_teeth import path_of
-from roller_screw_shift.drawn_weights import MARKS, SIDES, triangle
+from roller_screw_shift import sheet
+from roller_screw_shift.figures import MARKS, SIDES, path_of, ring_half, roller_half, toothing, triangle
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.model import MARGINS, ROLLER_SCREW_SHIFT
-from roller_screw_shift.profiles import ring_half, roller_half, toothing
+from roller_screw_shift.optimum import Chosen
 from roller_screw_shift.quantities import Pair
-from roller_screw_shift.shifts import Chosen
 from truing import Drawing
 from truing.calculation import Calculation, calculate
 from truing.report.figures import draw
@@ -158,7 +156,7 @@ def chosen_of(run: Calculation) -> Chosen:
 
 
 def test_objectives_over_the_shift(run: Calculation) -> None:
-    figure = figures(run, drawn.choice)["Objectives over the shift"]
+    figure = figures(run, sheet.choice)["Objectives over the shift"]
     names = ("shift_sum", "stress_difference", "sliding_difference")
     for panel, name, scale in zip(figure.axes, names, (1.0, 1e-6, 1.0), strict=True):
         curve = panel.get_lines()[-1]
@@ -170,7 +168,7 @@ def test_objectives_over_the_shift(run: Calculation) -> None:
 
 
 def test_limits_over_the_shift(run: Calculation) -> None:
-    bars, lines = figures(run, drawn.limits)["Limits over the shift"].axes
+    bars, lines = figures(run, sheet.limits)["Limits over the shift"].axes
     kept = {}
     for place, collection in enumerate(item for item in bars.collections if len(item.get_paths())):
         corners = np.concatenate([path.vertices[:, 0] for path in collection.get_paths()])
@@ -192,7 +190,7 @@ def test_limits_over_the_shift(run: Calculation) -> None:
 
 
 def test_what_the_weights_choose_on_the_front(run: Calculation) -> None:
-    figure = figures(run, drawn.weights)["The front, and what the weights choose"]
+    figure = figures(run, sheet.weights)["The front, and what the weights choose"]
     chosen = chosen_of(run)
     assert chosen.field is not None
     for panel, other in zip(figure.axes, (0, 2), strict=True):
@@ -225,7 +223,7 @@ def test_the_triangle_of_weights(run: Calculation) -> None:
 
 
 def test_marks_in_the_triangle_stand_at_their_shares(run: Calculation) -> None:
-    figure = figures(run, drawn.weights)["The shift by weights"]
+    figure = figures(run, sheet.weights)["The shift by weights"]
     panel = figure.axes[0]
     weights = (0.35, 0.01, 0.81)
     place = sum(share * corner for share, corner in zip(weights, SIDES, strict=True)) / sum(weights)
@@ -235,7 +233,7 @@ def test_marks_in_the_triangle_stand_at_their_shares(run: Calculation) -> None:
 
 
 def test_sliding_shows_the_ends_before_and_after(run: Calculation) -> None:
-    (panel,) = figures(run, drawn.sliding)["Sliding along the path of contact"].axes
+    (panel,) = figures(run, sheet.sliding)["Sliding along the path of contact"].axes
     for begin, shift in (("before", 0.0), ("as stated", 0.21), ("optimum", 0.25345)):
         meshing: Any = ROLLER_SCREW_SHIFT.function(pair_at(shift))
         ends = labelled(panel, begin)[1]
@@ -243,7 +241,7 @@ def test_sliding_shows_the_ends_before_and_after(run: Calculation) -> None:
 
 
 def test_the_pair_is_drawn_to_scale_before_and_after(run: Calculation) -> None:
-    figure = figures(run, drawn.signs)["Roller and ring"]
+    figure = figures(run, sheet.signs)["Roller and ring"]
     assert [panel.get_title(loc="left").split(":")[0] for panel in figure.axes] == [
         "before, no shift of the roller", "optimum",
     ]  # fmt: skip
@@ -257,7 +255,7 @@ def test_the_pair_is_drawn_to_scale_before_and_after(run: Calculation) -> None:
 
 
 def test_every_figure_becomes_a_picture(run: Calculation) -> None:
-    for section in (drawn.signs, drawn.sliding, drawn.limits, drawn.choice, drawn.weights):
+    for section in (sheet.signs, sheet.sliding, sheet.limits, sheet.choice, sheet.weights):
         for block in section(run.record):
             if isinstance(block, Drawing):
                 assert "<svg" in draw(block.draw, title=block.title, ident="figure")
@@ -265,8 +263,8 @@ def test_every_figure_becomes_a_picture(run: Calculation) -> None:
 
 def test_without_the_study_the_pair_is_drawn_as_stated() -> None:
     bare = calculate(replace(default_setup(ROLLER_SCREW_SHIFT), studies=()))
-    (panel,) = figures(bare, drawn.signs)["Roller and ring"].axes
+    (panel,) = figures(bare, sheet.signs)["Roller and ring"].axes
     assert panel.get_title(loc="left") == "as stated: roller 0.2100, ring −0.1600"
-    assert drawn.limits(bare.record) == []
-    assert drawn.choice(bare.record) == []
-    assert drawn.weights(bare.record) == []
+    assert sheet.limits(bare.record) == []
+    assert sheet.choice(bare.record) == []
+    assert sheet.weights(bare.record) == []

@@ -26,10 +26,10 @@ from roller_screw_shift.geometry import (
     sliding_at_roots,
     tip_land,
 )
-from roller_screw_shift.loads import load_of
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
 from roller_screw_shift.objectives import objectives_of
 from roller_screw_shift.quantities import Pair
+from roller_screw_shift.strength import load_of
 
 # The default pair at x_E = 0.21, as an independent program printed it: six digits
 REGRESSION = {

@@ -6,14 +6,11 @@ import numpy as np
 import pytest
 from traced_gears import ALPHA, Flanks, line_of_action_meets, swept_root
 
-from gear_geometry.cut_rings import Cutter, cut_ring_arm, cut_ring_root
-from gear_geometry.roots import form_factor, stress_correction
-from roller_screw_shift.answers import Meshing
-from roller_screw_shift.constraints import margins_of
-from roller_screw_shift.loads import load_of
+from gear_geometry.roots import Cutter, cut_ring_arm, cut_ring_root, form_factor, stress_correction
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
-from roller_screw_shift.objectives import objectives_of
-from roller_screw_shift.quantities import Pair
+from roller_screw_shift.objectives import margins_of, objectives_of
+from roller_screw_shift.quantities import Meshing, Pair
+from roller_screw_shift.strength import load_of
 from shared import ROUNDING
 from truing.evaluate import evaluate_rows
 from truing.formulas import evaluate, parse

@@ -6,12 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gear_geometry.involute import involute
-from gear_geometry.pairs import clear_of_base, internal_sliding, working_angle
+from gear_geometry.pairs import clear_of_base, internal_sliding, involute, working_angle
 from roller_screw_shift.calculation import roller_screw_shift
-from roller_screw_shift.constraints import margins_of
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
-from roller_screw_shift.objectives import objectives_of
+from roller_screw_shift.objectives import margins_of, objectives_of
 
 PAGE = (Path(__file__).parents[2] / "docs" / "explanation" / "roller_screw_shift.md").read_text(encoding="utf-8")
 WORDS = " ".join(PAGE.split())

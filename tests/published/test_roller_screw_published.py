@@ -14,15 +14,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from roller_screw_shift.best_shifts import READINGS, Field, box_optimum, field_of, grid_optimum
-from roller_screw_shift.box import Plan
-from roller_screw_shift.courses import equal_sliding, intervals_of
-from roller_screw_shift.findings import FINDINGS
 from roller_screw_shift.model import MARGINS, ROLLER_SCREW_SHIFT
-from roller_screw_shift.published import PUBLISHED
+from roller_screw_shift.objectives import equal_sliding, intervals_of, weights_of
+from roller_screw_shift.optimum import READINGS, Field, Plan, Shifting, box_optimum, field_of, grid_optimum
+from roller_screw_shift.published import FINDINGS, PUBLISHED
 from roller_screw_shift.quantities import Pair
-from roller_screw_shift.shifts import Shifting
-from roller_screw_shift.weighing import weights_of
 from truing import Kernel, Table, TruingError, Words
 from truing.calculation import Calculation, calculate
 from truing.published import ComparedRow, compare_published
@@ -424,19 +420,19 @@ def words_of(section: Callable[[Any], Any], done: Calculation) -> str:
 
 
 def test_the_sheet_says_where_the_optimum_lies_and_what_holds_it() -> None:
-    from roller_screw_shift import drawn
+    from roller_screw_shift import sheet
 
     done = run()
-    assert "0.2534 for the roller and −0.1165 for the ring" in words_of(drawn.choice, done)
-    assert "It stands at a limit: g3 contact ratio." in words_of(drawn.choice, done)
-    assert "leaves nothing for scatter" in words_of(drawn.choice, done)
-    assert "away from its own axis" in words_of(drawn.signs, done)
-    assert "from −0.0674 (where g10 difference of sliding is missed) to 0.2534" in words_of(drawn.limits, done)
+    assert "0.2534 for the roller and −0.1165 for the ring" in words_of(sheet.choice, done)
+    assert "It stands at a limit: g3 contact ratio." in words_of(sheet.choice, done)
+    assert "leaves nothing for scatter" in words_of(sheet.choice, done)
+    assert "away from its own axis" in words_of(sheet.signs, done)
+    assert "from −0.0674 (where g10 difference of sliding is missed) to 0.2534" in words_of(sheet.limits, done)
     inside = run(least_contact_ratio=1.2)
-    assert "It lies within its interval" in words_of(drawn.choice, inside)
-    assert "the optimum would be 0.6140 for the roller" in words_of(drawn.choice, inside)
-    assert "there is the same optimum" in words_of(drawn.choice, done)
+    assert "It lies within its interval" in words_of(sheet.choice, inside)
+    assert "the optimum would be 0.6140 for the roller" in words_of(sheet.choice, inside)
+    assert "there is the same optimum" in words_of(sheet.choice, done)
     nowhere = run(least_contact_ratio=2.2)
-    assert "keeps every limit" in words_of(drawn.limits, nowhere)
-    assert drawn.choice(nowhere.record) == []
-    assert drawn.weights(nowhere.record) == []
+    assert "keeps every limit" in words_of(sheet.limits, nowhere)
+    assert sheet.choice(nowhere.record) == []
+    assert sheet.weights(nowhere.record) == []

@@ -5,7 +5,7 @@ from math import pi, sin, sqrt
 import numpy as np
 import pytest
 
-from roller_screw_shift.weighing import (
+from roller_screw_shift.objectives import (
     PRINTED_RANGES,
     PRINTED_WEIGHTS,
     lower_limit,

@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rv_gearing.calculation import rv_gearing
-from rv_gearing.effects import EFFECTS
-from rv_gearing.effects_of_oil import viscosity_at_work
+from rv_gearing.effects import EFFECTS, viscosity_at_work
 from rv_gearing.model import RV_GEARING
 from rv_gearing.quantities import Gearing
+from rv_gearing.rating import rv_gearing
 from truing import Effect
 
 UM, HOUR, RPM = 1e-6, 3600.0, 1 / 60

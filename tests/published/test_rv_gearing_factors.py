@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 import rv_gearing_by_hand as by_hand
 
-from rv_gearing.calculation import rv_gearing
-from rv_gearing.dynamic import by_range, coefficients, resonance_limit
-from rv_gearing.life import life_factor
-from rv_gearing.loads import load_of
+from rv_gearing.geometry import load_of
+from rv_gearing.load_factors import by_range, coefficients, resonance_limit, run_in
+from rv_gearing.material import CURVES, life_factor, steel_of
 from rv_gearing.model import RV_GEARING
-from rv_gearing.quality import run_in
-from rv_gearing.steel import CURVES, steel_of
+from rv_gearing.rating import rv_gearing
 from truing.declare.batch import watching
 from truing.errors import InfeasibleError
 from truing.setup import default_setup

@@ -15,15 +15,12 @@ import numpy as np
 import pytest
 
 from gear_geometry.roots import Rack, external_root
-from rv_gearing import drawn
-from rv_gearing.calculation import rv_gearing
-from rv_gearing.capacity import SAFETIES, Capacity, Reserve, Safeties, rating
-from rv_gearing.drawn_groups import groups_figure, stresses_figure
-from rv_gearing.drawn_mesh import mesh_figure, meshing_of
-from rv_gearing.drawn_tooth import notched_of
+from rv_gearing import sheet
+from rv_gearing.figures import groups_figure, mesh_figure, meshing_of, notched_of, stresses_figure
+from rv_gearing.geometry import half_space, tooth, trochoid, undercut
+from rv_gearing.groups import MEETING, SIZES, STRENGTH, Column, Found, Search, listed
 from rv_gearing.model import RV_GEARING
-from rv_gearing.search import MEETING, SIZES, STRENGTH, Column, Found, Search, listed
-from rv_gearing.tooth_form import half_space, tooth, trochoid, undercut
+from rv_gearing.rating import SAFETIES, Capacity, Reserve, Safeties, rating, rv_gearing
 from truing import Drawing, Kernel, Swept, Table, TruingError, Words
 from truing.calculation import Calculation, calculate
 from truing.inputs_file import setup_from_text
@@ -91,7 +88,7 @@ def test_the_better_groups_come_first_where_the_list_is_sorted_so() -> None:
         False
     ] * 21
     (table,) = [
-        block for block in drawn.search(calculation.record) if isinstance(block, Table) and "better" in block.title
+        block for block in sheet.search(calculation.record) if isinstance(block, Table) and "better" in block.title
     ]
     assert [row[0] for row in table.rows[:4]] == [4, 8, 15, 21]
     assert [row[-1] for row in table.rows] == entry["reasons"]
@@ -131,11 +128,11 @@ def test_an_empty_list_is_said_and_the_stated_teeth_are_rated() -> None:
     assert calculation.answers["group_count"] == 0
     assert calculation.answers["group_ratio"].shape == (0,)
     assert "no group of tooth numbers meets" in " ".join(found(calculation).warnings())
-    first = drawn.search(calculation.record)[0]
+    first = sheet.search(calculation.record)[0]
     assert isinstance(first, Words)
     assert first.text.startswith("No group of tooth numbers")
-    assert drawn.comparison(calculation.record) == []
-    assert [block.title for block in drawn.search(run(Search(), **PAIRS[3]).record) if isinstance(block, Table)] == []
+    assert sheet.comparison(calculation.record) == []
+    assert [block.title for block in sheet.search(run(Search(), **PAIRS[3]).record) if isinstance(block, Table)] == []
     assert float(calculation.answers["root_stress_sun"]) > 0
     assert json.loads(json.dumps(found(calculation).as_json()))["count"] == 0
 
@@ -148,7 +145,7 @@ def test_a_group_that_cannot_be_rated_stays_in_the_list() -> None:
     assert np.flatnonzero(empty).tolist() == [0, 1]
     assert None in told.as_json()["groups"]["root_stress_sun"]["values"]
     json.dumps(told.as_json(), allow_nan=False)
-    assert any(isinstance(block, Table) for block in drawn.comparison(calculation.record))
+    assert any(isinstance(block, Table) for block in sheet.comparison(calculation.record))
 
 
 def test_a_column_that_is_none_is_refused() -> None:
@@ -360,7 +357,7 @@ def test_every_figure_is_drawn_without_a_complaint(inputs: dict[str, Any], figur
         Safeties(over="power", at="1..4 kW", points=7, name="power"),
     )
     calculation = run(*studies, **inputs)
-    sections = (drawn.search, drawn.geometry, drawn.bending, drawn.method_b, drawn.courses, drawn.comparison)
+    sections = (sheet.search, sheet.geometry, sheet.bending, sheet.method_b, sheet.courses, sheet.comparison)
     count = 0
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rv_gearing.calculation import rv_gearing
-from rv_gearing.duty import centre_distance_window, efficiency_of, mesh_efficiency, output_torque, ratio_of
-from rv_gearing.groups import search
-from rv_gearing.loads import load_of
+from rv_gearing.geometry import load_of
+from rv_gearing.groups import centre_distance_window, efficiency_of, mesh_efficiency, output_torque, ratio_of, search
+from rv_gearing.material import steel_of
 from rv_gearing.model import RV_GEARING
-from rv_gearing.steel import steel_of
+from rv_gearing.rating import rv_gearing
 
 PAGE = (Path(__file__).parents[2] / "docs" / "explanation" / "rv_gearing.md").read_text(encoding="utf-8")
 WORDS = " ".join(PAGE.split())

@@ -6,12 +6,11 @@ from typing import Any
 
 import pytest
 
-from rv_gearing.calculation import rv_gearing
-from rv_gearing.catalogue import RATIOS, catalogue_table
-from rv_gearing.findings import FINDINGS
+from rv_gearing.groups import RATIOS, catalogue_table
 from rv_gearing.model import RV_GEARING
-from rv_gearing.published import EXAMPLE, HANDBOOK, ISO_ROWS, PUBLISHED, TEXTBOOK
+from rv_gearing.published import EXAMPLE, FINDINGS, HANDBOOK, ISO_ROWS, PUBLISHED, TEXTBOOK
 from rv_gearing.quantities import Gearing
+from rv_gearing.rating import rv_gearing
 from truing import Kernel
 from truing.calculation import calculate
 from truing.published import ComparedRow, compare_published

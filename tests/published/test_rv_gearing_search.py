@@ -10,8 +10,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rv_gearing.duty import efficiency_of, mesh_efficiency, output_torque, ratio_of
-from rv_gearing.groups import Teeth, candidates, chosen_teeth, groups_of, search
+from rv_gearing.groups import (
+    Teeth,
+    candidates,
+    chosen_teeth,
+    efficiency_of,
+    groups_of,
+    mesh_efficiency,
+    output_torque,
+    ratio_of,
+    search,
+)
 from rv_gearing.model import RV_GEARING
 from rv_gearing.quantities import Gearing
 from truing.declare.batch import watching

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rv_gearing.calculation import rv_gearing
 from rv_gearing.model import RV_GEARING
+from rv_gearing.rating import rv_gearing
 from truing.declare.batch import watching
 from truing.units import from_si
 

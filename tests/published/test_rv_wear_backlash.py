@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from rv_wear.calculation import rv_wear
-from rv_wear.chances import FACTORS
+from rv_wear.machines import FACTORS
 from rv_wear.model import RV_WEAR
 from rv_wear.quantities import Reducer
 from truing.calculation import Calculation, calculate

@@ -15,8 +15,7 @@ import pytest
 
 from hidden_effects.rv_play import Mesh, ends_of_play
 from rv_wear.calculation import rv_wear
-from rv_wear.effects import EFFECTS
-from rv_wear.effects_of_clearance import runout
+from rv_wear.effects import EFFECTS, runout
 from rv_wear.model import RV_WEAR
 from rv_wear.quantities import Reducer
 from truing import Effect, Float

@@ -14,12 +14,12 @@ import pytest
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from rv_wear import drawn
-from rv_wear.drawn_mesh import mesh_figure
-from rv_wear.least_costs import Fronts, LeastCosts
+from rv_wear import sheet
+from rv_wear.discs import Modifications
+from rv_wear.figures import mesh_figure
+from rv_wear.machines import NewMachines
 from rv_wear.model import RV_WEAR
-from rv_wear.modifications import Modifications
-from rv_wear.new_machines import NewMachines
+from rv_wear.optimum import Fronts, LeastCosts
 from truing import Drawing, Reliability, TruingError, Words
 from truing.calculation import Calculation, calculate
 from truing.report.figures import draw
@@ -141,7 +141,7 @@ def test_filled_pins_are_those_with_an_arrow(mesh: Any) -> None:
 
 
 def test_the_clearance_is_equation_g3(run: Calculation) -> None:
-    panel = figures(run, drawn.geometry)["Clearance along the flank"].axes[0]
+    panel = figures(run, sheet.geometry)["Clearance along the flank"].axes[0]
     angle, clearance = line(panel, "clearance, new")
     for degree, drawn_clearance in zip(angle[::20], clearance[::20], strict=True):
         psi = radians(degree)
@@ -157,23 +157,23 @@ def test_the_clearance_is_equation_g3(run: Calculation) -> None:
 @pytest.mark.parametrize("label", ["new, in proportion to the approach", "new, Hertz at every pin", "after 6000 h"])
 def test_the_forces_hold_the_torque_in_every_position(run: Calculation, label: str) -> None:
     """Eight positions per pin pitch; in each the pins that are one pitch apart hold the torque."""
-    angle, force = line(figures(run, drawn.forces)["Force on a pin"].axes[0], label)
+    angle, force = line(figures(run, sheet.forces)["Force on a pin"].axes[0], label)
     psi = np.radians(angle)
     moments = force * ARM * 1e-3 * np.sin(psi) / np.sqrt(1 + K1**2 - 2 * K1 * np.cos(psi))
     assert moments.reshape(-1, 8).sum(axis=0) == pytest.approx(np.full(8, TORQUE), rel=1e-8)
 
 
 def test_the_words_on_both_ways_of_sharing_are_read_off_the_figure(run: Calculation) -> None:
-    panel = figures(run, drawn.forces)["Force on a pin"].axes[0]
+    panel = figures(run, sheet.forces)["Force on a pin"].axes[0]
     linear, hertz = (line(panel, f"new, {way}")[1] for way in ("in proportion to the approach", "Hertz at every pin"))
-    said = next(block.text for block in drawn.forces(run.record) if isinstance(block, Words))
+    said = next(block.text for block in sheet.forces(run.record) if isinstance(block, Words))
     assert f"{100 * (hertz.max() / linear.max() - 1):.1f} % larger" in said
     assert f"up to {100 * np.abs(hertz - linear).max() / linear.max():.0f} % of" in said
     assert 1 < 100 * (hertz.max() / linear.max() - 1) < 4  # an independent solution of both
 
 
 def test_the_wear_along_the_flank_ends_at_the_deepest(run: Calculation) -> None:
-    panel = figures(run, drawn.wear)["Wear along the flank"].axes[0]
+    panel = figures(run, sheet.wear)["Wear along the flank"].axes[0]
     for hours in (3000, 6000):
         angle, wear = line(panel, f"{hours} h")
         assert wear.max() == pytest.approx(WEAR[hours], abs=6e-4)
@@ -181,7 +181,7 @@ def test_the_wear_along_the_flank_ends_at_the_deepest(run: Calculation) -> None:
 
 
 def test_the_histories_are_the_table(run: Calculation) -> None:
-    upper, lower = figures(run, drawn.wear)["Wear and backlash over the years"].axes
+    upper, lower = figures(run, sheet.wear)["Wear and backlash over the years"].axes
     hours, wear = (np.asarray(values) for values in upper.get_lines()[0].get_data())
     _, backlash = (np.asarray(values) for values in lower.get_lines()[0].get_data())
     for at, expected in WEAR.items():
@@ -192,7 +192,7 @@ def test_the_histories_are_the_table(run: Calculation) -> None:
 
 def test_discs_ground_in_other_ways_are_as_the_paper_says(run: Calculation) -> None:
     """Figs. 1 and 2; the wear of both ends after 100 h from an independent program."""
-    upper, lower = figures(run, drawn.other_discs)["Forces and wear of discs ground in other ways"].axes
+    upper, lower = figures(run, sheet.other_discs)["Forces and wear of discs ground in other ways"].axes
     force = [np.asarray(item.get_ydata()) for item in upper.get_lines()]
     wear = [np.asarray(item.get_ydata()) for item in lower.get_lines()]
     assert len(force) == len(wear) == 6
@@ -210,7 +210,7 @@ def test_discs_ground_in_other_ways_are_as_the_paper_says(run: Calculation) -> N
 
 
 def test_new_machines_scatter_as_their_zones_say(run: Calculation) -> None:
-    left, right = figures(run, drawn.reliability)["Backlash of new machines"].axes
+    left, right = figures(run, sheet.reliability)["Backlash of new machines"].axes
     backlash = np.asarray(left.get_lines()[0].get_ydata())
     assert len(backlash) == 2000
     sd = spread({name: width for name, (_, width) in PRICED.items()}, 0.0)
@@ -223,7 +223,7 @@ def test_new_machines_scatter_as_their_zones_say(run: Calculation) -> None:
 
 def test_the_reliability_is_the_closed_form(run: Calculation) -> None:
     """Equation 21 is a sum of normal errors; the counts lie within four standard errors of it."""
-    panel = figures(run, drawn.reliability)["Reliability over the working time"].axes[0]
+    panel = figures(run, sheet.reliability)["Reliability over the working time"].axes[0]
     hours, counted = line(panel, "counted among the machines drawn")
     widths = {name: width for name, (_, width) in PRICED.items()}
     for at in WEAR:
@@ -235,7 +235,7 @@ def test_the_reliability_is_the_closed_form(run: Calculation) -> None:
 
 
 def test_the_indices_stand_beside_table_2(run: Calculation) -> None:
-    panel = figures(run, drawn.influence)["How much backlash each error gives"].axes[0]
+    panel = figures(run, sheet.influence)["How much backlash each error gives"].axes[0]
     bars = [item.get_width() for item in panel.containers[0]]
     printed, _ = line(panel, "the paper, Table 2")
     assert printed.tolist() == [
@@ -259,7 +259,7 @@ def by_hand(name: str, width: float) -> float:
 
 
 def test_the_prices_are_those_of_the_cost_functions(run: Calculation) -> None:
-    left, right = figures(run, drawn.costs)["Price of the zones"].axes
+    left, right = figures(run, sheet.costs)["Price of the zones"].axes
     names = [item.get_text().replace(" ", "_") for item in left.get_yticklabels()]
     bars = [item.get_width() for item in left.containers[0]]
     assert dict(zip(names, bars, strict=True)) == pytest.approx(
@@ -304,7 +304,7 @@ def _inverse_erfc(value: float) -> float:
 @pytest.mark.parametrize("goal", [0.95, 0.999])
 def test_the_fronts_are_least_costs(run: Calculation, goal: float) -> None:
     """The same front from equations written here and another optimiser, at three places."""
-    panel = figures(run, drawn.better_tolerances)["Cost and wear"].axes[0]
+    panel = figures(run, sheet.better_tolerances)["Cost and wear"].axes[0]
     cost, wear = line(panel, f"least cost for {100 * goal:g} %")
     fronts: Fronts = run.outcomes["least_costs"]
     designs = next(front.designs for front in fronts.fronts if front.goal == goal)
@@ -317,7 +317,7 @@ def test_the_fronts_are_least_costs(run: Calculation, goal: float) -> None:
 
 
 def test_the_front_shows_the_start_and_what_the_paper_prints(run: Calculation) -> None:
-    panel = figures(run, drawn.better_tolerances)["Cost and wear"].axes[0]
+    panel = figures(run, sheet.better_tolerances)["Cost and wear"].axes[0]
     for label, cost, wear in (
         ("as stated", 1402.7, 3.1288), ("the paper, before", 1402.0, 3.127),
         ("the paper's optimum for 95 %", 1291.0, 3.151), ("the paper's optimum for 100 %", 1300.0, 3.207),
@@ -328,7 +328,7 @@ def test_the_front_shows_the_start_and_what_the_paper_prints(run: Calculation) -
 
 def test_no_design_of_the_search_beats_the_front(run: Calculation) -> None:
     """It draws 512 machines per design, so it may err by what these do not tell: 2 % of the cost."""
-    panel = figures(run, drawn.better_tolerances)["Cost and wear"].axes[0]
+    panel = figures(run, sheet.better_tolerances)["Cost and wear"].axes[0]
     cost, wear = line(panel, "least cost for 95 %")
     found_cost, found_wear = line(panel, "found by the search for 95 %")
     within = (found_wear >= wear[0]) & (found_wear <= wear[-1])
@@ -352,7 +352,7 @@ def test_the_numbers_on_the_theory_page_are_those_of_the_fronts(run: Calculation
 
 
 def test_the_better_reducers_reach_their_goal_at_the_end(run: Calculation) -> None:
-    panel = figures(run, drawn.better_tolerances)["Reliability before and after"].axes[0]
+    panel = figures(run, sheet.better_tolerances)["Reliability before and after"].axes[0]
     ends = {item.get_label(): np.asarray(item.get_ydata())[-1] for item in panel.get_lines()}
     reached = {label.rsplit(" for ", 1)[1]: value for label, value in ends.items() if " yuan, " in str(label)}
     assert reached == {"95 %": pytest.approx(95.0, abs=1e-3), "99.9 %": pytest.approx(99.9, abs=1e-3)}
@@ -378,10 +378,10 @@ def test_every_figure_can_be_drawn_and_names_its_axes(run: Calculation, section:
 
 def test_without_studies_nothing_is_drawn_that_is_not_known() -> None:
     bare = calculate(replace(default_setup(RV_WEAR), studies=()))
-    for section in (drawn.other_discs, drawn.influence, drawn.reliability, drawn.costs, drawn.better_tolerances):
+    for section in (sheet.other_discs, sheet.influence, sheet.reliability, sheet.costs, sheet.better_tolerances):
         assert list(section(bare.record)) == []
-    assert len(figures(bare, drawn.geometry)) == 2
-    assert list(figures(bare, drawn.wear)) == ["Wear along the flank"]
+    assert len(figures(bare, sheet.geometry)) == 2
+    assert list(figures(bare, sheet.wear)) == ["Wear along the flank"]
 
 
 @pytest.mark.parametrize(
@@ -429,7 +429,7 @@ def test_a_goal_out_of_reach_is_a_warning_and_no_front() -> None:
     fronts: Fronts = found.outcomes["least_costs"]
     assert [front.designs for front in fronts.fronts] == [(), ()]
     assert sum("reaches a reliability of" in text for text in found.warnings) == 2
-    assert list(drawn.better_tolerances(found.record)) == []
+    assert list(sheet.better_tolerances(found.record)) == []
 
 
 @pytest.mark.parametrize("draws", [1, 100_001])

@@ -15,14 +15,12 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import lambertw
 
-from rv_wear import contact, curves, cycloid, sliding
-from rv_wear.history import states
-from rv_wear.mesh import Choices, Mesh, many, mesh_of
+from rv_wear import discs, geometry
+from rv_wear.forces import Loads, shared, start_scale
+from rv_wear.geometry import Choices, Mesh, Teeth, many, mesh_of, teeth_of
 from rv_wear.model import RV_WEAR
 from rv_wear.quantities import Reducer
-from rv_wear.sharing import Loads, shared, start_scale
-from rv_wear.teeth import Teeth, teeth_of
-from rv_wear.wear import worn
+from rv_wear.wear import states, worn
 from shared import ROUNDING
 from truing.errors import InfeasibleError
 
@@ -51,10 +49,10 @@ def lever(angle: Any) -> Any:
 
 
 def test_the_arm_is_longest_where_the_crank_pin_line_is_normal() -> None:
-    arms = cycloid.arm(MESH, ANGLES)
+    arms = geometry.arm(MESH, ANGLES)
     assert np.all(arms < 0.0022 * 39)
-    assert cycloid.arm(MESH, PSI_0) == pytest.approx(0.0022 * 39, rel=1e-15)
-    assert degrees(cycloid.longest_arm_angle(MESH)) == pytest.approx(39.8, abs=0.05)
+    assert geometry.arm(MESH, PSI_0) == pytest.approx(0.0022 * 39, rel=1e-15)
+    assert degrees(geometry.longest_arm_angle(MESH)) == pytest.approx(39.8, abs=0.05)
     assert arms == pytest.approx(lever(ANGLES), rel=1e-14)
 
 
@@ -64,7 +62,7 @@ def path(turn: Any) -> NDArray[np.complex128]:
 
 
 def flank(turn: Any) -> NDArray[np.complex128]:
-    x, y = cycloid.profile(replace(MESH, equidistant=0.0, shift=0.0), turn)
+    x, y = geometry.profile(replace(MESH, equidistant=0.0, shift=0.0), turn)
     return np.asarray(x) + 1j * np.asarray(y)
 
 
@@ -94,18 +92,18 @@ def test_speeds_are_those_of_the_moving_profile(psi: float) -> None:
         return path(at) + touching * np.exp(1j * (at - turn))
 
     pin, contact_point = abs(slope(on_pin, turn)), abs(slope(flank, turn))
-    assert sliding.sliding_speed(MESH, psi) == pytest.approx(pin, rel=1e-8)
-    assert sliding.rolling_speed(MESH, psi) == pytest.approx(contact_point, rel=1e-7)
-    assert abs(slope(path, turn)) == pytest.approx(0.1145 * cycloid.pin_distance(MESH, psi), rel=1e-9)
+    assert geometry.sliding_speed(MESH, psi) == pytest.approx(pin, rel=1e-8)
+    assert geometry.rolling_speed(MESH, psi) == pytest.approx(contact_point, rel=1e-7)
+    assert abs(slope(path, turn)) == pytest.approx(0.1145 * geometry.pin_distance(MESH, psi), rel=1e-9)
 
 
 @pytest.mark.parametrize(("angle", "ratio"), [(20, 0.18), (58, 1.92), (80, 2.13)])
 def test_sliding_ratio(angle: float, ratio: float) -> None:
-    assert sliding.sliding_ratio(MESH, radians(angle)) == pytest.approx(ratio, abs=0.0101)
+    assert geometry.sliding_ratio(MESH, radians(angle)) == pytest.approx(ratio, abs=0.0101)
 
 
 def test_sliding_ratio_is_one_at_the_longest_arm() -> None:
-    assert sliding.sliding_ratio(MESH, PSI_0) == pytest.approx(1, rel=1e-12)
+    assert geometry.sliding_ratio(MESH, PSI_0) == pytest.approx(1, rel=1e-12)
 
 
 @pytest.mark.parametrize("psi", SOME)
@@ -115,26 +113,26 @@ def test_radius_is_that_of_the_profile(psi: float) -> None:
         second = slope(lambda place: slope(flank, place, 2e-4), at, 2e-4)
         return float((first.conjugate() * second).imag / abs(first) ** 3)
 
-    assert cycloid.profile_radius(MESH, psi) == pytest.approx(-1 / curvature(psi / 39), rel=1e-4)
+    assert geometry.profile_radius(MESH, psi) == pytest.approx(-1 / curvature(psi / 39), rel=1e-4)
 
 
 def test_the_flank_is_straight_where_its_sign_changes() -> None:
     straight = acos((1 + 40 * K_1**2) / (K_1 * 41))
     assert degrees(straight) == pytest.approx(38.6, abs=0.05)
-    assert cycloid.profile_radius(MESH, straight - 1e-3) > 0 > cycloid.profile_radius(MESH, straight + 1e-3)
-    assert cycloid.relative_radius(MESH, straight) == pytest.approx(0.005, rel=1e-9)
+    assert geometry.profile_radius(MESH, straight - 1e-3) > 0 > geometry.profile_radius(MESH, straight + 1e-3)
+    assert geometry.relative_radius(MESH, straight) == pytest.approx(0.005, rel=1e-9)
 
 
 @pytest.mark.parametrize("eccentricity", [0.5e-3, 1.2e-3, 2.2e-3, 2.7e-3])
 def test_smallest_convex_radius_is_that_of_a_fine_grid(eccentricity: float) -> None:
     mesh = replace(MESH, eccentricity=eccentricity)
     with np.errstate(divide="ignore"):
-        radius = 1 / cycloid.centre_path_curvature(mesh, np.linspace(0, pi, 400_001))
-    assert cycloid.smallest_convex_radius(mesh) == pytest.approx(-radius[radius < 0].max(), rel=1e-8)
+        radius = 1 / geometry.centre_path_curvature(mesh, np.linspace(0, pi, 400_001))
+    assert geometry.smallest_convex_radius(mesh) == pytest.approx(-radius[radius < 0].max(), rel=1e-8)
 
 
 def test_smallest_convex_radius_of_the_paper() -> None:
-    assert float(cycloid.smallest_convex_radius(MESH)) * 1e3 == pytest.approx(9.05, abs=0.00501)
+    assert float(geometry.smallest_convex_radius(MESH)) * 1e3 == pytest.approx(9.05, abs=0.00501)
 
 
 # Clearance
@@ -149,14 +147,14 @@ def plain_clearance(equidistant: float, shift: float, psi: Any) -> Any:
 @pytest.mark.parametrize("radial", [0.002e-3, 0.004e-3, 0.01e-3])
 def test_clearance_is_zero_at_the_longest_arm_and_radial_at_the_ends(radial: float) -> None:
     mesh = replace(MESH, equidistant=-26e-6, shift=-26e-6 - radial)
-    assert cycloid.clearance(mesh, PSI_0) == pytest.approx(0, abs=1e-21)
-    assert cycloid.clearance(mesh, 0.0) == pytest.approx(radial, rel=1e-9)
-    assert cycloid.clearance(mesh, pi) == pytest.approx(radial, rel=1e-9)
+    assert geometry.clearance(mesh, PSI_0) == pytest.approx(0, abs=1e-21)
+    assert geometry.clearance(mesh, 0.0) == pytest.approx(radial, rel=1e-9)
+    assert geometry.clearance(mesh, pi) == pytest.approx(radial, rel=1e-9)
 
 
 def test_clearance_is_linear_in_both_modifications_and_the_printed_one() -> None:
     def of(equidistant: float, shift: float) -> Any:
-        return cycloid.clearance(replace(MESH, equidistant=equidistant, shift=shift), ANGLES)
+        return geometry.clearance(replace(MESH, equidistant=equidistant, shift=shift), ANGLES)
 
     assert of(3e-6, -5e-6) == pytest.approx(3 * of(1e-6, 0.0) + 5 * of(0.0, -1e-6), rel=1e-12)
     assert of(-26e-6, -30e-6) == pytest.approx(plain_clearance(-26e-6, -30e-6, ANGLES), abs=1e-19)
@@ -165,7 +163,7 @@ def test_clearance_is_linear_in_both_modifications_and_the_printed_one() -> None
 
 
 def test_bounds_of_the_equidistant_modification() -> None:
-    (low,), (high,) = curves.allowed_equidistant(PAPER)
+    (low,), (high,) = discs.allowed_equidistant(PAPER)
     assert high * 1e3 == pytest.approx(0.0111, abs=5.01e-5)  # printed 0.011
     assert low * 1e3 == pytest.approx(-0.05375, abs=5.01e-6)  # printed -0.053
     assert worn(PAPER).equidistant_low == pytest.approx(low, rel=ROUNDING)
@@ -179,17 +177,17 @@ def test_bounds_of_the_equidistant_modification() -> None:
 
 @pytest.mark.parametrize("radial", [0.001e-3, 0.008e-3])
 def test_bounds_scale_with_the_radial_clearance(radial: float) -> None:
-    (low,), (high,) = curves.allowed_equidistant(replace(PAPER, shift_modification=-26e-6 - radial))
+    (low,), (high,) = discs.allowed_equidistant(replace(PAPER, shift_modification=-26e-6 - radial))
     assert high == pytest.approx(radial / (1 - Q), rel=1e-12)
-    (usual,), _ = curves.allowed_equidistant(PAPER)
+    (usual,), _ = discs.allowed_equidistant(PAPER)
     assert low == pytest.approx(usual * radial / 4e-6, rel=1e-9)
 
 
 def test_lower_bound_by_the_approach_is_its_own_approach() -> None:
-    (low,), _ = curves.allowed_equidistant(PAPER, lower="approach")
+    (low,), _ = discs.allowed_equidistant(PAPER, lower="approach")
     there = worn(replace(PAPER, equidistant_modification=low, shift_modification=low - 4e-6))
     assert plain_clearance(low, low - 4e-6, ANGLES).max() == pytest.approx(there.approach, rel=1e-5)
-    (narrow,), _ = curves.allowed_equidistant(replace(PAPER, disc_width=0.016), lower="approach")
+    (narrow,), _ = discs.allowed_equidistant(replace(PAPER, disc_width=0.016), lower="approach")
     assert narrow * 1e3 == pytest.approx(-0.0537, abs=0.002)  # both readings agree for a width of about 16 mm
 
 
@@ -197,27 +195,27 @@ def test_lower_bound_by_the_approach_is_its_own_approach() -> None:
 
 
 def test_line_contact() -> None:
-    number = float(np.asarray(contact.depth_number(MESH, -0.068, 0.0047)))
+    number = float(np.asarray(geometry.depth_number(MESH, -0.068, 0.0047)))
     compliance = 2 * (1 - 0.3**2) / (pi * 2.06e11 * 0.02)
     for force in (10.0, 3390.0):
-        width = contact.half_width(MESH, force, 0.0047)
+        width = geometry.half_width(MESH, force, 0.0047)
         assert width == pytest.approx(sqrt(8 * force * 0.0047 * (1 - 0.3**2) / (pi * 0.02 * 2.06e11)), rel=1e-14)
-        assert contact.half_width(MESH, 2 * force, 0.0047) == pytest.approx(sqrt(2) * width, rel=1e-14)
-        approach = contact.approach(MESH, force, number)
+        assert geometry.half_width(MESH, 2 * force, 0.0047) == pytest.approx(sqrt(2) * width, rel=1e-14)
+        approach = geometry.approach(MESH, force, number)
         printed = compliance * force * (2 / 3 + log(16 * 0.005 * 0.068 / (2 * width) ** 2))
         assert approach == pytest.approx(printed, rel=1e-13)
-        assert 1 < contact.approach(MESH, 2 * force, number) / approach < 2
-        assert contact.force_of(MESH, approach, number) == pytest.approx(force, rel=1e-13)
-        assert contact.mean_pressure(MESH, force, 0.0047) == pytest.approx(force / (2 * width * 0.02), rel=1e-14)
-    assert contact.force_of(MESH, -1e-6, number) == 0
+        assert 1 < geometry.approach(MESH, 2 * force, number) / approach < 2
+        assert geometry.force_of(MESH, approach, number) == pytest.approx(force, rel=1e-13)
+        assert geometry.mean_pressure(MESH, force, 0.0047) == pytest.approx(force / (2 * width * 0.02), rel=1e-14)
+    assert geometry.force_of(MESH, -1e-6, number) == 0
 
 
 def test_force_of_an_approach_is_lamberts_function() -> None:
     """F (n - ln F) = w has the solution w / -W(-w exp(-n)), on the lower branch; exp(-n) is as exact as n eps."""
     approach, number = np.meshgrid(np.geomspace(1e-12, 1e-4, 200), np.linspace(17, 26, 25))
-    wanted = approach / contact.compliance(MESH)
+    wanted = approach / geometry.compliance(MESH)
     force = wanted / -lambertw(-wanted * np.exp(-number), -1).real
-    np.testing.assert_allclose(contact.force_of(MESH, approach, number), force, rtol=ROUNDING)
+    np.testing.assert_allclose(geometry.force_of(MESH, approach, number), force, rtol=ROUNDING)
 
 
 # Forces
@@ -312,9 +310,9 @@ def test_forces_of_the_paper() -> None:
     _, loads = unworn(MESH)
     assert loads.approach.mean() * 1e6 == pytest.approx(5.97, abs=0.00501)
     assert set((loads.force > 0).sum(axis=0).ravel()) == {10, 11}
-    at_pitch = cycloid.relative_radius(MESH, PSI_0)
-    assert 2e3 * contact.half_width(MESH, 3390.0, at_pitch) == pytest.approx(0.19, abs=0.00501)
-    profile = curves.flank(PAPER)
+    at_pitch = geometry.relative_radius(MESH, PSI_0)
+    assert 2e3 * geometry.half_width(MESH, 3390.0, at_pitch) == pytest.approx(0.19, abs=0.00501)
+    profile = discs.flank(PAPER)
     assert degrees(profile.angle[profile.force[0].argmax()]) == pytest.approx(39, abs=0.501)
     loaded = np.degrees(profile.angle[profile.force[0] > 0])
     assert loaded[0] == pytest.approx(9, abs=4)
@@ -322,8 +320,8 @@ def test_forces_of_the_paper() -> None:
 
 
 def test_rigorous_sharing_is_near_the_linear_one() -> None:
-    linear = curves.flank(PAPER)
-    rigorous = curves.flank(replace(PAPER, load_sharing="hertz"))
+    linear = discs.flank(PAPER)
+    rigorous = discs.flank(replace(PAPER, load_sharing="hertz"))
     assert 1.01 < rigorous.force.max() / linear.force.max() < 1.04
     near = np.abs(np.degrees(linear.angle) - 20) < 1
     assert np.all(np.abs(rigorous.force[0, near] / linear.force[0, near] - 1) < 0.22)
@@ -332,8 +330,8 @@ def test_rigorous_sharing_is_near_the_linear_one() -> None:
 
 
 def test_friction_of_the_mesh_is_a_few_percent_of_the_power() -> None:
-    profile = curves.flank(PAPER)
-    speeds = sliding.sliding_speed(MESH, profile.angle)
+    profile = discs.flank(PAPER)
+    speeds = geometry.sliding_speed(MESH, profile.angle)
     lost = 2 * 0.05 * float((profile.force[0] * speeds).sum()) / 8 / 3136
     assert lost == pytest.approx(0.057, abs=5.01e-4)
 
@@ -342,7 +340,7 @@ def test_larger_modification_at_the_same_clearance_means_less_force_and_more_pin
     modification = np.linspace(-53e-6, 11e-6, 30)
     reducer = replace(PAPER, equidistant_modification=modification, shift_modification=modification - 4e-6)
     assert np.all(np.diff(worn(reducer).max_force) < 0)
-    loaded = (curves.flank(reducer).force > 0).mean(axis=1)
+    loaded = (discs.flank(reducer).force > 0).mean(axis=1)
     assert np.all(np.diff(loaded) >= 0)
     assert loaded[-1] > loaded[0] + 0.2
 

@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rv_wear.discs import Modifications, Validity
 from rv_wear.model import RV_WEAR
-from rv_wear.modifications import Modifications
-from rv_wear.validity import Validity
 from truing import Allocation, Require, Sweep, Vary
 from truing.calculation import Calculation, calculate
 from truing.errors import TruingError

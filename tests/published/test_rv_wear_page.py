@@ -7,13 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rv_wear import curves
+from rv_wear import discs
 from rv_wear.calculation import rv_wear
-from rv_wear.chances import FACTORS, slopes_at_same_wear
-from rv_wear.cycloid import relative_arm, smallest_convex_radius
-from rv_wear.mesh import mesh_of
+from rv_wear.geometry import mesh_of, relative_arm, sliding_ratio, sliding_speed, smallest_convex_radius
+from rv_wear.machines import FACTORS, slopes_at_same_wear
 from rv_wear.model import RV_WEAR
-from rv_wear.sliding import sliding_ratio, sliding_speed
 
 PAGE = (Path(__file__).parents[2] / "docs" / "explanation" / "rv_wear.md").read_text(encoding="utf-8")
 WORDS = " ".join(PAGE.split())
@@ -108,7 +106,7 @@ def test_what_is_said_of_sliding() -> None:
 
 
 def test_what_is_said_of_the_forces() -> None:
-    new, worn = curves.flank(PAPER), curves.flank(PAPER, 6000 * 3600.0)
+    new, worn = discs.flank(PAPER), discs.flank(PAPER, 6000 * 3600.0)
     angle = np.degrees(new.angle)
     loaded = angle[new.force[0] > 0]
     assert f"between {loaded[0]:.0f}° and {loaded[-1]:.0f}°" in WORDS
@@ -120,14 +118,14 @@ def test_what_is_said_of_the_forces() -> None:
 
 def test_what_is_said_of_the_play_that_is_felt() -> None:
     """The least take-up of every position, of the worn flank, without load."""
-    worn = curves.flank(PAPER, 6000 * 3600.0)
+    worn = discs.flank(PAPER, 6000 * 3600.0)
     slack = worn.clearance[0] / np.asarray(relative_arm(mesh_of(PAPER), worn.angle))
     felt = slack.reshape(-1, PAPER.phases).min(axis=0) * 1e6
     assert f"{felt.min():.2f} to {felt.max():.2f} µm of the 3.13 µm" in WORDS
 
 
 def test_what_is_said_of_the_losses() -> None:
-    new = curves.flank(PAPER)
+    new = discs.flank(PAPER)
     power = new.force[0] * np.asarray(sliding_speed(mesh_of(PAPER), new.angle))
     lost = 2 * 0.05 * power.reshape(-1, PAPER.phases).sum(axis=0).mean() / PAPER.output_torque
     assert f"{100 * lost:.1f} % of the output power" in WORDS

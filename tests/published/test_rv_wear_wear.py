@@ -14,13 +14,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rv_wear import coefficient, courses, curves, cycloid, sliding
-from rv_wear.history import histories, states, wear_at
-from rv_wear.mesh import Mesh, mesh_of
+from rv_wear import discs, geometry, wear
+from rv_wear.geometry import Mesh, mesh_of, teeth_of
 from rv_wear.model import RV_WEAR
 from rv_wear.quantities import Reducer
-from rv_wear.teeth import teeth_of
-from rv_wear.wear import exposure_of, oil_part, worn
+from rv_wear.wear import exposure_of, histories, oil_part, states, wear_at, worn
 from shared import ROUNDING
 
 PAPER: Reducer = RV_WEAR.inputs()
@@ -126,19 +124,19 @@ def test_phases_agree_within_half_a_thousandth() -> None:
     (2, 1, 1, 2**1.219), (1, 2, 1, 2**-7.377), (1, 1, 2, 2**1.589),
 ])  # fmt: skip
 def test_exponents_of_the_regression(load: float, oil: float, roughness: float, factor: float) -> None:
-    base = coefficient.wear_coefficient(MODULUS, 1.5e5, 4.5e-3, 2.2e-8, 0.7e-6)
-    changed = coefficient.wear_coefficient(MODULUS, load * 1.5e5, 4.5e-3, oil * 2.2e-8, roughness * 0.7e-6)
+    base = wear.wear_coefficient(MODULUS, 1.5e5, 4.5e-3, 2.2e-8, 0.7e-6)
+    changed = wear.wear_coefficient(MODULUS, load * 1.5e5, 4.5e-3, oil * 2.2e-8, roughness * 0.7e-6)
     assert changed / base == pytest.approx(factor, rel=1e-13)
 
 
 def test_coefficient_written_out_and_its_size() -> None:
     group = 3.981e29 * (1.5e5 / (MODULUS * 4.5e-3)) ** 1.219 * (2.2e-8 * MODULUS) ** -7.377 * (0.7e-6 / 4.5e-3) ** 1.589
-    written = coefficient.wear_coefficient(MODULUS, 1.5e5, 4.5e-3, 2.2e-8, 0.7e-6)
+    written = wear.wear_coefficient(MODULUS, 1.5e5, 4.5e-3, 2.2e-8, 0.7e-6)
     assert written == pytest.approx(group / MODULUS, rel=1e-13)
     short = 2.2 * 40 / 114.5
     path = 114.5e-3 * (1 - short**2) ** 1.5 / (41 * short**2 - 1 - 40 * short**2)  # G2 at the longest arm
     radius = abs((path + 5e-3) * 5e-3 / path)
-    here = coefficient.wear_coefficient(MODULUS, worn(PAPER).max_force / 20e-3, radius, 2.2e-8, 0.694e-6)
+    here = wear.wear_coefficient(MODULUS, worn(PAPER).max_force / 20e-3, radius, 2.2e-8, 0.694e-6)
     assert worn(PAPER).coefficient == pytest.approx(here, rel=1e-12)
 
 
@@ -146,12 +144,12 @@ def test_millimetres_and_megapascals_give_the_same_wear() -> None:
     metres = mesh_of(PAPER)
     millimetres = Mesh(114.5, 5.0, 2.2, 20.0, -0.026, -0.030, 0.55 * 3136e3, 2.06e5, 0.3, 0.05e-3)
     meshings = 6000 * 15 * 60 * 40
-    in_metres = meshings * coefficient.lubricant_part(MODULUS, 2.2e-8, 0.694e-6)
-    in_millimetres = meshings * coefficient.lubricant_part(MODULUS * 1e-6, 2.2e-2, 0.694e-3)
-    wear = wear_at(teeth_of(metres), np.array([in_metres]))
+    in_metres = meshings * wear.lubricant_part(MODULUS, 2.2e-8, 0.694e-6)
+    in_millimetres = meshings * wear.lubricant_part(MODULUS * 1e-6, 2.2e-2, 0.694e-3)
+    depth = wear_at(teeth_of(metres), np.array([in_metres]))
     same = wear_at(teeth_of(millimetres), np.array([in_millimetres]))
-    assert same.max() * 1e-3 == pytest.approx(wear.max(), rel=1e-12)
-    assert wear.max() == pytest.approx(worn(PAPER).depth, rel=1e-12)
+    assert same.max() * 1e-3 == pytest.approx(depth.max(), rel=1e-12)
+    assert depth.max() == pytest.approx(worn(PAPER).depth, rel=1e-12)
 
 
 # The law
@@ -159,13 +157,13 @@ def test_millimetres_and_megapascals_give_the_same_wear() -> None:
 
 def test_the_first_step_is_equation_13() -> None:
     """Short time: dh = k F / B lambda for every meshing, k from the force and radius of that point."""
-    new = curves.flank(PAPER)
+    new = discs.flank(PAPER)
     force, mesh = new.force[0], mesh_of(PAPER)
-    radius = np.asarray(cycloid.relative_radius(mesh, new.angle))
-    k = coefficient.wear_coefficient(MODULUS, force / 0.02, radius, 2.2e-8, 0.694e-6)
-    rate = k * force / 0.02 * np.asarray(sliding.sliding_ratio(mesh, new.angle)) / 0.1  # per second
+    radius = np.asarray(geometry.relative_radius(mesh, new.angle))
+    k = wear.wear_coefficient(MODULUS, force / 0.02, radius, 2.2e-8, 0.694e-6)
+    rate = k * force / 0.02 * np.asarray(geometry.sliding_ratio(mesh, new.angle)) / 0.1  # per second
     assert of(working_time=10 * HOUR) == pytest.approx(rate.max() * 10 * HOUR * 1e6, rel=1e-12)
-    assert curves.flank(PAPER, 10 * HOUR).wear[0] == pytest.approx(rate * 10 * HOUR, rel=1e-11, abs=1e-22)
+    assert discs.flank(PAPER, 10 * HOUR).wear[0] == pytest.approx(rate * 10 * HOUR, rel=1e-11, abs=1e-22)
 
 
 def test_wear_grows_with_time_ever_slower_and_begins_at_zero() -> None:
@@ -195,7 +193,7 @@ def test_speed_and_time_enter_by_their_product() -> None:
 
 
 def test_the_deepest_point_lies_in_the_middle_of_the_contact() -> None:
-    found = curves.flank(PAPER, 6000 * HOUR)
+    found = discs.flank(PAPER, 6000 * HOUR)
     assert found.wear.max() == pytest.approx(worn(PAPER).depth, rel=1e-12)
     assert found.angle[found.wear[0].argmax()] == pytest.approx(worn(PAPER).angle, rel=ROUNDING)
     loaded = found.angle[found.force[0] > 0]
@@ -207,7 +205,7 @@ def test_between_the_steps_the_largest_wear_is_that_of_the_whole_flank(changes: 
     reducer = replace(PAPER, **changes)
     for hours in np.linspace(37, 6011, 23):
         now = replace(reducer, working_time=hours * HOUR)
-        whole = curves.flank(now, hours * HOUR)
+        whole = discs.flank(now, hours * HOUR)
         assert worn(now).depth == pytest.approx(whole.wear.max(), rel=1e-12)
 
 
@@ -227,8 +225,8 @@ def test_order_of_questions_does_not_matter(designs: int) -> None:
     discs = ground(np.linspace(-40e-6, 5e-6, designs))
 
     def asked(times: list[float]) -> list[Any]:
-        courses.history_of_one.cache_clear()
-        courses.history_of_group.cache_clear()
+        wear.history_of_one.cache_clear()
+        wear.history_of_group.cache_clear()
         return [of(working_time=time * HOUR, **discs).tolist() for time in times]
 
     assert asked(hours) == asked(hours[::-1])[::-1]
@@ -284,10 +282,10 @@ def film_ratio(angle: float, force: float, factor: float) -> float:
 
 
 def test_film_leaves_the_share_that_its_ratio_says() -> None:
-    new = curves.flank(PAPER)
-    dry = curves.flank(PAPER, 10 * HOUR).wear[0]
+    new = discs.flank(PAPER)
+    dry = discs.flank(PAPER, 10 * HOUR).wear[0]
     for factor in (20.0, 80.0, 150.0):
-        wet = curves.flank(replace(PAPER, film_factor=factor), 10 * HOUR).wear[0]
+        wet = discs.flank(replace(PAPER, film_factor=factor), 10 * HOUR).wear[0]
         for place in np.flatnonzero(new.force[0] > 0):
             ratio = film_ratio(new.angle[place], new.force[0, place], factor)
             assert wet[place] == pytest.approx(dry[place] * np.clip((3 - ratio) / 2.5, 0, 1), rel=1e-9)

@@ -8,8 +8,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from harmonic_fractal import flank_choice
-from harmonic_fractal.cleaning import (
+from harmonic_fractal import flank
+from harmonic_fractal.estimate import Estimate
+from harmonic_fractal.flank import read_flank
+from harmonic_fractal.surface import (
+    Direction,
+    Lines,
+    Surface,
     cut,
     quantisation,
     root_mean_square,
@@ -17,9 +22,6 @@ from harmonic_fractal.cleaning import (
     without_form,
     without_line,
 )
-from harmonic_fractal.estimate import Estimate
-from harmonic_fractal.flank import read_flank
-from harmonic_fractal.surface import Direction, Lines, Surface
 
 Array = NDArray[np.float64]
 SHAPE = (70, 90)
@@ -292,7 +294,7 @@ def test_the_choice_of_direction(
         assert np.nanmax(np.abs(np.nanmean(lines.heights, axis=1))) < 1e-15  # each line is level
         return said[direction]
 
-    monkeypatch.setattr(flank_choice, "estimate_of", estimate_of)
+    monkeypatch.setattr(flank, "estimate_of", estimate_of)
     found = read_flank(write(tmp_path, rough()), sliding=sliding)
     assert found.chosen == chosen
     assert words in " ".join(found.warnings)
@@ -303,7 +305,7 @@ def test_pooled_lines_that_are_refused_leave_the_direction_of_sliding(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     said = {"x": settled("x", 1.5), "y": settled("y", 1.6), "both": settled("both", 1.55, "no range")}
-    monkeypatch.setattr(flank_choice, "estimate_of", lambda lines, direction, settings: said[direction])
+    monkeypatch.setattr(flank, "estimate_of", lambda lines, direction, settings: said[direction])
     assert read_flank(write(tmp_path, rough()), sliding="y").chosen == "y"
     asked = read_flank(write(tmp_path, rough()), direction="both")
     assert (asked.chosen, asked.reason, asked.warnings) == (None, "no range", ())
@@ -405,7 +407,7 @@ def test_options_reach_the_estimate(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         seen.append(settings)
         return settled(direction, 1.5)
 
-    monkeypatch.setattr(flank_choice, "estimate_of", estimate_of)
+    monkeypatch.setattr(flank, "estimate_of", estimate_of)
     file = write(tmp_path, rough())
     read_flank(file, method="per_line", noise_aware=True, fit="all", shortest_lag="0.8 um", longest_lag="10 um")
     assert (seen[-1].method, seen[-1].noise_aware, seen[-1].fit) == ("per_line", True, "all")

@@ -10,8 +10,7 @@ from harmonic_by_quadrature import RoughPair
 from scipy.integrate import quad
 
 from harmonic_fractal import clearance, micro
-from harmonic_fractal.contact import Contact, contact_of, pressed
-from harmonic_fractal.interface import Rough, interface_of
+from harmonic_fractal.contact import Contact, Rough, contact_of, interface_of, pressed
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.quantities import Drive
 

@@ -4,22 +4,22 @@ import numpy as np
 import pytest
 from scipy.special import gamma
 
-from harmonic_fractal.cleaning import without_line
 from harmonic_fractal.estimate import Estimation, estimate_of
 from harmonic_fractal.generators import (
     Array,
+    Instrument,
     Waves,
+    as_measured,
     brownian_profiles,
+    brownian_surface,
+    levelled_structure,
     profile_sum,
     surface_sum,
     weierstrass_profile,
     weierstrass_surface,
 )
-from harmonic_fractal.generators_brownian import brownian_surface
-from harmonic_fractal.levelling import levelled_structure
-from harmonic_fractal.made_instrument import Instrument, as_measured
-from harmonic_fractal.power_law import structure_function
-from harmonic_fractal.surface import Lines
+from harmonic_fractal.structure import structure_function
+from harmonic_fractal.surface import Lines, without_line
 
 SPACING = 0.4e-6
 LENGTH = 200e-6

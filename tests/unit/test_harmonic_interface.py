@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from harmonic_fractal.calculation import harmonic_fractal
+from harmonic_fractal.contact import interface_of, range_of, spacing_of
 from harmonic_fractal.estimate import Estimate
 from harmonic_fractal.flank import Flank
-from harmonic_fractal.interface import interface_of, range_of, spacing_of
 from harmonic_fractal.model import HARMONIC_FRACTAL
-from harmonic_fractal.power_law import structure_function
 from harmonic_fractal.quantities import Drive
+from harmonic_fractal.structure import structure_function
 from harmonic_fractal.surface import Surface
 from truing.errors import InfeasibleError
 from truing.evaluate import answered, evaluate_rows

@@ -11,12 +11,8 @@ from matplotlib.figure import Figure
 
 from harmonic_fractal.flank import read_flank
 from harmonic_fractal.generators import Array
-from harmonic_fractal.made_calculation import made_flank, surface_of
-from harmonic_fractal.made_file import FlankFile, flank_text
-from harmonic_fractal.made_model import MADE_FLANK
-from harmonic_fractal.made_quantities import Made
-from harmonic_fractal.made_sections import SECTIONS
-from harmonic_fractal.made_truth import truth_of, waves_of
+from harmonic_fractal.made_flank import FlankFile, Made, flank_text, made_flank, surface_of, truth_of, waves_of
+from harmonic_fractal.made_sheet import MADE_FLANK, SECTIONS
 from shared import Calc
 from truing import Drawing, Record, Table, TruingError, Words
 from truing.errors import InfeasibleError

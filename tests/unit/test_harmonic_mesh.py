@@ -6,10 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from harmonic_fractal.contact import contact_of, pressed
-from harmonic_fractal.engagement import engagement_of
-from harmonic_fractal.interface import interface_of
-from harmonic_fractal.mesh import Mesh, arcs_of, load_of_largest, mesh_of, normal_stiffness
+from harmonic_fractal.contact import contact_of, interface_of, pressed
+from harmonic_fractal.mesh import Mesh, arcs_of, engagement_of, load_of_largest, mesh_of, normal_stiffness
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.quantities import Drive
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from harmonic_fractal.estimate import Estimation, estimate_of
-from harmonic_fractal.fitting import noise_fit, straight_fit
+from harmonic_fractal.estimate import Estimation, estimate_of, noise_fit, straight_fit
 from harmonic_fractal.generators import brownian_profiles
 from harmonic_fractal.surface import Lines
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import gamma
 
-from harmonic_fractal.power_law import constant, converted, log_roughness_of, spectral_constant, structure_function
+from harmonic_fractal.structure import constant, converted, log_roughness_of, spectral_constant, structure_function
 
 DENSITY = 1.5
 DIMENSIONS = (1.2, 1.4, 1.5, 1.6, 1.8)

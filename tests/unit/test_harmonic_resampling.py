@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 
-from harmonic_fractal.estimate import Estimate, Estimation, estimate_of
-from harmonic_fractal.generators import brownian_profiles
-from harmonic_fractal.generators_brownian import brownian_surface
-from harmonic_fractal.resampling import block_weights
+from harmonic_fractal.estimate import Estimate, Estimation, block_weights, estimate_of
+from harmonic_fractal.generators import brownian_profiles, brownian_surface
 from harmonic_fractal.surface import Lines
 
 STEP, SPACING = 1e-16, 0.4e-6

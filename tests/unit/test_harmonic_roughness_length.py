@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from scipy.special import gammaln
 
-from harmonic_fractal.estimate import Estimation, estimate_of
+from harmonic_fractal.estimate import Estimation, estimate_of, roughness_length_of, window_sizes
 from harmonic_fractal.generators import brownian_profiles
-from harmonic_fractal.roughness_length import roughness_length_of, window_sizes
 from harmonic_fractal.surface import Lines
 
 

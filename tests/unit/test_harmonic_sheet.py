@@ -7,18 +7,24 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from harmonic_fractal.cleaning import without_line
-from harmonic_fractal.drawn_flank import map_figure, profiles_figure, structure_figure
-from harmonic_fractal.drawn_interface import conventions, flanks, interface
-from harmonic_fractal.drawn_look import signed
-from harmonic_fractal.drawn_pair import pair_figure, stiffness
-from harmonic_fractal.drawn_torsion import torsion
 from harmonic_fractal.estimate import Estimation, estimate_of
+from harmonic_fractal.figures import (
+    conventions,
+    flanks,
+    interface,
+    map_figure,
+    pair_figure,
+    profiles_figure,
+    signed,
+    stiffness,
+    structure_figure,
+    torsion,
+)
 from harmonic_fractal.flank import Flank
-from harmonic_fractal.generators_brownian import brownian_surface
+from harmonic_fractal.generators import brownian_surface
 from harmonic_fractal.model import HARMONIC_FRACTAL
-from harmonic_fractal.surface import Direction, Lines, Surface
-from harmonic_fractal.validity import Validity
+from harmonic_fractal.surface import Direction, Lines, Surface, without_line
+from harmonic_fractal.uncertainty import Validity
 from truing import Drawing, Table, Words
 from truing.calculation import Calculation, calculate
 from truing.report.content import input_rows

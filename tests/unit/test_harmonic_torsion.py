@@ -6,14 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from harmonic_fractal import torsion as torsion_module
+from harmonic_fractal import mesh as torsion_module
 from harmonic_fractal.calculation import around_of, harmonic_fractal
-from harmonic_fractal.contact import contact_of
-from harmonic_fractal.interface import interface_of
-from harmonic_fractal.mesh import Mesh, mesh_of, normal_stiffness
+from harmonic_fractal.contact import contact_of, interface_of
+from harmonic_fractal.mesh import Mesh, mesh_of, mesh_torsion, normal_stiffness
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.quantities import Drive
-from harmonic_fractal.torsion import mesh_torsion
 from truing.evaluate import evaluate_rows
 from truing.setup import default_setup
 

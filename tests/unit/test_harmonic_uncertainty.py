@@ -8,18 +8,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from harmonic_fractal.contact import contact_of, pressed
+from harmonic_fractal.contact import Rough, contact_of, interface_of, pressed
 from harmonic_fractal.estimate import Estimation, estimate_of
 from harmonic_fractal.flank import Flank
 from harmonic_fractal.generators import brownian_profiles
-from harmonic_fractal.interface import Rough, interface_of
 from harmonic_fractal.model import HARMONIC_FRACTAL
-from harmonic_fractal.power_law import constant
 from harmonic_fractal.quantities import Drive
-from harmonic_fractal.slopes import slopes
+from harmonic_fractal.structure import constant
 from harmonic_fractal.surface import Lines, Surface
-from harmonic_fractal.tolerances import FLANKS, flank_samples
-from harmonic_fractal.uncertainty import Propagated, Uncertainty
+from harmonic_fractal.uncertainty import FLANKS, Propagated, Uncertainty, flank_samples, slopes
 from truing import Table, TruingError, Words
 from truing.calculation import Calculation, calculate
 from truing.setup import default_setup

@@ -179,7 +179,7 @@ def test_imports_stand_at_the_top_of_files() -> None:
         for node in ast.walk(function)
         for name in _imported(node)
     }
-    assert inside == {("kit.py", "pytest"), ("finding.py", "pytest"), ("surface_formats.py", "SurfaceTopography")}
+    assert inside == {("kit.py", "pytest"), ("finding.py", "pytest"), ("surface_files.py", "SurfaceTopography")}
 
 
 def _imported(node: ast.AST) -> list[str]:

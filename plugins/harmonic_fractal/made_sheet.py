@@ -1,0 +1,279 @@
+"""The sheet of a made flank, its figures, and the calculation as truing knows it."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.figure import Figure
+
+from harmonic_fractal.estimate import Estimate, straight_fit
+from harmonic_fractal.figures import BLUE, GREY, INK, MICRO, NANO, ORANGE, PALE, WIDTH, quiet
+from harmonic_fractal.generators import Array
+from harmonic_fractal.made_flank import (
+    FlankFile,
+    Made,
+    MadeFlank,
+    Truth,
+    estimate_along,
+    exact_structure_function,
+    is_patch,
+    levelled_structure_function,
+    made_flank,
+    surface_of,
+    truth_of,
+)
+from harmonic_fractal.structure import log_roughness_of, structure_function
+from harmonic_fractal.surface import Surface, quantisation, spikes_of, without_form
+from truing import Block, Drawing, Model, Record, Section, Table, Words
+
+# The figures of a made flank: the patch, some of its lines, and its structure function beside the truth
+
+Curve = tuple[Array, Array]
+SHOWN = 5  # lines that are drawn
+
+
+def map_figure(surface: Surface) -> "Figure":
+    """The patch from above, less its mean plane; holes are orange."""
+    rows, points = surface.heights.shape
+    extent = (0.0, (points - 1) * surface.spacing_x * MICRO, 0.0, (rows - 1) * surface.spacing_y * MICRO)
+    height = float(np.clip(0.8 * WIDTH * extent[3] / extent[1], 1.2, 7.0))
+    figure = Figure(figsize=(WIDTH, height + 0.6), layout="constrained")
+    panel = figure.subplots()
+    level = NANO * without_form(surface.heights, "plane")
+    low, high = np.nanpercentile(level, (0.1, 99.9))
+    colours = colormaps["viridis"].with_extremes(bad=ORANGE)
+    image = panel.imshow(level, origin="lower", extent=extent, cmap=colours, vmin=low, vmax=high,
+                         interpolation="nearest")  # fmt: skip
+    panel.set_xlabel("x, along the lines, µm")
+    panel.set_ylabel("y, µm")
+    figure.colorbar(image, ax=panel, label="height, nm", shrink=0.9, extend="both")
+    return figure
+
+
+def lines_figure(surface: Surface) -> "Figure":
+    """Some lines, evenly over the patch, one above the other."""
+    rows, points = surface.heights.shape
+    chosen = np.unique(np.linspace(0, rows - 1, min(rows, SHOWN)).round().astype(int))
+    level = NANO * without_form(surface.heights, "plane")[chosen]
+    gap = 1.2 * float(np.nanmax(np.nanmax(level, axis=1) - np.nanmin(level, axis=1))) or 1.0
+    figure = Figure(figsize=(WIDTH, 1.2 + 0.6 * len(chosen)), layout="constrained")
+    panel = figure.subplots()
+    x = MICRO * surface.spacing_x * np.arange(points)
+    for place, (row, line) in enumerate(zip(chosen, level, strict=True)):
+        panel.plot(x, line - np.nanmean(line) + place * gap, color=BLUE, linewidth=0.8)
+        if rows > 1:
+            name = f"y = {MICRO * surface.spacing_y * row:.4g} µm"
+            panel.annotate(name, (1.0, place * gap), xycoords=("axes fraction", "data"), fontsize=7.5, va="center")
+    panel.set_xlim(x[0], x[-1])
+    quiet(panel, "x, µm", "height, nm" if len(chosen) == 1 else "height, nm, each line set off")
+    return figure
+
+
+def structure_figure(made: Made, truth: Truth, answer: "MadeFlank", found: Estimate) -> "Figure":
+    """S of this flank beside the exact one and what was fitted; the same over the power law; local slopes."""
+    figure = Figure(figsize=(WIDTH, 7.6), layout="constrained")
+    upper, middle, lower = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
+    shown = np.asarray(answer.lag, dtype=np.float64)
+    lags = np.geomspace(shown[0], shown[-1], 400)
+    exact = exact_structure_function(made, lags)
+    own = np.asarray(answer.structure_function, dtype=np.float64)
+    curves = ((shown, own), (lags, exact), (shown, levelled_structure_function(made, shown)))
+    for panel, over in ((upper, None), (middle, truth)):
+        _curves(panel, over, curves, found)
+    upper.set_yscale("log")
+    quiet(upper, "", "S, nm²")
+    upper.legend(loc="best")
+    low, high = middle.get_ylim()
+    middle.set_ylim(max(low, 0.0), min(high, 3.0))
+    quiet(middle, "", "S over power law")
+    _local_slopes(lower, truth, (lags, exact), found)
+    return figure
+
+
+def _curves(panel: Any, over: Truth | None, curves: tuple[Curve, Curve, Curve], found: Estimate) -> None:
+    """Draw S of this flank, the exact one and that of levelled lines: in nm^2, or over the power law of the truth."""
+    own, exact, levelled = curves
+
+    def shown(lags: Array, values: Array) -> Array:
+        return NANO**2 * values if over is None else values / structure_function(lags, over.dimension, over.areal)
+
+    law = np.asarray(structure_function(found.lags, found.dimension, found.roughness))
+    panel.semilogx(MICRO * exact[0], shown(*exact), color=INK, linewidth=1.0, label="exact, of all such flanks")
+    panel.semilogx(MICRO * levelled[0], shown(*levelled), color=INK, linestyle=":", label="the same, lines levelled")
+    panel.semilogx(MICRO * own[0], shown(*own), "o", color=BLUE, markersize=4, markerfacecolor="none",
+                   label="this flank as measured")  # fmt: skip
+    panel.semilogx(MICRO * found.lags, shown(found.lags, found.values), ".", color=ORANGE, markersize=5,
+                   label="its lines levelled, as fitted")  # fmt: skip
+    panel.semilogx(MICRO * found.lags, shown(found.lags, law), color=ORANGE, linewidth=1.0, label="power law fitted")
+    if over is not None:
+        panel.axhline(1.0, color=GREY, linestyle="--", linewidth=1.0)
+
+
+def _local_slopes(panel: Any, truth: Truth, exact: Curve, found: Estimate) -> None:
+    """Draw the dimension between neighbouring lags, of the levelled lines and of the exact S."""
+    edges = np.linspace(np.log(exact[0][0]), np.log(exact[0][-1]), 11)
+    slopes = np.diff(np.interp(edges, np.log(exact[0]), np.log(exact[1]))) / np.diff(edges)
+    middles = MICRO * np.exp(0.5 * (edges[1:] + edges[:-1]))
+    panel.semilogx(middles, 2.0 - slopes / 2.0, color=INK, linewidth=1.0, label="exact")
+    panel.semilogx(MICRO * found.local_lags, found.local_dimensions, "o-", color=ORANGE, markersize=4, linewidth=0.8,
+                   label="this flank, lines levelled")  # fmt: skip
+    panel.axhline(truth.dimension, color=GREY, linestyle="--", linewidth=1.0)
+    if found.is_accepted:
+        panel.axvspan(MICRO * found.range[0], MICRO * found.range[1], color=PALE, zorder=0, label="self-affine range")
+    panel.set_ylim(0.95, 2.05)
+    quiet(panel, "lag, µm", "local dimension of profiles")
+    panel.legend(loc="best")
+
+
+# The sheet of a made flank
+
+Run = Record[Made, MadeFlank]
+
+FOUND_AGAIN = (
+    "The estimator sees the flank as it would see a measured one: each line without its own straight line, and one "
+    "power law through S from the spacing to a tenth of a line, as far as the local slopes agree. What it misses of "
+    "the truth here it misses on a measured flank too: levelling and noise raise the dimension, a lateral filter "
+    "lowers it."
+)
+TRUTH = {
+    "areal": "A sum of plane waves in many directions, each with a random phase. Their amplitudes are fixed, so flanks "
+    "of one truth scatter less than ground ones do; S has a faint ripple, because the frequencies are a row of powers "
+    "of the density.",
+    "brownian": "Fractional Brownian motion: Gaussian, alike in all directions, S a power law without end or ripple.",
+    "profile": "Each line is a sum of waves with phases of its own. Neighbouring lines know nothing of one another, so "
+    "only the direction along the lines means anything.",
+}
+
+
+def truth(record: "Run") -> "Sequence[Block]":
+    """What kind of surface this is."""
+    return [Words(TRUTH[record.inputs.kind])]
+
+
+def look(record: "Run") -> "Sequence[Block]":
+    """The patch and some of its lines."""
+    surface = surface_of(record.inputs)
+    lines = Drawing("Lines of the flank", partial(lines_figure, surface))
+    if surface.is_profile:
+        return [lines]
+    holes = " Orange: not measured." if np.isnan(surface.heights).any() else ""
+    caption = f"Less its mean plane.{holes}"
+    return [Drawing("The flank from above", partial(map_figure, surface), caption), lines]
+
+
+def structure(record: "Run") -> "Sequence[Block]":
+    """The structure function beside the truth."""
+    made, surface = record.inputs, surface_of(record.inputs)
+    found = estimate_along(made, surface, "x")
+    caption = (
+        "Middle: the same S over the power law of the truth. At long lags one flank strays from the mean of all, and "
+        "levelled lines fall below it as the dotted line says. Below: the dimension between neighbouring lags; dashed: "
+        "the true one."
+    )
+    draw = partial(structure_figure, made, truth_of(made), record.results, found)
+    return [Drawing("Structure function and local slopes", draw, caption)]
+
+
+def found_again(record: "Run") -> "Sequence[Block]":
+    """Both directions beside the truth, and the verdict."""
+    made, surface, true = record.inputs, surface_of(record.inputs), truth_of(record.inputs)
+    along = estimate_along(made, surface, "x")
+    found = [("along the lines, x", along)]
+    if made.spikes > 0.0:
+        found.append(("the same, spikes taken out", estimate_along(made, _cleaned(surface), "x")))
+    if is_patch(made, true) and made.directions > 1:
+        found.append(("across the lines, y", estimate_along(made, surface, "y")))
+    rows = [_row(name, each) for name, each in found]
+    table = Table(
+        "Truth and what was found",
+        ("", "D", "half width", "G", "half width", "R²", "self-affine range", "verdict"),
+        [("truth", true.dimension + 1.0, None, true.areal, None, None, "", ""), _expected(made, along), *rows],
+        ("", "", "", "m", "decades", "", "µm", ""),
+        note="Half width: of the 95 % interval by resampling lines, neighbours together. It cannot see what all lines "
+        "of one flank share: flanks of other seeds stray by up to twice as much about what levelling lets expect.",
+    )
+    return [Words(FOUND_AGAIN), table, *_said(along)]
+
+
+def _expected(made: Made, found: Estimate) -> tuple[str | float | None, ...]:
+    """What levelling alone makes of the truth, over the lags of the fit."""
+    law = straight_fit(found.lags, levelled_structure_function(made, found.lags))
+    dimension = 2.0 - float(law.slope) / 2.0
+    roughness = float(np.exp(log_roughness_of(law.intercept, dimension)))
+    return ("expected along levelled lines", dimension + 1.0, None, roughness, None, float(law.r_squared), "", "")
+
+
+def _cleaned(surface: Surface) -> Surface:
+    """Take out spikes as it is done with a measured flank."""
+    spikes = spikes_of(surface.heights, quantisation(surface.heights))
+    return replace(surface, heights=np.where(spikes, np.nan, surface.heights))
+
+
+def _row(name: str, found: Estimate) -> tuple[str | float | None, ...]:
+    low, high = found.range
+    reach = f"{1e6 * low:.3g} to {1e6 * high:.3g}" if found.is_accepted else "none"
+    widths = _half_widths(found)
+    verdict = "accepted" if found.is_accepted else "refused"
+    return (name, found.dimension + 1.0, widths[0], found.roughness, widths[1], found.r_squared, reach, verdict)
+
+
+def _half_widths(found: Estimate) -> tuple[float | None, float | None]:
+    """Half of the central 95 % of D, and of log10 G; None without resamples."""
+    if len(found.resampled) < 2:
+        return None, None
+    low, high = np.percentile(found.resampled, (2.5, 97.5), axis=0)
+    half = 0.5 * (high - low)
+    return float(half[0]), float(half[1] / np.log(10.0))
+
+
+def _said(found: Estimate) -> list[Words]:
+    """Say why the estimator refuses the flank, or what it doubts."""
+    if found.reason:
+        text = f"The estimator refuses this flank: {found.reason}. What was fitted stands for comparison only."
+        return [Words(text, "finding")]
+    return [Words(f"The estimator says: {text}.", "warning") for text in found.warnings]
+
+
+SECTIONS = [
+    Section(
+        "Truth",
+        "profile_dimension", "areal_roughness", "points", "lines", "longest", "shortest",
+        blocks=truth,
+    ),
+    Section("The flank", "rms_height", "height", blocks=look),
+    Section("Structure function", "lag", "structure_function", "exact", "power_law", blocks=structure),
+    Section(
+        "Found again",
+        "fitted_dimension", "dimension_error", "fitted_roughness", "roughness_error", "accepted",
+        blocks=found_again,
+    ),
+]  # fmt: skip
+
+
+# A made flank as truing knows it: function, study and sheet
+
+LITERATURE = [
+    "Majumdar, A., Tien, C. L., Fractal characterization and simulation of rough surfaces, Wear 136 (1990), p. 313.",
+    "Yan, W., Komvopoulos, K., Contact analysis of elastic-plastic fractal surfaces, Journal of Applied Physics 84 "
+    "(1998), p. 3617.",
+    "Davies, R. B., Harte, D. S., Tests for Hurst effect, Biometrika 74 (1987), p. 95.",
+    "Stein, M. L., Fast and exact simulation of fractional Brownian surfaces, Journal of Computational and Graphical "
+    "Statistics 11 (2002), p. 587.",
+    "ISO 16610-21, Geometrical product specifications: filtration, linear profile filters: Gaussian filters.",
+]
+
+MADE_FLANK = Model(
+    name="made_flank",
+    title="Made flank: a rough surface of known truth",
+    function=made_flank,
+    studies=[FlankFile()],
+    sheet=SECTIONS,
+    cites=LITERATURE,
+    example=Path(__file__).with_name("made_flank.toml"),
+    summary="What does a flank of a given fractal dimension and roughness look like, and does an estimator find them "
+    "again through noise, filter, holes and spikes? The flank is written as a file.",
+)

@@ -1,0 +1,166 @@
+"""What the treatment of the steel fixes, and what it bears at the number of loads of a life."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rv_gearing.geometry import Load
+from rv_gearing.quantities import Gear, Gearing
+from truing import Float, either, found, results
+
+# What the treatment of the steel fixes: life curves, running-in, sensitivity to notches, roughness and size
+#
+# Values of ISO 6336-1 to -3:2006; the exponents of the life curves are those that join the points of the standard, as
+# GB/T 3480-1997 prints them.
+
+PART_2 = "ISO 6336-2:2006, clause 11"
+LIFE = "ISO 6336-3:2006, clause 12"
+NOTCH = "ISO 6336-3:2006, clause 13"
+SURFACE = "ISO 6336-3:2006, clause 14"
+SIZE = "ISO 6336-3:2006, clause 15"
+BY_MATERIAL = "by the material"
+PROOF_STRESS = (500e6, 600e6, 800e6, 1000e6)  # Pa, of through-hardened steel
+SLIP_LAYER = (0.0281e-3, 0.0194e-3, 0.0064e-3, 0.0014e-3)  # m
+
+
+@results
+class Steel:
+    """Constants of the material of both gears, as the formulas of the factors use them."""
+
+    contact_life_most: Float = found("", symbol="Z_NT,st", note="life factor for contact of few cycles",
+                                     method=BY_MATERIAL, source=PART_2)  # fmt: skip
+    contact_life_knee: Float = found("", symbol="N_H", note="cycles of the endurance limit for contact",
+                                     method=BY_MATERIAL, source=PART_2)  # fmt: skip
+    contact_life_slope: Float = found("", symbol="q_H", note="exponent of limited life for contact",
+                                      method=BY_MATERIAL, source=PART_2)  # fmt: skip
+    contact_life_tail: Float = found("", symbol="q_H,l", note="exponent of long life for contact",
+                                     method=BY_MATERIAL, source=PART_2)  # fmt: skip
+    bending_life_most: Float = found("", symbol="Y_NT,st", note="life factor for bending of few cycles",
+                                     method=BY_MATERIAL, source=LIFE)  # fmt: skip
+    bending_life_slope: Float = found("", symbol="q_F", note="exponent of limited life for bending",
+                                      method=BY_MATERIAL, source=LIFE)  # fmt: skip
+    slip_layer: Float = found("mm", symbol="rho'", note="thickness of the slip layer", source=NOTCH,
+                              method="by the material; of through-hardened steel by its proof stress")  # fmt: skip
+    surface_smooth: Float = found("", symbol="Y_R,0", note="surface factor of a root smoother than 1 um",
+                                  method=BY_MATERIAL, source=SURFACE)  # fmt: skip
+    surface_constant: Float = found("", symbol="Y_R,1", note="constant of the surface factor",
+                                    method=BY_MATERIAL, source=SURFACE)  # fmt: skip
+    surface_slope: Float = found("", symbol="Y_R,2", note="slope of the surface factor",
+                                 method=BY_MATERIAL, source=SURFACE)  # fmt: skip
+    surface_exponent: Float = found("", symbol="q_R", note="exponent of the surface factor",
+                                    method=BY_MATERIAL, source=SURFACE)  # fmt: skip
+    size_constant: Float = found("", symbol="Y_X,1", note="constant of the size factor for bending",
+                                 method=BY_MATERIAL, source=SIZE)  # fmt: skip
+    size_slope: Float = found("", symbol="Y_X,2", note="slope of the size factor for bending, per mm",
+                              method=BY_MATERIAL, source=SIZE)  # fmt: skip
+    size_least: Float = found("", symbol="Y_X,3", note="least size factor for bending",
+                              method=BY_MATERIAL, source=SIZE)  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Values:
+    """One row of the tables of the standard."""
+
+    contact: tuple[float, float, float, float]  # most, knee, slope, tail
+    bending: tuple[float, float]  # most, slope
+    surface: tuple[float, float, float, float]  # smooth, constant, slope, exponent
+    size: tuple[float, float, float]  # constant, slope per mm, least
+
+
+HARDENED = (1.12, 1.674, 0.529, 0.1)
+CURVES = {
+    "case_hardened": _Values(
+        contact=(1.6, 5e7, 0.0756, 0.0306), bending=(2.5, 0.115), surface=HARDENED, size=(1.05, 0.01, 0.8)
+    ),
+    "through_hardened": _Values(
+        contact=(1.6, 5e7, 0.0756, 0.0306), bending=(2.5, 0.16), surface=HARDENED, size=(1.03, 0.006, 0.85)
+    ),
+    "nitrided": _Values(
+        contact=(1.3, 2e6, 0.0876, 0.0191), bending=(1.6, 0.0587), surface=(1.025, 4.299, 3.259, 0.0058),
+        size=(1.05, 0.01, 0.8),
+    ),
+}  # fmt: skip
+
+
+def steel_of(stage: Gearing) -> Steel:
+    """Return the constants of the material that is stated."""
+    values = CURVES[stage.material]
+    slip: Float = 0.003e-3 if stage.material == "case_hardened" else 0.1005e-3
+    if stage.material == "through_hardened":
+        slip = np.interp(stage.proof_stress, PROOF_STRESS, SLIP_LAYER)
+    return Steel(
+        contact_life_most=values.contact[0],
+        contact_life_knee=values.contact[1],
+        contact_life_slope=values.contact[2],
+        contact_life_tail=values.contact[3],
+        bending_life_most=values.bending[0],
+        bending_life_slope=values.bending[1],
+        slip_layer=slip,
+        surface_smooth=values.surface[0],
+        surface_constant=values.surface[1],
+        surface_slope=values.surface[2],
+        surface_exponent=values.surface[3],
+        size_constant=values.size[0],
+        size_slope=values.size[1],
+        size_least=values.size[2],
+    )
+
+
+# How often the teeth are loaded, and what their material bears that often. Reference: ISO 6336-2 and -3:2006
+
+BENDING_KNEE = 3e6  # cycles of the endurance limit for bending, all materials
+BENDING_TAIL = 0.02
+LEAST = 0.85
+
+
+@results
+class GearLife:
+    """Life factors of one gear."""
+
+    contact_life_factor: Float = found(
+        "", symbol="Z_NT", note="life factor for contact, no pitting; as stated where it is",
+        source="ISO 6336-2:2006, clause 11",
+        formula="either(stated_contact_life, cases("
+        "min((contact_life_knee / load_cycles)**contact_life_slope, contact_life_most),"
+        " load_cycles <= contact_life_knee,"
+        " max((contact_life_knee / load_cycles)**contact_life_tail, 0.85)))",
+    )  # fmt: skip
+    bending_life_factor: Float = found(
+        "", symbol="Y_NT", note="life factor for bending; as stated where it is", source="ISO 6336-3:2006, clause 12",
+        formula="either(stated_bending_life, cases(min((3e6 / load_cycles)**bending_life_slope, bending_life_most),"
+        " load_cycles <= 3e6, max((3e6 / load_cycles)**0.02, 0.85)))",
+    )  # fmt: skip
+
+
+@results
+class Cycles:
+    """Load cycles of both gears."""
+
+    load_cycles_sun: Float = found("", symbol="N_L1", note="load cycles of a sun tooth",
+                                   formula="mesh_speed * planets * working_life")  # fmt: skip
+    load_cycles_planet: Float = found("", symbol="N_L2", note="load cycles of a planet tooth flank",
+                                      formula="mesh_speed / tooth_ratio * working_life")  # fmt: skip
+
+
+def cycles_of(stage: Gearing, load: Load) -> Cycles:
+    """Return the load cycles of sun and planet: a sun tooth meets every planet."""
+    turns = load.mesh_speed * stage.working_life
+    return Cycles(load_cycles_sun=turns * stage.planets, load_cycles_planet=turns * load.sun / load.planet)
+
+
+def life_of(gear: Gear, steel: Steel, cycles: Float) -> GearLife:
+    """Return the life factors of one gear."""
+    contact = life_factor(
+        cycles, steel.contact_life_knee, (steel.contact_life_slope, steel.contact_life_tail), steel.contact_life_most
+    )
+    bending = life_factor(cycles, BENDING_KNEE, (steel.bending_life_slope, BENDING_TAIL), steel.bending_life_most)
+    return GearLife(
+        contact_life_factor=either(gear.stated_contact_life, contact),
+        bending_life_factor=either(gear.stated_bending_life, bending),
+    )
+
+
+def life_factor(cycles: Float, knee: Float, slopes: tuple[Float, Float], most: Float) -> Float:
+    """Return the life factor: 1 at the knee, at most ``most`` before it, at least 0.85 after it."""
+    share = knee / cycles
+    return np.where(cycles <= knee, np.minimum(share ** slopes[0], most), np.maximum(share ** slopes[1], LEAST))
