@@ -12,9 +12,7 @@ from shared import GUESTS, ROOT, TESTS, copied_guest, process
 collect_ignore = ["third_party", "data"]
 sys.path += [str(TESTS / "data"), str(TESTS / "data" / "gear_record")]
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # the commands that tests run compile the kernel once, not each
-os.environ.setdefault(
-    "MYPY_CACHE_DIR", str(ROOT / ".mypy_cache")
-)  # one check of types reads what another has
+os.environ.setdefault("MYPY_CACHE_DIR", str(ROOT / ".mypy_cache"))  # one check of types reads what another has
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")  # the workers of the suite share the cores; a test of threads sets its own
 
