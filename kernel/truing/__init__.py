@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from truing.api.model import Diagnosis, LoadedModel
     from truing.api.records import read, record
     from truing.api.run import Run
+    from truing.api.study import StudyResult
     from truing.declare.batch import column, either, feasible
     from truing.declare.blocks import Block, Drawing, Table, Words
     from truing.declare.fields import Float, axis, found, given, inputs, loaded, part, results, rows
@@ -36,6 +37,7 @@ _HOMES = {
     "truing.api.model": ("Diagnosis", "LoadedModel"),
     "truing.api.records": ("read", "record"),
     "truing.api.run": ("Run",),
+    "truing.api.study": ("StudyResult",),
     "truing.declare.batch": ("column", "either", "feasible"),
     "truing.declare.blocks": ("Block", "Drawing", "Table", "Words"),
     "truing.declare.fields": ("Float", "axis", "found", "given", "inputs", "loaded", "part", "results", "rows"),
@@ -62,7 +64,7 @@ _HOMES = {
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [  # noqa: RUF022  # what a user calls; then what a plugin needs, in the order of its story
-    "load", "LoadedModel", "Run", "read", "record", "Diagnosis",
+    "load", "LoadedModel", "Run", "StudyResult", "read", "record", "Diagnosis",
     "inputs", "results", "given", "found", "axis", "rows", "part", "loaded", "quantity", "Float",
     "feasible", "either", "column",
     "Tolerance", "Effect", "Unknown", "Condition", "ErrorSource",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from truing.declare.builtin import may_stand
@@ -12,8 +12,15 @@ from truing.declare.fields import Axis, Found, Given, InputField, Loaded, Result
 from truing.declare.goals import Maximise, Minimise, Require, Vary
 from truing.declare.published import Published
 from truing.declare.sources import Condition
+from truing.formulas import symbol_text
 from truing.inputs_file.values import bounds_in_words
 from truing.kernel import Offer
+from truing.units import unit_text
+
+WHERE_MEASURED = (
+    ("thermal_drift_of_INPUT", "", "", "where a record varies an input in K"),
+    ("periodic_order_of_INPUT", "", "", "where a record turns an input round that is an angle"),
+)
 
 
 def description(offer: Offer) -> dict[str, Any]:
@@ -152,3 +159,76 @@ def _objective(item: Any) -> dict[str, Any]:
     own = {field.name: getattr(item, field.name) for field in dataclasses.fields(item) if field.name != "kind"}
     limit = {"limit_kind": item.kind} if isinstance(item, Require) else {}
     return {"kind": kinds[type(item)], **own, **limit}
+
+
+def sections(said: Mapping[str, Any]) -> dict[str, list[Sequence[str]]]:
+    """Return a description as tables for people: rows of texts by title, those that have any."""
+    results = [item["name"] for item in said["results"]]
+    built_in = [_built_in_row(item, results) for item in said["built_in"]["effects"]]
+    measured = [row for row in WHERE_MEASURED if _is_among(row[0], said["built_in"]["where_measured"])]
+    found: dict[str, list[Sequence[str]]] = {
+        "Inputs": [_input_row(item) for item in said["inputs"]],
+        "Results": [(item["name"], _symbol(item), _unit(item["unit"]), item["note"]) for item in said["results"]],
+        "Tolerances": [
+            (item["name"], item["spread"], "on " + ", ".join(item["on"]), item["why"]) for item in said["tolerances"]
+        ],
+        "Effects": [_effect_row(item) for item in said["effects"]],
+        "Conditions": [_condition_row(item) for item in said["conditions"]],
+        "Built-in effects, on the reading of each RESULT": [*built_in, *measured],
+        "Built-in conditions": [_condition_row(item) for item in said["built_in"]["conditions"]],
+        "Objectives": [(*_objective_words(item), "", "") for item in said["objectives"]],
+    }
+    return {title: rows for title, rows in found.items() if rows}
+
+
+def _symbol(item: dict[str, Any]) -> str:
+    return symbol_text(item["symbol"]) if item["symbol"] else ""
+
+
+def _unit(unit: str) -> str:
+    return unit_text(unit) or "-"
+
+
+def _input_row(item: dict[str, Any]) -> tuple[str, ...]:
+    default = "optional" if item["default"] is None and item["optional"] else item["default"]
+    unit = " | ".join(item["choices"]) or ("a file" if item["kind"] == "file" else _unit(item["unit"]))
+    options = f"options: {', '.join(item['options'])}" if item["options"] else ""
+    note = "; ".join(text for text in (item["note"], item["bounds"], options, item["source"]) if text)
+    return (item["name"], _symbol(item), "" if default is None else str(default), unit, note)
+
+
+def _condition_row(item: dict[str, Any]) -> tuple[str, ...]:
+    made = f"made: {item['derived']}" if item["derived"] else ""
+    words = "; ".join(text for text in (item["note"], made) if text)
+    return (item["name"], f"reference {item['reference']:g}", _unit(item["unit"]), words)
+
+
+def _built_in_row(item: dict[str, Any], results: list[str]) -> tuple[str, ...]:
+    """Name the unknowns of any result by those of the first."""
+    first = item["parts"][0]
+    own = max((name for name in results if all(one.startswith(name) for one in first)), key=len)
+    unknowns = ", ".join("RESULT" + name.removeprefix(own) for name in first)
+    needs = "needs " + ", ".join(item["needs"]) if item["needs"] else ""
+    return (item["name"], unknowns, needs, item["looks_like"])
+
+
+def _is_among(name: str, effects: list[dict[str, Any]]) -> bool:
+    """Whether one of the effects is of the kind of this name."""
+    return any(item["name"].startswith(name.removesuffix("_of_INPUT")) for item in effects)
+
+
+def _effect_row(item: dict[str, Any]) -> tuple[str, ...]:
+    unknowns = ", ".join(
+        f"{one['name']} {one['low']:g}..{one['high']:g} {_unit(one['unit'])}" for one in item["unknowns"]
+    )
+    needs = "needs " + ", ".join(item["needs"]) if item["needs"] else ""
+    return (item["name"], f"on {item['acts_on']}", unknowns, needs, item["looks_like"])
+
+
+def _objective_words(item: dict[str, Any]) -> tuple[str, str]:
+    if item["kind"] == "vary":
+        return f"vary {item['input']}", item["by"] or f"{item['low']} .. {item['high']}"
+    if item["kind"] == "require":
+        goal = f" with reliability {item['reliability']}" if item["reliability"] is not None else ""
+        return f"require {item['result']}", f"{item['limit_kind'].replace('_', ' ')} {item['limit']}{goal}"
+    return f"{item['kind']} {item['result']}", ""

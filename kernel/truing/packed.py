@@ -17,6 +17,8 @@ from truing.kernel import Kernel, Origin, kernel_for
 from truing.kernel.source import code_hash
 from truing.setup import Setup, SwitchedOn
 
+SCRIPT = "__main__"
+"""The module that is the user's script, or notebook."""
 _LOADING = threading.Lock()  # a worker may have several threads, and a plugin is loaded once
 
 
@@ -90,12 +92,14 @@ def unpack(packed: Packed) -> Setup:
 
 
 def travels(setup: Setup) -> bool:
-    """Tell whether a setup can be packed with its studies: nothing in it is a function made on the fly."""
+    """Tell whether a setup can be packed with its studies.
+
+    Nothing in it may be a function made on the fly, or of the user's script, which no worker executes.
+    """
     try:
-        pack(setup, studies=True)
+        return SCRIPT.encode() not in pack(setup, studies=True).content
     except Exception:
         return False
-    return True
 
 
 def _without_gives(study: Any) -> Any:

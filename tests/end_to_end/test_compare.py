@@ -12,7 +12,8 @@ from typing import Any
 import pytest
 
 from shared import Calc
-from truing.cli.changes import amount_of, styles_of, words_of
+from truing.cli.changes import styles_of
+from truing.runs.change_words import amount_of, words_of
 from truing.runs.comparison import Change, changes, differing
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"

@@ -14,8 +14,8 @@ import pytest
 
 from progress_seen import LEAST_STEPS, watched
 from shared import Calc
-from truing.cli import progress
-from truing.cli.progress import Task, has_terminal, shown_progress, spoken
+from truing import progress
+from truing.progress import Task, has_terminal, shown_progress, spoken
 from truing.studies.bench import Bench, part_of, within
 
 SLOW = """

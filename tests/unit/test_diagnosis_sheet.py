@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from html import unescape
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from diagnosis_samples import SAMPLES, ambiguous, named, none_found, unknown
 from test_report_sheet import HOSTILE, Page
 
 from shared import Calc
+from truing.api import model
 from truing.cli.diagnosis_printed import report
 from truing.diagnosis.records import Covariate, UnitError
 from truing.diagnosis.result import (
@@ -348,8 +348,6 @@ def test_a_narrow_terminal_breaks_behind_the_titles(monkeypatch: pytest.MonkeyPa
 @pytest.fixture
 def engine(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """An engine that found what a sample holds; what it is asked is written down."""
-    from truing.diagnosis import reading
-
     asked: list[Any] = []
 
     def diagnose(
@@ -364,10 +362,8 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
         asked.append(tuple(paths))
         return ambiguous().records
 
-    module = ModuleType("truing.diagnosis.engine")
-    module.diagnose = diagnose  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "truing.diagnosis.engine", module)
-    monkeypatch.setattr(reading, "read_records", read_records)
+    monkeypatch.setattr(model, "diagnose", diagnose)
+    monkeypatch.setattr(model, "read_records", read_records)
     return asked
 
 
@@ -441,7 +437,7 @@ def test_bad_words_are_answered_in_a_sentence(
 def test_every_verdict_ends_with_exit_code_0(
     calc: Calc, plugin: str, engine: list[Any], sample: Callable[[], DiagnosisResult], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(sys.modules["truing.diagnosis.engine"], "diagnose", lambda *_, **__: sample())
+    monkeypatch.setattr(model, "diagnose", lambda *_, **__: sample())
     assert calc("diagnose", plugin, "--data", "press record.csv", "-q").code == 0
 
 

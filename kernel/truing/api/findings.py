@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from matplotlib.figure import Figure
 
+from truing.api.notebook import html_table, plotted
 from truing.api.quantities import quantity_of
 from truing.api.tables import frame_of
 from truing.diagnosis import result as found
 from truing.errors import UsageError
-from truing.report.diagnosis_figures import over_covariate, ranking_bars
+from truing.report.diagnosis_figures import (
+    against_simulated,
+    main_covariates,
+    over_covariate,
+    ranking_bars,
+    shown_curves,
+)
 from truing.report.diagnosis_words import explanation
-from truing.units import from_si
+from truing.units import from_si, unit_text
 
 
 @dataclass(frozen=True)
@@ -25,6 +32,12 @@ class Fitted:
     interval95: tuple[float | None, float | None]
     unit: str
     quantity: Any
+
+    @property
+    def texts(self) -> tuple[str, str]:
+        """The value with its unit, and the interval."""
+        low, high = ("open" if end is None else f"{end:.4g}" for end in self.interval95)
+        return f"{self.value:.4g} {unit_text(self.unit)}".rstrip(), f"{low} … {high} {unit_text(self.unit)}".rstrip()
 
 
 @dataclass(frozen=True)
@@ -43,6 +56,9 @@ class Ranking:
 
     result: found.DiagnosisResult
 
+    def __repr__(self) -> str:
+        return f"<Ranking: {'; '.join(explanation(each) for each in self.result.ranking)}>"
+
     def frame(self) -> Any:
         """Return them as a dataframe: explanation, how far behind in score, lambda that separates it from the best."""
         ranked = self.result.ranking
@@ -56,7 +72,11 @@ class Ranking:
 
     def plot(self) -> Figure:
         """Draw how far every explanation is behind the best."""
-        return ranking_bars(self.result)
+        return plotted(lambda: ranking_bars(self.result))
+
+    def _repr_html_(self) -> str:
+        rows = [(explanation(each), f"{each.behind:.1f}", f"{each.separation:.1f}") for each in self.result.ranking]
+        return html_table(rows, ("explanation", "behind", "separation"))
 
 
 @dataclass(frozen=True)
@@ -65,6 +85,9 @@ class Residuals:
 
     result: found.DiagnosisResult
 
+    def __repr__(self) -> str:
+        return f"<Residuals of {', '.join(curves.result for curves in self.result.curves)}>"
+
     def frame(self, name: str = "") -> Any:
         """Return what was measured, and the model before and after, of one result in its print unit, row by row."""
         curves = self._curves(name)
@@ -72,18 +95,28 @@ class Residuals:
         return frame_of({each: from_si(getattr(curves, each), unit) for each in ("measured", "before", "after")})
 
     def plot(self, over: str = "", name: str = "") -> Figure:
-        """Draw the residuals of a result over a covariate: of what the cause depends on, where none is named."""
+        """Draw the residuals of a result over a covariate: of what the cause depends on, where none is named.
+
+        Raises UsageError for a column that the record does not have and a result that was not measured.
+        """
+        return plotted(self.drawing(over, name))
+
+    def drawing(self, over: str = "", name: str = "") -> Callable[[], Figure]:
+        """Return what draws that figure; without any covariate that varies it is measured against simulated."""
         covariates = self.result.records.covariates
         if over and over not in covariates:
             raise UsageError(f"'{over}' is no column of the record; there are {', '.join(covariates)}")
-        asked = [over] if over else [*(self.result.remainder.depends_on if self.result.remainder else ()), *covariates]
-        return over_covariate(self.result, self._curves(name), covariates[asked[0]])
+        shown = [covariates[over]] if over else main_covariates(self.result)
+        curves = self._curves(name)
+        if not shown:
+            return lambda: against_simulated(self.result, curves)
+        return lambda: over_covariate(self.result, curves, shown[0])
 
     def _curves(self, name: str) -> found.ResultCurves:
         by_name = {curves.result: curves for curves in self.result.curves}
         if name and name not in by_name:
             raise UsageError(f"'{name}' was not measured; measured are {', '.join(by_name)}")
-        return by_name[name] if name else next(iter(by_name.values()))
+        return by_name[name] if name else (shown_curves(self.result) or self.result.curves)[0]
 
 
 def causes_of(diagnosis: found.DiagnosisResult) -> tuple[NamedCause, ...]:

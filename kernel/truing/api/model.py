@@ -3,43 +3,53 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+import warnings
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from html import escape
 from pathlib import Path
+from types import NoneType
 from typing import Any
 
+from matplotlib.figure import Figure
+
+from truing.api.comparison import Differences, comparison_of
 from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
+from truing.api.notebook import bullets, fold, folds, heading, html_table, joined, paragraphs, picture
 from truing.api.records import Record
-from truing.api.run import Run, html_table
-from truing.api.settings import settings_of
-from truing.api.tables import as_file, beside
-from truing.atomic import write_files
-from truing.calculation import calculate
+from truing.api.run import Order, Run, performed
+from truing.api.settings import settings_of, text_of
+from truing.api.study import StudyResult
+from truing.api.tables import LABEL, as_file, beside
+from truing.api.writing import write_sheet
 from truing.declare.model import Study
+from truing.declare.near_miss import near_miss
+from truing.describe import description, sections
 from truing.diagnosis import result as found
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import Verdict
-from truing.errors import UsageError
-from truing.example_file import example_of
-from truing.executors import open_executor
+from truing.errors import Fault, InputError, UsageError
+from truing.example_file import example_of, example_text
 from truing.gauge import shown_by_gauge
 from truing.inputs_file import read_setup, setup_from_text
 from truing.inputs_file.assemble import toml_value
+from truing.inputs_file.culprit import told_by_line
 from truing.kernel import Offer
-from truing.measurements import read_rows
+from truing.measurements import RowsFile, read_rows
+from truing.progress import progress_bar
+from truing.published import ComparedRow, compare_published
+from truing.report.diagnosis_lines import questions
 from truing.report.diagnosis_run import diagnosis_sheet_of, write_diagnosed
-from truing.report.diagnosis_sheet import diagnosis_html, diagnosis_markdown
-from truing.report.diagnosis_words import headline
-from truing.report.run import place_of
+from truing.report.diagnosis_sheet import data_words, diagnosis_html, diagnosis_markdown
+from truing.report.diagnosis_words import headline, verdict_word
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_text
 from truing.runs.folder import demand_place
 from truing.setup import Setup
-from truing.studies.bench import Progress, silent
+from truing.studies.bench import Progress
 from truing.studies.sweep import Sweep
+from truing.units.grammar import shown
 
 
 @dataclass(frozen=True)
@@ -47,12 +57,23 @@ class LoadedModel:
     """A model that was loaded, with the inputs of its shipped example until others are stated.
 
     ``stated`` holds what every run of it states, in the words of ``--set``; ``text`` the inputs file that stands in
-    place of the example, its name, and the folder in which it looks for data files.
+    place of the example, its name, and the folder in which it looks for data files. ``label`` is what sentences about
+    a stated value begin with.
+
+    Every call takes values as keywords: an input, a condition, ``seed`` or ``draws`` (of every study that draws). A
+    value is a text with its unit ("12 mm"), a number in the declared unit, or a quantity of pint. ``set`` is a mapping
+    of the same, for names that are no keyword or that the call itself uses: ``set={"tolerances.load": "off"}``.
+    ``progress`` is True (a bar on a terminal or in a notebook, once the work takes two seconds), False, or a function
+    ``progress(task, done, total)``.
     """
 
     offer: Offer
     stated: tuple[str, ...] = ()
     text: tuple[str, str, Path] | None = None
+    label: str = ""
+
+    def __repr__(self) -> str:
+        return f"<LoadedModel {self.name}: {self.title}>"
 
     @property
     def name(self) -> str:
@@ -64,56 +85,103 @@ class LoadedModel:
         """What it calculates, in a line."""
         return self.offer.model.title
 
-    def given(self, **values: Any) -> LoadedModel:
-        """Return the model with these values in every run: see ``run``."""
-        return replace(self, stated=(*self.stated, *settings_of(self.offer.model, values)))
+    def given(self, *, set: Mapping[str, Any] | None = None, **values: Any) -> LoadedModel:
+        """Return the model with these values in every run."""
+        return replace(self, stated=(*self.stated, *self._settings(set, values)))
 
-    def setup(self, inputs: str | Path | None = None, **values: Any) -> Setup:
+    def setup(self, inputs: str | Path | None = None, *, set: Mapping[str, Any] | None = None, **values: Any) -> Setup:
         """Return what a run would calculate: the inputs file, or the shipped example, and values in place of its own.
 
         Raises InputError with every fault.
         """
-        overrides = [*self.stated, *settings_of(self.offer.model, values)]
+        overrides = [*self.stated, *self._settings(set, values)]
+        if not isinstance(inputs, (str, Path, NoneType)):
+            raise UsageError(f"inputs names an inputs file; a {type(inputs).__name__} of values is stated with set=")
         if inputs is not None:
-            return read_setup(Path(inputs), self.offer, overrides=overrides, label="")
+            return read_setup(Path(inputs), self.offer, overrides=overrides, label=self.label)
         text, file, folder = self.text or example_of(self.offer)
-        return setup_from_text(text, self.offer, file=file, folder=folder, overrides=overrides, label="")
+        return setup_from_text(text, self.offer, file=file, folder=folder, overrides=overrides, label=self.label)
 
     def run(
-        self, inputs: str | Path | None = None, *, workers: int = 1, progress: Progress = silent, **values: Any
+        self,
+        inputs: str | Path | None = None,
+        *,
+        cases: Any = None,
+        workers: int | None = None,
+        cluster: str = "",
+        output: str | Path | None = None,
+        resume: bool = False,
+        pdf: bool = False,
+        excel: bool = False,
+        set: Mapping[str, Any] | None = None,
+        progress: Progress | bool = True,
+        **values: Any,
     ) -> Run:
-        """Run the calculation and its studies: what ``calc run`` does, without writing anything.
+        """Run the calculation and its studies: what ``calc run`` does; nothing is written without ``output``.
 
-        ``inputs`` is an inputs file; without one the shipped example runs. Every other argument states an input, a
-        condition, ``seed`` or ``draws``: a text with its unit ("12 mm"), a number in the declared unit, or a quantity
-        of pint. Names with a dot are passed as ``**{"tolerances.load": "off"}``. Raises TruingError with one sentence.
+        ``inputs`` is an inputs file; without one the shipped example runs. ``cases`` is a file or a dataframe, in which
+        every row is a case. It is computed in ``workers`` processes, or on the dask ``cluster`` at an address; the
+        answer does not depend on it. ``output`` is a folder that is complete or absent, whatever happens; with
+        ``resume`` finished batches are kept beside it, and those of an interrupted run are taken up; ``pdf`` and
+        ``excel`` are as in ``Run.save``. Raises TruingError with one sentence.
         """
-        return self._ran(self.setup(inputs, **values), workers=workers, progress=progress)
+        folder = None if output is None else Path(output)
+        order = Order(folder, cases, workers, cluster, resume, pdf, excel)
+        return performed(self.setup(inputs, set=set, **values), self.offer, order, progress)
 
-    def study(self, study: Study, inputs: str | Path | None = None, *, workers: int = 1, **values: Any) -> Any:
-        """Run one study, whether the model declares it or not, and return its outcome."""
-        setup = replace(self.setup(inputs, **values), studies=(study,))
-        return self._ran(setup, workers=workers).outcomes[study.name]
+    def study(
+        self,
+        study: Study,
+        inputs: str | Path | None = None,
+        *,
+        workers: int | None = None,
+        set: Mapping[str, Any] | None = None,
+        progress: Progress | bool = True,
+        **values: Any,
+    ) -> StudyResult:
+        """Run one study, whether the model declares it or not, and return what it found."""
+        if not hasattr(study, "run"):
+            raise UsageError(f"{study!r:.60} is no study; hand in one, such as truing.Sensitivity()")
+        setup = replace(self.setup(inputs, set=set, **values), studies=(study,))
+        run = performed(setup, self.offer, Order(workers=workers), progress)
+        return replace(run.studies[study.name], warnings=run.warnings)
 
-    def sweep(self, over: str, low: str, high: str, points: int = 181, **values: Any) -> Any:
-        """Evaluate every result along one input or condition, from ``low`` to ``high``, texts with units."""
-        return self.study(Sweep(over=over, at=f"{_number_of(low, high)}..{high}", points=points), **values)
+    def sweep(self, over: str, low: Any, high: Any, points: int = 181, **more: Any) -> StudyResult:
+        """Evaluate every result along one input or condition, from ``low`` to ``high``, at evenly spaced points.
 
-    def evaluate(self, frame: Any, *, units: Mapping[str, str] | None = None, **values: Any) -> Any:
+        The ends are texts with units or numbers in the declared unit; everything else is as in ``study``. A point
+        without an answer keeps its reason.
+        """
+        ends = [text_of(self.offer.model, over, end) for end in (low, high)]
+        return self.study(Sweep(over=over, at="..".join(ends), points=points), **more)
+
+    def evaluate(
+        self,
+        frame: Any,
+        inputs: str | Path | None = None,
+        *,
+        units: Mapping[str, str] | None = None,
+        set: Mapping[str, Any] | None = None,
+        **values: Any,
+    ) -> Any:
         """Calculate every row of a dataframe: it comes back with a column for every result, as the gauge would show it.
 
         Columns that are named like inputs and conditions replace them, each with its unit in the name ("load [N]") or
-        in ``units``; results are in the units they are printed in, with these in their names. A row without an answer
-        has NaN there, and the reason in the column ``fault``. Raises InputError with every fault of the dataframe.
+        in ``units``; results are in the units they are printed in, with these in their names. Columns of the dataframe
+        that are named like these are left out. A row without an answer has NaN there, and the reason in the column
+        ``fault``. Raises InputError with every fault of the dataframe.
         """
-        setup = self.setup(**values)
+        setup = self.setup(inputs, set=set, **values)
         with as_file(frame, units or {}) as path:
             rows = read_rows(path, self.offer, setup)
-        shown = shown_by_gauge(setup, rows)
+        _demand_known(rows, setup)
+        with told_by_line(setup):
+            shown_rows = shown_by_gauge(setup, rows)
         results: dict[str, Any] = {
-            f"{name} [{shown.units[name] or '1'}]": column for name, column in shown.values.items()
+            f"{name} [{shown_rows.units[name] or '1'}]": column for name, column in shown_rows.values.items()
         }
-        return beside(frame, {**results, "fault": [shown.reasons.get(row, "") for row in range(len(rows))]})
+        faults = [shown_rows.reasons.get(row, "") for row in range(len(rows))]
+        return beside(frame, {**results, "fault": faults}, without={*shown_rows.values, "fault"})
 
     def diagnose(
         self,
@@ -123,48 +191,100 @@ class LoadedModel:
         hold_out: str = "",
         per_file: Sequence[str] = (),
         budget: int = 0,
-        progress: Progress = silent,
+        output: str | Path | None = None,
+        pdf: bool = False,
+        set: Mapping[str, Any] | None = None,
+        progress: Progress | bool = True,
         **values: Any,
     ) -> Diagnosis:
-        """Find what the model gets wrong on a record: what ``calc diagnose`` does, without writing anything.
+        """Find what the model gets wrong on a record: what ``calc diagnose`` does.
 
         ``hold_out`` marks rows that only judge ("judged = yes"), ``per_file`` names what every file has for itself,
-        ``budget`` is how many calls of the model the search may make (0: as many as its time allows). ``inputs`` and
-        ``values`` are those of ``run``. Raises TruingError with one sentence, or every fault of a file.
+        ``budget`` is how many calls of the model the search may make (0: as many as its time allows). Nothing is
+        written without ``output``, a folder that is complete or absent; ``pdf`` prints the sheet there. Raises
+        TruingError with one sentence, or every fault of a file.
         """
-        started = time.time()
+        _demand_record(record)
+        if pdf and output is None:
+            raise UsageError("pdf needs output, the folder that is written")
         options = {"hold_out": hold_out, "per_file": list(per_file), "budget": budget}
         stated = {f"studies.diagnose.{name}": toml_value(value) for name, value in options.items() if value}
-        setup = self.setup(inputs, **stated, **values)
-        records = read_records(record.files, self.offer, setup)
-        return Diagnosis(self.offer, diagnose(setup, records, progress=progress), started)
+        setup = self.setup(inputs, set={**stated, **(set or {})}, **values)
+        if output is not None:
+            demand_place(Path(output), "diagnosis")
+        with progress_bar(progress) as report, told_by_line(setup):
+            started, records = time.time(), read_records(record.files, self.offer, setup)
+            made = Diagnosis(self.offer, diagnose(setup, records, progress=_as_one(report)), started)
+            report("sheet and PDF" if pdf else "sheet", 0, 0)
+            return made if output is None else replace(made, note=made.written(Path(output), pdf=pdf))
 
-    def _ran(self, setup: Setup, *, workers: int = 1, progress: Progress = silent) -> Run:
-        started = time.time()
-        with open_executor(place_of(workers)) as executor:
-            calculation = calculate(setup, executor=executor, progress=progress)
-        return Run(self.offer, calculation, started)
+    def describe(self) -> dict[str, Any]:
+        """Return everything the model declares, as ``calc describe --json`` prints it."""
+        return description(self.offer)
+
+    def verify(self, *, progress: Progress | bool = True) -> list[ComparedRow]:
+        """Return every number that the source prints beside ours, as ``calc verify`` compares them."""
+        with progress_bar(progress) as report:
+            return compare_published(self.offer, progress=report)
+
+    def example(self) -> str:
+        """Return a commented inputs file that runs as it is: what ``calc init`` writes."""
+        return example_text(self.offer)
+
+    def _repr_html_(self) -> str:
+        """Show what the model takes and answers, and what could make it wrong."""
+        said = self.describe()
+        tables = sections(said)
+        inputs = html_table(tables.pop("Inputs", ()), ("input", "symbol", "default", "unit", ""))
+        results = html_table(tables.pop("Results", ()), ("result", "symbol", "unit", ""))
+        studies = [f"Studies: {', '.join(said['studies'])}"] if said["studies"] else []
+        head = heading(f"{self.name}: {self.title}") + paragraphs([said["summary"]] if said["summary"] else [])
+        return joined(head, inputs, results, folds(tables), paragraphs(studies))
+
+    def _settings(self, set: Mapping[str, Any] | None, values: Mapping[str, Any]) -> list[str]:
+        return settings_of(self.offer.model, {**(set or {}), **values})
 
 
-def _number_of(low: str, high: str) -> str:
-    """Return the number of the lower end. Raises UsageError where the two ends are in different units."""
-    number, _, unit = low.strip().partition(" ")
-    if unit.strip() != high.strip().partition(" ")[2].strip():
-        raise UsageError(f"a sweep from '{low}' to '{high}': write both ends in one unit")
-    return number
+def _demand_record(record: Any) -> None:
+    if not isinstance(record, Record):
+        made = "truing.read(files, model) or truing.record(dataframe, model)"
+        raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
+
+
+def _demand_known(rows: RowsFile, setup: Setup) -> None:
+    """Raise InputError for a column that changes nothing and is called nearly like one that would."""
+    known = [*setup.model.input_fields, *setup.conditions]
+    others = [name for name in rows.others if name not in setup.model.result_fields]
+    hints = {name: near_miss(name[:80], [one for one in known if one not in rows.columns]) for name in others}
+    faults = [
+        Fault(f"column {shown(name)} changes nothing.{hint} Rename it or leave it out", LABEL, 1)
+        for name, hint in hints.items()
+        if hint
+    ]
+    if faults:
+        raise InputError(faults)
+
+
+def _as_one(progress: Progress) -> Progress:
+    """Return what shows the stages of a diagnosis as one task, and what comes after it as another."""
+    return lambda stage, step, steps: progress("diagnosis" if steps else stage, step, steps)
 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """A finished diagnosis; nothing of it is written until ``sheet`` or ``save`` is asked.
+    """A finished diagnosis.
 
     ``verdict`` is "named", "one_of", "unknown", "none" or "undecided"; ``sentences`` say it in words; ``document`` is
-    what diagnosis.json holds; ``result`` has everything in SI.
+    what diagnosis.json holds; ``result`` has everything in SI; ``note`` says what became of a PDF.
     """
 
     offer: Offer
     result: found.DiagnosisResult
     started: float
+    note: str = ""
+
+    def __repr__(self) -> str:
+        return f"<Diagnosis of {self.offer.name}: {' '.join([f'{verdict_word(self.result)}.', *self.sentences])}>"
 
     @property
     def verdict(self) -> Verdict:
@@ -180,6 +300,14 @@ class Diagnosis:
     def warnings(self) -> tuple[str, ...]:
         """What speaks against the causes that are named."""
         return self.result.warnings
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was done to the record, and which of its columns may be misspelt or in another unit than written."""
+        records = self.result.records
+        slips = (f"suspected unit slip: {slip.text} (nothing was changed)" for slip in records.unit_errors)
+        unused = (f"{count.file}: {count.sentence()}" for count in records.counts if count.unused)
+        return (*slips, *unused, *records.notes)
 
     @cached_property
     def causes(self) -> tuple[NamedCause, ...]:
@@ -209,27 +337,42 @@ class Diagnosis:
             raise UsageError("nothing was named and nothing calibrated: there is no extended model")
         return LoadedModel(self.offer, (), (text, "extended.toml", Path.cwd()))
 
-    def sheet(self, path: str | Path) -> Path:
-        """Write the sheet: HTML, or Markdown where the name ends in ``.md``."""
-        file = Path(path)
-        sheet = diagnosis_sheet_of(self.result, self.started)
-        write_files({file: diagnosis_markdown(sheet) if file.suffix == ".md" else diagnosis_html(sheet)})
-        return file
+    def plot(self) -> Figure:
+        """Draw what convinces: the residuals before and after, over what the cause depends on."""
+        return self.residuals.plot()
 
-    def save(self, folder: str | Path) -> Path:
-        """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes."""
+    def sheet(self, path: str | Path) -> Path:
+        """Write the sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
+        make = lambda: diagnosis_sheet_of(self.result, self.started)  # noqa: E731
+        return write_sheet(path, make, diagnosis_html, diagnosis_markdown)
+
+    def save(self, folder: str | Path, *, pdf: bool = False) -> Path:
+        """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes. Raises OutputError."""
         place = Path(folder)
         demand_place(place, "diagnosis")
-        write_diagnosed(self.result, place, started=self.started)
+        note = self.written(place, pdf=pdf)
+        if note.startswith("no PDF"):
+            warnings.warn(note, stacklevel=2)
         return place
 
-    def _repr_html_(self) -> str:
-        """Show the verdict, the causes and the ranking; inert and self-contained."""
-        said = "".join(f"<p>{escape(sentence)}</p>" for sentence in self.sentences)
-        return f"<h4>{escape(self.result.setup.model.title)}</h4>{said}{html_table(self._cells())}"
+    def written(self, folder: Path, *, pdf: bool = False) -> str:
+        """Write the folder and return what became of the PDF."""
+        return write_diagnosed(self.result, folder, started=self.started, pdf=pdf)
 
-    def _cells(self) -> Iterator[Sequence[str]]:
-        for cause in self.causes:
-            for name, each in cause.unknowns.items():
-                ends = " … ".join("open" if end is None else f"{end:.4g}" for end in each.interval95)
-                yield cause.effect, name, f"{each.value:.4g} {each.unit}".rstrip(), f"95 %: {ends}"
+    def compare(self, before: Diagnosis) -> Differences:
+        """Return what differs from ``before`` to this diagnosis: data, verdict, causes, errors, gain."""
+        return comparison_of(before.document, self.document)
+
+    def _repr_html_(self) -> str:
+        """Show the verdict, the causes, the residuals before and after, and the rest folded away."""
+        said = [f"{verdict_word(self.result)}. {' '.join(self.sentences)}"]
+        warned = [f"Warning: {text}" for text in self.warnings]
+        causes = [
+            (cause.effect, name, *unknown.texts) for cause in self.causes for name, unknown in cause.unknowns.items()
+        ]
+        table = html_table(causes, ("cause", "unknown", "size", "95 % interval")) if causes else ""
+        lines = {**questions(self.result), **({"Record": list(self.notes)} if self.notes else {})}
+        rest = "".join(fold(title, bullets(texts)) for title, texts in lines.items())
+        head = heading(f"Diagnosis of {self.result.setup.model.title}, {data_words(self.result)}")
+        shown = picture(self.residuals.drawing(), "Residuals before and after")
+        return joined(head + paragraphs([*said, *warned]), table, shown, fold("More", rest))

@@ -3,16 +3,33 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Protocol
 
+import numpy as np
+
+from truing.api.notebook import heading, html_table, joined, paragraphs
 from truing.api.tables import frame_of, write_frame
-from truing.diagnosis.data_file import read_data_file
-from truing.errors import Fault, InputError
+from truing.declare.near_miss import near_miss
+from truing.diagnosis.data_file import DataRows, read_data_file
+from truing.errors import Fault, InputError, UsageError
 from truing.kernel import Offer
+from truing.numbers import counted, format_number
+from truing.units import from_si, unit_text
+from truing.units.grammar import shown
+
+PLAYED = {
+    "word": "input",
+    "series": "input along an axis",
+    "sigma": "standard deviation",
+    "other": "not declared",
+    "label": "text",
+}
+"""What parts of columns are called, where a user does not call them as we do."""
 
 
 class HasOffer(Protocol):
@@ -24,11 +41,31 @@ class HasOffer(Protocol):
 
 
 @dataclass(frozen=True)
+class RecordColumn:
+    """A column of a record: what it is to the model, how many values it has, and from where to where in its unit."""
+
+    name: str
+    unit: str
+    part: str
+    values: int
+    low: float | None
+    high: float | None
+
+
+@dataclass(frozen=True)
 class Record:
-    """Measured rows of one machine: one file, or several. A dataframe stands in a file that goes with the record."""
+    """Measured rows of one machine: one file, or several. A dataframe stands in a file that goes with the record.
+
+    ``rows`` counts them; ``columns`` holds, file by file, what each column is to the model.
+    """
 
     files: tuple[Path, ...]
-    folder: TemporaryDirectory[str] | None = field(default=None, repr=False, compare=False)
+    folder: TemporaryDirectory[str] | None = field(default=None, compare=False)
+    rows: int = 0
+    columns: tuple[tuple[RecordColumn, ...], ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<Record of {counted(self.rows)}: {', '.join(file.name for file in self.files)}>"
 
     def frame(self) -> Any:
         """Return the rows of the files as written, one behind another, as a dataframe of texts."""
@@ -42,13 +79,26 @@ class Record:
             count += len(rows)
         return frame_of(columns)
 
+    def _repr_html_(self) -> str:
+        """Show what each column is to the model, and what it holds."""
+        shown = []
+        for file, columns in zip(self.files, self.columns, strict=False):
+            rows = [(item.name, unit_text(item.unit), item.part, item.values, *_ends(item)) for item in columns]
+            shown += [heading(file.name), html_table(rows, ("column", "unit", "is", "values", "from", "to"))]
+        return joined(*shown, paragraphs([f"{counted(self.rows)} measured"]))
 
-def read(files: str | Path | list[str | Path], model: HasOffer) -> Record:
+
+def _ends(column: RecordColumn) -> tuple[str, str]:
+    low, high = (("" if end is None else format_number(end, 5)) for end in (column.low, column.high))
+    return low, high
+
+
+def read(files: str | Path | Sequence[str | Path], model: HasOffer) -> Record:
     """Take measured files (CSV) as a record of this model. Raises InputError with every fault of every file."""
-    several = files if isinstance(files, list) else [files]
-    paths = tuple(Path(file) for file in several)
-    _demand_read(paths, model)
-    return Record(paths)
+    paths = tuple(Path(file) for file in ([files] if isinstance(files, (str, Path)) else files))
+    if not paths:
+        raise UsageError("no file is named; a record is one measured file or several")
+    return _known(paths, model)
 
 
 def record(frame: Any, model: HasOffer, *, units: Mapping[str, str] | None = None, name: str = "record") -> Record:
@@ -57,20 +107,48 @@ def record(frame: Any, model: HasOffer, *, units: Mapping[str, str] | None = Non
     Columns are named as in a file: inputs, results (measured), conditions, ``sigma_NAME``, ``run``, each with its unit
     in the name ("load [N]") or in ``units``. ``name`` is what the sheet calls it. Raises InputError with every fault.
     """
+    if Path(name).name != name or not name:
+        raise UsageError(f"'{name}' is no name for a record; write a word without a folder")
     folder = TemporaryDirectory()
     path = Path(folder.name) / f"{name}.csv"
     write_frame(frame, path, units or {}, gaps=True)
-    _demand_read((path,), model)
-    return Record((path,), folder)
+    return _known((path,), model, folder)
 
 
-def _demand_read(paths: tuple[Path, ...], model: HasOffer) -> None:
+def _known(paths: tuple[Path, ...], model: HasOffer, folder: TemporaryDirectory[str] | None = None) -> Record:
     faults: list[Fault] = []
+    files: list[DataRows] = []
     for path in paths:
         try:
-            _, found = read_data_file(path, model.offer)
+            rows, found = read_data_file(path, model.offer)
             found.raise_any()
+            files.append(rows)
         except InputError as error:
-            faults += error.faults
+            faults += [Fault(each.message, path.stem if folder else each.file, each.line) for each in error.faults]
     if faults:
         raise InputError(faults)
+    columns = tuple(tuple(_columns(file)) for file in files)
+    for text in dict.fromkeys(text for each in columns for text in _misspelt(each, model)):
+        warnings.warn(text, stacklevel=4)
+    return Record(paths, folder, sum(map(len, files)), columns)
+
+
+def _misspelt(columns: tuple[RecordColumn, ...], model: HasOffer) -> Iterator[str]:
+    """Say which columns are no word of the model and are called nearly like one that is not measured."""
+    declared, names = model.offer.model, {column.name for column in columns}
+    known = [*declared.measurable, *declared.known_conditions, *declared.input_fields]
+    for column in columns:
+        hint = near_miss(column.name[:80], [name for name in known if name not in names])
+        if column.part in (PLAYED["other"], PLAYED["label"]) and hint:
+            yield f"column {shown(column.name)} is neither input, result nor condition.{hint}"
+
+
+def _columns(rows: DataRows) -> Iterator[RecordColumn]:
+    for name, values in rows.columns.items():
+        unit, part = rows.units[name], PLAYED.get(rows.parts[name], rows.parts[name])
+        if values.dtype == object:
+            yield RecordColumn(name, unit, part, sum(value is not None for value in values), None, None)
+            continue
+        finite = values[np.isfinite(values)]
+        low, high = (float(from_si(end, unit)) for end in (finite.min(), finite.max())) if finite.size else (None, None)
+        yield RecordColumn(name, unit, part, finite.size, low, high)

@@ -2,45 +2,107 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from html import escape
+import time
+import warnings
+from collections.abc import Iterator, Mapping
+from concurrent.futures import Executor
+from contextlib import nullcontext
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from truing.api.comparison import Differences, comparison_of
+from truing.api.notebook import fold, heading, html_table, joined, paragraphs
 from truing.api.quantities import quantity_of
-from truing.api.tables import frame_of
-from truing.atomic import write_files
-from truing.calculation import Calculation
+from truing.api.study import StudyResult
+from truing.api.tables import LABEL, as_file, frame_of
+from truing.api.writing import write_sheet
+from truing.calculation import Calculation, calculate
+from truing.cases import CaseResult, CasesTable, run_cases
 from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
+from truing.executors import BatchLog, KeptExecutor, Place, open_executor
+from truing.formulas import symbol_text
+from truing.inputs_file.culprit import told_by_line
 from truing.kernel import Offer
+from truing.measurements import CasesFile, read_cases
 from truing.numbers import format_value, with_unit
+from truing.progress import progress_bar
+from truing.report.content import check_rows, least_margin
 from truing.report.render import html_of, markdown_of
-from truing.report.run import sheet_of, write_calculation
+from truing.report.run import UNDISTURBED, sheet_of, write_calculation
+from truing.report.sheet import sentence_of_cases
+from truing.runs.documents import results_document
 from truing.runs.folder import demand_place
+from truing.runs.partial import code_of, identity_of, kept_batches
+from truing.runs.provenance import provenance_of
 from truing.setup import Setup
-from truing.studies.bench import Outcome
+from truing.studies.bench import Progress, silent
 from truing.studies.checks import HEADLINES, SHORT, Check, State
 from truing.studies.verdicts import sentence_of
 from truing.units import from_si
 
+FIRST = 12
+"""So many results are shown, in the order declared; a click shows the others."""
+COLUMNS = ("name", "symbol", "value", "unit", "note")
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is asked of a run beside its inputs: cases (a file or a dataframe), where it is computed, what is written.
+
+    Raises UsageError for what does not go together.
+    """
+
+    folder: Path | None = None
+    cases: Any = None
+    workers: int | None = None
+    cluster: str = ""
+    resume: bool = False
+    pdf: bool = False
+    excel: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what does not go together."""
+        if self.cluster and self.workers is not None:
+            raise UsageError("cluster and workers exclude each other: a cluster has its own workers")
+        for name in ("resume", "pdf", "excel"):
+            if getattr(self, name) and self.folder is None:
+                raise UsageError(f"{name} needs output, the folder that is written")
+
+    @property
+    def place(self) -> str:
+        """Where it is computed, as ``open_executor`` reads it."""
+        if self.cluster:
+            return f"dask:{self.cluster}"
+        return "serial" if self.workers in (None, 1) else f"processes:{self.workers}"
+
 
 @dataclass(frozen=True)
 class Run:
-    """A finished run; nothing of it is written until ``sheet`` or ``save`` is asked.
+    """A finished run.
 
     ``run["stress"]`` is a quantity of pint in the unit that the sheet prints, ``run.si["stress"]`` the bare number or
-    array in SI. ``checks`` are the limits, ``verdict`` the worst state of them, ``outcomes`` those of the studies.
+    array in SI. Of a run with cases the results are those of the governing one, and ``cases`` holds all.
+    ``calculation`` has everything in SI, ``computed`` is what run.json says of the workers, and ``note`` what became of
+    a PDF.
     """
 
     offer: Offer
     calculation: Calculation
     started: float
+    cases: CasesTable | None = None
+    computed: Mapping[str, Any] = field(default_factory=lambda: UNDISTURBED)
+    note: str = ""
+
+    def __repr__(self) -> str:
+        return f"<Run of {self.offer.name}: {self.verdict}, {len(self.checks)} limits, {len(self.si)} results>"
 
     def __getitem__(self, name: str) -> Any:
         """Return a result as a quantity of pint in its print unit. Raises UsageError where there is none."""
-        self._demand(name)
+        if name not in self.si:
+            raise UsageError(f"{self.offer.name} has no result '{name}'.{near_miss(name, list(self.si))}")
         return quantity_of(self.si[name], self._setup.print_unit(name))
 
     @property
@@ -55,8 +117,8 @@ class Run:
 
     @property
     def verdict(self) -> State:
-        """The worst state of all checks: "passes", "proposed" (not as stated), "undecided" or "fails"."""
-        return self.calculation.verdict
+        """The worst state of all checks, of all cases: "passes", "proposed" (not as stated), "undecided" or "fails"."""
+        return self.calculation.verdict if self.cases is None else self.cases.verdict
 
     @property
     def passed(self) -> bool:
@@ -64,44 +126,93 @@ class Run:
         return self.verdict == "passes"
 
     @property
-    def outcomes(self) -> Mapping[str, Outcome]:
-        """What the studies found, by name of the study."""
-        return self.calculation.outcomes
-
-    @property
     def warnings(self) -> tuple[str, ...]:
-        """What the run has to say beside its results."""
-        return self.calculation.warnings
+        """What is to be known beside the results: failed rows, a search without end, a worker that was lost."""
+        return (*self.calculation.warnings, *self.computed["warnings"])
+
+    @cached_property
+    def studies(self) -> Mapping[str, StudyResult]:
+        """What the studies found, by name."""
+        return {
+            name: StudyResult(f"{self._setup.model.title}: {name}", outcome, tuple(outcome.warnings()))
+            for name, outcome in self.calculation.outcomes.items()
+        }
+
+    @cached_property
+    def document(self) -> dict[str, Any]:
+        """What results.json holds."""
+        return results_document(self.calculation, provenance_of(self._setup), cases=self.cases)
 
     def frame(self) -> Any:
         """Return the results that are single numbers as a dataframe: name, symbol, value, unit, note.
 
-        Values are in the unit that is printed. The dataframe is of pandas, polars or pyarrow, whichever is installed.
+        Values are in the unit that is printed. The dataframe is of pandas, polars or pyarrow: of the one that this
+        process has imported, else of the first that is installed. With cases: see ``case_frame``.
         """
         rows = list(self._rows())
-        return frame_of({name: [row[name] for row in rows] for name in ("name", "symbol", "value", "unit", "note")})
+        return frame_of({name: [row[name] for row in rows] for name in COLUMNS})
+
+    def case_frame(self) -> Any:
+        """Return the cases as a dataframe: a row each, with what it changes, its results, verdict and fault.
+
+        Numbers are in the units that are printed, which stand in the names; NaN where a case has no answer. Raises
+        UsageError where the run has no cases.
+        """
+        if self.cases is None:
+            raise UsageError("this run has no cases; state them with cases=")
+        return frame_of(_case_columns(self.cases, self._setup))
 
     def sheet(self, path: str | Path) -> Path:
-        """Write the calculation sheet: HTML, or Markdown where the name ends in ``.md``."""
-        file = Path(path)
-        sheet = sheet_of(self.calculation, self.offer, started=self.started)
-        write_files({file: markdown_of(sheet) if file.suffix == ".md" else html_of(sheet)})
-        return file
+        """Write the calculation sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
+        return write_sheet(
+            path,
+            lambda: sheet_of(self.calculation, self.offer, started=self.started, cases=self.cases),
+            html_of,
+            markdown_of,
+        )
 
-    def save(self, folder: str | Path) -> Path:
-        """Write the folder that ``calc run`` writes: inputs, results, sheets, arrays; an earlier run there goes."""
+    def save(self, folder: str | Path, *, pdf: bool = False, excel: bool = False) -> Path:
+        """Write the folder that ``calc run`` writes: inputs, results, sheets, arrays; an earlier run there goes.
+
+        ``pdf`` prints the sheet where a browser is installed, ``excel`` adds tables for a spreadsheet. Raises
+        OutputError where the folder is something else, or cannot be written.
+        """
         place = Path(folder)
         demand_place(place)
-        write_calculation(place, self.calculation, self.offer, started=self.started)
+        note = self.written(Order(place, pdf=pdf, excel=excel), silent)
+        if note.startswith("no PDF"):
+            warnings.warn(note, stacklevel=2)
         return place
 
+    def written(self, order: Order, progress: Progress) -> str:
+        """Write the folder of an order and return what became of the PDF."""
+        assert order.folder is not None
+        return write_calculation(
+            order.folder, self.calculation, self.offer, started=self.started, computed=self.computed, cases=self.cases,
+            pdf=order.pdf, excel=order.excel, progress=progress,
+        )  # fmt: skip
+
+    def compare(self, before: Run) -> Differences:
+        """Return what differs from ``before`` to this run: settings, inputs, results, checks, studies."""
+        return comparison_of(before.document, self.document)
+
     def _repr_html_(self) -> str:
-        """Show the verdict, the checks and the results; inert and self-contained."""
-        head = f"{HEADLINES[self.verdict]}. {sentence_of(self.calculation.decided)}" if self.checks else ""
-        checks = [(check.compared or check.name, SHORT[check.state]) for check in self.checks]
-        results = [(row["name"], row["symbol"], row["text"]) for row in self._rows()]
-        parts = [f"<h4>{escape(self._setup.model.title)}</h4>", f"<p>{escape(head)}</p>" if head else ""]
-        return "".join([*parts, html_table(checks) if checks else "", html_table(results)])
+        """Show the verdict, the limits, the results, and what is to be known beside them."""
+        head = HEADLINES[self.verdict] + "." if self.checks else "No limits are declared."
+        said = sentence_of(self.calculation.decided) if self.cases is None else sentence_of_cases(self.cases)
+        checks = [
+            (row.compared, with_unit(row.value.text, row.value.unit), row.relation,
+             with_unit(row.limit.text, row.limit.unit), with_unit(row.margin.text, row.margin.unit), SHORT[row.state])
+            for row in check_rows(self.calculation)
+        ]  # fmt: skip
+        limits = html_table(checks, ("check", "value", "", "limit", "margin", "")) if checks else ""
+        rows = [(row["name"], row["symbol"], row["text"], row["note"]) for row in self._rows()]
+        results = html_table(rows[:FIRST], ("result", "symbol", "value", ""))
+        more = fold(f"{len(rows) - FIRST} further results", html_table(rows[FIRST:])) if len(rows) > FIRST else ""
+        warned = paragraphs(f"Warning: {text}" for text in self.warnings)
+        cases = fold(f"cases ({len(self.cases.cases)})", _case_table(self.cases)) if self.cases is not None else ""
+        title = heading(self._setup.model.title) + paragraphs([f"{head} {said}"])
+        return joined(title, warned, limits, results, more, cases)
 
     @property
     def _setup(self) -> Setup:
@@ -115,16 +226,98 @@ class Run:
             unit, item = self._setup.print_unit(name), fields[name]
             number, printed = format_value(value, unit)
             yield {
-                "name": name, "symbol": item.symbol, "value": float(from_si(value, unit)), "unit": unit,
-                "note": item.spec.note, "text": with_unit(number, printed),
+                "name": name, "symbol": symbol_text(item.symbol) if item.symbol else "",
+                "value": float(from_si(value, unit)), "unit": unit, "note": item.spec.note,
+                "text": with_unit(number, printed),
             }  # fmt: skip
 
-    def _demand(self, name: str) -> None:
-        if name not in self.si:
-            raise UsageError(f"{self.offer.name} has no result '{name}'.{near_miss(name, list(self.si))}")
+
+def performed(setup: Setup, offer: Offer, order: Order, progress: Progress | bool) -> Run:
+    """Run the calculation of a setup, and write the folder of the order where it names one, whole or not at all.
+
+    With ``resume`` finished batches are kept beside the folder until then, and those of an interrupted run are taken
+    up. Raises TruingError; what is impossible is said at the input that is to blame.
+    """
+    if order.folder is not None:
+        demand_place(order.folder)
+    keeping = nullcontext()
+    if order.resume and order.folder is not None:
+        keeping = kept_batches(order.folder, identity_of(setup, code_of(setup)))  # type: ignore[assignment]
+    with progress_bar(progress) as report, told_by_line(setup), keeping as log:
+        run = _calculated(setup, offer, order, progress=report, log=log)
+        return run if order.folder is None else replace(run, note=run.written(order, report))
 
 
-def html_table(rows: Iterable[Sequence[str]]) -> str:
-    """Write rows as a table of HTML, every cell escaped."""
-    lines = ("".join(f"<td>{escape(str(cell))}</td>" for cell in row) for row in rows)
-    return "<table>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"
+def _calculated(setup: Setup, offer: Offer, order: Order, *, progress: Progress, log: BatchLog | None) -> Run:
+    started = time.time()
+    with open_executor(order.place) as place:
+        if order.cluster:
+            place.compare(code_of(setup))
+        executor = place if log is None else KeptExecutor(place, log)
+        calculation, cases = _with_cases(setup, offer, order, executor=executor, progress=progress)
+        place.settle()
+        computed = _computed(executor)
+    return Run(offer, calculation, started, cases, computed)
+
+
+def _with_cases(
+    setup: Setup, offer: Offer, order: Order, *, executor: Executor, progress: Progress
+) -> tuple[Calculation, CasesTable | None]:
+    if order.cases is None:
+        return calculate(setup, executor=executor, progress=progress), None
+    return run_cases(setup, _cases_of(order.cases, offer, setup), executor=executor, progress=progress)
+
+
+def _cases_of(cases: Any, offer: Offer, setup: Setup) -> CasesFile:
+    """Read cases from a file, or from a dataframe, which goes by that name."""
+    if isinstance(cases, (str, Path)):
+        return read_cases(Path(cases), offer, setup)
+    with as_file(cases, {}) as path:
+        read = read_cases(path, offer, setup)
+    return CasesFile(tuple(replace(case, file=LABEL) for case in read.cases), replace(read.count, file=LABEL))
+
+
+def _computed(place: Place) -> dict[str, Any]:
+    """Return what run.json says of where it was computed: workers, what befell them, batches that were taken up."""
+    return {
+        "workers": {"count": place.workers, "lost": place.losses, "where": place.where},
+        "resumed": place.resumed if isinstance(place, KeptExecutor) else 0,
+        "warnings": place.remarks(),
+    }
+
+
+def _case_columns(cases: CasesTable, setup: Setup) -> dict[str, list[Any]]:
+    """Return a column each for name, what varies, results that are single numbers, verdict and fault."""
+    answers = next((case.answers for case in cases.cases if case.reason is None), {})
+    results = [name for name, value in answers.items() if not getattr(value, "ndim", 0)]
+    columns: dict[str, list[Any]] = {"case": [case.name for case in cases.cases]}
+    for name in cases.varied:
+        columns[_with_unit(name, setup)] = [_in_unit(case.values[name], setup.print_unit(name)) for case in cases.cases]
+    for name in results:
+        columns[_with_unit(name, setup)] = [_answer(case, name, setup) for case in cases.cases]
+    columns["verdict"] = [case.verdict for case in cases.cases]
+    return {**columns, "fault": [case.reason or "" for case in cases.cases]}
+
+
+def _with_unit(name: str, setup: Setup) -> str:
+    return f"{name} [{unit}]" if (unit := setup.print_unit(name)) else name
+
+
+def _answer(case: CaseResult, name: str, setup: Setup) -> float:
+    return float("nan") if case.reason else float(from_si(case.answers[name], setup.print_unit(name)))
+
+
+def _in_unit(value: Any, unit: str) -> Any:
+    return value if isinstance(value, (str, bool)) else float(from_si(value, unit))
+
+
+def _case_table(cases: CasesTable) -> str:
+    rows = [
+        (case.row, case.name, with_unit((margin := least_margin(case.checks)).text, margin.unit), _state(case))
+        for case in cases.cases
+    ]
+    return html_table(rows, ("row", "case", "margin", ""))
+
+
+def _state(case: CaseResult) -> str:
+    return case.reason or SHORT[case.verdict]

@@ -31,7 +31,12 @@ def _each(model: Model[Any, Any], name: str, value: Any) -> Iterator[tuple[str, 
             raise UsageError(f"{model.name} has no study that draws; leave out draws")
         yield from ((f"studies.{study}.draws", str(value)) for study in drawing)
         return
-    yield name, _text(name, value, _unit_of(model, name))
+    yield name, text_of(model, name, value)
+
+
+def text_of(model: Model[Any, Any], name: str, value: Any) -> str:
+    """Return the value of an input or condition as a file has it. Raises UsageError for what is no value."""
+    return _text(name, value, _unit_of(model, name))
 
 
 def _unit_of(model: Model[Any, Any], name: str) -> str:

@@ -15,8 +15,8 @@ from typing import Any, ParamSpec
 
 import typer
 
-from truing.cli.console import one_line
 from truing.heavy import Later
+from truing.texts import one_line
 
 P = ParamSpec("P")
 OfferedWord = tuple[str, str]

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import typer
 
-from truing.cli.changes import styles_of, words_of
+from truing.cli.changes import styles_of
 from truing.cli.coloured import out_table
-from truing.cli.console import one_line, out, out_json
+from truing.cli.console import out, out_json
+from truing.runs.change_words import words_of
 from truing.runs.comparison import Change, compared, in_order
 from truing.runs.folder import load_either
+from truing.texts import one_line
 
 
 def compare(

@@ -20,6 +20,7 @@ import typer
 from truing.cli.endings import Terminated
 from truing.errors import InputError, OutputError, TruingError
 from truing.heavy import Later
+from truing.texts import one_line
 
 P = ParamSpec("P")
 NARROWEST = 60
@@ -215,8 +216,3 @@ def broken(line: str, indent: int) -> list[str]:
         return [line]
     parts = textwrap.wrap(line[indent:], width - indent) or [""]
     return [line[:indent] + parts[0], *(" " * indent + part for part in parts[1:])]
-
-
-def one_line(text: object) -> str:
-    """Return a text as one printable line."""
-    return " ".join("".join(c if c.isprintable() else " " for c in str(text)).split())

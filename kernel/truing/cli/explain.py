@@ -6,14 +6,15 @@ from pathlib import Path
 
 import typer
 
+from truing.api.model import LoadedModel
 from truing.cli.console import Settings, out, out_json, settings_of
 from truing.cli.explain_printed import lines_of, width_of_page
-from truing.cli.load import find_offer, read_or_example
-from truing.cli.progress import progress_bar
+from truing.cli.load import LABEL, find_offer, say_example
 from truing.errors import UsageError
 from truing.explain import SECTIONS, told
 from truing.inputs_file.culprit import told_by_line
 from truing.kernel import Offer
+from truing.progress import progress_bar
 
 
 def explain(
@@ -28,8 +29,9 @@ def explain(
     """Explain a result: formula, what it is made from, what moves it; or an input, an effect, a tolerance."""
     settings = settings_of(context)
     offer, wanted = _asked(what, name, settings)
-    setup = read_or_example(offer, inputs, changed or (), word=offer.name, settings=settings)
-    with progress_bar(settings) as progress, told_by_line(setup):
+    say_example(inputs, offer.name, settings)
+    setup = LoadedModel(offer, tuple(changed or ()), label=LABEL).setup(inputs)
+    with progress_bar(not settings.quiet) as progress, told_by_line(setup):
         document = told(setup, offer, wanted, progress=progress)
     if as_json:
         out_json(document)

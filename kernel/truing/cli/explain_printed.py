@@ -8,9 +8,10 @@ import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from truing.cli.console import GAP, NARROWEST, one_line
+from truing.cli.console import GAP, NARROWEST
 from truing.formulas.write_text import HOLD, folded
 from truing.numbers import format_number, pretty
+from truing.texts import one_line
 from truing.units import unit_text
 
 PAGE = 80

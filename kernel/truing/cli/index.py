@@ -6,9 +6,10 @@ from pathlib import Path
 
 import typer
 
-from truing.cli.console import one_line, out, out_json, settings_of
+from truing.cli.console import out, out_json, settings_of
 from truing.report.index_page import listing_document, summary_of, write_index
 from truing.runs.index import list_folder
+from truing.texts import one_line
 
 
 def index(

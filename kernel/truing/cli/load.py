@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from truing.api.model import LoadedModel
 from truing.cli.console import Settings
-from truing.example_file import example_of
-from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Offer
 from truing.kernel.finding import offer_of
-from truing.setup import Setup
+
+LABEL = "--set"
+"""What sentences about a value on the command line begin with."""
 
 
 def find_offer(word: str, settings: Settings, *, strict: bool = False) -> Offer:
@@ -18,12 +19,12 @@ def find_offer(word: str, settings: Settings, *, strict: bool = False) -> Offer:
     return offer_of(word, lambda text: settings.say(f"warning: {text}"), strict=strict)
 
 
-def read_or_example(
-    offer: Offer, inputs: Path | None, changed: Sequence[str], *, word: str, settings: Settings
-) -> Setup:
-    """Return what the inputs file says, or the shipped example where none is named; ``word`` named the model."""
-    if inputs is not None:
-        return read_setup(inputs, offer, overrides=changed)
-    settings.say(f"no --inputs: running the shipped example (calc init {word} writes it to a file)")
-    text, file, folder = example_of(offer)
-    return setup_from_text(text, offer, file=file, folder=folder, overrides=changed)
+def find_model(word: str, settings: Settings, changed: Sequence[str] | None = None) -> LoadedModel:
+    """Return the model that ``word`` names, with what ``--set`` changes in every run."""
+    return LoadedModel(find_offer(word, settings), tuple(changed or ()), label=LABEL)
+
+
+def say_example(inputs: Path | None, word: str, settings: Settings) -> None:
+    """Say that the shipped example runs where no inputs file is named; ``word`` named the model."""
+    if inputs is None:
+        settings.say(f"no --inputs: running the shipped example (calc init {word} writes it to a file)")

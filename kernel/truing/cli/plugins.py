@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import typer
 
-from truing.cli.console import columns, one_line, out, out_json, settings_of
+from truing.cli.console import columns, out, out_json, settings_of
 from truing.kernel import Kernel, Offer
+from truing.texts import one_line
 
 
 def plugins(

@@ -9,23 +9,24 @@ from typing import Any
 
 import numpy as np
 
+from truing.api.run import Run
 from truing.calculation import Calculation
 from truing.cases import CaseResult, CasesTable
-from truing.cli.console import aligned, columns, one_line
+from truing.cli.console import aligned, columns
 from truing.numbers import format_value, with_unit
 from truing.report.content import check_rows, least_margin
 from truing.report.context import Value
-from truing.report.run import Done
 from truing.report.sheet import sentence_of_cases
 from truing.setup import Setup
 from truing.studies.bench import files_of
 from truing.studies.checks import EXIT_CODES, HEADLINES, SHORT
 from truing.studies.verdicts import change_words, sentence_of
+from truing.texts import one_line
 
 MOST_CASES = 40
 
 
-def lines_of(done: Done, folder: Path, *, with_titles: bool) -> Iterator[str]:
+def lines_of(done: Run, folder: Path, *, with_titles: bool) -> Iterator[str]:
     """Say what a run found, and what fails; ``with_titles`` puts the results under the sections of the sheet."""
     calculation = done.calculation
     model = calculation.setup.model
@@ -44,7 +45,7 @@ def lines_of(done: Done, folder: Path, *, with_titles: bool) -> Iterator[str]:
         yield from (f"beside it: {folder / name}" for name in files_of(outcome))
 
 
-def _verdict_lines(done: Done) -> Iterator[str]:
+def _verdict_lines(done: Run) -> Iterator[str]:
     """Say which limits, or which cases, are not kept as stated, and what would have to change."""
     decided, verdict = done.calculation.decided, done.verdict
     if verdict == "passes":

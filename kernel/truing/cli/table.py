@@ -7,7 +7,7 @@ from pathlib import Path
 
 import typer
 
-from truing.cli.console import Settings, one_line, out, say, settings_of
+from truing.cli.console import Settings, out, say, settings_of
 from truing.cli.load import find_offer
 from truing.declare.near_miss import near_miss
 from truing.errors import OutputError, UsageError
@@ -18,6 +18,7 @@ from truing.measurements import EXCEL, PLAIN, RowsFile, read_rows, table_text, w
 from truing.measurements.cell_text import with_comma
 from truing.measurements.overriding import NAMES, REMARKS
 from truing.setup import Setup
+from truing.texts import one_line
 
 
 def table(

@@ -8,12 +8,12 @@ from typing import Any
 
 import typer
 
-from truing.cli.console import aligned, one_line, out, out_json, settings_of
-from truing.cli.load import find_offer
-from truing.cli.progress import progress_bar
+from truing.cli.console import aligned, out, out_json, settings_of
+from truing.cli.load import find_model
 from truing.declare.published import rules_of
 from truing.numbers import format_number
-from truing.published import ComparedRow, compare_published
+from truing.published import ComparedRow
+from truing.texts import one_line
 from truing.units import unit_text
 
 HEAD = ("quantity", "where", "unit", "paper", "ours", "ratio", "verdict", "obtained", "kind", "why")
@@ -27,11 +27,10 @@ def verify(
 ) -> int:
     """Print every number that the source prints beside ours; exit 0 if every row matches its stated verdict."""
     settings = settings_of(context)
-    offer = find_offer(plugin, settings)
-    with progress_bar(settings) as progress:
-        rows = compare_published(offer, progress=progress)
+    model = find_model(plugin, settings)
+    rows = model.verify(progress=not settings.quiet)
     if as_json:
-        findings = [asdict(item) for item in offer.model.findings]
+        findings = [asdict(item) for item in model.offer.model.findings]
         out_json(
             {
                 "rows": [_plain(row) for row in rows],
@@ -40,7 +39,7 @@ def verify(
             }
         )
     else:
-        out("\n".join(_lines(offer.model, rows)))
+        out("\n".join(_lines(model.offer.model, rows)))
     return 0 if all(row.as_stated for row in rows) else 1
 
 

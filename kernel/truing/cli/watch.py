@@ -12,19 +12,18 @@ from typing import Any
 
 import typer
 
+from truing.api.model import LoadedModel
+from truing.api.run import Run
 from truing.atomic import writings, written
-from truing.cli.changes import amount_of
-from truing.cli.console import Settings, one_line, out, say, sentence_of, settings_of
-from truing.cli.load import find_offer
-from truing.cli.progress import progress_bar
-from truing.inputs_file import read_setup
-from truing.inputs_file.culprit import told_by_line
+from truing.cli.console import Settings, out, say, sentence_of, settings_of
+from truing.cli.load import LABEL, find_offer
 from truing.inputs_file.files import refuse_file
 from truing.kernel import Offer
-from truing.report.run import Done, RunOrder, perform
+from truing.runs.change_words import amount_of
 from truing.runs.comparison import changes, in_order
 from truing.runs.folder import demand_place
 from truing.studies.checks import EXIT_CODES, SHORT
+from truing.texts import one_line
 from truing.watching import WatchedFiles, code_files, files_named_in, forget
 
 MOST = 4
@@ -49,9 +48,10 @@ def watch(
     sys.dont_write_bytecode = True  # two savings within one second would otherwise be one to Python
     offer = find_offer(plugin, settings)
     _demand_file(inputs)
-    order = RunOrder(output or Path("runs") / inputs.stem, cases, workers=workers, excel=excel)
-    demand_place(order.folder)
-    watcher = _Watcher(plugin, inputs, tuple(changed or ()), order, settings)
+    folder = output or Path("runs") / inputs.stem
+    demand_place(folder)
+    how = {"cases": cases, "workers": workers, "excel": excel, "progress": not settings.quiet}
+    watcher = _Watcher(plugin, inputs, tuple(changed or ()), folder, how, settings)
     watched = WatchedFiles(every)
     settings.say(f"watching {inputs} and the code of {offer.name}; Ctrl-C ends it")
     try:
@@ -79,8 +79,9 @@ class _Watcher:
 
     plugin: str
     inputs: Path
-    overrides: Sequence[str]
-    order: RunOrder
+    overrides: tuple[str, ...]
+    folder: Path
+    how: Mapping[str, Any]
     settings: Settings
     code: set[Path] = field(default_factory=set)
     last: Mapping[str, Any] | None = None
@@ -98,7 +99,7 @@ class _Watcher:
         if self.looks:  # once as loaded, once after a run, which may import more
             self.looks -= 1
             self.code |= code_files(offer)
-        given = [self.inputs, *([self.order.cases] if self.order.cases else [])]
+        given = [self.inputs, *([self.how["cases"]] if self.how["cases"] else [])]
         return [*given, *files_named_in(self.inputs, offer), *sorted(self.code)]
 
     def loaded_anew(self, offer: Offer, files: Sequence[Path]) -> Offer:
@@ -122,9 +123,8 @@ class _Watcher:
             return
         started, self.before, self.calculating = time.monotonic(), writings(), True
         try:
-            setup = read_setup(self.inputs, offer, overrides=self.overrides)
-            with progress_bar(self.settings) as progress, told_by_line(setup):
-                done = perform(setup, offer, self.order, progress)
+            model = LoadedModel(offer, self.overrides, label=LABEL)
+            done = model.run(self.inputs, output=self.folder, **self.how)
         except Exception as error:
             self.calculating = False
             self._complain(error)
@@ -132,24 +132,23 @@ class _Watcher:
         self.calculating = False
         self._report(done, time.monotonic() - started)
 
-    def _report(self, done: Done, seconds: float) -> None:
+    def _report(self, done: Run, seconds: float) -> None:
         self._warn(done)
         self.runs += 1
-        what = _words(self.last, done.document, self.order.folder)
+        what = _words(self.last, done.document, self.folder)
         self.last, self.made_at = done.document, time.strftime("%H:%M:%S")
         self.exit_code = EXIT_CODES[done.verdict]
         if not out(one_line(f"{self.made_at} {seconds:.1f} s {what}")):
             raise KeyboardInterrupt
 
-    def _warn(self, done: Done) -> None:
+    def _warn(self, done: Run) -> None:
         """Say the warnings that the last run did not have, and the cases that failed."""
-        warnings = [*done.calculation.warnings, *done.remarks]
         cases = done.cases.cases if done.cases is not None else ()
         failed = [str(case.fault) for case in cases if case.reason is not None]
-        for text in (*(f"warning: {one_line(one)}" for one in warnings), *failed):
+        for text in (*(f"warning: {one_line(one)}" for one in done.warnings), *failed):
             if text not in self.warned:
                 self.settings.say(text)
-        self.warned = {*(f"warning: {one_line(one)}" for one in warnings), *failed}
+        self.warned = {*(f"warning: {one_line(one)}" for one in done.warnings), *failed}
 
     def _complain(self, error: Exception) -> None:
         self.exit_code = 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Future
@@ -16,7 +17,7 @@ from types import TracebackType
 from typing import Any
 
 from truing.errors import LostWorkersError
-from truing.executors.places import Place
+from truing.executors.places import Place, SerialExecutor
 
 MOST_LOSSES = 3
 PATIENCE = 5.0  # where an interrupt does not end a wait (Windows), it is heard after this many seconds
@@ -34,9 +35,11 @@ class ProcessExecutor(Place):
         self._pool = self._new_pool()
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Hand a call to a worker, which may start for it."""
+        """Hand a call to a worker, which may start for it; a function of the user's script is called here."""
+        if any(getattr(each, "__module__", "") == "__main__" for each in (function, *args)):
+            return SerialExecutor().submit(function, *args, **kwargs)
         answer: Future[Any] = Future()
-        with _interrupts_held_back():
+        with _interrupts_held_back(), _main_left_alone():
             self._pool.submit(function, *args, **kwargs).add_done_callback(partial(_hand_on, answer))
         return answer
 
@@ -111,6 +114,23 @@ def _interrupts_held_back() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _main_left_alone() -> Iterator[None]:
+    """Let a worker that starts in the block not execute the user's script again.
+
+    What workers compute they import by the name of its module. So a script needs no ``if __name__ == "__main__"``
+    around a run; functions of the script itself are called in its own process.
+    """
+    script = vars(sys.modules["__main__"])
+    hidden: dict[str, Any] = {name: script[name] for name in ("__file__", "__spec__") if name in script}
+    script.pop("__file__", None)
+    script["__spec__"] = None
+    try:
+        yield
+    finally:
+        script.update(hidden)
 
 
 def _depend_on_the_parent() -> None:

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from html import escape
 from io import StringIO
 from typing import Any
@@ -61,14 +62,21 @@ _NOT_WANTED = (
 )
 
 
+@contextmanager
+def styled() -> Iterator[None]:
+    """Draw as on the sheet, whatever the user of this process has set."""
+    look: Any = {key: value for key, value in mpl.rcParamsDefault.items() if not key.startswith("backend")}
+    look.update(STYLE)
+    with mpl.rc_context(look):
+        yield
+
+
 def draw(what: Callable[[], Any], *, title: str, ident: str) -> str:
     """Draw a figure and return it as an ``<svg>`` element with ``role="img"`` and a title.
 
     ``what()`` returns a matplotlib Figure. Raises PluginError, naming the figure and the place, where drawing fails.
     """
-    look: Any = {key: value for key, value in mpl.rcParamsDefault.items() if not key.startswith("backend")}
-    look.update(STYLE)
-    with mpl.rc_context(look):
+    with styled():
         try:
             svg = _saved(what())
         except Exception as error:

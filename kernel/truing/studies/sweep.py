@@ -118,8 +118,8 @@ class Swept:
         table = self._extremes()
         if table.rows:
             blocks.append(table)
-        if self.shown and self._moving():
-            blocks.append(Drawing(f"Along the {spoken(self.over)}", curves(self, self._moving()[:4])))
+        if self.shown and self.moving():
+            blocks.append(Drawing(f"Along the {spoken(self.over)}", curves(self, self.moving()[:4])))
         if self.failed:
             row, reason = self.failed[0]
             count = f"{len(self.failed)} of {len(self.axis)} points have no answer"
@@ -142,7 +142,7 @@ class Swept:
         """Name the results that are one number per point and finite somewhere."""
         return [name for name, values in self.results.items() if values.ndim == 1 and np.isfinite(values).any()]
 
-    def _moving(self) -> list[str]:
+    def moving(self) -> list[str]:
         """Name those of them that change by more than rounding."""
         spans = {name: (np.nanmin(self.results[name]), np.nanmax(self.results[name])) for name in self._plain()}
         return [name for name, (low, high) in spans.items() if not high - low <= ROUNDING * max(abs(low), abs(high))]
@@ -150,7 +150,7 @@ class Swept:
     def _extremes(self) -> Table:
         unit = self.units[self.over]
         rows: list[list[Any]] = []
-        for name in self._moving():
+        for name in self.moving():
             values = self.results[name]
             row: list[Any] = [name, unit_text(self.units[name])]
             for place in (int(np.nanargmin(values)), int(np.nanargmax(values))):

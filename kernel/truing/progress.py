@@ -1,4 +1,4 @@
-"""A progress bar for work that takes its time: on a terminal, after two seconds, with the time that is left."""
+"""A progress bar for work that takes its time: on a terminal or in a notebook, after two seconds."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
@@ -16,18 +16,26 @@ from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.table import Table
 
-from truing.cli.console import Settings
-from truing.studies.bench import Progress
+from truing.heavy import ipython_display
+from truing.studies.bench import Progress, silent
 
 PATIENCE = 2.0
 """Seconds that pass before anything is shown: short work shows nothing."""
 SETTLED = 0.02
 """The share of a task that must be done before its time left is guessed."""
+REFRESH = 0.25
+"""Seconds between two drawings in a notebook."""
 
 
 def has_terminal() -> bool:
     """Whether errors go to a terminal that can redraw a line, and nobody has asked it to be plain."""
     return sys.stderr.isatty() and os.environ.get("TERM") != "dumb" and not os.environ.get("NO_COLOR")
+
+
+def in_notebook() -> bool:
+    """Whether this process is the kernel of a notebook."""
+    shell: Any = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
+    return type(shell).__name__ == "ZMQInteractiveShell"
 
 
 @dataclass
@@ -71,8 +79,33 @@ def spoken(seconds: float) -> str:
     return f"{int(seconds // 3600)} h {round(seconds % 3600 / 600) * 10} min"
 
 
+class NotebookLine:
+    """A line in a notebook: an output that is drawn anew until it is emptied. rich draws it as HTML."""
+
+    def __init__(self, drawn: Callable[[], Any]) -> None:
+        self._drawn = drawn
+        self._handle: Any = None
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._refresh, daemon=True)
+
+    def start(self) -> None:
+        """Show the line and keep it up to date."""
+        self._handle = ipython_display.display(self._drawn(), display_id=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Empty the output."""
+        self._over.set()
+        self._thread.join()
+        self._handle.update({"text/plain": ""}, raw=True)
+
+    def _refresh(self) -> None:
+        while not self._over.wait(REFRESH):
+            self._handle.update(self._drawn())
+
+
 @dataclass
-class Watched:
+class Tasks:
     """The tasks of a command as they are reported, from whichever thread, and the line that shows the present one."""
 
     task: Task = field(default_factory=lambda: Task("working", time.monotonic()))
@@ -109,9 +142,14 @@ class Watched:
         with self._lock:
             if self._over:
                 return
-            console = Console(stderr=True)
-            self._line = Live(console=console, transient=True, refresh_per_second=5, get_renderable=self._drawn)
-            self._line.start(refresh=True)
+            self._line = self._new_line()
+            self._line.start()
+
+    def _new_line(self) -> Any:
+        if in_notebook():
+            return NotebookLine(self._drawn)
+        console = Console(stderr=True)
+        return Live(console=console, transient=True, refresh_per_second=5, get_renderable=self._drawn)
 
     def _drawn(self) -> Any:
         """Draw the present task: its name, a bar, how much is done, and how long it will take."""
@@ -127,8 +165,8 @@ class Watched:
 
 @contextmanager
 def shown_progress() -> Iterator[Progress]:
-    """Give what takes reports of progress, and show them on a terminal until the work is over."""
-    watched = Watched()
+    """Give what takes reports of progress, and show them until the work is over."""
+    watched = Tasks()
     watched.begin()
     try:
         yield watched.report
@@ -137,10 +175,15 @@ def shown_progress() -> Iterator[Progress]:
 
 
 @contextmanager
-def progress_bar(settings: Settings) -> Iterator[Progress]:
-    """Show a progress bar where the errors go to a terminal, once the work takes its time, and nothing elsewhere."""
-    if settings.quiet or not has_terminal():
-        yield lambda task, done, total: None
-        return
-    with shown_progress() as report:
-        yield report
+def progress_bar(progress: Progress | bool) -> Iterator[Progress]:
+    """Give what takes reports of progress: what is given, or a bar (True) on a terminal or in a notebook, or nothing.
+
+    A bar appears once the work takes its time; where errors go to a file or a pipe there is none.
+    """
+    if not isinstance(progress, bool):
+        yield progress
+    elif progress and (in_notebook() or has_terminal()):
+        with shown_progress() as report:
+            yield report
+    else:
+        yield silent

@@ -1,0 +1,120 @@
+"""What a study found, as a user has it: tables, figures, the numbers behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from truing.api.notebook import fold, heading, html_table, joined, paragraphs, picture, plotted
+from truing.api.tables import frame_of
+from truing.declare.blocks import Drawing, Table, Words
+from truing.declare.near_miss import near_miss
+from truing.errors import UsageError
+from truing.numbers import format_number
+from truing.studies.bench import Outcome
+from truing.studies.sweep import Swept, curves
+from truing.units import from_si
+
+DIGITS = 5
+MOST_CURVES = 6
+
+
+@dataclass(frozen=True)
+class StudyResult:
+    """What one study of a run found. ``outcome`` holds its numbers in SI, ``warnings`` what speaks against them."""
+
+    title: str
+    outcome: Outcome
+    warnings: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<StudyResult: {self.title}>"
+
+    def frame(self, title: str = "") -> Any:
+        """Return a table of the study as a dataframe: the one of this title, or its first.
+
+        Of a sweep without a title: every point with every result that is one number there, units in the names.
+        Raises UsageError where there is no such table.
+        """
+        if isinstance(self.outcome, Swept) and not title:
+            return frame_of(dict(_swept_columns(self.outcome)))
+        tables = {block.title: block for block in self.outcome.blocks() if isinstance(block, Table)}
+        table = _chosen(title, tables, "table")
+        return frame_of({name: [row[place] for row in table.rows] for place, name in enumerate(_headers(table))})
+
+    def plot(self, *names: str) -> Figure:
+        """Draw the study: of a sweep the results that are named, or those that change; else the figure of that title.
+
+        Without a name it is the first figure. Raises UsageError where there is no such result or figure.
+        """
+        return plotted(self._drawing(names))
+
+    def _drawing(self, names: tuple[str, ...]) -> Callable[[], Figure]:
+        if isinstance(self.outcome, Swept):
+            return curves(self.outcome, _moving_results(self.outcome, names))
+        drawings = {block.title: block for block in self.outcome.blocks() if isinstance(block, Drawing)}
+        drawing: Drawing = _chosen(names[0] if names else "", drawings, "figure")
+        return drawing.draw
+
+    def _repr_html_(self) -> str:
+        """Show tables, the first figure, and what speaks against them."""
+        blocks = [block for block in self.outcome.blocks() if not isinstance(block, Drawing)]
+        said = [*self.warnings, *(block.text for block in blocks if isinstance(block, Words))]
+        tables = [block for block in blocks if isinstance(block, Table)]
+        shown = "".join(_table(table) for table in tables[:1])
+        rest = "".join(_table(table) for table in tables[1:])
+        return joined(heading(self.title), self._first_picture(), shown, paragraphs(said), fold("more", rest))
+
+    def _first_picture(self) -> str:
+        try:
+            return picture(self._drawing(()), self.title)
+        except UsageError:  # a study need not draw
+            return ""
+
+
+def _table(table: Table) -> str:
+    rows = [[_written(cell) for cell in row] for row in table.rows]
+    return heading(table.title) + html_table(rows, _headers(table)) + paragraphs([table.note] if table.note else [])
+
+
+def _written(cell: Any) -> str:
+    is_number = isinstance(cell, (int, float)) and not isinstance(cell, bool)
+    return format_number(cell, DIGITS) if is_number else "" if cell is None else str(cell)
+
+
+def _chosen(title: str, blocks: dict[str, Any], kind: str) -> Any:
+    if not blocks:
+        raise UsageError(f"this study has no {kind}")
+    if title and title not in blocks:
+        raise UsageError(f"this study has no {kind} '{title}'; it has {', '.join(map(repr, blocks))}")
+    return blocks[title] if title else next(iter(blocks.values()))
+
+
+def _headers(table: Table) -> list[str]:
+    """Return the names of columns with their units; columns of one name are told apart by a number."""
+    units = [*table.units, *[""] * len(table.columns)]
+    names = [f"{name} [{unit}]" if unit else name for name, unit in zip(table.columns, units, strict=False)]
+    return [name if names.index(name) == place else f"{name} {place + 1}" for place, name in enumerate(names)]
+
+
+def _moving_results(swept: Swept, names: tuple[str, ...]) -> list[str]:
+    """Return the results that are drawn. Raises UsageError for a name that was not swept, and where nothing changes."""
+    able = [name for name, values in swept.results.items() if values.ndim == 1]
+    for name in names:
+        if name not in able:
+            raise UsageError(f"'{name}' is no result along '{swept.over}'.{near_miss(name, able)}")
+    moving = list(names) or swept.moving()[:MOST_CURVES]
+    if not moving:
+        raise UsageError(f"no result changes along '{swept.over}'; name those to draw")
+    return moving
+
+
+def _swept_columns(swept: Swept) -> Iterator[tuple[str, list[float]]]:
+    shown = {name: values for name, values in swept.results.items() if values.ndim == 1}
+    for name, values in {swept.over: swept.axis, **shown}.items():
+        unit = swept.units[name]
+        yield f"{name} [{unit or '1'}]", np.asarray(from_si(values, unit)).tolist()

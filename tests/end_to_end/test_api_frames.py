@@ -1,0 +1,188 @@
+"""Dataframes of pandas, polars and pyarrow in and out of the API; what a file refuses they are refused, too."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import polars as pl
+import pyarrow as pa
+import pytest
+
+import truing
+from shared import TESTS
+
+PIN = TESTS / "data" / "pin_wear.py"
+
+
+@pytest.fixture(scope="module")
+def pin() -> truing.LoadedModel:
+    return truing.load(PIN)
+
+
+def test_rows_come_back_with_their_results(pin: truing.LoadedModel) -> None:
+    rows = pd.DataFrame({"load [N]": [56.0, 84.0, 84_000.0], "who": ["a", "b", "c"]}, index=[7, 8, 9])
+    made = pin.evaluate(rows)
+    assert list(made.index) == [7, 8, 9]
+    assert made["pressure [MPa]"].tolist()[:2] == pytest.approx([2, 3])
+    assert made["who"].tolist() == ["a", "b", "c"]
+    assert made["fault"].tolist()[:2] == ["", ""]
+    assert np.isnan(made["pressure [MPa]"].tolist()[2])
+    assert made["fault"].tolist()[2].startswith("the contact flows")
+
+
+def test_a_unit_stands_in_the_name_or_beside_it(pin: truing.LoadedModel) -> None:
+    rows = pd.DataFrame({"load": [56.0, 84.0]})
+    assert pin.evaluate(rows, units={"load": "N"})["pressure [MPa]"].tolist() == pytest.approx([2, 3])
+
+
+def test_results_of_an_earlier_call_are_calculated_anew(pin: truing.LoadedModel) -> None:
+    made = pin.evaluate(pd.DataFrame({"load [N]": [56.0, 84.0]}))
+    again = pin.evaluate(made.assign(**{"load [N]": [28.0, 28.0]}))
+    assert again["pressure [MPa]"].tolist() == pytest.approx([1, 1])
+    assert list(again.columns) == list(made.columns)
+
+
+@pytest.mark.parametrize("make", [pl.DataFrame, pa.table], ids=["polars", "pyarrow"])
+def test_a_dataframe_comes_back_as_what_it_was(pin: truing.LoadedModel, make: Any) -> None:
+    rows = make({"load [N]": [56.0, 84.0], "area [mm^2]": [28.0, None]})
+    made = pin.evaluate(rows)
+    assert type(made) is type(rows)
+    pressure = made["pressure [MPa]"]
+    assert (pressure.to_list() if hasattr(pressure, "to_list") else pressure.to_pylist()) == pytest.approx([2, 3])
+
+
+def test_numbers_of_every_width_are_numbers(pin: truing.LoadedModel) -> None:
+    rows = pd.DataFrame({"load [N]": np.array([56, 84], dtype="int32"), "area [mm^2]": pd.array([28, None], "Int64")})
+    assert pin.evaluate(rows)["pressure [MPa]"].tolist() == pytest.approx([2, 3])
+
+
+def rows(**columns: Any) -> pd.DataFrame:
+    return pd.DataFrame({name.replace("_of_", " [") + "]": values for name, values in columns.items()})
+
+
+REFUSED: list[tuple[Any, str]] = [
+    (pd.DataFrame({"load": [1.0]}), "dataframe:1: column 'load' has no unit"),
+    (rows(load_of_kg=[1.0]), "dataframe:1: column 'load [kg]': 'kg' is a mass (kg), expected a force (N)"),
+    (rows(load_of_N=[1.0, float("nan")]), "dataframe:3: load: 'nan'"),
+    (rows(load_of_N=[1.0, float("inf")]), "dataframe:3: load: 'inf'"),
+    (pd.DataFrame({"load [N]": [1.0, None]}, dtype=object), "row 2 of the dataframe holds nothing"),
+    (rows(load_of_N=[]), "the dataframe holds no rows"),
+    (pd.DataFrame(), "the dataframe holds no rows"),
+    (rows(load_of_N=[1.0, "x"]), "column 'load [N]' of the dataframe holds numbers and texts; make it one kind"),
+    (rows(load_of_N=["1.0", "x"]), "dataframe:3: load: 'x' is no number"),
+    (rows(load_of_N=[True, False]), "dataframe:2: load: 'True' is no number"),
+    (rows(load_of_N=[1 + 2j, 3j]), "dataframe:2: load: '(1+2j)' is no number"),
+    (rows(load_of_N=[pd.Timestamp("2026-01-01")]), "dataframe:2: load: '2026-01-01 00:00:00' holds more than a number"),
+    (rows(load_of_N=[-1.0]), "dataframe:2: load"),
+    (rows(lod_of_N=[1.0]), "dataframe:1: column 'lod' changes nothing. Did you mean 'load'? Rename it or leave it out"),
+    (pd.DataFrame({"load [N]": [1.0, 2.0]}, index=[8, 8]), "the index of the dataframe names the row 8 twice"),
+    (pd.DataFrame([[1.0, 2.0]], columns=["load [N]", "load [N]"]), "the dataframe cannot be read"),
+    (pd.DataFrame([[1.0, 2.0]], columns=["load [N]", "load [kN]"]), "dataframe:1: the column 'load' occurs twice"),
+    ({"load": [1.0]}, "dict is no dataframe of pandas, polars, pyarrow"),
+    (pd.Series([1.0], name="load [N]"), "Series is no dataframe of pandas, polars, pyarrow"),
+]
+
+
+@pytest.mark.parametrize(("frame", "words"), REFUSED, ids=[words for _, words in REFUSED])
+def test_what_a_file_refuses_is_refused_in_the_same_words(pin: truing.LoadedModel, frame: Any, words: str) -> None:
+    with pytest.raises(truing.TruingError) as caught:
+        pin.evaluate(frame)
+    assert words in str(caught.value)
+
+
+def test_units_are_those_of_columns(pin: truing.LoadedModel) -> None:
+    with pytest.raises(truing.TruingError, match="units names 'lod', which is no column; the columns are load"):
+        pin.evaluate(pd.DataFrame({"load": [1.0]}), units={"lod": "N"})
+
+
+RECORDS: list[tuple[Any, str]] = [
+    (rows(load_of_N=[1.0]), "record:1: no column is a result of pin_wear, so nothing is measured"),
+    (rows(depth_of_kg=[1.0, 2.0]), "record:1: column 'depth [kg]': 'kg' is a mass (kg), expected a length (µm)"),
+    (pd.DataFrame({"depth": [1.0, 2.0]}), "record:1: column 'depth' has no unit"),
+    (rows(depth_of_um=[1.0, "x"]), "column 'depth [um]' of the dataframe holds numbers and texts"),
+    (rows(depth_of_um=[]), "the dataframe holds no rows"),
+    (rows(depth_of_um=[float("nan"), 1.0]), "row 1 of the dataframe holds nothing"),
+    (pd.DataFrame({"depth [um]": [1.0, 2.0]}, index=["a", "a"]), "names the row 'a' twice"),
+]
+
+
+@pytest.mark.parametrize(("frame", "words"), RECORDS, ids=[words for _, words in RECORDS])
+def test_a_record_is_refused_what_a_measured_file_is(pin: truing.LoadedModel, frame: Any, words: str) -> None:
+    with pytest.raises(truing.TruingError) as caught:
+        truing.record(frame, pin)
+    assert words in str(caught.value)
+
+
+def test_a_column_of_a_record_that_may_be_misspelt_is_told(pin: truing.LoadedModel) -> None:
+    with pytest.warns(UserWarning, match=r"column 'lod' is neither input, result nor condition\. Did you mean 'load'"):
+        truing.record(rows(depth_of_um=[1.0, 2.0], lod_of_N=[1.0, 2.0]), pin)
+
+
+ALONE = """
+import sys
+from importlib.machinery import PathFinder
+
+find = PathFinder.find_spec
+PathFinder.find_spec = lambda name, *more: None if name.partition(".")[0] in {blocked!r} else find(name, *more)
+
+import json
+import numpy as np
+import {library} as library
+import truing
+
+make = getattr(library, {maker!r})
+pin = truing.load({pin!r})
+time = np.linspace(10.0, 400.0, 40)
+base = pin.evaluate(make({{"time [h]": time.tolist()}}))
+assert type(base).__module__.split(".")[0] == {library!r}, type(base)
+depth = np.asarray(base["depth [um]"]) + 7.0 + np.random.default_rng(1).normal(0, 0.1, 40)
+units = {{"time": "h", "depth": "um"}}
+record = truing.record(make({{"time": time.tolist(), "depth": depth.tolist()}}), pin, units=units)
+found = pin.diagnose(record)
+for frame in (pin.run().frame(), record.frame(), found.ranking.frame(), found.residuals.frame(),
+              pin.sweep("load", 50, 90, 3).frame(), pin.run(cases=make({{"load [N]": [50.0, 60.0]}})).case_frame(),
+              pin.run(load=50).compare(pin.run()).frame()):
+    assert type(frame).__module__.split(".")[0] == {library!r}, type(frame)
+assert not [name for name in {blocked!r} if sys.modules.get(name)]
+print(json.dumps(found.document))
+"""
+
+
+@pytest.mark.parametrize(
+    ("library", "maker", "others"),
+    [("polars", "DataFrame", ("pandas", "pyarrow")), ("pyarrow", "table", ("pandas", "polars"))],
+)
+def test_one_library_of_dataframes_is_enough(
+    library: str, maker: str, others: tuple[str, ...], with_pandas: dict[str, Any]
+) -> None:
+    assert documented(library, maker, others) == with_pandas
+
+
+@pytest.fixture(scope="module")
+def with_pandas() -> dict[str, Any]:
+    """What a diagnosis says whose rows came as a dataframe of pandas."""
+    return documented("pandas", "DataFrame", ("polars", "pyarrow"))
+
+
+def documented(library: str, maker: str, blocked: tuple[str, ...]) -> dict[str, Any]:
+    """Use every dataframe of the API in a process that finds one library of them, and return the diagnosis."""
+    code = ALONE.format(library=library, maker=maker, blocked=blocked, pin=str(PIN))
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stderr
+    document: dict[str, Any] = json.loads(done.stdout)
+    return document
+
+
+def test_without_any_a_sentence_says_what_to_install() -> None:
+    code = (
+        "import sys\nfor name in ('pandas', 'polars', 'pyarrow'): sys.modules[name] = None\n"
+        f"import truing\nrun = truing.load({str(PIN)!r}).run()\n"
+        "try: run.frame()\nexcept truing.TruingError as error: print(error)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
+    assert done.stdout == "a table in Python needs one of pandas, polars, pyarrow: pip install pandas\n", done.stderr
