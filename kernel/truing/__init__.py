@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from truing.api.study import StudyResult
     from truing.declare.batch import column, either, feasible
     from truing.declare.blocks import Block, Drawing, Table, Words
-    from truing.declare.fields import Float, axis, found, given, inputs, loaded, part, results, rows
+    from truing.declare.fields import Array, Float, axis, found, given, inputs, loaded, part, results, rows
     from truing.declare.goals import Maximise, Minimise, Objective, Price, Require, Vary
     from truing.declare.model import Model, Record, Section, Study
     from truing.declare.published import Finding, Published
@@ -40,7 +40,8 @@ _HOMES = {
     "truing.api.study": ("StudyResult",),
     "truing.declare.batch": ("column", "either", "feasible"),
     "truing.declare.blocks": ("Block", "Drawing", "Table", "Words"),
-    "truing.declare.fields": ("Float", "axis", "found", "given", "inputs", "loaded", "part", "results", "rows"),
+    "truing.declare.fields": ("Array", "Float", "axis", "found", "given", "inputs", "loaded", "part", "results",
+                              "rows"),
     "truing.declare.goals": ("Maximise", "Minimise", "Objective", "Price", "Require", "Vary"),
     "truing.declare.model": ("Model", "Record", "Section", "Study"),
     "truing.declare.published": ("Finding", "Published"),
@@ -65,7 +66,7 @@ _HOME = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [  # noqa: RUF022  # what a user calls; then what a plugin needs, in the order of its story
     "load", "LoadedModel", "Run", "StudyResult", "read", "record", "Diagnosis",
-    "inputs", "results", "given", "found", "axis", "rows", "part", "loaded", "quantity", "Float",
+    "inputs", "results", "given", "found", "axis", "rows", "part", "loaded", "quantity", "Float", "Array",
     "feasible", "either", "column",
     "Tolerance", "Effect", "Unknown", "Condition", "ErrorSource",
     "normal", "plus_minus", "uniform", "lognormal", "grade", "zone", "drawn", "by_choice", "off",

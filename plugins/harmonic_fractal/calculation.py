@@ -20,7 +20,7 @@ from harmonic_fractal.contact import (
     range_of,
     spacing_of,
 )
-from harmonic_fractal.mesh import Mesh, line_stiffness, load_of_largest, mesh_of, mesh_torsion, normal_stiffness
+from harmonic_fractal.mesh import DriveMesh, line_stiffness, load_of_largest, mesh_of, mesh_torsion, normal_stiffness
 from harmonic_fractal.micro import LEAST_DIMENSION, MOST_DIMENSION, elastic_sum
 from harmonic_fractal.quantities import SIZES, Drive, Stiffness
 from harmonic_fractal.structure import kept_share, structure_function
@@ -32,11 +32,11 @@ from truing import Float, column, feasible
 # series, tables 41 and 42 (ratios 30 and 50); Harmonic Drive AG, CHA actuators, manual 1018854 (30, 50 and above). They
 # agree where they overlap. The values are averages over many drives.
 
-Column = Literal["30", "50", "above 50"]
+CatalogueColumn = Literal["30", "50", "above 50"]
 UNIT = 1e3  # N m/rad
 
 # size: T_1 and T_2 in N m, then K_1, K_2, K_3 in 1e3 N m/rad for ratios of 30, of 50, and above 50
-TABLE: dict[str, tuple[float, float, dict[Column, tuple[float, float, float]]]] = {
+TABLE: dict[str, tuple[float, float, dict[CatalogueColumn, tuple[float, float, float]]]] = {
     "14": (2.0, 6.9, {"30": (1.9, 2.4, 3.4), "50": (3.4, 4.7, 5.7), "above 50": (4.7, 6.1, 7.1)}),
     "17": (3.9, 12.0, {"30": (3.4, 4.4, 6.7), "50": (8.1, 11.0, 13.0), "above 50": (10.0, 14.0, 16.0)}),
     "20": (7.0, 25.0, {"30": (5.7, 7.1, 11.0), "50": (13.0, 18.0, 23.0), "above 50": (16.0, 25.0, 29.0)}),
@@ -68,7 +68,7 @@ class Polyline(NamedTuple):
         return np.where(size <= self.first_torque, first, np.where(size <= self.second_torque, second, third))
 
 
-def column_of(ratio: float) -> Column:
+def column_of(ratio: float) -> CatalogueColumn:
     """Return the column of the table for a ratio: above 50, 50 from 40 on, and 30 below, the nearest of the two."""
     if ratio > 50.0:
         return "above 50"
@@ -130,7 +130,7 @@ COMPARED = ("catalogue_torsion", "catalogue_stiffness", "rough_share")
 """The results that need the catalogue."""
 
 
-def require_contact(drive: Drive, contact: Contact, mesh: Mesh) -> None:
+def require_contact(drive: Drive, contact: Contact, mesh: DriveMesh) -> None:
     """Refuse more pairs than there are teeth; without stiffness where the torsion begins nothing counts from there."""
     feasible(
         drive.engaged_pairs * np.asarray(mesh.engagement.factor(drive.torque)) <= drive.flexspline_teeth,
@@ -265,7 +265,7 @@ def _pair(drive: Drive, contact: Contact, pair: Pressed) -> dict[str, Any]:
     }
 
 
-def _clearance(drive: Drive, contact: Contact, mesh: Mesh, pair: Pressed) -> dict[str, Any]:
+def _clearance(drive: Drive, contact: Contact, mesh: DriveMesh, pair: Pressed) -> dict[str, Any]:
     """Return the clearance of one pair by the names of its results."""
     largest = np.sqrt(pair.largest_area / np.pi)
     radius, multiple = gap.read_radius(drive, largest)
@@ -288,7 +288,7 @@ def _clearance(drive: Drive, contact: Contact, mesh: Mesh, pair: Pressed) -> dic
     }
 
 
-def _mesh(drive: Drive, contact: Contact, mesh: Mesh) -> dict[str, Any]:
+def _mesh(drive: Drive, contact: Contact, mesh: DriveMesh) -> dict[str, Any]:
     """Return mesh and drive by the names of their results; torsions have the sense of the torque."""
     around, printed, sense = around_of(drive), require_catalogue(drive), np.sign(drive.torque)
     whole, rough = (sense * size for size in mesh_torsion(drive.torque, drive.reference_torque, mesh))

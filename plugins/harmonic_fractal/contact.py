@@ -127,7 +127,7 @@ def _sum(first: Rough, second: Rough, drive: Drive) -> Rough:
 class Contact:
     """The rough surface, its materials, and what follows from them before there is a load; SI."""
 
-    law: micro.Law
+    law: micro.ContactLaw
     roughness: Float
     modulus: Float
     hardness: Float
@@ -190,7 +190,7 @@ def contact_of(drive: Drive, rough: Rough) -> Contact:
     critical = rough.roughness**2 * (waves * (modulus / pressure) ** 2) ** (1.0 / (dimension - 2.0))
     tip = tip_factor(drive, dimension)
     return Contact(
-        law=micro.Law(dimension, pressure / drive.hardness),
+        law=micro.ContactLaw(dimension, pressure / drive.hardness),
         roughness=rough.roughness,
         modulus=modulus,
         hardness=drive.hardness,

@@ -8,7 +8,6 @@ import numpy as np
 from harmonic_fractal.structure import (
     CACHED,
     SHARE,
-    Array,
     Steps,
     StructureFunction,
     fit_steps,
@@ -20,6 +19,7 @@ from harmonic_fractal.structure import (
     structure_function_of,
 )
 from harmonic_fractal.surface import Direction, Lines
+from truing import Array
 
 # Straight lines through ln S over ln lag, with or without the noise of the instrument, many at once
 

@@ -8,7 +8,6 @@ from typing import Any, Literal
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from harmonic_fractal import clearance as gap
 from harmonic_fractal.calculation import Polyline, around_of, polyline_of, ratio_of
@@ -19,11 +18,11 @@ from harmonic_fractal.mesh import load_of_largest, mesh_of, mesh_torsion
 from harmonic_fractal.quantities import Drive, Stiffness
 from harmonic_fractal.structure import Convention, constant, converted, structure_function
 from harmonic_fractal.surface import Direction
-from truing import Block, Drawing, Record, Table, Words
+from truing import Array, Block, Drawing, Record, Table, Words
 
 # What the figures and tables share: colours, sizes, numbers in words, and the inputs as effects leave them
 
-Run = Record[Drive, Stiffness]
+DriveRun = Record[Drive, Stiffness]
 
 BLUE, ORANGE, GREEN, INK, GREY, PALE = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c", "#e8eff5"
 DIRECTIONS = {"x": BLUE, "y": ORANGE, "both": GREEN}
@@ -62,7 +61,6 @@ def microns(length: float, form: str = ".3g") -> str:
 
 # The figures of a measured flank: from above, some of its profiles, its structure function with the local slopes
 
-Array = NDArray[np.float64]
 PIXELS = 400  # of the picture along either side
 PROFILE_POINTS = 2000  # of a drawn profile
 SHOWN = 4  # profiles
@@ -329,7 +327,7 @@ KINDS: dict[Convention, str] = {
 STATED = "No flank was measured: D and G are as stated, and how sure they are is not known."
 
 
-def flanks(record: "Run") -> "Sequence[Block]":
+def flanks(record: "DriveRun") -> "Sequence[Block]":
     """Every measured flank with its verdict; else that nothing was measured."""
     drive = record.acting
     blocks: list[Block] = []
@@ -353,12 +351,12 @@ def _mating(drive: "Drive") -> str:
     return f"it is that of the D and G stated in the inputs, {stated}"
 
 
-def interface(record: "Run") -> "Sequence[Block]":
+def interface(record: "DriveRun") -> "Sequence[Block]":
     """Both flanks and their sum, and G in every convention."""
     return [_both(record), conventions(record)]
 
 
-def _both(record: "Run") -> Table:
+def _both(record: "DriveRun") -> Table:
     drive = record.acting
     first, second = flanks_of(drive)
     rows = [
@@ -387,7 +385,7 @@ def _sum(drive: "Drive", second: "Rough | None") -> str:
     return f"{words}, and the stated deviations" if deviates else words
 
 
-def conventions(record: "Run") -> Table:
+def conventions(record: "DriveRun") -> Table:
     """G of both flanks in every convention, and by the constant that lacks a factor."""
     drive, areal = record.acting, float(record.answers["roughness"])
     profile, density = float(record.answers["profile_dimension"]), float(drive.density)
@@ -436,7 +434,7 @@ MEAN_PLANE = 0.48  # of the rms height: how far mean planes part while the load 
 
 
 @dataclass(frozen=True, kw_only=True)
-class Loaded:
+class LoadedPair:
     """One pair over its load, N: stiffness in N/m, load exponent, clearances in m; NaN where nothing can be counted."""
 
     load: Array
@@ -446,14 +444,14 @@ class Loaded:
     closing: Array
 
 
-def loaded(drive: "Drive", load: Array) -> Loaded:
+def loaded(drive: "Drive", load: Array) -> LoadedPair:
     """Calculate one pair at these loads."""
     contact = contact_of(drive, interface_of(drive))
     pair = pressed(load, contact)
     reference = load_of_largest(drive.reference_torque, mesh_of(drive, contact))
     opened = sum(gap.heights(drive)) / 2.0
     closed = gap.approach(load, reference, contact)
-    return Loaded(
+    return LoadedPair(
         load=load,
         stiffness=np.asarray(pair.stiffness),
         exponent=np.asarray(pair.load_exponent),
@@ -509,7 +507,7 @@ def _clearances(panel: Any, drive: "Drive", load: Array) -> None:
     panel.legend(loc="best", fontsize=7)
 
 
-def stiffness(record: "Run") -> "Sequence[Block]":
+def stiffness(record: "DriveRun") -> "Sequence[Block]":
     """The pair over its load, in a figure and in numbers, with what limits the number."""
     drive = record.acting
     stated = float(drive.pair_load)
@@ -532,7 +530,7 @@ def stiffness(record: "Run") -> "Sequence[Block]":
     return [*_limits(record), *blocks, _single(drive, record)]
 
 
-def _single(drive: "Drive", record: "Run") -> Table:
+def _single(drive: "Drive", record: "DriveRun") -> Table:
     """The largest contact, and the one that just turns elastic: a sphere of its own radius under its own load."""
     contact = contact_of(drive, interface_of(drive))
     rows: list[tuple[str | float, ...]] = []
@@ -553,7 +551,7 @@ def _single(drive: "Drive", record: "Run") -> Table:
     return Table("Single contacts", columns, rows, ("", "µm", "nm", "µm", "N", "N/m"), note)
 
 
-def _limits(record: "Run") -> "Sequence[Block]":
+def _limits(record: "DriveRun") -> "Sequence[Block]":
     """Warn where the number stands on little."""
     found: list[Block] = []
     share = float(record.answers["resolved_share"])
@@ -601,7 +599,7 @@ def torsions(drive: "Drive", printed: Polyline, torque: Array) -> Torsions:
     )
 
 
-def torsion(record: "Run") -> "Sequence[Block]":
+def torsion(record: "DriveRun") -> "Sequence[Block]":
     """The figure, the table at the torques of the catalogue, and what follows; nothing without one of the two."""
     drive = record.acting
     printed = polyline_of(drive.catalogue_size, ratio_of(drive))
@@ -630,7 +628,7 @@ def torsion(record: "Run") -> "Sequence[Block]":
     ]  # fmt: skip
 
 
-def _conclusion(record: "Run", curves: Torsions, compliance: float) -> str:
+def _conclusion(record: "DriveRun", curves: Torsions, compliance: float) -> str:
     most = 100.0 * float(np.max(curves.rough / curves.catalogue))
     text = (
         f"Rough contacts alone explain at most {signed(most, '.2g')} % of the torsion in the catalogue. They are not "

@@ -22,7 +22,7 @@ from harmonic_fractal.surface import (
     without_form,
     without_line,
 )
-from harmonic_fractal.surface_files import Layout, Reading, length, metres_per_unit, read_surface
+from harmonic_fractal.surface_files import FileLayout, Reading, length, metres_per_unit, read_surface
 
 # What the inputs file says beside the name of a surface, checked: a fault is one sentence that names the option
 
@@ -38,7 +38,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
 class Options:
     """How a surface is read, cleaned and judged; lengths in m, NaN and empty where the file or the data decide."""
 
-    layout: Layout
+    layout: FileLayout
     rectangle: tuple[float, ...] = ()
     corner: tuple[float, ...] | None = None
     form: Form = "second_order"
@@ -66,7 +66,7 @@ def options_of(given: Mapping[str, Any]) -> Options:
     )  # fmt: skip
 
 
-def _layout(given: Mapping[str, Any]) -> Layout:
+def _layout(given: Mapping[str, Any]) -> FileLayout:
     if given["spacing"] != "" and (given["spacing_x"] != "" or given["spacing_y"] != ""):
         raise ValueError("spacing is that of both directions: leave out spacing_x and spacing_y, or spacing")
     both = _length(given, "spacing")
@@ -79,7 +79,7 @@ def _layout(given: Mapping[str, Any]) -> Layout:
     columns = given["columns"]
     if isinstance(columns, str) or not all(isinstance(name, str) for name in columns):
         raise ValueError(f'columns = {_shown(columns)}, but it is a list of names, as in ["x [um]", "z [um]"]')
-    return Layout(
+    return FileLayout(
         spacing_x=along[0] if along[0] == along[0] else both, spacing_y=along[1] if along[1] == along[1] else both,
         height_unit=given["height_unit"], skip_lines=lines, columns=tuple(columns),
     )  # fmt: skip

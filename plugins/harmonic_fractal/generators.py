@@ -3,15 +3,15 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import next_fast_len
 from scipy.ndimage import gaussian_filter
+
+from truing import Array
 
 # Made lines and patches of known truth: Weierstrass-Mandelbrot sums of waves, and fractional Brownian motion
 #
 # All randomness comes from the generator that is handed in. Heights and places are in m; S is the structure function.
 
-Array = NDArray[np.float64]
 YAN = "Yan, Komvopoulos, Journal of Applied Physics 84 (1998), p. 3617"
 MAJUMDAR = "Majumdar, Tien, Wear 136 (1990), p. 313"
 DAVIES = "Davies, Harte, Biometrika 74 (1987), p. 95"

@@ -9,7 +9,6 @@ import numpy as np
 
 from harmonic_fractal.estimate import Estimate, Estimation, estimate_of
 from harmonic_fractal.generators import (
-    Array,
     Instrument,
     Waves,
     as_measured,
@@ -24,7 +23,7 @@ from harmonic_fractal.generators import (
 )
 from harmonic_fractal.structure import converted, structure_function, structure_sums
 from harmonic_fractal.surface import Direction, Lines, Surface, without_form, without_line
-from truing import Bench, Block, Check, Float, TruingError, Words, feasible, found, given, inputs, results, rows
+from truing import Array, Bench, Block, Check, Float, TruingError, Words, feasible, found, given, inputs, results, rows
 
 # What a made flank is told: its truth, its size, the waves it consists of, and the instrument that looks at it
 

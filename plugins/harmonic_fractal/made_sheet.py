@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 
 from harmonic_fractal.estimate import Estimate, straight_fit
 from harmonic_fractal.figures import BLUE, GREY, INK, MICRO, NANO, ORANGE, PALE, WIDTH, quiet
-from harmonic_fractal.generators import Array
 from harmonic_fractal.made_flank import (
     FlankFile,
     Made,
@@ -28,11 +27,11 @@ from harmonic_fractal.made_flank import (
 )
 from harmonic_fractal.structure import log_roughness_of, structure_function
 from harmonic_fractal.surface import Surface, quantisation, spikes_of, without_form
-from truing import Block, Drawing, Model, Record, Section, Table, Words
+from truing import Array, Block, Drawing, Model, Record, Section, Table, Words
 
 # The figures of a made flank: the patch, some of its lines, and its structure function beside the truth
 
-Curve = tuple[Array, Array]
+DrawnCurve = tuple[Array, Array]
 SHOWN = 5  # lines that are drawn
 
 
@@ -94,7 +93,7 @@ def structure_figure(made: Made, truth: Truth, answer: "MadeFlank", found: Estim
     return figure
 
 
-def _curves(panel: Any, over: Truth | None, curves: tuple[Curve, Curve, Curve], found: Estimate) -> None:
+def _curves(panel: Any, over: Truth | None, curves: tuple[DrawnCurve, DrawnCurve, DrawnCurve], found: Estimate) -> None:
     """Draw S of this flank, the exact one and that of levelled lines: in nm^2, or over the power law of the truth."""
     own, exact, levelled = curves
 
@@ -113,7 +112,7 @@ def _curves(panel: Any, over: Truth | None, curves: tuple[Curve, Curve, Curve], 
         panel.axhline(1.0, color=GREY, linestyle="--", linewidth=1.0)
 
 
-def _local_slopes(panel: Any, truth: Truth, exact: Curve, found: Estimate) -> None:
+def _local_slopes(panel: Any, truth: Truth, exact: DrawnCurve, found: Estimate) -> None:
     """Draw the dimension between neighbouring lags, of the levelled lines and of the exact S."""
     edges = np.linspace(np.log(exact[0][0]), np.log(exact[0][-1]), 11)
     slopes = np.diff(np.interp(edges, np.log(exact[0]), np.log(exact[1]))) / np.diff(edges)
@@ -131,7 +130,7 @@ def _local_slopes(panel: Any, truth: Truth, exact: Curve, found: Estimate) -> No
 
 # The sheet of a made flank
 
-Run = Record[Made, MadeFlank]
+MadeRun = Record[Made, MadeFlank]
 
 FOUND_AGAIN = (
     "The estimator sees the flank as it would see a measured one: each line without its own straight line, and one "
@@ -149,12 +148,12 @@ TRUTH = {
 }
 
 
-def truth(record: "Run") -> "Sequence[Block]":
+def truth(record: "MadeRun") -> "Sequence[Block]":
     """What kind of surface this is."""
     return [Words(TRUTH[record.inputs.kind])]
 
 
-def look(record: "Run") -> "Sequence[Block]":
+def look(record: "MadeRun") -> "Sequence[Block]":
     """The patch and some of its lines."""
     surface = surface_of(record.inputs)
     lines = Drawing("Lines of the flank", partial(lines_figure, surface))
@@ -165,7 +164,7 @@ def look(record: "Run") -> "Sequence[Block]":
     return [Drawing("The flank from above", partial(map_figure, surface), caption), lines]
 
 
-def structure(record: "Run") -> "Sequence[Block]":
+def structure(record: "MadeRun") -> "Sequence[Block]":
     """The structure function beside the truth."""
     made, surface = record.inputs, surface_of(record.inputs)
     found = estimate_along(made, surface, "x")
@@ -178,7 +177,7 @@ def structure(record: "Run") -> "Sequence[Block]":
     return [Drawing("Structure function and local slopes", draw, caption)]
 
 
-def found_again(record: "Run") -> "Sequence[Block]":
+def found_again(record: "MadeRun") -> "Sequence[Block]":
     """Both directions beside the truth, and the verdict."""
     made, surface, true = record.inputs, surface_of(record.inputs), truth_of(record.inputs)
     along = estimate_along(made, surface, "x")

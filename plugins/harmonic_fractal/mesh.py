@@ -104,29 +104,29 @@ def arcs_of(pairs: int) -> Arcs:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Pair:
+class ToothPair:
     """One pair in all that is needed for its stiffness at u: the rough contact, a film beside it, springs behind it.
 
     ``scale`` is that of the rough contact, N/m; ``film`` of a film over the whole flank, N/m; ``area_ratio`` the
     truncated area at a_L = a_c over that of the flank; ``compliance`` that of tooth and line contact, m/N.
     """
 
-    law: micro.Law
+    law: micro.ContactLaw
     scale: Float
     film: Float
     area_ratio: Float
     compliance: Float
 
-    def of_rows(self, index: NDArray[np.intp], rows: int, axes: int) -> "Pair":
+    def of_rows(self, index: NDArray[np.intp], rows: int, axes: int) -> "ToothPair":
         """Return the pair of these rows out of so many, with axes behind."""
 
         def taken(value: Float) -> NDArray[np.float64]:
             many: NDArray[np.float64] = np.broadcast_to(np.asarray(value, dtype=float), (rows,))[index]
             return many[(..., *(np.newaxis,) * axes)]
 
-        law = micro.Law(taken(self.law.dimension), taken(self.law.pressure_ratio))
+        law = micro.ContactLaw(taken(self.law.dimension), taken(self.law.pressure_ratio))
         numbers = {name: taken(getattr(self, name)) for name in ("scale", "film", "area_ratio", "compliance")}
-        return Pair(law=law, **numbers)
+        return ToothPair(law=law, **numbers)
 
     @property
     def numbers(self) -> tuple[Float, ...]:
@@ -148,10 +148,10 @@ class Pair:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Mesh:
+class DriveMesh:
     """All engaged pairs: each of them, their places, how many come to bear, and the lever of their forces, m."""
 
-    pair: Pair
+    pair: ToothPair
     arcs: Arcs
     engagement: Engagement
     radius: Float
@@ -181,9 +181,9 @@ def effective_radius(drive: Drive) -> Float:
     return drive.pitch_radius * np.cos(drive.pressure_angle)
 
 
-def mesh_of(drive: Drive, contact: Contact) -> Mesh:
+def mesh_of(drive: Drive, contact: Contact) -> DriveMesh:
     """Return the mesh of a drive; with more pairs each carries less."""
-    return Mesh(
+    return DriveMesh(
         pair=pair_of(drive, contact), arcs=arcs_of(drive.engaged_pairs), engagement=engagement_of(drive),
         radius=effective_radius(drive), plastic_limit=contact.plastic_limit,
     )  # fmt: skip
@@ -194,12 +194,12 @@ def line_stiffness(drive: Drive, contact: Contact) -> Float:
     return 0.5 * np.pi * contact.modulus * drive.face_width
 
 
-def pair_of(drive: Drive, contact: Contact) -> Pair:
+def pair_of(drive: Drive, contact: Contact) -> ToothPair:
     """Return one pair with what stands around its rough contact."""
     tooth = 1.0 / (drive.tooth_stiffness * drive.modulus_factor)
     line = 1.0 / line_stiffness(drive, contact) if drive.line_contact else 0.0
     flank = drive.face_width * drive.flank_height
-    return Pair(
+    return ToothPair(
         law=contact.law,
         scale=contact.stiffness_scale,
         film=drive.film_stiffness,
@@ -208,18 +208,18 @@ def pair_of(drive: Drive, contact: Contact) -> Pair:
     )
 
 
-def load_of_largest(torque: Float, mesh: Mesh) -> Float:
+def load_of_largest(torque: Float, mesh: DriveMesh) -> Float:
     """Return the normal load of the pair that carries most, N."""
     load: Float = np.abs(torque) * mesh.arcs.shares[0] / (mesh.radius * mesh.engagement.factor(torque))
     return load
 
 
-def torque_logarithm(torque: Float, mesh: Mesh) -> Float:
+def torque_logarithm(torque: Float, mesh: DriveMesh) -> Float:
     """Return ln(F/F_c) of the pair that carries most at a torque; for none a number far below 0."""
     return np.log(np.maximum(np.abs(torque), 1e-300) / (mesh.engagement.factor(torque) * mesh.plastic_share))
 
 
-def normal_stiffness(torque: Float, mesh: Mesh) -> Float:
+def normal_stiffness(torque: Float, mesh: DriveMesh) -> Float:
     """Return the stiffness of all engaged pairs along their normals, N/m; 0 where every contact is plastic."""
     given, factor = mesh.with_rows(torque_logarithm(torque, mesh), mesh.engagement.factor(torque))
     first, factor = np.atleast_1d(given), np.atleast_1d(factor)
@@ -260,7 +260,7 @@ class Panels:
             yield Panels(self.row[some], self.start[some], self.width[some])
 
 
-def mesh_torsion(torque: Float, reference: Float, mesh: Mesh) -> tuple[Float, Float]:
+def mesh_torsion(torque: Float, reference: Float, mesh: DriveMesh) -> tuple[Float, Float]:
     """Return the torsion of the mesh from the reference to the size of the torque, rad, and that of its roughness.
 
     Both are 0 below the reference, and infinite where all contacts are plastic at the reference. The second one leaves
@@ -289,7 +289,7 @@ def _way(size: Float) -> Float:
     return np.log(np.expm1(TURN * size))
 
 
-def _panels(index: NDArray[np.intp], first: NDArray[np.float64], last: NDArray[np.float64], mesh: Mesh) -> Panels:
+def _panels(index: NDArray[np.intp], first: NDArray[np.float64], last: NDArray[np.float64], mesh: DriveMesh) -> Panels:
     """Cut the way of these rows where a pair turns elastic, and further until no piece is too wide."""
     law = mesh.pair.of_rows(index, len(first), 1).law
     low, high = first[index, np.newaxis], last[index, np.newaxis]
@@ -308,13 +308,13 @@ def _panels(index: NDArray[np.intp], first: NDArray[np.float64], last: NDArray[n
     return Panels(row, start, width)
 
 
-def _onsets(index: NDArray[np.intp], offsets: NDArray[np.float64], mesh: Mesh, rows: int) -> NDArray[np.float64]:
+def _onsets(index: NDArray[np.intp], offsets: NDArray[np.float64], mesh: DriveMesh, rows: int) -> NDArray[np.float64]:
     """Return the torques at which pairs with these shares turn elastic, (rows asked for, shares)."""
     share = np.broadcast_to(np.asarray(mesh.plastic_share, dtype=float), (rows,))[index, np.newaxis]
     return np.asarray(mesh.engagement.of_rows(index, rows, 1).torque_of(share * np.exp(-offsets)))
 
 
-def _integrals(panels: Panels, mesh: Mesh, rows: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _integrals(panels: Panels, mesh: DriveMesh, rows: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Integrate torque over stiffness on every panel: of the whole mesh, and of its roughness alone."""
     nodes, weights = RULE
     pair = mesh.pair.of_rows(panels.row, rows, 2)
@@ -333,7 +333,9 @@ def _integrals(panels: Panels, mesh: Mesh, rows: int) -> tuple[NDArray[np.float6
     return (shares / whole).sum(axis=1), (shares / rough).sum(axis=1)
 
 
-def _sums(size: NDArray[np.float64], pair: Pair, mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _sums(
+    size: NDArray[np.float64], pair: ToothPair, mesh: DriveMesh
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the sums of the stiffnesses of all pairs: as they stand, and of their rough contacts alone."""
     alone = pair.rough(size)
     whole = pair.around(alone, size)

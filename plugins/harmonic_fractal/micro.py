@@ -18,7 +18,7 @@ FINE = 3e-5  # a step as small leaves about its cube
 
 
 @dataclass(frozen=True)
-class Law:
+class ContactLaw:
     """Which law the contacts follow: dimension D of the surface, and the critical pressure in parts of the hardness.
 
     Both are numbers or arrays that meet the loads asked for.
@@ -48,10 +48,10 @@ class Law:
         """(D - 2)/2, the exponent of stiffness that is lost to plastic contacts."""
         return 0.5 * (np.asarray(self.dimension) - 2.0)
 
-    def on_axis(self, axes: int = 1) -> "Law":
+    def on_axis(self, axes: int = 1) -> "ContactLaw":
         """Return the law with so many axes behind, one value of it for each row."""
         last = (..., *(np.newaxis,) * axes)
-        return Law(np.asarray(self.dimension)[last], np.asarray(self.pressure_ratio)[last])
+        return ContactLaw(np.asarray(self.dimension)[last], np.asarray(self.pressure_ratio)[last])
 
 
 def domain_factor(dimension: Float) -> Float:
@@ -72,13 +72,13 @@ def domain_factor(dimension: Float) -> Float:
     return factor
 
 
-def elastic_sum(size: Float, law: Law) -> Float:
+def elastic_sum(size: Float, law: ContactLaw) -> Float:
     """Return (x^((5-2D)/2) - 1)/(5 - 2D) at x = a_L/a_c, (ln x)/2 at D = 2.5; 0 where all contacts are plastic."""
     value: Float = 0.5 * np.expm1(law.bend * np.maximum(size, 0.0)) / law.bend
     return value
 
 
-def load_logarithm(size: Float, law: Law) -> Float:
+def load_logarithm(size: Float, law: ContactLaw) -> Float:
     """Return ln(F/F_c) at u."""
     above = np.maximum(size, 0.0)
     grown = np.log1p(law.elastic * np.expm1(law.bend * above) / law.bend)
@@ -86,7 +86,7 @@ def load_logarithm(size: Float, law: Law) -> Float:
     return value
 
 
-def load_slope(size: Float, law: Law) -> Float:
+def load_slope(size: Float, law: ContactLaw) -> Float:
     """Return d ln F/d u."""
     above = np.maximum(size, 0.0)
     grown = np.expm1(law.bend * above)
@@ -95,7 +95,7 @@ def load_slope(size: Float, law: Law) -> Float:
     return value
 
 
-def size_of(load: Float, law: Law) -> Float:
+def size_of(load: Float, law: ContactLaw) -> Float:
     """Return u at ln(F/F_c); to about 1e-13.
 
     The logarithm of the load is a convex or a concave curve over u and rises everywhere, so the iteration, which is
@@ -118,14 +118,14 @@ def size_of(load: Float, law: Law) -> Float:
     return value
 
 
-def stiffness_share(size: Float, law: Law) -> Float:
+def stiffness_share(size: Float, law: ContactLaw) -> Float:
     """Return K/K_s at u, with K_s the stiffness that the contacts of a_L = a_c would have; 0 where all are plastic."""
     above = np.maximum(size, 0.0)
     share: Float = -np.exp(law.growth * above) * np.expm1(-law.decay * above)
     return share
 
 
-def load_exponent(size: Float, law: Law) -> Float:
+def load_exponent(size: Float, law: ContactLaw) -> Float:
     """Return m = d ln K/d ln F at u; 0 where all contacts are plastic and there is no stiffness."""
     above = np.where(np.asarray(size) > 0.0, size, 1.0)
     stiffness = law.growth + law.decay / np.expm1(law.decay * above)
@@ -133,7 +133,7 @@ def load_exponent(size: Float, law: Law) -> Float:
     return value
 
 
-def area_shares(size: Float, law: Law) -> tuple[Float, NDArray[np.float64]]:
+def area_shares(size: Float, law: ContactLaw) -> tuple[Float, NDArray[np.float64]]:
     """Return a_L/a_c, and the real area in parts of the truncated one.
 
     A plastic contact touches with its truncated area, an elastic one with half of it.

@@ -6,7 +6,7 @@ from harmonic_fractal.calculation import harmonic_fractal
 from harmonic_fractal.effects import EFFECTS
 from harmonic_fractal.published import FINDINGS, PUBLISHED
 from harmonic_fractal.sheet import SECTIONS
-from harmonic_fractal.uncertainty import SOURCES, TOLERANCES, Uncertainty, Validity, slopes
+from harmonic_fractal.uncertainty import SOURCES, TOLERANCES, SurfaceValidity, Uncertainty, slopes
 from truing import Maximise, Model, Optimise, Reliability, Require, Sensitivity, Sweep, Vary
 
 LITERATURE = [
@@ -48,7 +48,7 @@ HARMONIC_FRACTAL = Model(
         Maximise("rough_height"),
     ],
     studies=[
-        Validity(),
+        SurfaceValidity(),
         Sensitivity(of=("stiffness", "torsion"), at_inputs=SOURCES, gives=slopes),
         Uncertainty(),
         Reliability(draws=20_000),

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 
-from harmonic_fractal.calculation import TABLE, UNIT, Column
+from harmonic_fractal.calculation import TABLE, UNIT, CatalogueColumn
 from truing import Finding, Published
 
 # What is printed, for comparison: the patent prints no number, the maker's catalogues print torsional stiffnesses
@@ -10,7 +10,7 @@ from truing import Finding, Published
 # Compared is what the mesh of rough contacts alone predicts, from typical D and G and all else rigid: the claim that
 # the contact of the flanks is the weakest part of the mesh is put to the test against every drive of the catalogue.
 
-RATIOS: dict[Column, int] = {"30": 30, "50": 50, "above 50": 100}
+RATIOS: dict[CatalogueColumn, int] = {"30": 30, "50": 50, "above 50": 100}
 ENGAGED = 0.3  # of the teeth
 LLC = "CSF and CSG, tables 41, 42"
 AG = "CHA, manual 1018854"
@@ -21,7 +21,7 @@ ROUGHER = {"fractal_dimension": "2.5", "fractal_roughness": "1e-9 m", "conventio
            "reference_torque": "0.1 N*m"}  # fmt: skip
 
 
-def drive(size: str, column: Column, torque: float) -> Mapping[str, str]:
+def drive(size: str, column: CatalogueColumn, torque: float) -> Mapping[str, str]:
     """Settings of a drive of the catalogue at a torque, N m; size numbers are tenths of an inch of pitch diameter."""
     teeth = 2 * RATIOS[column]
     return {
@@ -34,12 +34,12 @@ def drive(size: str, column: Column, torque: float) -> Mapping[str, str]:
     }
 
 
-def printed_in(size: str, column: Column) -> str:
+def printed_in(size: str, column: CatalogueColumn) -> str:
     """Say in which catalogue a column is printed; smaller sizes with 30 and 50 stand in both."""
     return AG if column == "above 50" or float(size) > 32 else LLC
 
 
-def stiffnesses(column: Column, numbers: tuple[int, ...]) -> Iterator[Published]:
+def stiffnesses(column: CatalogueColumn, numbers: tuple[int, ...]) -> Iterator[Published]:
     """K_1, K_2 or K_3 of every size that has this column, each in the middle of its range of torque."""
     for size, (first, second, by_column) in TABLE.items():
         middles = {1: first / 2.0, 2: (first + second) / 2.0, 3: 1.5 * second}

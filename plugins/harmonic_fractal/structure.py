@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gamma, hyp1f1
 
-from truing import Float
+from truing import Array, Float
 
 # Which lags are looked at: those of the fit, evenly in their logarithm, and those between which slopes are taken
 
@@ -51,7 +51,6 @@ def _even(first: float, last: float, count: int) -> Steps:
 
 # The structure function of many parallel lines: mean square of the height difference of two points a lag apart
 
-Array = NDArray[np.float64]
 CACHED = 65536  # points of a block of lines; its differences stay in the cache of the processor
 
 

@@ -7,6 +7,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from truing import Array
+
 # A measured or made surface: heights on a rectangular grid, and its lines along either direction
 
 Direction = Literal["x", "y", "both"]
@@ -71,7 +73,6 @@ def pooled(first: Lines, second: Lines) -> Lines:
 #
 # Every function leaves its arguments alone and passes holes (NaN) through.
 
-Array = NDArray[np.float64]
 Form = Literal["none", "plane", "second_order"]
 WINDOW = 11  # points of the spike filter
 FEWEST = 6  # measured points of a window that can tell: as many as at the end of a line

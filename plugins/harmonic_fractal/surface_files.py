@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harmonic_fractal.surface import EQUAL, Surface
-from truing import TruingError, quantity
+from truing import Array, TruingError, quantity
 
 # Text files of heights: from bytes to numbers with holes, what the header says, and which line each row stands on
 
@@ -211,7 +211,6 @@ def _stated_in(header: tuple[str, ...]) -> dict[str, str]:
 
 # Columns of points: which one is which, and how they become a profile or a grid of equal spacing
 
-Array = NDArray[np.float64]
 ROLES = {
     "x": "x", "position": "x", "distance": "x", "y": "y", "z": "z", "height": "z", "depth": "z", "valid": "valid",
 }  # fmt: skip
@@ -220,14 +219,14 @@ UNIT = re.compile(r"\"?[\[(]([^\])]*)[\])]\"?")
 
 
 @dataclass(frozen=True)
-class Column:
+class HeightColumn:
     """A column of a file: its place, and its unit, empty where it states none."""
 
     place: int
     unit: str
 
 
-def columns_of(table: TextTable, named: Sequence[str] = ()) -> dict[str, Column]:
+def columns_of(table: TextTable, named: Sequence[str] = ()) -> dict[str, HeightColumn]:
     """Return the columns x, y, z, valid by their role; empty where the file is a plain matrix.
 
     Names come from ``named``, else from the last header lines: ``x [um];z [um]``, or names and a line of units below.
@@ -252,7 +251,7 @@ def columns_of(table: TextTable, named: Sequence[str] = ()) -> dict[str, Column]
     return found
 
 
-def _from_header(table: TextTable) -> dict[str, Column] | None:
+def _from_header(table: TextTable) -> dict[str, HeightColumn] | None:
     lines = [line.lstrip("#").strip() for line in table.header]
     cells = [[cell.strip() for cell in _split(line, table.separator)] for line in lines]
     width = table.values.shape[1]
@@ -274,9 +273,9 @@ def _split(line: str, separator: str | None) -> list[str]:
     return line.split(separator) if separator is not None else re.findall(r"\S+(?:\s+[\[(][^\])]*[\])])?", line)
 
 
-def _roles(cells: list[str], units: list[str]) -> dict[str, Column] | None:
+def _roles(cells: list[str], units: list[str]) -> dict[str, HeightColumn] | None:
     """Return the columns by role, or None where a cell is no known name; a name that occurs twice is refused."""
-    found: dict[str, Column] = {}
+    found: dict[str, HeightColumn] = {}
     for place, cell in enumerate(cells):
         match = NAMED.fullmatch(cell.strip())
         role = ROLES.get(match[1].lower()) if match else None
@@ -285,7 +284,7 @@ def _roles(cells: list[str], units: list[str]) -> dict[str, Column] | None:
         if role in found:
             raise ValueError(f"two columns are {role}: {'; '.join(cells)}")
         unit = match[2] or match[3] or ""
-        found[role] = Column(place, unit.strip() or (units[place].strip() if units else ""))
+        found[role] = HeightColumn(place, unit.strip() or (units[place].strip() if units else ""))
     return found
 
 
@@ -448,7 +447,7 @@ ASK_UNIT = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class Layout:
+class FileLayout:
     """What the user states of a file: lengths in m (NaN: the file says), unit of the heights as written."""
 
     spacing_x: float = NAN
@@ -467,7 +466,7 @@ class Reading:
     remarks: tuple[str, ...] = ()
 
 
-def read_surface(path: Path, layout: Layout) -> Reading:
+def read_surface(path: Path, layout: FileLayout) -> Reading:
     """Read heights in m from a text or from a profilometer's file; NaN where nothing was measured.
 
     Texts are a matrix (one row of numbers per row of the surface), or named columns: ``x [um];z [um]`` for a profile,
@@ -488,7 +487,7 @@ def read_surface(path: Path, layout: Layout) -> Reading:
     return _checked(Reading(surface=surface, filter_width=width, remarks=_contradictions(table, layout)))
 
 
-def _from_format(path: Path, layout: Layout) -> Reading:
+def _from_format(path: Path, layout: FileLayout) -> Reading:
     for name, is_given in (("skip_lines", layout.skip_lines > 0), ("columns", bool(layout.columns))):
         if is_given:
             raise ValueError(f"{name} belongs to text files, and {path.name} is none")
@@ -497,7 +496,7 @@ def _from_format(path: Path, layout: Layout) -> Reading:
     return Reading(surface=Surface(heights, dx, dy, path.name), filter_width=width)
 
 
-def _stated(table: TextTable, layout: Layout) -> Layout:
+def _stated(table: TextTable, layout: FileLayout) -> FileLayout:
     """Fill in from the header of the file what the user leaves open."""
     said = table.stated
     both = said.get("spacing", "")
@@ -511,9 +510,9 @@ def _stated(table: TextTable, layout: Layout) -> Layout:
     )
 
 
-def _contradictions(table: TextTable, layout: Layout) -> tuple[str, ...]:
+def _contradictions(table: TextTable, layout: FileLayout) -> tuple[str, ...]:
     """Say where the options override what the file says of itself."""
-    said = _stated(table, Layout())
+    said = _stated(table, FileLayout())
     remarks = [
         f"{name} is {mine * 1e6:.6g} um as stated; the file says {file * 1e6:.6g} um"
         for name, mine, file in (
@@ -526,7 +525,7 @@ def _contradictions(table: TextTable, layout: Layout) -> tuple[str, ...]:
     return tuple(remarks)
 
 
-def _matrix(table: TextTable, known: Layout, name: str) -> Surface:
+def _matrix(table: TextTable, known: FileLayout, name: str) -> Surface:
     heights = table.values
     if heights.shape[1] in {2, 3} and heights.shape[0] > 3:
         raise ValueError(
@@ -545,7 +544,7 @@ def _matrix(table: TextTable, known: Layout, name: str) -> Surface:
     return Surface(heights * metres_per_unit(known.height_unit), known.spacing_x, spacing_y, name)
 
 
-def _points(table: TextTable, columns: dict[str, Column], known: Layout, name: str) -> Surface:
+def _points(table: TextTable, columns: dict[str, HeightColumn], known: FileLayout, name: str) -> Surface:
     unit = known.height_unit or columns["z"].unit
     if not unit:
         raise ValueError(ASK_UNIT)
@@ -565,7 +564,9 @@ def _points(table: TextTable, columns: dict[str, Column], known: Layout, name: s
     return Surface(heights, spacing_x, spacing_y, name)
 
 
-def _place(table: TextTable, columns: dict[str, Column], axis: str) -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
+def _place(
+    table: TextTable, columns: dict[str, HeightColumn], axis: str
+) -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
     column = columns[axis]
     if not column.unit:
         raise ValueError(

@@ -15,6 +15,7 @@ from harmonic_fractal.figures import BLUE, or_none, panels, quiet
 from harmonic_fractal.flank import Flank
 from harmonic_fractal.quantities import Drive
 from truing import (
+    Array,
     Bench,
     Block,
     Check,
@@ -115,7 +116,7 @@ SOURCES = (
 
 
 @results
-class Slopes:
+class LocalSlopes:
     """By how much the stiffness of one pair changes, in parts of itself."""
 
     slope_dimension: Float = found("", symbol="k_D", note=f"{NOTE} per unit of D at the same G", method="differences")
@@ -124,7 +125,7 @@ class Slopes:
     slope_load: Float = found("", symbol="k_F", note=f"{NOTE} per ln F; the load exponent m", method="differences")
 
 
-def slopes(found_by: Sensitivities) -> Slopes:
+def slopes(found_by: Sensitivities) -> LocalSlopes:
     """Divide the derivatives by the stiffness; a source that the study was not asked for has none."""
     drive: Drive = found_by.inputs
     stiffness = float(pressed(drive.pair_load, contact_of(drive, interface_of(drive))).stiffness)
@@ -133,7 +134,7 @@ def slopes(found_by: Sensitivities) -> Slopes:
     def relative(source: str, by: Float = 1.0) -> float:
         return derivative.get(source, nan) * float(by) / stiffness if stiffness else nan
 
-    return Slopes(
+    return LocalSlopes(
         slope_dimension=relative("dimension_deviation"),
         slope_roughness=relative("roughness_deviation"),
         slope_hardness=relative("hardness", drive.hardness),
@@ -143,7 +144,6 @@ def slopes(found_by: Sensitivities) -> Slopes:
 
 # A study of our own: how far the finite number of measured lines leaves stiffness and torsion open
 
-Array = NDArray[np.float64]
 
 OF = ("stiffness", "clearance", "mesh_stiffness", "torsion")
 PAIR = ("dimension_deviation", "roughness_deviation")
@@ -364,17 +364,17 @@ BODIES = {"surface": "fractal_dimension and fractal_roughness", "mating_surface"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Validity:
+class SurfaceValidity:
     """Collect what its reader must know of every measured flank and of the contact that follows."""
 
     name: str = "validity"
     gives: Callable[[Any], Any] | None = None
 
-    def run(self, bench: "Bench") -> "Valid":
+    def run(self, bench: "Bench") -> "SurfaceValid":
         """Look at the flanks and at the answers."""
         drive: Drive = bench.inputs
         beyond = [*_of_flanks(drive), *_of_contact(bench.answers)]
-        return Valid(name=self.name, inputs=drive, beyond=tuple(beyond))
+        return SurfaceValid(name=self.name, inputs=drive, beyond=tuple(beyond))
 
 
 def _of_flanks(drive: Drive) -> Iterator[str]:
@@ -408,7 +408,7 @@ def _of_contact(answers: Any) -> Iterator[str]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Valid:
+class SurfaceValid:
     """What was found; ``inputs`` are those of the run, as effects leave them."""
 
     name: str

@@ -19,7 +19,7 @@ from press_linkage.errors import (
     without_rounding,
 )
 from press_linkage.kinematics import Half, crank_at, cycle_demands, nominal, smallest_sine, solve, top_crank_angle
-from press_linkage.quantities import Chances, Cycle, Influence, Press, Synthesis
+from press_linkage.quantities import Cycle, ErrorInfluence, Press, PressChances, Synthesis
 from truing import Allocation, Allotted, Bench, Block, Check, Odds, Sensitivities, Swept, Table, feasible
 
 # What each study gives back as results of the press linkage
@@ -63,13 +63,13 @@ def cycle(swept: Swept) -> Cycle:
     )
 
 
-def influence(found: Sensitivities) -> Influence:
+def influence(found: Sensitivities) -> ErrorInfluence:
     """The nominal chain with the influence of each error, and what the sources in force do together."""
     press: Press = found.inputs
     exact = solve(nominal(press))
     by_kind = side_sensitivities(exact.side_1)
     shift = solve(press).slider_position - exact.slider_position
-    return Influence(
+    return ErrorInfluence(
         **_chain(press, exact.side_1, float(press.crank_angle)),
         platform_height=float(exact.platform_height),
         nominal_position=float(exact.slider_position),
@@ -126,12 +126,12 @@ def _variances(found: Sensitivities) -> dict[str, float]:
     }
 
 
-def chances(odds: Odds) -> Chances:
+def chances(odds: Odds) -> PressChances:
     """Both reliabilities to first order, and how far the press is out of the middle of its limits."""
     offset = {
         demand.name: float(odds.nominal[demand.result] - 0.5 * (demand.low + demand.high)) for demand in odds.demands
     }
-    return Chances(
+    return PressChances(
         position_offset=offset.get("slider_position", nan),
         tilt_offset=offset.get("slider_tilt", nan),
         position_reliability=odds.analytic.get("slider_position", nan),

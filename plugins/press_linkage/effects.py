@@ -7,7 +7,7 @@ import numpy as np
 
 from press_linkage.errors import face_sensitivities
 from press_linkage.kinematics import Position, slider_motion, solve
-from press_linkage.quantities import Press, Side, Slider
+from press_linkage.quantities import Press, PressSide, Slider
 from truing import Condition, Effect, Float, Unknown
 
 # What else must be measured before the effects of the press can act: each condition once, shared by its effects
@@ -33,7 +33,7 @@ DIRECTION = Condition("direction", "", reference=0, low=-1, high=1,
 HEATED = ("crank_radius", "rod_length", "knee_drive_length", "upper_knee_length", "lower_knee_length")
 
 
-def longer(side: Side, by: Mapping[str, Float]) -> Side:
+def longer(side: PressSide, by: Mapping[str, Float]) -> PressSide:
     """One side with these lengths off by so much more, m, named without ``_deviation``."""
     names = {kind: f"{kind}_deviation" for kind in by}
     return replace(side, **{name: getattr(side, name) + by[kind] for kind, name in names.items()})
@@ -122,10 +122,10 @@ MILLION = 1e6
 GRAVITY = 9.80665  # m/s2
 ROUNDING = 1e-9  # of the weight: a load nearer to nothing is nothing
 
-Shares = tuple[Mapping[str, Float], Mapping[str, Float]]
+LoadShares = tuple[Mapping[str, Float], Mapping[str, Float]]
 
 
-def shares_of_load(position: Position) -> Shares:
+def shares_of_load(position: Position) -> LoadShares:
     """Compression of the links of both sides per newton that pushes the slider up, N/N, negative where they are pulled.
 
     Rods and knee links; 0 where the loops do not close, so that the model itself says why they do not.

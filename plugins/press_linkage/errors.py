@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from press_linkage.kinematics import Half, Polar, Position, demands, solve
-from press_linkage.quantities import Press, Side, Slider
+from press_linkage.quantities import Press, PressSide, Slider
 from truing import Float, either, feasible
 
-KINDS = tuple(field.name.removesuffix("_deviation") for field in fields(Side))
+KINDS = tuple(field.name.removesuffix("_deviation") for field in fields(PressSide))
 DRIVEN = (
     "crank_radius",
     "rod_length",
@@ -100,7 +100,7 @@ def face_sensitivities(half: Half) -> dict[str, Float]:
 def side_sensitivities(half: Half) -> dict[str, Float]:
     """The paper's xi of one side: change of its face height per unit of each error, as if the other side followed.
 
-    Fifteen entries, the kinds of ``Side`` and ``platform_arm``; m/m for lengths, m/rad for angles, in the
+    Fifteen entries, the kinds of ``PressSide`` and ``platform_arm``; m/m for lengths, m/rad for angles, in the
     coordinates of this side (outward, downward). The slider joint angle has the sign of the face height,
     -l in nominal position; the paper writes the height of the joint with +l, which no variance can tell apart.
     """

@@ -22,7 +22,7 @@ LINK = "#565c66"
 PALE = ("#d9dde2", "#c9ced6", "#b7bec8")
 GHOSTS = (1.0, 0.7, 0.45)  # shares of the way back to the top dead centre
 SLIDER_HEIGHT = 0.16
-Place = tuple[float, float]
+PointOnFigure = tuple[float, float]
 BESIDE = {
     "A": (0.13, -0.03),
     "B": (0.13, 0.05),
@@ -38,7 +38,7 @@ LINKS = {
 }  # fmt: skip
 
 
-def places(position: Position, half: Half, sign: float) -> dict[str, Place]:
+def places(position: Position, half: Half, sign: float) -> dict[str, PointOnFigure]:
     """Where the joints of one side are, y to the right and z downward; *sign* is -1 for side 2."""
     parts = half.parts
     found = {
@@ -89,11 +89,11 @@ def _title(crank_angle: float, earlier: list[float]) -> str:
     return f"{said}; grey: {grey[0]} (top), {', '.join(grey[1:-1])} and {grey[-1]} before it"
 
 
-def _sides(position: Position) -> tuple[dict[str, Place], dict[str, Place]]:
+def _sides(position: Position) -> tuple[dict[str, PointOnFigure], dict[str, PointOnFigure]]:
     return places(position, position.side_1, 1.0), places(position, position.side_2, -1.0)
 
 
-def _line(panel: Any, *points: Place, **style: Any) -> None:
+def _line(panel: Any, *points: PointOnFigure, **style: Any) -> None:
     panel.plot([y for y, _ in points], [z for _, z in points], solid_capstyle="round", **style)
 
 
@@ -133,7 +133,7 @@ def _press(panel: Any, position: Position) -> None:
     _slider(panel, position)
 
 
-def _pin(panel: Any, place: Place) -> None:
+def _pin(panel: Any, place: PointOnFigure) -> None:
     panel.plot(*place, marker="o", markersize=5.2, markerfacecolor="white", markeredgecolor=INK, zorder=6)
 
 
@@ -178,14 +178,14 @@ def _names(panel: Any, position: Position) -> None:
     _name(panel, "$O$", (0.0, -0.11))
 
 
-def _name(panel: Any, text: str, place: Place, colour: str = INK) -> None:
+def _name(panel: Any, text: str, place: PointOnFigure, colour: str = INK) -> None:
     halo = [withStroke(linewidth=2.5, foreground="white")]
     panel.text(*place, text, ha="center", va="center", fontsize=9, color=colour, zorder=7, path_effects=halo)
 
 
 # The slider over one turn, the influence of the errors, and the reliabilities along the synthesis
 
-Run = Record[Press, Slider]
+PressRun = Record[Press, Slider]
 
 TURN = np.radians(np.linspace(-180.0, 180.0, 361))
 SYMBOLS = {
@@ -233,7 +233,7 @@ def _over_the_turn(panel: Any, label: str) -> None:
     panel.grid(alpha=0.4)
 
 
-def over_the_turn(record: "Run") -> "Figure":
+def over_the_turn(record: "PressRun") -> "Figure":
     """Draw how the influence of the lengths and the salience of the key errors run over one turn."""
     press = nominal(record.inputs)
     turn = solve(press, TURN)

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from press_linkage.quantities import Press, Side
+from press_linkage.quantities import Press, PressSide
 from truing import Float
 
 # Where is the slider, exactly? Closed-form kinematics of the press linkage with every size off by its own deviation
@@ -27,7 +27,7 @@ from truing import Float
 SERIES_LIMIT = 0.025  # rad; below it the first neglected terms are 4e-18 (cosine) and 1e-20 (sine)
 
 
-class Point(NamedTuple):
+class JointPoint(NamedTuple):
     """A joint: y outward on its own side, z downward."""
 
     y: Float
@@ -77,10 +77,10 @@ class Half:
     """One side in one position: its parts, its joints, and how far it is from a singular position."""
 
     parts: Parts
-    pin: Point  # B, end of the crank
+    pin: JointPoint  # B, end of the crank
     rod_drop: Float  # height of the rod, E below B
     arm_end: Float  # height of B5, common to both sides
-    knee: Point  # G
+    knee: JointPoint  # G
     knee_fold: Float  # square of sin(theta_19 - theta_17) times (l_g l_m / d^2)^2, negative where loop II is open
     knee_span: Float  # square of the distance d from B5 to M
     lower_drop: Float  # height of the lower link, H below G
@@ -156,7 +156,7 @@ def crank_at(press: Press, crank_angle: Float) -> tuple[Float, Float]:
     return turned(cosine, sine, crank_angle)
 
 
-def built(press: Press, crank: tuple[Float, Float], off: Side, *, mirror: float = 1.0) -> Parts:
+def built(press: Press, crank: tuple[Float, Float], off: PressSide, *, mirror: float = 1.0) -> Parts:
     """One side with its deviations; *mirror* is -1 for side 2, whose polar angles run the other way."""
     ground = np.cos(press.ground_pivot_angle), np.sin(press.ground_pivot_angle)
 
@@ -177,15 +177,15 @@ def built(press: Press, crank: tuple[Float, Float], off: Side, *, mirror: float 
     )
 
 
-def crank_side(parts: Parts) -> tuple[Point, Float, Float]:
+def crank_side(parts: Parts) -> tuple[JointPoint, Float, Float]:
     """Loop I: crank pin, height of the rod (E below B), and the platform height this side alone would set."""
-    pin = Point(parts.pivot.y + parts.crank.y, parts.pivot.z + parts.crank.z)
+    pin = JointPoint(parts.pivot.y + parts.crank.y, parts.pivot.z + parts.crank.z)
     reach = parts.platform.y - pin.y
     rod_drop = np.sqrt(parts.rod * parts.rod - reach * reach)
     return pin, rod_drop, pin.z + rod_drop - parts.platform.z
 
 
-def knee_side(parts: Parts, pin: Point, rod_drop: Float, arm_end: Float) -> Half:
+def knee_side(parts: Parts, pin: JointPoint, rod_drop: Float, arm_end: Float) -> Half:
     """Loops II and III: the knee G outside and below the end of the platform arm, then the slider face over H."""
     to_ground_y, to_ground_z = parts.ground.y, parts.ground.z - arm_end
     span = to_ground_y * to_ground_y + to_ground_z * to_ground_z
@@ -194,7 +194,7 @@ def knee_side(parts: Parts, pin: Point, rod_drop: Float, arm_end: Float) -> Half
     along = 0.5 + (drive_square - parts.upper * parts.upper) * (0.5 * inverse)
     fold = drive_square * inverse - along * along
     across = np.sqrt(fold)
-    knee = Point(to_ground_y * along - to_ground_z * across, to_ground_z * along + to_ground_y * across + arm_end)
+    knee = JointPoint(to_ground_y * along - to_ground_z * across, to_ground_z * along + to_ground_y * across + arm_end)
     reach = parts.slider.y - knee.y
     lower_drop = np.sqrt(parts.lower * parts.lower - reach * reach)
     face = knee.z + lower_drop - parts.slider.z
@@ -203,7 +203,7 @@ def knee_side(parts: Parts, pin: Point, rod_drop: Float, arm_end: Float) -> Half
 
 def nominal(press: Press) -> Press:
     """The press without its deviations."""
-    return replace(press, platform_arm_deviation=0.0, side_1=Side(), side_2=Side())
+    return replace(press, platform_arm_deviation=0.0, side_1=PressSide(), side_2=PressSide())
 
 
 def solve(press: Press, crank_angle: Float | None = None) -> Position:
@@ -261,7 +261,7 @@ SINGULAR = 1e-6  # sine of an angle between two links below which the position i
 NEARLY_SINGULAR = 0.05  # below it the sensitivities exceed 20: worth a warning
 
 
-class Demand(NamedTuple):
+class TiltDemand(NamedTuple):
     """What must hold: a name, where it holds, and the sentence for the engineer where it does not."""
 
     name: str
@@ -288,15 +288,15 @@ def smallest_sine(position: Position) -> Float:
     return least
 
 
-def nominal_demands(press: Press) -> Iterator[Demand]:
+def nominal_demands(press: Press) -> Iterator[TiltDemand]:
     """What the nominal sizes must satisfy for a bottom dead centre on this branch."""
-    yield Demand(
+    yield TiltDemand(
         "branch",
         press.crank_pivot_radius > press.platform_half_width,
         "the crank pivots must lie farther out than the rod joints of the platform: "
         "crank_pivot_radius > platform_half_width",
     )
-    yield Demand(
+    yield TiltDemand(
         "stretched",
         press.crank_pivot_radius - press.platform_half_width < press.crank_radius + press.rod_length,
         "loop I has no bottom dead centre: crank and rod in line do not reach the platform; it needs "
@@ -304,10 +304,10 @@ def nominal_demands(press: Press) -> Iterator[Demand]:
     )
 
 
-def rotation_demand(press: Press) -> Demand:
+def rotation_demand(press: Press) -> TiltDemand:
     """What a full turn of the crank needs, and with it the upper dead centre and the stroke."""
     offset = np.abs(press.crank_pivot_radius - press.platform_half_width)
-    return Demand(
+    return TiltDemand(
         "full rotation",
         offset + press.crank_radius < press.rod_length,
         "loop I does not close over a full turn of the crank: it needs "
@@ -315,7 +315,7 @@ def rotation_demand(press: Press) -> Demand:
     )
 
 
-def demands(press: Press, position: Position) -> Iterator[Demand]:
+def demands(press: Press, position: Position) -> Iterator[TiltDemand]:
     """What must hold in this position with these deviations: nominal sizes, then loop by loop, side by side.
 
     They come in the order of the chain, so the first one that fails names the cause and not a consequence.
@@ -326,7 +326,7 @@ def demands(press: Press, position: Position) -> Iterator[Demand]:
             yield _sizes(half, side)
         for side, half in ((1, position.side_1), (2, position.side_2)):
             yield from _rod_demands(half, side)
-        yield Demand(
+        yield TiltDemand(
             "platform arm",
             position.side_1.arm_end > position.platform_height,
             "the platform arm with its deviation must be longer than zero",
@@ -336,13 +336,13 @@ def demands(press: Press, position: Position) -> Iterator[Demand]:
             yield from _slider_demands(half, side)
 
 
-def _sizes(half: Half, side: int) -> Demand:
+def _sizes(half: Half, side: int) -> TiltDemand:
     """Every length of one side is positive, its deviation included."""
     parts = half.parts
     holds = parts.rod > 0.0
     for length in (parts.drive, parts.upper, parts.lower, *(polar.length for polar in _polars(parts))):
         holds = holds & (length > 0.0)
-    return Demand(f"sizes {side}", holds, f"side {side}: every length with its deviation must be greater than zero")
+    return TiltDemand(f"sizes {side}", holds, f"side {side}: every length with its deviation must be greater than zero")
 
 
 def _polars(parts: Parts) -> tuple[Polar, ...]:
@@ -350,16 +350,16 @@ def _polars(parts: Parts) -> tuple[Polar, ...]:
     return parts.pivot, parts.crank, parts.platform, parts.ground, parts.slider
 
 
-def _rod_demands(half: Half, side: int) -> Iterator[Demand]:
+def _rod_demands(half: Half, side: int) -> Iterator[TiltDemand]:
     """Loop I (VI on side 2): the rod reaches the platform, and not in a horizontal position."""
     loop = "I" if side == 1 else "VI"
-    yield Demand(
+    yield TiltDemand(
         f"loop {loop}",
         half.rod_drop >= 0.0,
         f"loop {loop}, side {side} does not close: the rod cannot reach the platform, it needs "
         "|e cos(beta_1) - y_B| < k_R (horizontal distance of its ends below rod_length)",
     )
-    yield Demand(
+    yield TiltDemand(
         f"singular {loop}",
         half.rod_drop >= SINGULAR * half.parts.rod,
         f"loop {loop}, side {side} is singular: the rod is horizontal (|sin(theta_2{side})| < 1e-6), "
@@ -367,10 +367,10 @@ def _rod_demands(half: Half, side: int) -> Iterator[Demand]:
     )
 
 
-def _knee_demands(half: Half, side: int) -> Iterator[Demand]:
+def _knee_demands(half: Half, side: int) -> Iterator[TiltDemand]:
     """Loop II (V on side 2): knee drive and upper link meet, and not in line."""
     loop = "II" if side == 1 else "V"
-    yield Demand(
+    yield TiltDemand(
         f"loop {loop}",
         half.knee_fold >= 0.0,
         f"loop {loop}, side {side} does not close: the knee drive is open, it needs "
@@ -379,7 +379,7 @@ def _knee_demands(half: Half, side: int) -> Iterator[Demand]:
         "upper_knee_length and knee_drive_length)",
     )
     links = half.parts.drive * half.parts.upper
-    yield Demand(
+    yield TiltDemand(
         f"singular {loop}",
         half.knee_fold * (half.knee_span * half.knee_span) >= (SINGULAR * SINGULAR) * (links * links),
         f"loop {loop}, side {side} is singular: platform arm, knee and ground pivot lie in line "
@@ -387,23 +387,23 @@ def _knee_demands(half: Half, side: int) -> Iterator[Demand]:
     )
 
 
-def _slider_demands(half: Half, side: int) -> Iterator[Demand]:
+def _slider_demands(half: Half, side: int) -> Iterator[TiltDemand]:
     """Loop III (IV on side 2): the lower link reaches the slider, and not in a horizontal position."""
     loop = "III" if side == 1 else "IV"
-    yield Demand(
+    yield TiltDemand(
         f"loop {loop}",
         half.lower_drop >= 0.0,
         f"loop {loop}, side {side} does not close: the lower link cannot reach the slider, it needs "
         "|l - y_G| < l_h (horizontal distance of its ends below lower_knee_length)",
     )
-    yield Demand(
+    yield TiltDemand(
         f"singular {loop}",
         half.lower_drop >= SINGULAR * half.parts.lower,
         f"loop {loop}, side {side} is singular: the lower link is horizontal (|sin(theta_{side}8)| < 1e-6)",
     )
 
 
-def cycle_demands(press: Press, samples: int = 721) -> Iterator[Demand]:
+def cycle_demands(press: Press, samples: int = 721) -> Iterator[TiltDemand]:
     """What a full turn of the crank demands of one nominal mechanism (plain numbers): every loop, at every angle.
 
     The loops are tried at *samples* equally spaced crank angles; none of the roots may vanish on the way, so the
@@ -412,7 +412,7 @@ def cycle_demands(press: Press, samples: int = 721) -> Iterator[Demand]:
     yield rotation_demand(press)
     turn = solve(nominal(press), np.linspace(-np.pi, np.pi, samples))
     for name, holds, sentence in demands(press, turn):
-        yield Demand(name, bool(np.all(holds)), f"over the full turn: {sentence}")
+        yield TiltDemand(name, bool(np.all(holds)), f"over the full turn: {sentence}")
 
 
 # How does the slider accelerate? The loops differentiated twice, exact in any position, numbers or arrays (n,)
@@ -428,7 +428,7 @@ class Motion(NamedTuple):
     acceleration: Float
 
 
-def _dot(one: Point, other: Point) -> Float:
+def _dot(one: JointPoint, other: JointPoint) -> Float:
     return one.y * other.y + one.z * other.z
 
 
@@ -438,26 +438,26 @@ def platform_motion(half: Half) -> Motion:
     The rod keeps its length, so rod · rod' = 0 and rod · rod'' + rod' · rod' = 0 with E on a vertical line.
     """
     crank, rod = half.parts.crank, half.rod
-    pin = Point(-crank.z, crank.y)  # velocity of B, a quarter turn ahead of the crank
-    speed = _dot(pin, Point(rod.y, rod.z)) / rod.z
-    swing = Point(-pin.y, speed - pin.z)
-    pull = Point(-crank.y, -crank.z)  # acceleration of B, towards A
-    return Motion(speed, (_dot(pull, Point(rod.y, rod.z)) - _dot(swing, swing)) / rod.z)
+    pin = JointPoint(-crank.z, crank.y)  # velocity of B, a quarter turn ahead of the crank
+    speed = _dot(pin, JointPoint(rod.y, rod.z)) / rod.z
+    swing = JointPoint(-pin.y, speed - pin.z)
+    pull = JointPoint(-crank.y, -crank.z)  # acceleration of B, towards A
+    return Motion(speed, (_dot(pull, JointPoint(rod.y, rod.z)) - _dot(swing, swing)) / rod.z)
 
 
 def face_motion(half: Half, platform: Motion) -> Motion:
     """Loops II and III: the slider face over one joint, downward, for a given motion of the platform."""
-    drive, upper, lower = (Point(link.y, link.z) for link in (half.drive, half.upper, half.lower))
-    quarter = Point(-upper.z, upper.y)
+    drive, upper, lower = (JointPoint(link.y, link.z) for link in (half.drive, half.upper, half.lower))
+    quarter = JointPoint(-upper.z, upper.y)
     across = _dot(drive, quarter)
     turning = drive.z * platform.speed / across
-    knee = Point(turning * quarter.y, turning * quarter.z)
-    swing = Point(knee.y, knee.z - platform.speed)
+    knee = JointPoint(turning * quarter.y, turning * quarter.z)
+    swing = JointPoint(knee.y, knee.z - platform.speed)
     inward = turning * turning * _dot(drive, upper)
     gain = (drive.z * platform.acceleration + inward - _dot(swing, swing)) / across
-    pull = Point(gain * quarter.y - turning * turning * upper.y, gain * quarter.z - turning * turning * upper.z)
+    pull = JointPoint(gain * quarter.y - turning * turning * upper.y, gain * quarter.z - turning * turning * upper.z)
     speed = _dot(lower, knee) / lower.z
-    swing = Point(-knee.y, speed - knee.z)
+    swing = JointPoint(-knee.y, speed - knee.z)
     return Motion(speed, (_dot(lower, pull) - _dot(swing, swing)) / lower.z)
 
 

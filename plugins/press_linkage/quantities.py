@@ -28,7 +28,7 @@ def off(unit: Literal["mm", "mrad"], symbol: str, note: str) -> float:
 
 
 @inputs
-class Side:
+class PressSide:
     """How far one side is off: lengths grow; joint angles are polar angles of the frame on both sides."""
 
     crank_radius_deviation: Float = off("mm", "a", "crank, A to B")
@@ -89,8 +89,8 @@ class Press:
         note="complete: every installation error in force; printed: what the paper's printed reliabilities contain",
     )
     platform_arm_deviation: Float = off("mm", "k", "arm of the moving platform, common to both sides")
-    side_1: Side = part(Side, index="1", suffix="1")
-    side_2: Side = part(Side, index="2", suffix="2")
+    side_1: PressSide = part(PressSide, index="1", suffix="1")
+    side_2: PressSide = part(PressSide, index="2", suffix="2")
 
 
 @results
@@ -144,7 +144,7 @@ class Cycle:
 
 
 @results
-class Chances:
+class PressChances:
     """Both reliabilities with the tolerances as they are, first order as in the paper."""
 
     position_offset: Float = found(
@@ -192,7 +192,7 @@ def influence_of(symbol: str, note: str, formula: str, unit: Literal["", "m/rad"
 
 
 @results
-class Influence:
+class ErrorInfluence:
     """One nominal side, angle by angle, with the influence of its errors; then salience and scatter of both sides."""
 
     crank_direction: Float = found(

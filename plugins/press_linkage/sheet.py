@@ -8,22 +8,20 @@ from typing import TypeGuard
 
 from press_linkage.answers import LINKS, sources_of
 from press_linkage.errors import KINDS, POLAR_ANGLES, SOURCES
-from press_linkage.figures import along_the_synthesis, mechanism, over_the_turn, salience_bars, way
+from press_linkage.figures import PressRun, along_the_synthesis, mechanism, over_the_turn, salience_bars, way
 from press_linkage.kinematics import top_crank_angle
 from press_linkage.published import WHERE
-from press_linkage.quantities import Influence, Press, Slider
-from truing import Block, Drawing, Record, Section, Sensitivities, Table, Words
+from press_linkage.quantities import ErrorInfluence
+from truing import Block, Drawing, Section, Sensitivities, Table, Words
 
-Run = Record[Press, Slider]
-
-DECLARED = tuple(field.name for field in fields(Influence))
+DECLARED = tuple(field.name for field in fields(ErrorInfluence))
 INFLUENCES = tuple(name for name in DECLARED if name.startswith("influence_"))
 CHAIN = DECLARED[: DECLARED.index(INFLUENCES[0])]
 MICROMETRE_2 = 1e-12
 MICRORADIAN_2 = 1e-12
 
 
-def travel(record: "Run") -> Sequence[Block]:
+def travel(record: "PressRun") -> Sequence[Block]:
     """The way of the slider over one turn, with the effects that are on."""
     swept = record.studies.get("sweep")
     up = -degrees(top_crank_angle(record.inputs))
@@ -39,7 +37,7 @@ def knows_every_error(found: "Sensitivities | None") -> "TypeGuard[Sensitivities
     )
 
 
-def saliences(record: "Run") -> Sequence[Block]:
+def saliences(record: "PressRun") -> Sequence[Block]:
     """The paper's Figs. 2 and 3, and the same over the turn."""
     caption = "Nominal mechanism. Away from the bottom dead centre the driven chain takes over."
     turn = Drawing("Influence and salience over one turn", partial(over_the_turn, record), caption)
@@ -50,7 +48,7 @@ def saliences(record: "Run") -> Sequence[Block]:
     return [Drawing("Salience of the errors", partial(salience_bars, found), caption), turn]
 
 
-def variances(record: "Run") -> Sequence[Block]:
+def variances(record: "PressRun") -> Sequence[Block]:
     """What each kind of error contributes to both variances."""
     found = record.studies.get("sensitivity")
     if not knows_every_error(found):
@@ -77,7 +75,7 @@ def variances(record: "Run") -> Sequence[Block]:
     return [table]
 
 
-def tightening(record: "Run") -> Sequence[Block]:
+def tightening(record: "PressRun") -> Sequence[Block]:
     """The reliabilities along the synthesis, with the paper's where it is the paper's reading."""
     allotted = record.studies.get("allocation")
     if allotted is None or set(allotted.start) != {"slider_position", "slider_tilt"}:
@@ -90,7 +88,7 @@ def tightening(record: "Run") -> Sequence[Block]:
     return [Drawing("Reliability along the synthesis", partial(along_the_synthesis, allotted, printed), caption)]
 
 
-def other_reading(record: "Run") -> Sequence[Block]:
+def other_reading(record: "PressRun") -> Sequence[Block]:
     """The other reading beside this one, so that nobody takes the printed reliabilities for the whole."""
     compared = record.studies.get("readings")
     if compared is None:

@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from gear_geometry.pairs import involute
 from roller_screw_shift.geometry import geometry_of
-from roller_screw_shift.objectives import Course, Three, Values, course_of, normalised, weights_of
-from roller_screw_shift.optimum import LIMITS, MM, READING, READINGS, Chosen, Field, grid_optimum, signed
+from roller_screw_shift.objectives import ShiftCourse, Three, course_of, normalised, weights_of
+from roller_screw_shift.optimum import LIMITS, MM, READING, READINGS, ChosenShift, Field, grid_optimum, signed
 from roller_screw_shift.quantities import Meshing, Pair
 from roller_screw_shift.strength import roller_fillet
-from truing import Optimum, Record
+from truing import Array, Optimum, Record
 
 # What the figures share: colours, sizes, and the outcomes of a run
 
-Run = Record[Pair, Meshing]
+PairRun = Record[Pair, Meshing]
 
 BLUE, ORANGE, GREEN, INK, GREY, PALE = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c", "#e8eff5"
 WIDTH = 6.4
@@ -48,7 +48,7 @@ SHADES = (BLUE, GREEN, "#7a4f9a", "#b0892c", "#4f86b3", GREY)
 HIGHEST = 1.0  # margins above are far from their limits
 
 
-def shown(chosen: "Chosen") -> Values:
+def shown(chosen: "ChosenShift") -> Array:
     """The shifts that the figures show: what is allowed, what is stated, and some on either side."""
     places = [float(chosen.inputs.roller_shift)]
     if chosen.field is not None:
@@ -57,7 +57,7 @@ def shown(chosen: "Chosen") -> Values:
     return np.asarray(np.linspace(low, high, COURSE_POINTS), dtype=float)
 
 
-def marks(panel: Any, chosen: "Chosen") -> None:
+def marks(panel: Any, chosen: "ChosenShift") -> None:
     """Shade what is allowed, and mark the optimum and what is stated."""
     if chosen.field is not None:
         for number, part in enumerate(chosen.field.intervals):
@@ -67,7 +67,7 @@ def marks(panel: Any, chosen: "Chosen") -> None:
     panel.axvline(stated, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), label=f"as stated, {signed(stated, '.4g')}")
 
 
-def objectives_figure(chosen: "Chosen") -> "Figure":
+def objectives_figure(chosen: "ChosenShift") -> "Figure":
     """Draw the three objectives over the shift, one below the other."""
     course = course_of(chosen.inputs, shown(chosen))
     figure, rows = panels(3, 5.6, sharex=True)
@@ -88,7 +88,7 @@ def objectives_figure(chosen: "Chosen") -> "Figure":
     return figure
 
 
-def limits_figure(chosen: "Chosen") -> "Figure":
+def limits_figure(chosen: "ChosenShift") -> "Figure":
     """Draw where each limit is kept, and how the margins run."""
     course = course_of(chosen.inputs, shown(chosen))
     figure, (bars, lines) = panels(2, 6.6, sharex=True)
@@ -104,7 +104,7 @@ def limits_figure(chosen: "Chosen") -> "Figure":
     return figure
 
 
-def _bars(panel: Any, course: Course) -> None:
+def _bars(panel: Any, course: ShiftCourse) -> None:
     """A bar by limit, where it is kept."""
     step = course.shifts[1] - course.shifts[0]
     for place, margin in enumerate(course.margins.values()):
@@ -121,7 +121,7 @@ def _bars(panel: Any, course: Course) -> None:
     panel.set_axisbelow(True)
 
 
-def _lines(panel: Any, course: Course) -> None:
+def _lines(panel: Any, course: ShiftCourse) -> None:
     """The margins that change sign in the picture."""
     shown = [(name, margin) for name, margin in course.margins.items() if _crosses(margin)]
     for number, (name, margin) in enumerate(shown):
@@ -132,7 +132,7 @@ def _lines(panel: Any, course: Course) -> None:
     quiet(panel, "", "margin")
 
 
-def _crosses(margin: Values) -> bool:
+def _crosses(margin: Array) -> bool:
     """Whether a limit is kept somewhere in the picture and missed elsewhere."""
     return bool((margin >= 0.0).any() and (margin < 0.0).any())
 
@@ -298,7 +298,7 @@ def _path(panel: Any, pair: Pair) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Path:
+class ContactPath:
     """Places on the path of contact (n,), m from the pitch point outward, and the specific sliding of both there."""
 
     place: "NDArray[np.float64]"
@@ -306,7 +306,7 @@ class Path:
     ring: "NDArray[np.float64]"
 
 
-def path_of(pair: Pair) -> Path:
+def path_of(pair: Pair) -> ContactPath:
     """Return the path from the tip of the ring to that of the roller; sliding is 1 - v_other/v_own, with its sign.
 
     Speeds along a flank are its radius of curvature times the speed of the gear; both turn against the carrier in the
@@ -321,7 +321,7 @@ def path_of(pair: Pair) -> Path:
     at_roller = float(roller.base_radius) * tangent + place
     at_ring = float(ring.base_radius) * tangent + place
     ratio = float(pair.ring_teeth) / float(pair.roller_teeth)
-    return Path(place, 1.0 - at_ring / (ratio * at_roller), 1.0 - ratio * at_roller / at_ring)
+    return ContactPath(place, 1.0 - at_ring / (ratio * at_roller), 1.0 - ratio * at_roller / at_ring)
 
 
 LOOKS = (("o", "white"), ("X", INK), ("D", ORANGE))
@@ -356,12 +356,12 @@ MARKS = {"own_ranges": ("o", ORANGE), "printed_ranges": ("s", GREEN), "printed":
 SIDES = (0.0 + 0.0j, 1.0 + 0.0j, 0.5 + 0.5j * np.sqrt(3.0))  # all weight on the sum, on the stresses, on the sliding
 
 
-def chosen_shifts(chosen: "Chosen", field: Field) -> dict[str, float]:
+def chosen_shifts(chosen: "ChosenShift", field: Field) -> dict[str, float]:
     """The optimum on the grid by every reading of the weights."""
     return {reading: grid_optimum(field, weights_of(reading, field.ranges)) for reading in READINGS}
 
 
-def front_figure(chosen: "Chosen", field: Field, optimum: "Optimum | None") -> "Figure":
+def front_figure(chosen: "ChosenShift", field: Field, optimum: "Optimum | None") -> "Figure":
     """Draw the objectives against one another along the shift, and where the weights choose."""
     figure, rows = panels(2, 6.2)
     course = field.course
@@ -394,12 +394,12 @@ def _designs(optimum: "Optimum", other: int) -> tuple[list[float], list[float]]:
     )
 
 
-def _stated(panel: Any, chosen: "Chosen", other: int) -> None:
+def _stated(panel: Any, chosen: "ChosenShift", other: int) -> None:
     at = course_of(chosen.inputs, np.array([float(chosen.inputs.roller_shift)])).objectives[:, 0]
     panel.plot(at[1], at[other], "X", markersize=8, color=INK, linestyle="", label="as stated")
 
 
-def triangle(field: Field) -> tuple[Values, Values]:
+def triangle(field: Field) -> tuple[Array, Array]:
     """Return shares of the weights (n, 3), which add up to 1, and the shift that each of them chooses (n,)."""
     first, second = np.meshgrid(np.arange(MANY + 1), np.arange(MANY + 1), indexing="ij")
     inside = first + second <= MANY
@@ -416,7 +416,7 @@ def triangle(field: Field) -> tuple[Values, Values]:
     return shares, course.shifts[places][best]
 
 
-def triangle_figure(chosen: "Chosen", field: Field) -> "Figure":
+def triangle_figure(chosen: "ChosenShift", field: Field) -> "Figure":
     """Draw the chosen shift over all weights; only their ratios matter, so they fill a triangle."""
     shares, shifts = triangle(field)
     figure, (panel,) = panels(1, 4.6)

@@ -25,7 +25,7 @@ APART = 2.0 * np.pi  # rad; clearance of tips whose circles do not cross: a whol
 
 
 @dataclass(frozen=True, kw_only=True)
-class Gear:
+class PairGear:
     """Circles of one gear, m, the pressure angle at its tip, rad, and its teeth."""
 
     teeth: Float
@@ -44,8 +44,8 @@ class Geometry:
     ring_shift: Float
     mounted_distance: Float
     mounted_angle: Float
-    roller: Gear
-    ring: Gear
+    roller: PairGear
+    ring: PairGear
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,14 +76,14 @@ def geometry_of(pair: Pair) -> Geometry:
     )
 
 
-def _gear(pair: Pair, teeth: Float, shift: Float, *, outward: float) -> Gear:
+def _gear(pair: Pair, teeth: Float, shift: Float, *, outward: float) -> PairGear:
     """Return one gear; the tip lies ``outward`` of the reference circle, or inward for -1."""
     base = 0.5 * pair.module * teeth * np.cos(pair.pressure_angle)
     tip = pair.module * (0.5 * teeth + outward * pair.addendum + shift)
     root = pair.module * (0.5 * teeth - outward * (pair.addendum + pair.clearance) + shift)
     with np.errstate(invalid="ignore", divide="ignore"):
         angle = np.arccos(np.where(np.asarray(tip) > base, base / tip, np.nan))
-    return Gear(teeth=teeth, base_radius=base, tip_radius=tip, root_radius=root, tip_angle=angle)
+    return PairGear(teeth=teeth, base_radius=base, tip_radius=tip, root_radius=root, tip_angle=angle)
 
 
 def contact_ratio(geometry: Geometry) -> Float:

@@ -20,7 +20,7 @@ from roller_screw_shift.geometry import (
 )
 from roller_screw_shift.quantities import Pair
 from roller_screw_shift.strength import ring_tooth, roller_tooth
-from truing import Float, TruingError
+from truing import Array, Float, TruingError
 
 # The three objectives of the paper: sum of the shifts, difference of the root stresses, difference of sliding
 
@@ -192,7 +192,6 @@ def weights_of(reading: str, ranges: Ranges) -> Three:
 
 # Objectives and margins over the shift: where every limit is kept, which one ends it, and where sliding is equal
 
-Values = NDArray[np.float64]
 MEGA = 1e6
 HALVINGS = 60
 PARTS, DIVISIONS = 64, 10  # 64 parts at once, ten times: as many halvings, in a sixth of the calls
@@ -200,12 +199,12 @@ NO_OBJECTIVES = "objectives"
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class ShiftCourse:
     """Shifts of the roller (n,), objectives (3, n) in the units of the paper (1, MPa, 1), margins by name (n,)."""
 
-    shifts: Values
-    objectives: Values
-    margins: Mapping[str, Values]
+    shifts: Array
+    objectives: Array
+    margins: Mapping[str, Array]
 
     @property
     def kept(self) -> NDArray[np.bool_]:
@@ -235,17 +234,19 @@ class Interval:
     high_limits: tuple[str, ...]
 
 
-def course_of(pair: Pair, shifts: Values) -> Course:
+def course_of(pair: Pair, shifts: Array) -> ShiftCourse:
     """Return objectives and margins of these shifts (n,) in one call; NaN where one does not exist."""
     shifts = np.asarray(shifts, dtype=float)
     shifted = replace(pair, roller_shift=shifts)
     found = objectives_of(shifted)
     stress = np.asarray(found.stress_difference) / MEGA
     objectives = np.array([_each(values, shifts) for values in (found.shift_sum, stress, found.sliding_difference)])
-    return Course(shifts, objectives, {name: _each(each, shifts) for name, each in vars(margins_of(shifted)).items()})
+    return ShiftCourse(
+        shifts, objectives, {name: _each(each, shifts) for name, each in vars(margins_of(shifted)).items()}
+    )
 
 
-def _each(values: Any, shifts: Values) -> Values:
+def _each(values: Any, shifts: Array) -> Array:
     return np.broadcast_to(np.asarray(values, dtype=float), shifts.shape)
 
 
@@ -265,7 +266,7 @@ def intervals_of(pair: Pair, span: tuple[float, float], points: int) -> tuple[In
     return tuple(found)
 
 
-def _end(pair: Pair, shifts: Values, inside: int, way: int) -> tuple[float, tuple[str, ...]]:
+def _end(pair: Pair, shifts: Array, inside: int, way: int) -> tuple[float, tuple[str, ...]]:
     """Return the last shift on this side that keeps every limit, and what the next one misses."""
     if not 0 <= inside + way < len(shifts):
         return float(shifts[inside]), ()
@@ -278,12 +279,12 @@ def _end(pair: Pair, shifts: Values, inside: int, way: int) -> tuple[float, tupl
     return within, course_of(pair, np.array([beyond])).missed(0)
 
 
-def dense(pair: Pair, intervals: Sequence[Interval], points: int) -> Course:
+def dense(pair: Pair, intervals: Sequence[Interval], points: int) -> ShiftCourse:
     """Return the course over shifts that keep every limit, with so many points in each interval, ends among them."""
     shifts = np.concatenate([np.linspace(part.low, part.high, points) for part in intervals])
     course = course_of(pair, np.unique(shifts))
     kept = course.kept
-    return Course(
+    return ShiftCourse(
         course.shifts[kept], course.objectives[:, kept], {name: margin[kept] for name, margin in course.margins.items()}
     )
 
@@ -291,7 +292,7 @@ def dense(pair: Pair, intervals: Sequence[Interval], points: int) -> Course:
 def equal_sliding(pair: Pair, span: tuple[float, float], points: int) -> float:
     """Return the shift at which both roots slide alike, whatever the limits; NaN where there is none."""
 
-    def excess(shifts: Values) -> Values:
+    def excess(shifts: Array) -> Array:
         with np.errstate(all="ignore"):
             roller, ring = sliding_at_roots(geometry_of(replace(pair, roller_shift=shifts)))
         return np.asarray(np.asarray(roller) - np.asarray(ring))

@@ -12,12 +12,11 @@ from roller_screw_shift.objectives import (
     MEGA,
     PRINTED_RANGES,
     PRINTED_WEIGHTS,
-    Course,
     Interval,
     Margins,
     Ranges,
+    ShiftCourse,
     Three,
-    Values,
     course_of,
     dense,
     equal_sliding,
@@ -28,14 +27,14 @@ from roller_screw_shift.objectives import (
     weights_of,
 )
 from roller_screw_shift.quantities import Pair
-from truing import Bench, Block, Check, Float, Table, TruingError, Words, found, results
+from truing import Array, Bench, Block, Check, Float, Table, TruingError, Words, found, results
 
 # The complex method of Box: the least cost within limits, by a cloud of vertices that walks, shrinks and settles
 #
 # Sources: M. J. Box, The Computer Journal 8 (1965) 42; J. A. Guin, The Computer Journal 10 (1968) 416, for the way back
 # that ends at the best vertex. The limits need no derivative and no penalty: a point that misses one has no cost.
 
-Cost = Callable[[Values], Values]
+ObjectiveCost = Callable[[Array], Array]
 """Of points (n, d) their costs (n,): small is good, and not finite where a point misses a limit."""
 
 AT_ONCE = 64
@@ -68,13 +67,13 @@ class Plan:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class BoxOptimum:
     """The best vertex (d,), its cost, how wide the cloud still is, and what it took.
 
     Of the ``evaluations`` so many were ``drawn`` for the first vertices.
     """
 
-    point: Values
+    point: Array
     cost: float
     spread: float
     evaluations: int
@@ -84,8 +83,8 @@ class Found:
 
 
 def complex_method(
-    cost: Cost, span: tuple[Values, Values], rng: np.random.Generator, plan: Plan | None = None
-) -> Found:
+    cost: ObjectiveCost, span: tuple[Array, Array], rng: np.random.Generator, plan: Plan | None = None
+) -> BoxOptimum:
     """Return the point of least cost between the ends of ``span``, each (d,).
 
     Raises TruingError with a sentence where too few points keep the limits to make the first vertices.
@@ -100,7 +99,7 @@ def complex_method(
         cloud, tries = _stepped(cost, cloud, (low, high), plan)
         asked, reflections = asked + tries, reflections + 1
     best = cloud.best
-    return Found(
+    return BoxOptimum(
         cloud.points[best].copy(), float(cloud.costs[best]), cloud.spread, drawn + asked, drawn, reflections,
         settled=cloud.settled(plan.spread),
     )  # fmt: skip
@@ -108,8 +107,8 @@ def complex_method(
 
 @dataclass(frozen=True, eq=False)
 class _Cloud:
-    points: Values  # (k, d), all within the limits
-    costs: Values  # (k,)
+    points: Array  # (k, d), all within the limits
+    costs: Array  # (k,)
 
     @property
     def best(self) -> int:
@@ -128,7 +127,7 @@ class _Cloud:
         return self.spread < spread or bool(np.ptp(self.costs) <= ALIKE * np.abs(self.costs).max())
 
 
-def _first(cost: Cost, span: tuple[Values, Values], rng: np.random.Generator, plan: Plan) -> tuple[_Cloud, int]:
+def _first(cost: ObjectiveCost, span: tuple[Array, Array], rng: np.random.Generator, plan: Plan) -> tuple[_Cloud, int]:
     """Draw evenly, and again where a limit is missed, until every vertex keeps them all."""
     low, high = span
     points, costs = np.empty((0, len(low))), np.empty(0)
@@ -145,7 +144,7 @@ def _first(cost: Cost, span: tuple[Values, Values], rng: np.random.Generator, pl
     return _Cloud(points[: plan.vertices], costs[: plan.vertices]), drawn
 
 
-def _stepped(cost: Cost, cloud: _Cloud, span: tuple[Values, Values], plan: Plan) -> tuple[_Cloud, int]:
+def _stepped(cost: ObjectiveCost, cloud: _Cloud, span: tuple[Array, Array], plan: Plan) -> tuple[_Cloud, int]:
     """Reflect the worst vertex through the middle of the others; halve the way back until it is better than it was.
 
     The place to which it comes back begins at that middle and ends at the best vertex, which the worst then joins.
@@ -179,7 +178,7 @@ class Field:
 
     pair: Pair
     intervals: tuple[Interval, ...]
-    course: Course
+    course: ShiftCourse
     ranges: Ranges
 
     def around(self, shift: float) -> Interval:
@@ -196,10 +195,12 @@ def field_of(pair: Pair, span: tuple[float, float], points: int) -> Field | None
     return Field(pair, intervals, course, course.ranges)
 
 
-def box_optimum(field: Field, weights: Three, span: tuple[float, float], rng: np.random.Generator, plan: Plan) -> Found:
+def box_optimum(
+    field: Field, weights: Three, span: tuple[float, float], rng: np.random.Generator, plan: Plan
+) -> BoxOptimum:
     """Return what Box's method finds; it knows the limits by rejection only."""
 
-    def cost(points: Values) -> Values:
+    def cost(points: Array) -> Array:
         course = course_of(field.pair, points[:, 0])
         with np.errstate(invalid="ignore"):
             return np.where(course.kept, total(course.objectives, field.ranges, weights), np.inf)
@@ -319,7 +320,7 @@ class Shifting:
             raise TruingError(f"study '{self.name}': ratios are least contact ratios, 1 or more")
         Plan(vertices=self.vertices, reflection=self.reflection, spread=self.spread)
 
-    def run(self, bench: Bench) -> "Chosen":
+    def run(self, bench: Bench) -> "ChosenShift":
         """Find where every limit is kept, the ranges of the objectives there, the weights, and the optimum."""
         pair: Pair = bench.inputs
         span = (float(self.span[0]), float(self.span[1]))
@@ -328,13 +329,13 @@ class Shifting:
         field = field_of(pair, span, self.points)
         equal = equal_sliding(pair, span, self.points)
         if field is None:
-            return Chosen(pair, span, equal, status=self._nothing(pair, span))
+            return ChosenShift(pair, span, equal, status=self._nothing(pair, span))
         bench.progress(self.name, 1, _steps(ratios))
         weights = weights_of(pair.weights, field.ranges)
         grid = grid_optimum(field, weights)
         box, remarks = self._box(bench, field, weights, span)
         best = grid if box is None else float(box.point[0])
-        return Chosen(
+        return ChosenShift(
             pair, span, equal,
             status=FOUND,
             field=field,
@@ -351,7 +352,7 @@ class Shifting:
 
     def _box(
         self, bench: Bench, field: Field, weights: Three, span: tuple[float, float]
-    ) -> tuple[Found | None, tuple[str, ...]]:
+    ) -> tuple[BoxOptimum | None, tuple[str, ...]]:
         plan = Plan(vertices=self.vertices, reflection=self.reflection, spread=self.spread)
         try:
             found = box_optimum(field, weights, span, np.random.default_rng(bench.setup.seed), plan)
@@ -406,7 +407,7 @@ def before(field: Field) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Chosen:
+class ChosenShift:
     """The optimum by Box's method and on the grid, and where the objectives were weighed.
 
     Without any shift that keeps every limit ``field`` is None and ``status`` says why. ``equal`` is the shift at which
@@ -420,7 +421,7 @@ class Chosen:
     status: str
     field: Field | None = None
     weights: Three = (0.0, 0.0, 0.0)
-    box: Found | None = None
+    box: BoxOptimum | None = None
     grid: float = float("nan")
     other: float = float("nan")
     variants: tuple[Variant, ...] = ()
@@ -457,7 +458,7 @@ class Chosen:
         return [f"study 'shift': {text}" for text in (*status, *self.remarks, *_silent(self))]
 
 
-def _silent(chosen: Chosen) -> Sequence[str]:
+def _silent(chosen: ChosenShift) -> Sequence[str]:
     """Name objectives that are the same for every shift."""
     names = ("sum of the shifts", "difference of the root stresses", "difference of sliding")
     if chosen.field is None:
@@ -524,7 +525,7 @@ def number(value: float) -> float | None:
     return float(value) if isfinite(value) else None
 
 
-def chosen_json(chosen: "Chosen") -> Mapping[str, Any]:
+def chosen_json(chosen: "ChosenShift") -> Mapping[str, Any]:
     """Return what results.json holds."""
     entry: dict[str, Any] = {"status": chosen.status, "equal_sliding": number(chosen.equal)}
     field = chosen.field
@@ -566,7 +567,7 @@ def intervals_words(field: "Field") -> Words:
     return Words(f"Every limit is kept by shifts of the roller {', and '.join(parts)}.")
 
 
-def weights_table(chosen: "Chosen", field: "Field") -> Table:
+def weights_table(chosen: "ChosenShift", field: "Field") -> Table:
     """List the ranges found here and the weights taken."""
     rows = [
         (name, sense, unit, signed(low), signed(high), weight)
@@ -589,7 +590,7 @@ def printed_table() -> Table:
     return Table("Ranges and weights in the paper", columns, rows, note=note)
 
 
-def compared_table(chosen: "Chosen", field: "Field") -> Table:
+def compared_table(chosen: "ChosenShift", field: "Field") -> Table:
     """Set the pair before, as stated and at the optimum side by side."""
     compared = chosen.compared or {}
     rows = [
@@ -601,7 +602,7 @@ def compared_table(chosen: "Chosen", field: "Field") -> Table:
     return Table("Before and after", ("", "unit", f"{first} of the roller", "as stated", "optimum"), rows)
 
 
-def optimum_words(chosen: "Chosen", field: "Field") -> "list[Block]":
+def optimum_words(chosen: "ChosenShift", field: "Field") -> "list[Block]":
     """Say where the optimum lies, how it was found, and what holds it there."""
     blocks: list[Block] = []
     ring = chosen.shift + field_difference(field)
@@ -627,7 +628,7 @@ def optimum_words(chosen: "Chosen", field: "Field") -> "list[Block]":
     return [*blocks, Words(held), Words(_other_words(chosen)), Words(_scatter_words(chosen))]
 
 
-def _other_words(chosen: "Chosen") -> str:
+def _other_words(chosen: "ChosenShift") -> str:
     """Say where the other reading of the sliding leads."""
     if not isfinite(chosen.other):
         return f"By {SLIDING[OTHER[chosen.inputs.sliding_reading]]} no shift keeps every limit."
@@ -637,7 +638,7 @@ def _other_words(chosen: "Chosen") -> str:
     return f"The third objective compares {taken}. By {other} {led}."
 
 
-def _scatter_words(chosen: "Chosen") -> str:
+def _scatter_words(chosen: "ChosenShift") -> str:
     """Say what the scatter of the parts leaves of the margins."""
     stated, best = (f"{100 * share:.4g} %" for share in chosen.kept)
     words = (
@@ -655,7 +656,7 @@ def field_difference(field: "Field") -> float:
     return float(field.course.objectives[0, 0] - 2.0 * field.course.shifts[0])
 
 
-def variants_table(chosen: "Chosen", field: "Field") -> Table:
+def variants_table(chosen: "ChosenShift", field: "Field") -> Table:
     """List the optimum by least contact ratio and weights."""
     difference = field_difference(field)
     rows = [
@@ -711,7 +712,7 @@ def optimal(symbol: str, what: str, unit: str = "") -> float:
 
 
 @results
-class Choice:
+class ShiftChoice:
     """Where every limit is kept, how the objectives are weighed, and the optimum."""
 
     lowest_shift: Float = reach("x_E,min", "lowest shift of the roller that keeps every limit")
@@ -748,17 +749,17 @@ class Choice:
     equal_sliding_ring: Float = found("", symbol="x_I,3", note="shift of the ring there", method="no backlash")
 
 
-def choice(chosen: Chosen) -> Choice:
+def choice(chosen: ChosenShift) -> ShiftChoice:
     """The numbers of the study; NaN where no shift keeps every limit."""
     difference = float(np.asarray(geometry_of(chosen.inputs).shift_difference))
     equal = {"equal_sliding_roller": chosen.equal, "equal_sliding_ring": chosen.equal + difference}
     field = chosen.field
     if field is None:
-        names = (name for name in Choice.__dataclass_fields__ if name not in equal)
-        return Choice(**{**dict.fromkeys(names, nan), **equal})
+        names = (name for name in ShiftChoice.__dataclass_fields__ if name not in equal)
+        return ShiftChoice(**{**dict.fromkeys(names, nan), **equal})
     (sum_low, sum_high), (stress_low, stress_high), (sliding_low, sliding_high) = field.ranges
     part = field.around(chosen.shift)
-    return Choice(
+    return ShiftChoice(
         lowest_shift=min(each.low for each in field.intervals),
         highest_shift=max(each.high for each in field.intervals),
         least_sum=sum_low,
@@ -783,7 +784,7 @@ def _weights(weights: Three) -> dict[str, float]:
     return {"weight_sum": weights[0], "weight_stress": weights[1] / MEGA**2, "weight_sliding": weights[2]}
 
 
-def _optimum(chosen: Chosen, difference: float) -> dict[str, float]:
+def _optimum(chosen: ChosenShift, difference: float) -> dict[str, float]:
     at = course_of(chosen.inputs, np.array([chosen.shift]))
     total, stress, sliding = (float(values[0]) for values in at.objectives)
     return {

@@ -9,8 +9,8 @@ from truing import Finding, Published
 
 # What the paper prints, for comparison with what this calculation gives under the same settings
 
-Obtained = Literal["predicted", "calibrated"]
-Row = tuple[str, str, str, str]  # name, result, as printed, unit
+ShiftObtained = Literal["predicted", "calibrated"]
+ShiftRow = tuple[str, str, str, str]  # name, result, as printed, unit
 
 TEXT = "text below Table 1"
 RULE = (
@@ -50,7 +50,7 @@ def only(**settings: str) -> Mapping[str, str]:
     return {**settings, "studies.run": '["shift"]'}
 
 
-def printed(row: Row, obtained: Obtained, why: str, settings: Mapping[str, str]) -> Published:
+def printed(row: ShiftRow, obtained: ShiftObtained, why: str, settings: Mapping[str, str]) -> Published:
     """One number (name, result, as printed, unit) that comes out."""
     name, result, text, unit = row
     return Published(
@@ -59,7 +59,7 @@ def printed(row: Row, obtained: Obtained, why: str, settings: Mapping[str, str])
     )  # fmt: skip
 
 
-def differing(row: Row, why: str, settings: Mapping[str, str], obtained: Obtained = "predicted") -> Published:
+def differing(row: ShiftRow, why: str, settings: Mapping[str, str], obtained: ShiftObtained = "predicted") -> Published:
     """One number (name, result, as printed, unit) that does not come out."""
     return replace(printed(row, obtained, why, settings), verdict="differs")
 

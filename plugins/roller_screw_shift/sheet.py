@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from functools import partial
 
 from roller_screw_shift.figures import (
-    Run,
+    PairRun,
     front_figure,
     limits_figure,
     objectives_figure,
@@ -13,7 +13,7 @@ from roller_screw_shift.figures import (
     triangle_figure,
 )
 from roller_screw_shift.optimum import (
-    Chosen,
+    ChosenShift,
     before,
     compared_table,
     intervals_words,
@@ -53,15 +53,15 @@ CORNERS = (
 )
 
 
-def signs(record: "Run") -> "Sequence[Block]":
+def signs(record: "PairRun") -> "Sequence[Block]":
     """The sign convention in words, and the pair to scale."""
     pair = record.acting
-    chosen = record.outcome(Chosen)
+    chosen = record.outcome(ChosenShift)
     draw = partial(teeth_figure, pair, places(record, chosen))
     return [Words(CONVENTION), Drawing("Roller and ring", draw, PATH)]
 
 
-def places(record: "Run", chosen: "Chosen | None") -> list[tuple[str, float]]:
+def places(record: "PairRun", chosen: "ChosenShift | None") -> list[tuple[str, float]]:
     """The shifts that are drawn: before and after the optimisation, or what is stated where there was none."""
     if chosen is None or chosen.field is None:
         return [("as stated", float(record.acting.roller_shift))]
@@ -70,18 +70,18 @@ def places(record: "Run", chosen: "Chosen | None") -> list[tuple[str, float]]:
     return [(words, first), ("optimum", chosen.shift)]
 
 
-def sliding(record: "Run") -> "Sequence[Block]":
+def sliding(record: "PairRun") -> "Sequence[Block]":
     """Specific sliding along the path of contact."""
-    pair, chosen = record.acting, record.outcome(Chosen)
+    pair, chosen = record.acting, record.outcome(ChosenShift)
     shown = places(record, chosen)
     if chosen is not None and chosen.field is not None:
         shown = [("before", shown[0][1]), ("as stated", float(pair.roller_shift)), ("optimum", chosen.shift)]
     return [Drawing("Sliding along the path of contact", partial(sliding_figure, pair, shown), SLIDING)]
 
 
-def limits(record: "Run") -> "Sequence[Block]":
+def limits(record: "PairRun") -> "Sequence[Block]":
     """Which shifts keep every limit."""
-    chosen = record.outcome(Chosen)
+    chosen = record.outcome(ChosenShift)
     if chosen is None:
         return []
     caption = (
@@ -94,9 +94,9 @@ def limits(record: "Run") -> "Sequence[Block]":
     return [intervals_words(chosen.field), figure]
 
 
-def choice(record: "Run") -> "Sequence[Block]":
+def choice(record: "PairRun") -> "Sequence[Block]":
     """Ranges, weights, objectives, optimum."""
-    chosen = record.outcome(Chosen)
+    chosen = record.outcome(ChosenShift)
     if chosen is None or chosen.field is None:
         return []
     caption = "The first objective is to be large, the others are to be small."
@@ -109,9 +109,9 @@ def choice(record: "Run") -> "Sequence[Block]":
     ]
 
 
-def weights(record: "Run") -> "Sequence[Block]":
+def weights(record: "PairRun") -> "Sequence[Block]":
     """What the weights choose."""
-    chosen = record.outcome(Chosen)
+    chosen = record.outcome(ChosenShift)
     if chosen is None or chosen.field is None:
         return []
     field = chosen.field

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from gear_geometry.mesh_load import shaken_by_error
-from rv_gearing.geometry import Load, load_of
+from rv_gearing.geometry import ToothLoad, load_of
 from rv_gearing.groups import centre_distance_of
 from rv_gearing.quantities import Gearing
 from rv_gearing.rating import Strength
@@ -76,7 +76,7 @@ def wave(angle: Float, cosine: Float, sine: Float) -> Float:
     return cosine * np.cos(angle) + sine * np.sin(angle)
 
 
-def relative_angle(load: Load, input_angle: Float) -> Float:
+def relative_angle(load: ToothLoad, input_angle: Float) -> Float:
     """Return the angle of the sun against the carrier, which turns with the output."""
     return input_angle * (1.0 - 1.0 / load.ratio)
 

@@ -9,15 +9,15 @@ from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
 from gear_geometry.roots import Arm, Rack, Root, external_arm, external_root
-from rv_gearing.geometry import Values, gear, half_space, tooth, turned
-from rv_gearing.groups import Found, centre_distance_window, pin_circle_factors
+from rv_gearing.geometry import gear, half_space, tooth, turned
+from rv_gearing.groups import FoundGroups, centre_distance_window, pin_circle_factors
 from rv_gearing.quantities import Gearing
 from rv_gearing.rating import SAFETIES, Strength
-from truing import Record, Swept
+from truing import Array, Record, Swept
 
 # What the figures share: colours, panels, and what a finished run knows
 
-Run = Record[Gearing, Strength]
+GearingRun = Record[Gearing, Strength]
 
 BLUE, ORANGE, GREEN, INK, GREY = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c"
 SUN_FILL, PLANET_FILL = "#e8eff5", "#fbeee3"
@@ -25,7 +25,7 @@ WIDTH = 6.4
 MM, MPA = 1e3, 1e-6
 
 
-def number(record: "Run", name: str) -> float:
+def number(record: "GearingRun", name: str) -> float:
     """One result, SI."""
     return float(record.answers[name])
 
@@ -52,7 +52,7 @@ MOST_NUMBERED = 40
 MOST_TICKS = 30
 
 
-def groups_figure(found: "Found") -> "Figure":
+def groups_figure(found: "FoundGroups") -> "Figure":
     """Draw the centre distance of every group over the deviation of its ratio, with the limits of both."""
     figure, panel = one_panel(3.7)
     groups = found.groups
@@ -81,7 +81,7 @@ def groups_figure(found: "Found") -> "Figure":
     return figure
 
 
-def _numbers(panel: Any, found: "Found", deviation: "Values", centre: "Values") -> None:
+def _numbers(panel: Any, found: "FoundGroups", deviation: "Array", centre: "Array") -> None:
     """The number of each group beside it, where there is room for them."""
     if len(deviation) > MOST_NUMBERED:
         return
@@ -89,7 +89,7 @@ def _numbers(panel: Any, found: "Found", deviation: "Values", centre: "Values") 
         panel.annotate(f"{number:.0f}", (across, up), (5, -3), textcoords="offset points", fontsize=7.5, color=INK)
 
 
-def _rated(panel: Any, found: "Found", deviation: "Values", centre: "Values") -> None:
+def _rated(panel: Any, found: "FoundGroups", deviation: "Array", centre: "Array") -> None:
     """A ring around the group that is rated."""
     chosen = found.numbers == (found.rated or 0)
     if np.any(chosen):
@@ -99,7 +99,7 @@ def _rated(panel: Any, found: "Found", deviation: "Values", centre: "Values") ->
                        textcoords="offset points", fontsize=8, color=ORANGE)  # fmt: skip
 
 
-def window_words(found: "Found") -> str:
+def window_words(found: "FoundGroups") -> str:
     """The range of pin circles that the torque admits, in words."""
     torque = float(np.mean(found.groups.torque))
     low, high = (MM * float(factor) * torque ** (1 / 3) for factor in pin_circle_factors(found.inputs))
@@ -107,7 +107,7 @@ def window_words(found: "Found") -> str:
     return f"Output torque {torque:.2f} N m; pin circle radius by equation 4: {circles}."
 
 
-def stresses_figure(found: "Found") -> "Figure":
+def stresses_figure(found: "FoundGroups") -> "Figure":
     """Draw the root and contact stresses of all groups below what each of them may be."""
     figure = Figure(figsize=(WIDTH, 4.8), layout="constrained")
     panels = figure.subplots(2, 1, sharex=True)
@@ -130,7 +130,7 @@ def stresses_figure(found: "Found") -> "Figure":
     return figure
 
 
-def _ticks(panel: Any, found: "Found", order: "NDArray[np.intp]") -> None:
+def _ticks(panel: Any, found: "FoundGroups", order: "NDArray[np.intp]") -> None:
     """Numbers of the groups below, with their teeth where there is room; the rated one stands out."""
     step = max(1, -(-len(order) // MOST_TICKS))
     shown = order[::step]
@@ -163,15 +163,15 @@ class Wheel:
     ``outline`` (2, points) is the whole gear, coarsely; ``teeth`` those around the pitch point, finely.
     """
 
-    outline: "Values"
-    teeth: "Values"
+    outline: "Array"
+    teeth: "Array"
     base: float
     tip: float
     pitch: float
 
 
 @dataclass(frozen=True, kw_only=True)
-class Meshing:
+class MeshFigure:
     """Both gears about their own centres, centre distance in mm, working pressure angle, and planets around the sun."""
 
     sun: Wheel
@@ -197,7 +197,7 @@ class Meshing:
         return along * float(np.cos(self.angle)), self.sun.pitch + along * float(np.sin(self.angle))
 
 
-def meshing_of(record: "Run", stage: "Gearing") -> Meshing:
+def meshing_of(record: "GearingRun", stage: "Gearing") -> MeshFigure:
     """Both gears of the run, the planet above the sun, a flank of each on the pitch point."""
     unit = MM * float(stage.module) / float(np.cos(stage.helix_angle))
     distance, base_sun, base_planet = (
@@ -206,7 +206,7 @@ def meshing_of(record: "Run", stage: "Gearing") -> Meshing:
     pitch_sun = distance * base_sun / (base_sun + base_planet)
     pitches = {"sun": pitch_sun, "planet": distance - pitch_sun}
     wheels = {name: _wheel(record, stage, name, pitch, unit) for name, pitch in pitches.items()}
-    return Meshing(
+    return MeshFigure(
         sun=wheels["sun"],
         planet=wheels["planet"],
         distance=distance,
@@ -217,7 +217,7 @@ def meshing_of(record: "Run", stage: "Gearing") -> Meshing:
     )
 
 
-def _wheel(record: "Run", stage: "Gearing", name: str, pitch: float, unit: float) -> Wheel:
+def _wheel(record: "GearingRun", stage: "Gearing", name: str, pitch: float, unit: float) -> Wheel:
     """One gear whose flank stands on the pitch point: the sun's above its centre, the planet's below."""
     teeth, tip = number(record, f"teeth_{name}"), MM * number(record, f"tip_diameter_{name}") / 2.0
     rack, shift = _transverse(record, stage, name)
@@ -241,7 +241,7 @@ def _around(teeth: float, pitch: float) -> int | None:
     return int(np.ceil(np.arctan2(1.1 * CLOSE, inner) * teeth / (2.0 * np.pi))) + 1
 
 
-def _transverse(record: "Run", stage: "Gearing", name: str) -> tuple[Rack, float]:
+def _transverse(record: "GearingRun", stage: "Gearing", name: str) -> tuple[Rack, float]:
     """Rack and shift in the transverse section, in transverse modules; of helical teeth the fillet only nearly."""
     normal, cosine = rack_of(stage), float(np.cos(stage.helix_angle))
     rack = Rack(
@@ -252,7 +252,7 @@ def _transverse(record: "Run", stage: "Gearing", name: str) -> tuple[Rack, float
     return rack, float(getattr(stage, name).shift) * cosine
 
 
-def mesh_figure(meshing: Meshing) -> "Figure":
+def mesh_figure(meshing: MeshFigure) -> "Figure":
     """Draw the whole stage on the left, and on the right what happens around the pitch point."""
     figure = Figure(figsize=(WIDTH, 3.5), layout="constrained")
     stage, close = figure.subplots(1, 2, width_ratios=(1.0, 1.12))
@@ -266,11 +266,11 @@ def mesh_figure(meshing: Meshing) -> "Figure":
     return figure
 
 
-def _fill(panel: Any, outline: "Values", colours: tuple[str, str], width: float) -> None:
+def _fill(panel: Any, outline: "Array", colours: tuple[str, str], width: float) -> None:
     panel.fill(*outline, facecolor=colours[0], edgecolor=colours[1], linewidth=width, zorder=2)
 
 
-def _stage(panel: Any, meshing: Meshing) -> None:
+def _stage(panel: Any, meshing: MeshFigure) -> None:
     """Sun, planets and the circle of their centres, which turns with the output."""
     _fill(panel, meshing.sun.outline, (SUN_FILL, BLUE), 0.8)
     above = meshing.planet.outline + np.array([[0.0], [meshing.distance]])
@@ -288,7 +288,7 @@ def _stage(panel: Any, meshing: Meshing) -> None:
     panel.set_xlim(-side, side)
 
 
-def _close(panel: Any, meshing: Meshing) -> None:
+def _close(panel: Any, meshing: MeshFigure) -> None:
     """Flanks around the pitch point, the line of action between the base circles and the path of contact on it."""
     _fill(panel, meshing.sun.teeth, (SUN_FILL, BLUE), 1.2)
     _fill(panel, meshing.planet.teeth + np.array([[0.0], [meshing.distance]]), (PLANET_FILL, ORANGE), 1.2)
@@ -378,20 +378,20 @@ class Notched:
     """One tooth of the virtual spur gear: outline in modules, root, force at the tip and at outer single contact."""
 
     name: str
-    outline: "Values"
+    outline: "Array"
     root: Root
     tip: tuple[float, Arm]
     single: tuple[float, Arm] | None
     module: float
 
 
-def notched_of(record: "Run", stage: "Gearing") -> tuple[Notched, Notched]:
+def notched_of(record: "GearingRun", stage: "Gearing") -> tuple[Notched, Notched]:
     """The teeth of sun and planet."""
     sun, planet = (_notched(record, stage, name) for name in ("sun", "planet"))
     return sun, planet
 
 
-def _notched(record: "Run", stage: "Gearing", name: str) -> Notched:
+def _notched(record: "GearingRun", stage: "Gearing", name: str) -> Notched:
     rack, shift, teeth = rack_of(stage), float(getattr(stage, name).shift), number(record, f"virtual_teeth_{name}")
     module = float(stage.module)
     higher = (number(record, f"tip_diameter_{name}") - number(record, f"reference_diameter_{name}")) / module
@@ -449,9 +449,9 @@ def _tooth(panel: Any, one: Notched, fill: str, edge: str) -> None:
     panel.set_axisbelow(True)
 
 
-def _down(points: "Values", depth: float) -> "Values":
+def _down(points: "Array", depth: float) -> "Array":
     """With the critical section at height 0."""
-    lowered: Values = points - np.array([[0.0], [depth]])
+    lowered: Array = points - np.array([[0.0], [depth]])
     return lowered
 
 
@@ -484,7 +484,7 @@ def _force(panel: Any, at: tuple[float, Arm], depth: float, colour: str, words: 
                    color=colour, ha="left", va="bottom")  # fmt: skip
 
 
-def _to_circle(start: "Values", way: "Values", radius: float) -> float:
+def _to_circle(start: "Array", way: "Array", radius: float) -> float:
     """How far back along ``way`` from ``start`` the circle of this radius is met."""
     along = float(start @ way)
     return along + float(np.sqrt(along**2 - start @ start + radius**2))

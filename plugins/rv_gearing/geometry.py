@@ -4,14 +4,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_geometry import pairs
 from gear_geometry.pairs import involute, transverse_angle
 from gear_geometry.roots import Rack
 from rv_gearing.groups import chosen_teeth, efficiency_of, ratio_of, torque_of
 from rv_gearing.quantities import Gear, Gearing
-from truing import Float, either, feasible, found, results
+from truing import Array, Float, either, feasible, found, results
 
 # What the first stage carries: torque of the sun, speed relative to the carrier, and the force of one mesh
 #
@@ -22,7 +21,7 @@ LEAST_LINE_LOAD = 1.0  # N/m; what an idle mesh counts as loaded with where some
 
 
 @dataclass(frozen=True, kw_only=True)
-class Load:
+class ToothLoad:
     """What one mesh of sun and planet carries; the force is nominal, without any load factor."""
 
     sun: Float
@@ -40,7 +39,7 @@ class Load:
     base_radii: tuple[Float, Float]
 
 
-def load_of(stage: Gearing) -> Load:
+def load_of(stage: Gearing) -> ToothLoad:
     """Return the load of a stage: by torque and speed where they are given, else by power and output speed.
 
     The line load is that of the width that carries, with the application factor, and never 0. The direction is the sign
@@ -56,7 +55,7 @@ def load_of(stage: Gearing) -> Load:
     radii = reference_radii(stage, teeth.sun, teeth.planet)
     force = torque / (stage.planets * radii[0])
     inward = np.cos(transverse_angle(stage.pressure_angle, stage.helix_angle))
-    return Load(
+    return ToothLoad(
         sun=teeth.sun,
         planet=teeth.planet,
         pins=teeth.pins,
@@ -171,7 +170,7 @@ class MeshSize:
                                      " / (2 * (base_diameter_sun + base_diameter_planet))")  # fmt: skip
 
 
-def mesh_size(stage: Gearing, load: Load) -> MeshSize:
+def mesh_size(stage: Gearing, load: ToothLoad) -> MeshSize:
     """Return the sizes of the mesh; refuses a pair that cannot mesh."""
     transverse = pairs.transverse_angle(stage.pressure_angle, stage.helix_angle)
     base_helix = pairs.base_helix_angle(stage.pressure_angle, stage.helix_angle)
@@ -209,7 +208,7 @@ def mesh_size(stage: Gearing, load: Load) -> MeshSize:
     )
 
 
-def tip_radii(stage: Gearing, load: Load) -> tuple[Float, Float]:
+def tip_radii(stage: Gearing, load: ToothLoad) -> tuple[Float, Float]:
     """Return the tip radii of sun and planet, m, without shortening."""
     half = 0.5 * stage.module / np.cos(stage.helix_angle)
     return (
@@ -229,7 +228,7 @@ def _meshes(stage: Gearing, tips: tuple[Float, Float], contact: Float, distance:
     )
 
 
-def gear_size(stage: Gearing, load: Load, mesh: MeshSize, which: Which) -> GearSize:
+def gear_size(stage: Gearing, load: ToothLoad, mesh: MeshSize, which: Which) -> GearSize:
     """Return the sizes of one gear."""
     at_sun = which == "sun"
     gear, base = (stage.sun, load.base_radii[0]) if at_sun else (stage.planet, load.base_radii[1])
@@ -267,12 +266,11 @@ def form_diameter(stage: Gearing, gear: Gear, reference: Float, transverse: Floa
 #
 # Lengths are in modules, the centre of the gear is the origin and the axis of the tooth points along +y. For drawings.
 
-Values = NDArray[np.float64]
 
 FINE = 60
 
 
-def half_space(rack: Rack, teeth: float, shift: float, radii: "Values") -> "Values":
+def half_space(rack: Rack, teeth: float, shift: float, radii: "Array") -> "Array":
     """Return half the angle of the tooth space, rad, at these radii between root and tip: what the rack leaves open."""
     reference, alpha = 0.5 * teeth, rack.pressure_angle
     at_reference = (0.25 * np.pi - shift * np.tan(alpha)) / reference
@@ -292,7 +290,7 @@ def undercut(rack: Rack, teeth: float, shift: float) -> bool:
     return bool(depth > 0.5 * teeth * np.sin(alpha) ** 2)
 
 
-def trochoid(rack: Rack, teeth: float, shift: float, points: int = FINE) -> "tuple[Values, Values]":
+def trochoid(rack: Rack, teeth: float, shift: float, points: int = FINE) -> "tuple[Array, Array]":
     """Return radius and half angle of the space along the fillet, from the root circle outward."""
     alpha, rho, reference = rack.pressure_angle, rack.fillet, 0.5 * teeth
     across = 0.25 * np.pi - rack.dedendum * np.tan(alpha) - (1.0 - np.sin(alpha)) * rho / np.cos(alpha)
@@ -308,7 +306,7 @@ def trochoid(rack: Rack, teeth: float, shift: float, points: int = FINE) -> "tup
     return np.maximum.accumulate(radius[:outermost]), angle[:outermost]
 
 
-def tooth(rack: Rack, teeth: float, shift: float, tip_radius: float, points: int = 2 * FINE) -> "Values":
+def tooth(rack: Rack, teeth: float, shift: float, tip_radius: float, points: int = 2 * FINE) -> "Array":
     """Return the outline of one tooth (2, k) from the middle of one space over the tip to that of the next.
 
     ``points`` stand on each flank with its fillet; further ones, a tenth of them, on half the root and half the tip.
@@ -327,13 +325,13 @@ def tooth(rack: Rack, teeth: float, shift: float, tip_radius: float, points: int
     return np.concatenate([right, left[:, 1:]], axis=1)[:, ::-1]
 
 
-def turned(points: "Values", angle: float) -> "Values":
+def turned(points: "Array", angle: float) -> "Array":
     """Return points turned about the origin, against the clock for a positive angle."""
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.array([[cosine, -sine], [sine, cosine]]) @ points
 
 
-def gear(one: "Values", teeth: float, around: int | None = None) -> "Values":
+def gear(one: "Array", teeth: float, around: int | None = None) -> "Array":
     """Return the outline of a gear (2, points) from that of one of its teeth; a tooth points along +y.
 
     Closed, or with ``around`` so many teeth to either side of that tooth, and the centre of the gear.

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rv_gearing.quantities import Gearing
-from truing import Bench, Block, Check, Float, Table, TruingError, column, either, feasible, found, results, rows
+from truing import Array, Bench, Block, Check, Float, Table, TruingError, column, either, feasible, found, results, rows
 
 # What the drive must do: ratio, efficiency, torque, and the sizes of pin circle and centre distance they ask for
 #
@@ -93,7 +93,6 @@ def pin_circle_window(stage: Gearing, torque: Float, centre_distance: Float) -> 
 # Read here: hunting teeth spread every error over every tooth, and planets that mesh in phase carry alike at any
 # moment. Derived on the theory page. A value is an array (groups,), numbers of teeth are whole.
 
-Values = NDArray[np.float64]
 
 HUNTING_IN_PHASE, HUNTING, IN_PHASE, NEITHER = 1.0, 2.0, 3.0, 4.0
 
@@ -102,14 +101,14 @@ HUNTING_IN_PHASE, HUNTING, IN_PHASE, NEITHER = 1.0, 2.0, 3.0, 4.0
 class Preference:
     """Common factors of both meshes, kinds of planet, phases in which they mesh, and the preference: 1 is best."""
 
-    common_first: "Values"
-    common_second: "Values"
-    planet_kinds: "Values"
-    mesh_phases: "Values"
-    preference: "Values"
+    common_first: "Array"
+    common_second: "Array"
+    planet_kinds: "Array"
+    mesh_phases: "Array"
+    preference: "Array"
 
 
-def preference_of(stage: Gearing, sun: "Values", planet: "Values", pins: "Values") -> Preference:
+def preference_of(stage: Gearing, sun: "Array", planet: "Array", pins: "Array") -> Preference:
     """Return what speaks for each group; the preference is NaN where neighbouring planets would touch."""
     planets = stage.planets
     first, second = np.gcd(_whole(sun), _whole(planet)), np.gcd(_whole(pins) - 1, _whole(pins))
@@ -126,11 +125,11 @@ def preference_of(stage: Gearing, sun: "Values", planet: "Values", pins: "Values
     )  # fmt: skip
 
 
-def _whole(teeth: "Values") -> "NDArray[np.int64]":
+def _whole(teeth: "Array") -> "NDArray[np.int64]":
     return np.rint(teeth).astype(np.int64)
 
 
-def _touching(stage: Gearing, sun: "Values", planet: "Values") -> "NDArray[np.bool_]":
+def _touching(stage: Gearing, sun: "Array", planet: "Array") -> "NDArray[np.bool_]":
     """Where the tip circles of two neighbouring planets of one plane meet, without regard to backlash."""
     if stage.planets == 1:
         return np.zeros(len(sun), dtype=bool)
@@ -166,7 +165,7 @@ SEARCHED = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class Teeth:
+class ToothNumbers:
     """Tooth numbers of one drive or of a batch: sun, planet, pins."""
 
     sun: Float
@@ -178,20 +177,20 @@ class Teeth:
 class Groups:
     """Everything the search tells of the groups it finds, each (groups,), SI."""
 
-    sun: "Values"
-    planet: "Values"
-    pins: "Values"
-    ratio: "Values"
-    deviation: "Values"  # of the ratio, relative, with its sign
-    torque: "Values"
-    centre_distance: "Values"
-    circle_low: "Values"
-    circle_high: "Values"
-    common_first: "Values"  # largest common factor of sun and planet, and of disc and pins
-    common_second: "Values"
-    planet_kinds: "Values"
-    mesh_phases: "Values"
-    preference: "Values"  # 1 is best
+    sun: "Array"
+    planet: "Array"
+    pins: "Array"
+    ratio: "Array"
+    deviation: "Array"  # of the ratio, relative, with its sign
+    torque: "Array"
+    centre_distance: "Array"
+    circle_low: "Array"
+    circle_high: "Array"
+    common_first: "Array"  # largest common factor of sun and planet, and of disc and pins
+    common_second: "Array"
+    planet_kinds: "Array"
+    mesh_phases: "Array"
+    preference: "Array"  # 1 is best
 
     def __len__(self) -> int:
         """Return how many groups there are."""
@@ -207,10 +206,10 @@ def search(stage: Gearing) -> Groups:
     teeth = candidates(stage)
     kept = admitted(stage, teeth)
     sun, planet, pins = (np.asarray(each)[kept] for each in (teeth.sun, teeth.planet, teeth.pins))
-    return groups_of(stage, Teeth(sun=sun, planet=planet, pins=pins))
+    return groups_of(stage, ToothNumbers(sun=sun, planet=planet, pins=pins))
 
 
-def groups_of(stage: Gearing, teeth: Teeth) -> Groups:
+def groups_of(stage: Gearing, teeth: ToothNumbers) -> Groups:
     """Return ratio, torque and sizes of these tooth numbers, (groups,), whether or not they meet the conditions."""
     sun, planet, pins = (np.asarray(each, dtype=float) for each in (teeth.sun, teeth.planet, teeth.pins))
     ratio = np.asarray(ratio_of(sun, planet, pins))
@@ -224,7 +223,7 @@ def groups_of(stage: Gearing, teeth: Teeth) -> Groups:
     )  # fmt: skip
 
 
-def chosen_teeth(stage: Gearing) -> Teeth:
+def chosen_teeth(stage: Gearing) -> ToothNumbers:
     """Return the teeth that are rated: those stated, else those of ``stage.group`` in the search with its own duty."""
     check_ranges(stage)
     unstated = np.isnan(stage.sun_teeth)
@@ -236,12 +235,12 @@ def chosen_teeth(stage: Gearing) -> Teeth:
     pins = either(stage.pin_teeth, float(stage.fewest_pins))
     feasible(np.equal(np.mod(pins, 2.0), 0.0), "pin_teeth is odd: two discs half a turn apart need an even number")
     if not np.any(unstated):
-        return Teeth(sun=stage.sun_teeth, planet=stage.planet_teeth, pins=pins)
+        return ToothNumbers(sun=stage.sun_teeth, planet=stage.planet_teeth, pins=pins)
     found, counts = _of_group(stage)
     holds = np.logical_not(unstated) | (counts >= stage.group)
     for count in np.unique(np.where(holds, stage.group, counts)):
         feasible(holds | (counts != count), _too_few(stage.group, int(count)))
-    return Teeth(
+    return ToothNumbers(
         sun=either(stage.sun_teeth, found.sun),
         planet=either(stage.planet_teeth, found.planet),
         pins=np.where(unstated, found.pins, pins)[()],
@@ -255,7 +254,7 @@ def _too_few(group: int, count: int) -> str:
     return f"group = {group}, but the search finds {many}: {way}"
 
 
-def candidates(stage: Gearing) -> Teeth:
+def candidates(stage: Gearing) -> ToothNumbers:
     """Return every set of tooth numbers that any row of the duty could admit, in the order of the search.
 
     The bounds follow from the conditions: the ratio bounds planet over sun for each pin number, and the centre distance
@@ -272,7 +271,7 @@ def candidates(stage: Gearing) -> Teeth:
     first = np.ceil(least[place] * sun)
     last = np.minimum(np.floor(largest[place] * sun), most - sun)
     pair, planet = _runs(last - first + 1.0, first)
-    return Teeth(sun=sun[pair], planet=planet, pins=pins[place[pair]])
+    return ToothNumbers(sun=sun[pair], planet=planet, pins=pins[place[pair]])
 
 
 def _most_teeth(stage: Gearing) -> float:
@@ -282,7 +281,7 @@ def _most_teeth(stage: Gearing) -> float:
     return float(np.max(np.floor(high / centre_distance_of(stage, 0.5, 0.5) * (1.0 + ROUNDING))))
 
 
-def _runs(counts: "Values", starts: "Values | float") -> "tuple[NDArray[np.intp], Values]":
+def _runs(counts: "Array", starts: "Array | float") -> "tuple[NDArray[np.intp], Array]":
     """Return runs of consecutive numbers one after another: which run each belongs to, and the number."""
     lengths = np.maximum(counts, 0.0)
     total = float(np.sum(lengths))
@@ -309,7 +308,7 @@ def check_ranges(stage: Gearing) -> None:
     feasible(stage.centre_share_low <= stage.centre_share_high, "centre_share_low exceeds centre_share_high")
 
 
-def admitted(stage: Gearing, teeth: Teeth) -> "NDArray[np.bool_]":
+def admitted(stage: Gearing, teeth: ToothNumbers) -> "NDArray[np.bool_]":
     """Return which tooth numbers meet the conditions that ``candidates`` does not already grant: (..., sets)."""
     deviation = np.abs(ratio_of(teeth.sun, teeth.planet, teeth.pins) / stage.target_ratio - 1.0)
     torque = output_torque(stage, efficiency_of(stage, teeth.sun, teeth.planet, teeth.pins))
@@ -321,7 +320,7 @@ def admitted(stage: Gearing, teeth: Teeth) -> "NDArray[np.bool_]":
     return np.asarray(near & wide_enough & inside)
 
 
-def _of_group(stage: Gearing) -> "tuple[Teeth, NDArray[np.intp]]":
+def _of_group(stage: Gearing) -> "tuple[ToothNumbers, NDArray[np.intp]]":
     """Return the teeth of ``stage.group`` and how many groups there are, for a number () or for each row (n,)."""
     teeth = candidates(stage)
     values = {name: np.asarray(getattr(stage, name), dtype=float) for name in SEARCHED}
@@ -337,7 +336,7 @@ def _of_group(stage: Gearing) -> "tuple[Teeth, NDArray[np.intp]]":
         counts[part] = nth[:, -1]
         place[part] = np.where(counts[part] >= stage.group, np.argmax(nth == stage.group, axis=-1), -1)
     sun, planet, pins = (_picked(each, place, shape) for each in (teeth.sun, teeth.planet, teeth.pins))
-    return Teeth(sun=sun, planet=planet, pins=pins), counts.reshape(shape)
+    return ToothNumbers(sun=sun, planet=planet, pins=pins), counts.reshape(shape)
 
 
 def _picked(values: Float, place: "NDArray[np.intp]", shape: tuple[int, ...]) -> Float:
@@ -348,20 +347,20 @@ def _picked(values: Float, place: "NDArray[np.intp]", shape: tuple[int, ...]) ->
 
 # A study of our own: all groups of tooth numbers that meet the five conditions, sorted as wished, with strength
 
-Column = Literal[
+GroupColumn = Literal[
     "group", "sun", "planet", "pins", "ratio", "deviation", "torque", "centre_distance", "circle_low", "circle_high",
     "common_first", "common_second", "planet_kinds", "mesh_phases", "preference", "root_stress_sun",
     "root_stress_planet", "contact_stress_sun", "contact_stress_planet", "root_safety_sun", "root_safety_planet",
     "contact_safety_sun", "contact_safety_planet",
 ]  # fmt: skip
-STRENGTH: tuple[Column, ...] = (
+STRENGTH: tuple[GroupColumn, ...] = (
     "root_stress_sun", "root_stress_planet", "contact_stress_sun", "contact_stress_planet", "root_safety_sun",
     "root_safety_planet", "contact_safety_sun", "contact_safety_planet",
 )  # fmt: skip
-SIZES: tuple[Column, ...] = (
+SIZES: tuple[GroupColumn, ...] = (
     "sun", "planet", "pins", "ratio", "deviation", "torque", "centre_distance", "circle_low", "circle_high",
 )  # fmt: skip
-MEETING: tuple[Column, ...] = ("common_first", "common_second", "planet_kinds", "mesh_phases", "preference")
+MEETING: tuple[GroupColumn, ...] = ("common_first", "common_second", "planet_kinds", "mesh_phases", "preference")
 PERMITTED = (
     "permitted_root_stress_sun", "permitted_root_stress_planet", "permitted_contact_stress_sun",
     "permitted_contact_stress_planet",
@@ -420,10 +419,10 @@ class Listed:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Search:
+class GroupSearch:
     """List all groups, sorted by one column; ``exact_only`` keeps those with just the wanted ratio."""
 
-    sort_by: Column = "group"
+    sort_by: GroupColumn = "group"
     descending: bool = False
     exact_only: bool = False
     name: str = "search"
@@ -433,14 +432,14 @@ class Search:
         if self.sort_by not in ("group", *SIZES, *MEETING, *STRENGTH):
             raise TruingError(f"study '{self.name}': the groups have no column '{self.sort_by}'")
 
-    def run(self, bench: "Bench") -> "Found":
+    def run(self, bench: "Bench") -> "FoundGroups":
         """Search with the duty of the inputs, and rate every group in one call."""
         stage: Gearing = bench.inputs
         groups = search(stage)
         numbers = np.arange(1.0, len(groups) + 1.0)
         exact = np.abs(groups.deviation) <= EXACT
         kept = np.flatnonzero(exact) if self.exact_only else np.arange(len(groups))
-        shown = Found(
+        shown = FoundGroups(
             name=self.name,
             inputs=stage,
             count=len(groups),
@@ -456,7 +455,7 @@ class Search:
         return shown.sorted()
 
 
-def _strength(bench: "Bench", groups: Groups) -> dict[str, "Values"]:
+def _strength(bench: "Bench", groups: Groups) -> dict[str, "Array"]:
     """Stresses and safeties of every group under the load of the inputs; NaN where a group cannot be rated."""
     asked = (*STRENGTH, *PERMITTED)
     known = [name for name in asked if name in bench.setup.model.own_result_fields]
@@ -486,7 +485,7 @@ def _stable(stage: Gearing, groups: Groups) -> bool:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Found:
+class FoundGroups:
     """Groups with their numbers and strength, (groups,) in SI; how many there are in all; which is rated.
 
     ``stable`` says that the rated number keeps its teeth while the efficiency of the bearings scatters.
@@ -497,20 +496,20 @@ class Found:
     count: int
     exact: int
     groups: Groups
-    numbers: "Values"
-    strength: Mapping[str, "Values"]
+    numbers: "Array"
+    strength: Mapping[str, "Array"]
     rated: int | None
     stable: bool
-    sort_by: Column
+    sort_by: GroupColumn
     descending: bool
 
-    def column(self, name: Column) -> "Values":
+    def column(self, name: GroupColumn) -> "Array":
         """Return one column, SI."""
         if name == "group":
             return self.numbers
         return self.strength[name] if name in self.strength else np.asarray(getattr(self.groups, name))
 
-    def sorted(self) -> "Found":
+    def sorted(self) -> "FoundGroups":
         """Return the same in the order that was asked for; a deviation counts by its size, NaN comes last."""
         key = self.column(self.sort_by)
         key = np.abs(key) if self.sort_by == "deviation" else key
@@ -574,9 +573,9 @@ def printed_in(name: str) -> tuple[str, float]:
     return ("MPa", 1e-6) if "stress" in name else PRINTED.get(name, ("", 1.0))
 
 
-def listed(found: Found) -> Listed:
+def listed(found: FoundGroups) -> Listed:
     """The table as results of the run."""
-    names: dict[str, Column] = {"group_sun_teeth": "sun", "group_planet_teeth": "planet"}
+    names: dict[str, GroupColumn] = {"group_sun_teeth": "sun", "group_planet_teeth": "planet"}
     columns = {f"group_{name}": found.column(name) for name in (*SIZES[2:], *MEETING, *STRENGTH)}
     return Listed(
         group_count=float(found.count),

@@ -6,7 +6,7 @@ Reference: ISO 6336-1:2006; the parts below name their clauses.
 import numpy as np
 
 from gear_geometry.mesh_load import face_factor
-from rv_gearing.geometry import GearSize, Load, MeshSize
+from rv_gearing.geometry import GearSize, MeshSize, ToothLoad
 from rv_gearing.quantities import Gear, Gearing
 from truing import Float, either, feasible, found, results
 
@@ -121,7 +121,7 @@ STEEL_MODULUS = 206e9  # Pa
 
 
 @results
-class Stiffness:
+class MeshStiffness:
     """Stiffness of tooth and mesh, per face width."""
 
     tooth_compliance: Float = found(
@@ -153,7 +153,9 @@ class Stiffness:
                                        source="ISO 6336-1:2006, 9.3.2", formula="0.85 * mesh_stiffness")  # fmt: skip
 
 
-def stiffness_of(stage: Gearing, load: Load, sizes: tuple[GearSize, GearSize], contact_ratio: Float) -> Stiffness:
+def stiffness_of(
+    stage: Gearing, load: ToothLoad, sizes: tuple[GearSize, GearSize], contact_ratio: Float
+) -> MeshStiffness:
     """Return the stiffness of tooth and mesh."""
     first, second = sizes[0].virtual_teeth, sizes[1].virtual_teeth
     x_1, x_2 = stage.sun.shift, stage.planet.shift
@@ -168,7 +170,7 @@ def stiffness_of(stage: Gearing, load: Load, sizes: tuple[GearSize, GearSize], c
     low = np.minimum((load.line_load / FULL_LOAD) ** 0.25, 1.0)
     tooth = 0.8 * rack * np.cos(stage.helix_angle) * modulus * low * theoretical
     mesh = either(stage.stated_mesh_stiffness, tooth * (0.75 * contact_ratio + 0.25))
-    return Stiffness(
+    return MeshStiffness(
         tooth_compliance=1e-9 * compliance_um,
         theoretical_stiffness=theoretical,
         rack_factor=rack,
@@ -266,8 +268,8 @@ class Dynamics:
 
 
 def dynamics_of(
-    stage: Gearing, load: Load, sizes: tuple[GearSize, GearSize], total_contact_ratio: Float,
-    held: tuple[MeshQuality, Stiffness],
+    stage: Gearing, load: ToothLoad, sizes: tuple[GearSize, GearSize], total_contact_ratio: Float,
+    held: tuple[MeshQuality, MeshStiffness],
 ) -> Dynamics:  # fmt: skip
     """Return the dynamic factor with all that it follows from; ``held`` is quality and stiffness of the mesh."""
     quality, stiffness = held

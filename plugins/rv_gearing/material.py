@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rv_gearing.geometry import Load
+from rv_gearing.geometry import ToothLoad
 from rv_gearing.quantities import Gear, Gearing
 from truing import Float, either, found, results
 
@@ -142,7 +142,7 @@ class Cycles:
                                       formula="mesh_speed / tooth_ratio * working_life")  # fmt: skip
 
 
-def cycles_of(stage: Gearing, load: Load) -> Cycles:
+def cycles_of(stage: Gearing, load: ToothLoad) -> Cycles:
     """Return the load cycles of sun and planet: a sun tooth meets every planet."""
     turns = load.mesh_speed * stage.working_life
     return Cycles(load_cycles_sun=turns * stage.planets, load_cycles_planet=turns * load.sun / load.planet)

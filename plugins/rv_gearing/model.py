@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from rv_gearing.effects import EFFECTS
-from rv_gearing.groups import Search, listed
+from rv_gearing.groups import GroupSearch, listed
 from rv_gearing.published import FINDINGS, PUBLISHED
 from rv_gearing.rating import Capacity, Safeties, rating, rv_gearing
 from rv_gearing.sheet import SECTIONS
@@ -37,7 +37,7 @@ RV_GEARING = Model(
     errors=[*TOLERANCES, *EFFECTS],
     objectives=[Require(stress, at_most=f"permitted_{stress}") for stress in STRESSES],
     studies=[
-        Search(gives=listed),
+        GroupSearch(gives=listed),
         Capacity(gives=rating),
         Safeties(over="load_torque", name="load"),
         Safeties(over="face_width", name="face_width"),

@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_geometry.pairs import involute
-from rv_gearing.geometry import LEAST_LINE_LOAD, GearSize, Load, MeshSize, Which, gear_size, load_of, mesh_size
+from rv_gearing.geometry import LEAST_LINE_LOAD, GearSize, MeshSize, ToothLoad, Which, gear_size, load_of, mesh_size
 from rv_gearing.groups import mesh_efficiency
 from rv_gearing.load_factors import (
     Dynamics,
     FaceLoad,
     GearQuality,
     MeshQuality,
+    MeshStiffness,
     PlanetSharing,
     Sharing,
-    Stiffness,
     dynamics_of,
     face_load_of,
     planets_of,
@@ -37,7 +37,7 @@ from rv_gearing.stress_factors import (
     contact_ratio_factor,
     root_of,
 )
-from truing import Bench, Block, Check, Float, Sweep, Swept, Table, TruingError, found, part, results
+from truing import Array, Bench, Block, Check, Float, Sweep, Swept, Table, TruingError, found, part, results
 
 # What the gearing calculation answers: the duty, every factor, the stresses, and what they may be
 #
@@ -179,7 +179,7 @@ class Strength:
     mesh: MeshSize = part(MeshSize, suffix="")
     quality: MeshQuality = part(MeshQuality, suffix="")
     steel: Steel = part(Steel, suffix="")
-    stiffness: Stiffness = part(Stiffness, suffix="")
+    stiffness: MeshStiffness = part(MeshStiffness, suffix="")
     dynamics: Dynamics = part(Dynamics, suffix="")
     planets: PlanetSharing = part(PlanetSharing, suffix="")
     face: FaceLoad = part(FaceLoad, suffix="")
@@ -208,7 +208,7 @@ class Acting:
 
 
 def acting(
-    stage: Gearing, load: Load, size: tuple[GearSize, MeshSize], factors: tuple[ContactFactors, BendingFactors],
+    stage: Gearing, load: ToothLoad, size: tuple[GearSize, MeshSize], factors: tuple[ContactFactors, BendingFactors],
     shares: tuple[Float, Float],
 ) -> Acting:  # fmt: skip
     """Return what acts on both gears; ``size`` is that of sun and mesh, ``shares`` the load factors behind K_A."""
@@ -323,7 +323,7 @@ def gear_of(
     return stresses_of(stage, gear, act, single_contact, (size, made, root, life))
 
 
-def duty_of(stage: Gearing, load: Load, sun: GearSize, mesh: MeshSize) -> Duty:
+def duty_of(stage: Gearing, load: ToothLoad, sun: GearSize, mesh: MeshSize) -> Duty:
     """Return the load as it is printed."""
     return Duty(
         pins=load.pins,
@@ -342,7 +342,7 @@ def duty_of(stage: Gearing, load: Load, sun: GearSize, mesh: MeshSize) -> Duty:
     )
 
 
-def backlash_of(stage: Gearing, load: Load, mesh: MeshSize) -> Float:
+def backlash_of(stage: Gearing, load: ToothLoad, mesh: MeshSize) -> Float:
     """Return the backlash along the line of action, m: 0 unless the gears are farther apart than without it."""
     opened = (
         2.0 * (load.base_radii[0] + load.base_radii[1]) * (involute(mesh.working_angle) - involute(mesh.tight_angle))
@@ -352,7 +352,6 @@ def backlash_of(stage: Gearing, load: Load, mesh: MeshSize) -> Float:
 
 # Studies of our own: how much torque and time each limit leaves, and how the safeties run along one input
 
-Values = NDArray[np.float64]
 
 HOUR = 3600.0
 SPAN = 1e4  # a limit is sought between the load as it is over SPAN and times SPAN
@@ -407,17 +406,17 @@ class Capacity:
         )
 
 
-def _required(stage: Gearing) -> "Values":
+def _required(stage: Gearing) -> "Array":
     bending, contact = float(stage.least_bending_safety), float(stage.least_contact_safety)
     return np.array([bending, bending, contact, contact])
 
 
-def _used_up(bench: "Bench", column: str, start: float, done: Callable[[int, int], None]) -> "Values":
+def _used_up(bench: "Bench", column: str, start: float, done: Callable[[int, int], None]) -> "Array":
     """By what factor on the column each safety falls to what is asked; infinite where never, 0 where always below."""
     required = _required(bench.inputs)
     low, high = np.full(len(SAFETIES), -np.log(SPAN)), np.full(len(SAFETIES), np.log(SPAN))
 
-    def enough(factors: "Values") -> "NDArray[np.bool_]":
+    def enough(factors: "Array") -> "NDArray[np.bool_]":
         found = bench.rows({column: start * np.exp(factors)}, len(SAFETIES), *SAFETIES)
         return np.array([found[name][place] for place, name in enumerate(SAFETIES)]) >= required
 
@@ -435,10 +434,10 @@ class Reserve:
     """By limit (4,): safety, what is asked, and torque (N m) and time (s) at which they meet; infinite where never."""
 
     inputs: Gearing
-    safeties: "Values"
-    required: "Values"
-    torque: "Values"
-    life: "Values"
+    safeties: "Array"
+    required: "Array"
+    torque: "Array"
+    life: "Array"
     power_per_torque: float
 
     @property

@@ -9,7 +9,7 @@ import numpy as np
 
 from rv_gearing.figures import (
     AXES,
-    Run,
+    GearingRun,
     groups_figure,
     mesh_figure,
     meshing_of,
@@ -20,7 +20,17 @@ from rv_gearing.figures import (
     stresses_figure,
     window_words,
 )
-from rv_gearing.groups import MEETING, MODULE, SIZES, STRENGTH, Column, Found, Listed, catalogue_table, printed_in
+from rv_gearing.groups import (
+    MEETING,
+    MODULE,
+    SIZES,
+    STRENGTH,
+    FoundGroups,
+    GroupColumn,
+    Listed,
+    catalogue_table,
+    printed_in,
+)
 from rv_gearing.rating import Reserve
 from truing import Block, Drawing, Section, Swept, Table, Words
 
@@ -35,13 +45,13 @@ HEADS = {
     "contact_safety_planet": "pitting, planet", "common_first": "common factor, sun and planet",
     "common_second": "disc and pins", "planet_kinds": "kinds of planet", "mesh_phases": "phases",
 }  # fmt: skip
-DIGITS: dict[Column, int] = {"ratio": 4, "deviation": 3, "torque": 2, "centre_distance": 3, "circle_low": 2,
+DIGITS: dict[GroupColumn, int] = {"ratio": 4, "deviation": 3, "torque": 2, "centre_distance": 3, "circle_low": 2,
                              "circle_high": 2}  # fmt: skip
 
 
-def search(record: "Run") -> "Sequence[Block]":
+def search(record: "GearingRun") -> "Sequence[Block]":
     """All groups as a table, where they lie in the window, and the catalogue beside them."""
-    found = record.outcome(Found)
+    found = record.outcome(FoundGroups)
     if found is None:
         return []
     if not found.count:
@@ -64,21 +74,21 @@ def search(record: "Run") -> "Sequence[Block]":
     ]
 
 
-def _catalogue(found: Found) -> "list[Block]":
+def _catalogue(found: FoundGroups) -> "list[Block]":
     """The catalogue of the example's size, beside stages of its module."""
     same = np.isclose(float(found.inputs.module), MODULE) and float(found.inputs.helix_angle) == 0.0
     return [catalogue_table(found.inputs)] if same else []
 
 
-def _rated_words(found: Found) -> str:
+def _rated_words(found: FoundGroups) -> str:
     if found.rated is None:
         return "The teeth that are rated are stated, and in none of these groups."
     return f"Rated below: no. {found.rated}."
 
 
-def _table(found: Found, title: str, columns: Sequence[Column], note: str) -> Table:
+def _table(found: FoundGroups, title: str, columns: Sequence[GroupColumn], note: str) -> Table:
     """Some columns of the list, with the number of the group in front."""
-    named: tuple[Column, ...] = ("group", *columns)
+    named: tuple[GroupColumn, ...] = ("group", *columns)
     values = [np.asarray(found.column(name)) * printed_in(name)[1] for name in named]
     digits = [DIGITS.get(name) for name in named]
     rows = [
@@ -89,7 +99,7 @@ def _table(found: Found, title: str, columns: Sequence[Column], note: str) -> Ta
     return Table(title, heads, rows, tuple(printed_in(name)[0] for name in named), note)
 
 
-def _preferred(found: Found) -> Table:
+def _preferred(found: FoundGroups) -> Table:
     """Common factors, assembly and sharing of every group, with its preference and the reason."""
     of = f"{found.inputs.planets} planet{'s' if found.inputs.planets > 1 else ''}"
     note = (
@@ -108,7 +118,7 @@ def _cell(value: float, places: int | None) -> float | None:
     return round(float(value), places) if places is not None else float(value)
 
 
-def geometry(record: "Run") -> "Sequence[Block]":
+def geometry(record: "GearingRun") -> "Sequence[Block]":
     """The gears and their mesh to scale."""
     caption = (
         "Left the stage, the circle of the crank shafts dashed; right the mesh in its transverse section, both teeth "
@@ -119,7 +129,7 @@ def geometry(record: "Run") -> "Sequence[Block]":
     return [Drawing("Sun and planets, and one mesh", partial(mesh_figure, meshing), caption)]
 
 
-def bending(record: "Run") -> "Sequence[Block]":
+def bending(record: "GearingRun") -> "Sequence[Block]":
     """The critical sections of both teeth."""
     caption = (
         "Normal section. Tangents at 30° touch the fillets at the ends of the chord. The force at the tip meets the "
@@ -130,7 +140,7 @@ def bending(record: "Run") -> "Sequence[Block]":
     return [Drawing("Critical sections of the teeth", partial(root_figure, teeth), caption)]
 
 
-def method_b(record: "Run") -> "Sequence[Block]":
+def method_b(record: "GearingRun") -> "Sequence[Block]":
     """Say that the two conventions do not mix."""
     tip, outer = number(record, "root_safety"), number(record, "root_safety_outer")
     return [
@@ -143,9 +153,9 @@ def method_b(record: "Run") -> "Sequence[Block]":
     ]
 
 
-def comparison(record: "Run") -> "Sequence[Block]":
+def comparison(record: "GearingRun") -> "Sequence[Block]":
     """Stresses and safeties of all groups."""
-    found = record.outcome(Found)
+    found = record.outcome(FoundGroups)
     if found is None or not len(found.groups) or not any(np.isfinite(found.strength[name]).any() for name in STRENGTH):
         return []
     note = "Under the power or torque of the run, with the same face width, material and factors. " + _rated_words(
@@ -158,7 +168,7 @@ def comparison(record: "Run") -> "Sequence[Block]":
     ]
 
 
-def courses(record: "Run") -> "Sequence[Block]":
+def courses(record: "GearingRun") -> "Sequence[Block]":
     """The safeties along what was swept, one figure for each sweep."""
     blocks: list[Block] = []
     for swept in record.studies.values():
@@ -177,7 +187,7 @@ def courses(record: "Run") -> "Sequence[Block]":
     return blocks
 
 
-def _here(record: "Run", over: str) -> float:
+def _here(record: "GearingRun", over: str) -> float:
     """Where the run itself lies along an input."""
     if over == "load_torque":
         return number(record, "output_torque")

@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 from rv_wear import geometry
 from rv_wear.calculation import rv_wear
 from rv_wear.forces import Loads, holding, refuse, shared, start_scale
-from rv_wear.geometry import Array, Mesh, Teeth, many, mesh_of, teeth_of
+from rv_wear.geometry import Mesh, Teeth, many, mesh_of, teeth_of
 from rv_wear.quantities import Reducer
 from rv_wear.wear import exposure_of, oil_part, unworn, wear_at, worn
-from truing import Bench, Block, Check, Float, Table, TruingError, found, results
+from truing import Array, Bench, Block, Check, Float, Table, TruingError, found, results
 
 # Curves for figures and tests: plain numpy out of one reducer or of many, every Float a number or an array (n,); SI
 #
@@ -21,11 +21,11 @@ from truing import Bench, Block, Check, Float, Table, TruingError, found, result
 
 CLOSE = 1e-13  # m
 ROUNDS = 100
-Bound = Literal["double_clearance", "approach"]
+PermittedRange = Literal["double_clearance", "approach"]
 
 
 @dataclass(frozen=True)
-class Flank:
+class DiscFlank:
     """The loaded side of the disc over the phase angle (k,): clearance with wear, wear, and pin forces, each (n, k)."""
 
     angle: Array
@@ -34,7 +34,7 @@ class Flank:
     force: Array
 
 
-def flank(reducer: Reducer, time: float = 0.0) -> Flank:
+def flank(reducer: Reducer, time: float = 0.0) -> DiscFlank:
     """Clearance, wear and forces at every contact of the loaded side after a time (s), 0: new.
 
     The wear is that of the law alone, without ``depth_factor`` and ``extra_wear``. Raises InfeasibleError.
@@ -42,7 +42,7 @@ def flank(reducer: Reducer, time: float = 0.0) -> Flank:
     teeth, loads, wear = worn_mesh(reducer, time)
     mesh = teeth.mesh
     clearance = np.asarray(geometry.clearance(mesh, teeth.angle)) + wear
-    return Flank(teeth.angle.reshape(-1), _rows(clearance), _rows(wear), _rows(loads.force))
+    return DiscFlank(teeth.angle.reshape(-1), _rows(clearance), _rows(wear), _rows(loads.force))
 
 
 def worn_mesh(reducer: Reducer, time: float = 0.0) -> tuple[Teeth, Loads, Array]:
@@ -73,7 +73,7 @@ def profile_points(reducer: Reducer, count: int = 2000) -> tuple[Array, Array]:
     return np.asarray(x), np.asarray(y)
 
 
-def allowed_equidistant(reducer: Reducer, lower: Bound = "double_clearance") -> tuple[Array, Array]:
+def allowed_equidistant(reducer: Reducer, lower: PermittedRange = "double_clearance") -> tuple[Array, Array]:
     """Smallest and largest equidistant modification (n,) of equation 17 at the radial clearance of the reducer.
 
     Above the largest one disc and pins interfere. Below the smallest one the clearance somewhere exceeds, as *lower*
@@ -180,8 +180,8 @@ class Ground:
 
     hours: float
     modifications: "NDArray[np.float64]"
-    new: Flank
-    worn: Flank
+    new: DiscFlank
+    worn: DiscFlank
     force: "NDArray[np.float64]"
     wear: "NDArray[np.float64]"
 
@@ -240,18 +240,18 @@ FITTED = "the regression of the wear coefficient was fitted to steel rollers in 
 
 
 @dataclass(frozen=True, kw_only=True)
-class Validity:
+class DiscValidity:
     """Find the range of the equidistant modification, and warn of inputs outside of the range of the laws."""
 
     name: str = "validity"
     gives: Callable[[Any], Any] | None = None
 
-    def run(self, bench: "Bench") -> "Valid":
+    def run(self, bench: "Bench") -> "DiscValid":
         """Compare the inputs, as effects leave them, with the ranges."""
         reducer: Reducer = bench.inputs
         lowest, highest = (float(bench.answers[name]) for name in ("equidistant_low", "equidistant_high"))
         by_approach, _ = allowed_equidistant(reducer, "approach")
-        return Valid(
+        return DiscValid(
             name=self.name,
             equidistant=float(reducer.equidistant_modification),
             highest=highest,
@@ -282,7 +282,7 @@ def _beyond(reducer: Reducer, lowest: float, pins: float) -> Iterator[str]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Valid:
+class DiscValid:
     """The equidistant modification and the ends of its range (m), and what was found outside of its own range."""
 
     name: str

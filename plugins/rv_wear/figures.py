@@ -17,11 +17,11 @@ from rv_wear.geometry import Mesh, longest_arm_angle, mesh_of, relative_arm
 from rv_wear.machines import Newborn
 from rv_wear.optimum import CostFront, Fronts
 from rv_wear.quantities import Reducer, Wear
-from truing import Odds, Optimum, Record, Swept
+from truing import Array, Odds, Optimum, Record, Swept
 
 # What the figures share: colours, grids, and the inputs that a run was made with
 
-Run = Record[Reducer, Wear]
+ReducerRun = Record[Reducer, Wear]
 
 BLUE, ORANGE, GREEN, INK, GREY = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c"
 WIDTH = 6.4
@@ -80,7 +80,7 @@ SHOWN_ARM = np.radians(80.0)
 
 
 @dataclass(frozen=True)
-class Position:
+class FigurePosition:
     """One position, crank to the right, lengths in mm as complex numbers about the centre of the pins.
 
     Pins (z_p,), the disc's outline, its centre and the pitch point; of the loaded side the phase angles (k,), the
@@ -96,7 +96,7 @@ class Position:
     force: NDArray[np.float64]
 
 
-def position_of(reducer: Reducer) -> Position:
+def position_of(reducer: Reducer) -> FigurePosition:
     """The middle one of the positions that are calculated within one pin pitch."""
     mesh, new = mesh_of(reducer), flank(reducer)
     phases = mesh.choices.phases
@@ -110,7 +110,7 @@ def position_of(reducer: Reducer) -> Position:
     loaded = circle * np.exp(1j * angle)
     to_pitch = (pitch_point - loaded) / np.abs(pitch_point - loaded)
     contact = loaded + float(mesh.pin_radius) * to_pitch
-    return Position(MM * pins, MM * outline, MM * throw, MM * pitch_point, angle, MM * contact, force)
+    return FigurePosition(MM * pins, MM * outline, MM * throw, MM * pitch_point, angle, MM * contact, force)
 
 
 def mesh_figure(reducer: Reducer) -> "Figure":
@@ -134,12 +134,12 @@ def mesh_figure(reducer: Reducer) -> "Figure":
     return figure
 
 
-def _disc(panel: Any, position: Position) -> None:
+def _disc(panel: Any, position: FigurePosition) -> None:
     panel.fill(position.outline.real, position.outline.imag, facecolor="#e8eff5", edgecolor=BLUE, linewidth=1.1,
                zorder=2)  # fmt: skip
 
 
-def _pins(panel: Any, position: Position, radius: float) -> None:
+def _pins(panel: Any, position: FigurePosition, radius: float) -> None:
     for place, pin in enumerate(position.pins):
         bears = place < len(position.force) and position.force[place] > 0.0
         panel.add_patch(
@@ -148,7 +148,7 @@ def _pins(panel: Any, position: Position, radius: float) -> None:
         )  # fmt: skip
 
 
-def _forces(panel: Any, position: Position, radius: float) -> None:
+def _forces(panel: Any, position: FigurePosition, radius: float) -> None:
     """Arrows from the contacts along their lines of action, as long as the force is large."""
     largest = float(position.force.max(initial=0.0))
     if largest <= 0.0:
@@ -176,7 +176,7 @@ def _ends(first: complex, second: complex) -> tuple[list[float], list[float]]:
     return [first.real, second.real], [first.imag, second.imag]
 
 
-def _angle_and_arm(panel: Any, position: Position) -> None:
+def _angle_and_arm(panel: Any, position: FigurePosition) -> None:
     """The phase angle of one pin about the middle of the pins, and the arm of its force about that of the disc."""
     bearing = np.flatnonzero(position.force > 0.0)
     if not len(bearing):
@@ -200,7 +200,7 @@ def _angle_and_arm(panel: Any, position: Position) -> None:
     panel.annotate(r"$l$", (half.real, half.imag), (3, -12), textcoords="offset points", color=BLUE, fontsize=11)
 
 
-def _centres(panel: Any, position: Position, mesh: Mesh) -> None:
+def _centres(panel: Any, position: FigurePosition, mesh: Mesh) -> None:
     """Both centres, the crank line, the pitch point, and the circle on which the longest arm ends."""
     reach = abs(position.pins[0])
     panel.plot([-reach, reach], [0, 0], color=INK, linewidth=0.7, linestyle=(0, (8, 3, 1, 3)), zorder=4)
@@ -225,7 +225,6 @@ def _centres(panel: Any, position: Position, mesh: Mesh) -> None:
 # Along the flank: clearance, forces by both ways of sharing, forces and wear of differently ground discs
 
 FINE = np.radians(np.linspace(0.0, 180.0, 361))
-Values = NDArray[np.float64]
 
 
 def clearance_figure(reducer: Reducer) -> "Figure":
@@ -374,7 +373,7 @@ def machines_figure(born: "Newborn") -> "Figure":
     return figure
 
 
-def _edges(values: Values) -> Values:
+def _edges(values: Array) -> Array:
     """Edges of some forty classes over all values; a single value gets one class of its own."""
     if not len(values):
         return np.array([0.0, 1.0])
@@ -383,7 +382,7 @@ def _edges(values: Values) -> Values:
     return np.linspace(low - room, high + room, 45)
 
 
-def reliability_figure(odds: "Odds", optimised: Mapping[str, tuple[Values, Values]] | None = None) -> "Figure":
+def reliability_figure(odds: "Odds", optimised: Mapping[str, tuple[Array, Array]] | None = None) -> "Figure":
     """Draw the reliability over the working time, with its interval, the goal, and the value that the paper prints.
 
     *optimised* names further curves, each hours and probabilities.

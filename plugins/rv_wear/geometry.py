@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rv_wear.quantities import Reducer
-from truing import Float
+from truing import Array, Float
 
 # What the teeth know of a reducer: one entry per distinct mesh, and which row of a batch runs on which mesh
 
-Array = NDArray[np.float64]
 Truths = NDArray[np.bool_]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rv_wear.calculation import backlash_of
-from rv_wear.discs import Flank, flank
+from rv_wear.discs import DiscFlank, flank
 from rv_wear.quantities import Reducer
 from truing import Bench, Block, Check, Float, Odds, Sensitivities, Swept, TruingError, axis, found, results
 
@@ -58,7 +58,7 @@ def index(number: int, what: str) -> float:
 
 
 @results
-class Indices:
+class SobolIndices:
     """The sixteen sensitivity indices of Table 2: how much backlash each error gives, against the pin circle radius."""
 
     index_1: Float = index(1, "base tangent length of the involute gears")
@@ -120,19 +120,19 @@ def history(swept: Swept) -> History:
     )
 
 
-def place_of_wear(new: "Flank", wear: "NDArray[np.float64]") -> float:
+def place_of_wear(new: "DiscFlank", wear: "NDArray[np.float64]") -> float:
     """Where the wear is deepest: 0 where the contact of the new mesh begins, 1 where it ends."""
     loaded = new.angle[new.force[0] > 0.0]
     span = float(loaded[-1] - loaded[0])
     return float(new.angle[wear.argmax()] - loaded[0]) / span if span else nan
 
 
-def indices(found: Sensitivities) -> Indices:
+def indices(found: Sensitivities) -> SobolIndices:
     """The derivatives of equation 21 over that by the pin circle radius; the modifications at the same wear."""
     slopes = dict(found.derivatives.get("backlash", {}))
     slopes.update(slopes_at_same_wear(found.inputs))
     reference = slopes.get(FACTORS[REFERENCE], nan)
-    return Indices(**{f"index_{number}": slopes.get(name, nan) / reference for number, name in FACTORS.items()})
+    return SobolIndices(**{f"index_{number}": slopes.get(name, nan) / reference for number, name in FACTORS.items()})
 
 
 def slopes_at_same_wear(reducer: Reducer) -> dict[str, float]:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from rv_wear.calculation import rv_wear
 from rv_wear.costs import TOLERANCES, Costs, cost
-from rv_wear.discs import Modifications, Validity, trend
+from rv_wear.discs import DiscValidity, Modifications, trend
 from rv_wear.effects import EFFECTS
 from rv_wear.machines import NewMachines, chances, history, indices
 from rv_wear.optimum import LeastCosts, bought, ends, front, learnt
@@ -40,7 +40,7 @@ RV_WEAR = Model(
         Require("max_pressure", at_most="permitted_pressure"),
     ],
     studies=[
-        Validity(),
+        DiscValidity(),
         Modifications(gives=trend),
         Sweep(over="working_time", at="0..6000 h", points=25, gives=history),
         Sensitivity(of="backlash", gives=indices),

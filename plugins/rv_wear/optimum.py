@@ -6,13 +6,13 @@ from math import ceil, isnan, nan
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rv_wear.calculation import rv_wear
 from rv_wear.quantities import Reducer
 from truing import (
     Allocation,
     Allotted,
+    Array,
     Bench,
     Block,
     Check,
@@ -31,7 +31,6 @@ from truing import (
 # For every equidistant modification the widths of least cost that reach the goal are found; as the wear depends on the
 # modification alone, this is the front itself (the epsilon-constraint method). An evolutionary search is judged by it.
 
-Values = NDArray[np.float64]
 
 MICRO, HOUR = 1e-6, 3600.0
 STEP = 1.0  # um of the equidistant modification from one design to the next
@@ -144,7 +143,7 @@ def ground(
         return None
 
 
-def farthest_from_chord(front: "Values") -> int:
+def farthest_from_chord(front: "Array") -> int:
     """The place of the design (n, 2) below the chord of the front, both objectives brought to 0 to 1."""
     span = np.ptp(front, axis=0)
     scaled = (front - front.min(axis=0)) / np.where(span > 0, span, 1.0)
@@ -168,8 +167,8 @@ class CostFront:
     goal: float
     designs: tuple[Design, ...]
     knee: int | None
-    times: "Values"
-    chances: "Values"
+    times: "Array"
+    chances: "Array"
 
 
 @dataclass(frozen=True, eq=False)
@@ -262,7 +261,7 @@ def end(number: int, what: str, unit: str, symbol: str) -> float:
 
 
 @results
-class Ends:
+class FrontEnds:
     """Where the front begins and where its knee is, under both constraints of the paper, whatever the inputs ask."""
 
     least_wear_1: Float = end(1, "smallest wear of the front", "um", "h_f")
@@ -320,7 +319,7 @@ def _of(design: Any, objective: str) -> float:
     return nan if design is None else float(design.objectives.get(objective, nan))
 
 
-def ends(fronts: Fronts) -> Ends:
+def ends(fronts: Fronts) -> FrontEnds:
     """The fronts of both constraints; none where a goal was not asked for or cannot be reached."""
     given: dict[str, float] = {}
     for number, goal in CONSTRAINTS.items():
@@ -331,7 +330,7 @@ def ends(fronts: Fronts) -> Ends:
         given[f"least_wear_{number}"] = designs[0].wear if designs else nan
         given[f"corner_cost_{number}"] = knee.cost if knee else nan
         given[f"corner_wear_{number}"] = knee.wear if knee else nan
-    return Ends(**given)
+    return FrontEnds(**given)
 
 
 def bought(allotted: Allotted) -> Bought:

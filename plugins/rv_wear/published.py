@@ -7,8 +7,8 @@ from truing import Finding, Published
 
 # What the paper prints, for comparison with what this calculation gives under the same settings
 
-Obtained = Literal["predicted", "calibrated"]
-Row = tuple[str, str, str, str]  # name, result, as printed, unit
+WearObtained = Literal["predicted", "calibrated"]
+WearRow = tuple[str, str, str, str]  # name, result, as printed, unit
 
 GEOMETRY = "one of the indices from which the lost sizes of Table 1 were reconstructed"
 SET = "the formula of this factor is lost; it was set to the printed index"
@@ -39,7 +39,7 @@ KNEE = (
 
 # Number of the constraint, reliability asked for (100 % is read as 0.999), printed cost and wear, modification taken.
 CHOSEN = ((1, "0.95", "1291", "3.151", -27), (2, "0.999", "1300", "3.207", -29))
-INDICES: tuple[tuple[int, str, Obtained, str], ...] = (
+INDICES: tuple[tuple[int, str, WearObtained, str], ...] = (
     (1, "-0.037", "calibrated", GEOMETRY),
     (2, "0.025", "calibrated", GEOMETRY),
     (3, "0.025", "predicted", ""),
@@ -66,7 +66,8 @@ def only(*studies: str, **settings: str) -> Mapping[str, str]:
 
 
 def printed(
-    row: Row, where: str, obtained: Obtained = "predicted", *, why: str = "", settings: Mapping[str, str] | None = None,
+    row: WearRow, where: str, obtained: WearObtained = "predicted", *, why: str = "",
+    settings: Mapping[str, str] | None = None,
     chance: bool = False, differs: bool = False,
 ) -> Published:  # fmt: skip
     """One printed number."""
@@ -117,7 +118,7 @@ def optima() -> Iterator[Published]:
             yield differing((name, f"corner_{result}_{number}", value, unit), KNEE, whole)
 
 
-def differing(row: Row, why: str, settings: Mapping[str, str]) -> Published:
+def differing(row: WearRow, why: str, settings: Mapping[str, str]) -> Published:
     """One printed number that does not come out."""
     return printed(row, FIG_6, why=why, settings=settings, differs=True)
 

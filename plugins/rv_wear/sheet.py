@@ -7,7 +7,7 @@ from rv_wear.costs import Bill
 from rv_wear.discs import Ground
 from rv_wear.figures import (
     PRINTED_OPTIMA,
-    Run,
+    ReducerRun,
     at_printed_wear,
     better,
     clearance_figure,
@@ -30,7 +30,7 @@ from truing import Block, Drawing, Odds, Optimum, Section, Sensitivities, Swept,
 # The figures by section of the sheet: each is there where its study ran, and drawn when the sheet is written
 
 
-def geometry(record: "Run") -> "Sequence[Block]":
+def geometry(record: "ReducerRun") -> "Sequence[Block]":
     """The mesh to scale, and the clearance along the flank."""
     reducer = record.acting
     mesh = (
@@ -48,7 +48,7 @@ def geometry(record: "Run") -> "Sequence[Block]":
     ]
 
 
-def forces(record: "Run") -> "Sequence[Block]":
+def forces(record: "ReducerRun") -> "Sequence[Block]":
     """Forces along the flank by both ways of sharing, and how far these are apart."""
     reducer = record.acting
     largest, one = difference_of_sharing(reducer)
@@ -64,7 +64,7 @@ def forces(record: "Run") -> "Sequence[Block]":
     return [Drawing("Force on a pin", partial(sharing_figure, reducer), caption), Words(words)]
 
 
-def wear(record: "Run") -> "Sequence[Block]":
+def wear(record: "ReducerRun") -> "Sequence[Block]":
     """Wear along the flank, and over the working time."""
     reducer = record.acting
     blocks: list[Block] = []
@@ -78,7 +78,7 @@ def wear(record: "Run") -> "Sequence[Block]":
     return blocks
 
 
-def other_discs(record: "Run") -> "Sequence[Block]":
+def other_discs(record: "ReducerRun") -> "Sequence[Block]":
     """The paper's Figs. 1 and 2."""
     ground = record.outcome(Ground)
     if ground is None:
@@ -88,7 +88,7 @@ def other_discs(record: "Run") -> "Sequence[Block]":
     return [Drawing("Forces and wear of discs ground in other ways", draw, caption)]
 
 
-def influence(record: "Run") -> "Sequence[Block]":
+def influence(record: "ReducerRun") -> "Sequence[Block]":
     """The sixteen indices beside those of the paper's Table 2."""
     if record.outcome(Sensitivities) is None:
         return []
@@ -101,7 +101,7 @@ def influence(record: "Run") -> "Sequence[Block]":
     return [Drawing("How much backlash each error gives", partial(indices_figure, found), caption)]
 
 
-def reliability(record: "Run") -> "Sequence[Block]":
+def reliability(record: "ReducerRun") -> "Sequence[Block]":
     """The paper's Figs. 4 and 5."""
     blocks: list[Block] = []
     born = record.outcome(Newborn)
@@ -119,7 +119,7 @@ def reliability(record: "Run") -> "Sequence[Block]":
     return blocks
 
 
-def costs(record: "Run") -> "Sequence[Block]":
+def costs(record: "ReducerRun") -> "Sequence[Block]":
     """What each zone costs, and what another width would."""
     bill = record.outcome(Bill)
     if bill is None or not bill.widths:
@@ -131,7 +131,7 @@ def costs(record: "Run") -> "Sequence[Block]":
     return [Drawing("Price of the zones", partial(costs_figure, bill, form), caption)]
 
 
-def better_tolerances(record: "Run") -> "Sequence[Block]":
+def better_tolerances(record: "ReducerRun") -> "Sequence[Block]":
     """The paper's Figs. 6 and 7."""
     fronts = record.outcome(Fronts)
     if fronts is None or not any(front.designs for front in fronts.fronts):

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from rv_wear import geometry
 from rv_wear.forces import Loads, holding, refuse, shared, start_scale
 from rv_wear.geometry import (
-    Array,
     Choices,
     Film,
     Mesh,
@@ -26,7 +25,7 @@ from rv_wear.geometry import (
     with_columns,
 )
 from rv_wear.quantities import Reducer
-from truing import Float, either, feasible
+from truing import Array, Float, either, feasible
 
 # The wear coefficient of lubricated steel rollers, and what stretches the time of wear; strictly SI
 #
@@ -87,7 +86,7 @@ Rate = Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
-class State:
+class WearState:
     """The disc at the beginning of a step: exposure (m,), wear and its growth (pins, phases, m), how long it lasts.
 
     ``teeth`` holds the pins that bear, and the arrays hold the same; the others have no wear yet. ``lasts`` is an
@@ -159,7 +158,7 @@ def _at_pitch_point(teeth: Teeth, unworn: Loads) -> Array:
     return np.asarray(contact_part(mesh.equivalent_modulus, line_load, radius))
 
 
-def states(teeth: Teeth) -> Iterator[State]:
+def states(teeth: Teeth) -> Iterator[WearState]:
     """The disc at the beginning of every step, without end."""
     unworn = shared(teeth, teeth.slack, start_scale(teeth))
     part, clear = around(teeth, unworn.force)
@@ -171,7 +170,7 @@ def states(teeth: Teeth) -> Iterator[State]:
         lasts = _lasts(teeth, rate)
         grown = rate * lasts
         after = wear + grown
-        yield State(part, loads, exposure, wear, rate, lasts, grown, after)
+        yield WearState(part, loads, exposure, wear, rate, lasts, grown, after)
         wear = after
         exposure = exposure + lasts
         guess, last = np.maximum(2.0 * loads.scale - last, 0.5 * loads.scale), loads.scale
@@ -242,7 +241,7 @@ def _flat(values: Array) -> Array:
 
 
 def _step(
-    state: State, leader: NDArray[np.intp], angle: Array
+    state: WearState, leader: NDArray[np.intp], angle: Array
 ) -> tuple[NDArray[np.intp], list[tuple[Array, Array, Array]]]:
     """The deepest point after a step, and the nodes where it is overtaken (else half way) and at the end of the step.
 
@@ -307,7 +306,7 @@ class Unworn:
 
 
 @dataclass(frozen=True)
-class Key:
+class HistoryKey:
     """Meshes as something to remember an answer by: their numbers as bytes, how many they are, and their choices."""
 
     numbers: bytes
@@ -316,13 +315,13 @@ class Key:
     has_film: bool
 
 
-def key_of(mesh: Mesh, places: NDArray[np.intp]) -> Key:
+def key_of(mesh: Mesh, places: NDArray[np.intp]) -> HistoryKey:
     """Some of many meshes (m,)."""
     table = np.stack([np.asarray(column)[places] for column in columns_of(mesh)])
-    return Key(table.tobytes(), len(places), mesh.choices, mesh.film is not None)
+    return HistoryKey(table.tobytes(), len(places), mesh.choices, mesh.film is not None)
 
 
-def mesh_from(key: Key) -> Mesh:
+def mesh_from(key: HistoryKey) -> Mesh:
     """The meshes of a key."""
     film = Film(0.0, 0.0, 0.0, 0.0, 0.0) if key.has_film else None
     blank = Mesh(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, key.choices, film)
@@ -349,7 +348,7 @@ def unworn(mesh: Mesh) -> Unworn:
     )
 
 
-def history(key: Key, power: int) -> Histories:
+def history(key: HistoryKey, power: int) -> Histories:
     """Histories of the meshes of a key, each over 2 ^ (power / FINENESS) times the exposure of its first step."""
     teeth = teeth_of(mesh_from(key))
     return histories(teeth, next(states(teeth)).lasts * 2.0 ** (power / FINENESS))

@@ -16,7 +16,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 from press_linkage.errors import ARM, KINDS, SOURCES, source
 from press_linkage.kinematics import demands, solve
-from press_linkage.quantities import Press, Side
+from press_linkage.quantities import Press, PressSide
 
 BATCH = 2**14
 SD = np.full((len(SOURCES), 1), 20e-6)
@@ -42,7 +42,7 @@ def scatter(drawn: np.ndarray) -> tuple[float, float, bool]:
     """Sums of position and tilt over one batch, and whether every machine of it closes."""
     errors = drawn * SD
     off = dict(zip(SOURCES, errors, strict=True))
-    sides = [Side(**{f"{kind}_deviation": off[source(kind, side)] for kind in KINDS}) for side in (1, 2)]
+    sides = [PressSide(**{f"{kind}_deviation": off[source(kind, side)] for kind in KINDS}) for side in (1, 2)]
     press = replace(PRESS, side_1=sides[0], side_2=sides[1], platform_arm_deviation=off[ARM], crank_angle=CRANK_ANGLE)
     position = solve(press)
     closes = all(np.all(demand.holds) for demand in demands(press, position))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from press_linkage import errors, kinematics
 from press_linkage.errors import ARM, KINDS, POLAR_ANGLES
 from press_linkage.kinematics import Position
-from press_linkage.quantities import Press, Side
+from press_linkage.quantities import Press, PressSide
 from truing import Float
 
 PAPER = Press()
@@ -31,20 +31,27 @@ MECHANISMS = pytest.mark.parametrize("geometry", [PAPER, OTHER], ids=["paper", "
 AROUND = np.radians([-140.3, -90.0, -40.0, -10.0, 0.0, 10.0, 40.0, 90.0, 150.0])
 
 
-def off_by(**kinds: Float) -> Side:
+def off_by(**kinds: Float) -> PressSide:
     """One side that is off by these deviations, named without ``_deviation``."""
-    return Side(**{f"{kind}_deviation": value for kind, value in kinds.items()})
+    return PressSide(**{f"{kind}_deviation": value for kind, value in kinds.items()})
 
 
 def solve(
-    press: Press, angle: Float, *, side_1: Side | None = None, side_2: Side | None = None, platform_arm: Float = 0.0
+    press: Press,
+    angle: Float,
+    *,
+    side_1: PressSide | None = None,
+    side_2: PressSide | None = None,
+    platform_arm: Float = 0.0,
 ) -> Position:
     """The exact position of a mechanism with these deviations."""
-    off = replace(press, side_1=side_1 or Side(), side_2=side_2 or Side(), platform_arm_deviation=platform_arm)
+    off = replace(
+        press, side_1=side_1 or PressSide(), side_2=side_2 or PressSide(), platform_arm_deviation=platform_arm
+    )
     return kinematics.solve(off, angle)
 
 
-def scattered(size: float, seed: int, shape: tuple[int, ...] = ()) -> Side:
+def scattered(size: float, seed: int, shape: tuple[int, ...] = ()) -> PressSide:
     """One side with every error present."""
     rng = np.random.default_rng(seed)
     return off_by(**{kind: size * rng.standard_normal(shape) for kind in KINDS})
@@ -64,6 +71,6 @@ def sensitivities(geometry: Press, angle: float | NDArray[np.float64]) -> dict[s
     return {kind: np.asarray(value) for kind, value in found.items()}
 
 
-def mirrored(off: Side) -> Side:
+def mirrored(off: PressSide) -> PressSide:
     """The same errors on the other side: polar angles of the frame change their sign."""
     return replace(off, **{f"{kind}_deviation": -getattr(off, f"{kind}_deviation") for kind in POLAR_ANGLES})

@@ -10,7 +10,7 @@ from press_linkage import kinematics
 from press_linkage.quantities import Press
 
 
-def broken(geometry: Press, angle: float = 0.0, **off: object) -> list[kinematics.Demand]:
+def broken(geometry: Press, angle: float = 0.0, **off: object) -> list[kinematics.TiltDemand]:
     """The demands that do not hold."""
     position = solve(geometry, angle, **off)
     return [demand for demand in kinematics.demands(geometry, position) if not np.all(demand.holds)]

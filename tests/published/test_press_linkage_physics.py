@@ -16,7 +16,7 @@ from press_linkage_cases import AROUND, MECHANISMS, PAPER, SIZES, mirrored, off_
 from press_linkage import kinematics
 from press_linkage.errors import KINDS
 from press_linkage.kinematics import Half, Position
-from press_linkage.quantities import Press, Side
+from press_linkage.quantities import Press, PressSide
 
 
 def test_bottom_dead_centre() -> None:
@@ -52,7 +52,7 @@ def test_range_of_the_links_over_a_turn() -> None:
     assert [np.min(side.knee.y), np.max(side.knee.y)] == pytest.approx([0.139, 0.856], abs=5.001e-4)
 
 
-def loops(geometry: Press, position: Position, side: int, off: Side, arm: float) -> list[NDArray]:
+def loops(geometry: Press, position: Position, side: int, off: PressSide, arm: float) -> list[NDArray]:
     """What is left of the three loops of one side, in the frame, from angles and complex exponentials alone."""
     half: Half = position.side_1 if side == 1 else position.side_2
     own = {name: getattr(geometry, name) for name in SIZES}

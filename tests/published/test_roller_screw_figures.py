@@ -15,7 +15,7 @@ from roller_screw_shift import sheet
 from roller_screw_shift.figures import MARKS, SIDES, path_of, ring_half, roller_half, toothing, triangle
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.model import MARGINS, ROLLER_SCREW_SHIFT
-from roller_screw_shift.optimum import Chosen
+from roller_screw_shift.optimum import ChosenShift
 from roller_screw_shift.quantities import Pair
 from truing import Drawing
 from truing.calculation import Calculation, calculate
@@ -149,9 +149,9 @@ def labelled(panel: Any, begin: str) -> tuple[NDArray[np.float64], NDArray[np.fl
     return np.asarray(found.get_xdata(), dtype=float), np.asarray(found.get_ydata(), dtype=float)
 
 
-def chosen_of(run: Calculation) -> Chosen:
+def chosen_of(run: Calculation) -> ChosenShift:
     found = run.outcomes["shift"]
-    assert isinstance(found, Chosen)
+    assert isinstance(found, ChosenShift)
     return found
 
 

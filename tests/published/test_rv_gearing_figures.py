@@ -18,7 +18,7 @@ from gear_geometry.roots import Rack, external_root
 from rv_gearing import sheet
 from rv_gearing.figures import groups_figure, mesh_figure, meshing_of, notched_of, stresses_figure
 from rv_gearing.geometry import half_space, tooth, trochoid, undercut
-from rv_gearing.groups import MEETING, SIZES, STRENGTH, Column, Found, Search, listed
+from rv_gearing.groups import MEETING, SIZES, STRENGTH, FoundGroups, GroupColumn, GroupSearch, listed
 from rv_gearing.model import RV_GEARING
 from rv_gearing.rating import SAFETIES, Capacity, Reserve, Safeties, rating, rv_gearing
 from truing import Drawing, Kernel, Swept, Table, TruingError, Words
@@ -35,9 +35,9 @@ def run(*studies: Any, **inputs: Any) -> Calculation:
     return calculate(replace(default_setup(RV_GEARING, **inputs), studies=studies))
 
 
-def found(calculation: Calculation) -> Found:
+def found(calculation: Calculation) -> FoundGroups:
     outcome = calculation.outcomes["search"]
-    assert isinstance(outcome, Found)
+    assert isinstance(outcome, FoundGroups)
     return outcome
 
 
@@ -69,7 +69,7 @@ def test_the_list_is_a_result_of_the_run(whole: Calculation) -> None:
 
 @pytest.mark.parametrize("column", ["group", *SIZES, *MEETING, *STRENGTH])
 @pytest.mark.parametrize("descending", [False, True])
-def test_the_list_is_sorted_by_any_column(whole: Calculation, column: Column, descending: bool) -> None:
+def test_the_list_is_sorted_by_any_column(whole: Calculation, column: GroupColumn, descending: bool) -> None:
     told = replace(found(whole), sort_by=column, descending=descending).sorted()
     key = np.abs(told.column(column)) if column == "deviation" else told.column(column)
     assert np.all(np.diff(-key if descending else key) >= 0)
@@ -79,7 +79,7 @@ def test_the_list_is_sorted_by_any_column(whole: Calculation, column: Column, de
 
 
 def test_the_better_groups_come_first_where_the_list_is_sorted_so() -> None:
-    calculation = run(Search(sort_by="preference"))
+    calculation = run(GroupSearch(sort_by="preference"))
     told = found(calculation)
     assert told.numbers[:4].tolist() == [4, 8, 15, 21]
     entry = told.as_json()
@@ -99,16 +99,16 @@ def test_the_better_groups_come_first_where_the_list_is_sorted_so() -> None:
 
 
 def test_groups_with_just_the_wanted_ratio_keep_their_numbers() -> None:
-    told = found(run(Search(exact_only=True)))
+    told = found(run(GroupSearch(exact_only=True)))
     assert (told.count, told.exact) == (25, 5)
     assert told.numbers.tolist() == [1, 6, 11, 18, 25]
     assert np.all(told.groups.ratio == 111.0)
 
 
 def test_the_rated_group_is_told() -> None:
-    assert found(run(Search(), group=5)).rated == 5
-    assert found(run(Search(), sun_teeth=28, planet_teeth=77)).rated == 11
-    stated = run(Search(), sun_teeth=14, planet_teeth=61, shift_sun=0.3)
+    assert found(run(GroupSearch(), group=5)).rated == 5
+    assert found(run(GroupSearch(), sun_teeth=28, planet_teeth=77)).rated == 11
+    stated = run(GroupSearch(), sun_teeth=14, planet_teeth=61, shift_sun=0.3)
     assert found(stated).rated is None
     assert any("stated teeth are none of the 25 groups" in words for words in found(stated).warnings())
 
@@ -118,13 +118,13 @@ def test_the_rated_group_is_told() -> None:
 )
 def test_a_number_that_hangs_on_the_scatter_of_the_efficiency_is_said(power: str, group: int, stable: bool) -> None:
     """20/55 needs 46.875 mm; the window begins there at 1341.7 N m, which 2.345 kW give with 0.992 of a bearing."""
-    told = found(run(Search(), power=power, group=group))
+    told = found(run(GroupSearch(), power=power, group=group))
     assert bool(told.warnings()) is not stable
-    assert found(run(Search(), power=power, sun_teeth=20, planet_teeth=55)).warnings() == ()
+    assert found(run(GroupSearch(), power=power, sun_teeth=20, planet_teeth=55)).warnings() == ()
 
 
 def test_an_empty_list_is_said_and_the_stated_teeth_are_rated() -> None:
-    calculation = run(Search(gives=listed), target_ratio=5000.0, sun_teeth=20, planet_teeth=55)
+    calculation = run(GroupSearch(gives=listed), target_ratio=5000.0, sun_teeth=20, planet_teeth=55)
     assert calculation.answers["group_count"] == 0
     assert calculation.answers["group_ratio"].shape == (0,)
     assert "no group of tooth numbers meets" in " ".join(found(calculation).warnings())
@@ -132,14 +132,16 @@ def test_an_empty_list_is_said_and_the_stated_teeth_are_rated() -> None:
     assert isinstance(first, Words)
     assert first.text.startswith("No group of tooth numbers")
     assert sheet.comparison(calculation.record) == []
-    assert [block.title for block in sheet.search(run(Search(), **PAIRS[3]).record) if isinstance(block, Table)] == []
+    assert [
+        block.title for block in sheet.search(run(GroupSearch(), **PAIRS[3]).record) if isinstance(block, Table)
+    ] == []
     assert float(calculation.answers["root_stress_sun"]) > 0
     assert json.loads(json.dumps(found(calculation).as_json()))["count"] == 0
 
 
 def test_a_group_that_cannot_be_rated_stays_in_the_list() -> None:
     """With this shift the smallest suns have pointed teeth; their strength is empty, not an error."""
-    calculation = run(Search(), sun_teeth=36, planet_teeth=99, shift_sun=1.3, shift_planet=-1.3)
+    calculation = run(GroupSearch(), sun_teeth=36, planet_teeth=99, shift_sun=1.3, shift_planet=-1.3)
     told = found(calculation)
     empty = np.isnan(told.strength["root_stress_sun"])
     assert np.flatnonzero(empty).tolist() == [0, 1]
@@ -150,7 +152,7 @@ def test_a_group_that_cannot_be_rated_stays_in_the_list() -> None:
 
 def test_a_column_that_is_none_is_refused() -> None:
     with pytest.raises(TruingError, match="the groups have no column 'price'"):
-        Search(sort_by="price")  # type: ignore[arg-type]
+        GroupSearch(sort_by="price")  # type: ignore[arg-type]
 
 
 # ---- capacity and courses -----------------------------------------------------------------------------------------
@@ -352,7 +354,7 @@ def test_the_figure_of_stresses_has_every_group_below_its_limit(whole: Calculati
 def test_every_figure_is_drawn_without_a_complaint(inputs: dict[str, Any], figures: int) -> None:
     """The pair of module 8 mm fits no window: no group, and nothing to draw of groups."""
     studies = (
-        Search(sort_by="contact_safety_sun"),
+        GroupSearch(sort_by="contact_safety_sun"),
         Capacity(),
         Safeties(over="power", at="1..4 kW", points=7, name="power"),
     )

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from rv_gearing.groups import (
-    Teeth,
+    ToothNumbers,
     candidates,
     chosen_teeth,
     efficiency_of,
@@ -231,7 +231,7 @@ def test_power_is_torque_times_speed_but_for_the_rounded_constant() -> None:
 def test_catalogue_ratios_have_40_pins_and_one_centre_distance(ratio: float, sun: int, planet: int) -> None:
     """The RV-110E of the manufacturer's manual: five ratios, printed to a tenth (175.2857 as 175.2)."""
     assert sun + planet == 75
-    found = groups_of(Gearing(), Teeth(sun=float(sun), planet=float(planet), pins=40.0))
+    found = groups_of(Gearing(), ToothNumbers(sun=float(sun), planet=float(planet), pins=40.0))
     assert found.ratio == pytest.approx(ratio, abs=0.09)
     assert found.centre_distance == pytest.approx(46.875e-3, rel=1e-12)
     assert ratio_of(sun, planet, 40) == pytest.approx(1 + 40 * planet / sun, rel=1e-14)
@@ -253,15 +253,15 @@ def test_no_other_sum_of_teeth_gives_all_catalogue_ratios() -> None:
 
 
 def test_a_group_is_chosen_by_its_number() -> None:
-    assert chosen_teeth(RV_GEARING.inputs(group=5)) == Teeth(sun=23.0, planet=63.0, pins=40.0)
-    assert chosen_teeth(Gearing()) == Teeth(sun=20.0, planet=55.0, pins=40.0)
+    assert chosen_teeth(RV_GEARING.inputs(group=5)) == ToothNumbers(sun=23.0, planet=63.0, pins=40.0)
+    assert chosen_teeth(Gearing()) == ToothNumbers(sun=20.0, planet=55.0, pins=40.0)
 
 
 def test_stated_teeth_are_taken_whatever_the_search_finds() -> None:
     nothing: dict[str, Any] = {"target_ratio": 5000.0, "group": 7}
     stated = RV_GEARING.inputs(sun_teeth=14, planet_teeth=61, **nothing)
-    assert chosen_teeth(stated) == Teeth(sun=14.0, planet=61.0, pins=40.0)
-    assert chosen_teeth(replace(stated, pin_teeth=52.0)) == Teeth(sun=14.0, planet=61.0, pins=52.0)
+    assert chosen_teeth(stated) == ToothNumbers(sun=14.0, planet=61.0, pins=40.0)
+    assert chosen_teeth(replace(stated, pin_teeth=52.0)) == ToothNumbers(sun=14.0, planet=61.0, pins=52.0)
 
 
 def test_in_a_batch_every_row_searches_with_its_own_duty() -> None:

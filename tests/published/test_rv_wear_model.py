@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rv_wear.discs import Modifications, Validity
+from rv_wear.discs import DiscValidity, Modifications
 from rv_wear.model import RV_WEAR
 from truing import Allocation, Require, Sweep, Vary
 from truing.calculation import Calculation, calculate
@@ -125,7 +125,7 @@ def test_impossible_options_are_refused(options: dict[str, Any]) -> None:
 
 
 def test_both_readings_of_the_lower_bound_are_shown() -> None:
-    valid = run(Validity()).outcomes["validity"]
+    valid = run(DiscValidity()).outcomes["validity"]
     assert valid.lowest * 1e6 == pytest.approx(-53.75, abs=5e-3)
     assert valid.highest * 1e6 == pytest.approx(11.104, abs=1e-3)
     assert -53 < valid.lowest_by_approach * 1e6 < -30

@@ -13,7 +13,7 @@ from truing.declare.fields import Float, found, given, inputs, results
 from truing.declare.model import Model
 from truing.declare.sources import Condition, Effect, Tolerance, Unknown
 from truing.declare.spreads import normal
-from truing.diagnosis.records import Covariate, Records, UnitError
+from truing.diagnosis.records import Covariate, Records, SuspectedUnit
 from truing.diagnosis.result import (
     Alternative,
     Amount,
@@ -271,7 +271,7 @@ def ambiguous() -> DiagnosisResult:
         {"rod_temperature": Amount(323.15, "degC"), "load": Amount(-5e4, "kN"), "crank_angle": Amount(0.5, "deg")},
         ("rod_heating", "sensor_drift"), "warm at once: heat follows the temperature, a drift follows the clock", 27.5,
     )  # fmt: skip
-    unit_error = UnitError("load", 1000.0, "load lies between 0 and 0.06 kN: was it written in MN?")
+    unit_error = SuspectedUnit("load", 1000.0, "load lies between 0 and 0.06 kN: was it written in MN?")
     made = named()
     return replace(
         made, causes=(replace(HEATING, same_as=("warm_up",)),), alternatives=(DRIFTING,), ties=(TIE,),

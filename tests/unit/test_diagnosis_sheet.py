@@ -19,7 +19,7 @@ from test_report_sheet import HOSTILE, Page
 from shared import Calc
 from truing.api import model
 from truing.cli.diagnosis_printed import report
-from truing.diagnosis.records import Covariate, UnitError
+from truing.diagnosis.records import Covariate, SuspectedUnit
 from truing.diagnosis.result import (
     Alternative,
     Amount,
@@ -137,7 +137,7 @@ def test_hostile_texts_are_printed_and_do_nothing() -> None:
     made = ambiguous()
     covariates = {**made.records.covariates, HOSTILE: Covariate(HOSTILE, np.arange(160.0), "", "other")}
     records = replace(
-        made.records, covariates=covariates, notes=(HOSTILE,), unit_errors=(UnitError(HOSTILE, 10.0, HOSTILE),),
+        made.records, covariates=covariates, notes=(HOSTILE,), unit_errors=(SuspectedUnit(HOSTILE, 10.0, HOSTILE),),
         files=(HOSTILE, "b.csv"),
     )  # fmt: skip
     wrong = replace(made.wrong[0], findings=(ResidualFinding("trend", HOSTILE, 0.01, HOSTILE),))

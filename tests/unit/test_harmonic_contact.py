@@ -96,7 +96,7 @@ def test_from_load_to_largest_area_and_back(dimension: float, roughness: float) 
 
 @pytest.mark.parametrize("beyond", [1e-12, 1e-9, 1e-6, 1e-3])
 def test_just_above_the_plastic_limit_the_stiffness_rises_in_proportion(beyond: float) -> None:
-    law = micro.Law(2.4, 1.0)
+    law = micro.ContactLaw(2.4, 1.0)
     size = micro.size_of(np.log1p(beyond), law)
     slope = micro.load_slope(1e-300, law)
     assert size == pytest.approx(beyond / slope, rel=max(2 * beyond, 1e-11))
@@ -144,9 +144,9 @@ def test_load_exponent_is_the_slope_of_the_stiffness(dimension: float, roughness
 
 @pytest.mark.parametrize("dimension", [2.2, 2.3, 2.4])
 def test_load_exponent_far_above_the_critical_area(dimension: float) -> None:
-    law = micro.Law(dimension, 1.0)
+    law = micro.ContactLaw(dimension, 1.0)
     assert micro.load_exponent(200.0, law) == pytest.approx((dimension - 1) / (4 - dimension), abs=1e-6)
-    assert micro.load_exponent(200.0, micro.Law(5.0 - dimension, 1.0)) == pytest.approx(1.0, abs=1e-6)
+    assert micro.load_exponent(200.0, micro.ContactLaw(5.0 - dimension, 1.0)) == pytest.approx(1.0, abs=1e-6)
 
 
 # Clearance

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from harmonic_fractal.contact import contact_of, interface_of, pressed
-from harmonic_fractal.mesh import Mesh, arcs_of, engagement_of, load_of_largest, mesh_of, normal_stiffness
+from harmonic_fractal.mesh import DriveMesh, arcs_of, engagement_of, load_of_largest, mesh_of, normal_stiffness
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.quantities import Drive
 
@@ -20,7 +20,7 @@ def drive_of(**changed: Any) -> Drive:
     return made
 
 
-def mesh(drive: Drive) -> Mesh:
+def mesh(drive: Drive) -> DriveMesh:
     return mesh_of(drive, contact_of(drive, interface_of(drive)))
 
 

@@ -24,7 +24,7 @@ from harmonic_fractal.flank import Flank
 from harmonic_fractal.generators import brownian_surface
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.surface import Direction, Lines, Surface, without_line
-from harmonic_fractal.uncertainty import Validity
+from harmonic_fractal.uncertainty import SurfaceValidity
 from truing import Drawing, Table, Words
 from truing.calculation import Calculation, calculate
 from truing.report.content import input_rows
@@ -35,7 +35,7 @@ SPACING = 0.5e-6
 
 def run(**inputs: Any) -> Calculation:
     """A drive with these inputs and the study that looks at validity."""
-    return calculate(replace(default_setup(HARMONIC_FRACTAL, **inputs), studies=(Validity(),)))
+    return calculate(replace(default_setup(HARMONIC_FRACTAL, **inputs), studies=(SurfaceValidity(),)))
 
 
 def patch(heights: NDArray[np.float64], name: str, chosen: Any = "both", **said: Any) -> Flank:

@@ -9,7 +9,7 @@ import pytest
 from harmonic_fractal import mesh as torsion_module
 from harmonic_fractal.calculation import around_of, harmonic_fractal
 from harmonic_fractal.contact import contact_of, interface_of
-from harmonic_fractal.mesh import Mesh, mesh_of, mesh_torsion, normal_stiffness
+from harmonic_fractal.mesh import DriveMesh, mesh_of, mesh_torsion, normal_stiffness
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.quantities import Drive
 from truing.evaluate import evaluate_rows
@@ -43,7 +43,7 @@ def drive_of(**changed: Any) -> Drive:
     return made
 
 
-def mesh(drive: Drive) -> Mesh:
+def mesh(drive: Drive) -> DriveMesh:
     return mesh_of(drive, contact_of(drive, interface_of(drive)))
 
 

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from truing.api.comparison import Differences, comparison_of
 from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
 from truing.api.notebook import bullets, fold, folds, heading, html_table, joined, paragraphs, picture
-from truing.api.records import Record
+from truing.api.records import MeasuredRecord
 from truing.api.run import Order, Run, performed
 from truing.api.settings import settings_of, text_of
 from truing.api.study import StudyResult
@@ -185,7 +185,7 @@ class LoadedModel:
 
     def diagnose(
         self,
-        record: Record,
+        record: MeasuredRecord,
         inputs: str | Path | None = None,
         *,
         hold_out: str = "",
@@ -246,7 +246,7 @@ class LoadedModel:
 
 
 def _demand_record(record: Any) -> None:
-    if not isinstance(record, Record):
+    if not isinstance(record, MeasuredRecord):
         made = "truing.read(files, model) or truing.record(dataframe, model)"
         raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
 

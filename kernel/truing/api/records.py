@@ -53,7 +53,7 @@ class RecordColumn:
 
 
 @dataclass(frozen=True)
-class Record:
+class MeasuredRecord:
     """Measured rows of one machine: one file, or several. A dataframe stands in a file that goes with the record.
 
     ``rows`` counts them; ``columns`` holds, file by file, what each column is to the model.
@@ -93,7 +93,7 @@ def _ends(column: RecordColumn) -> tuple[str, str]:
     return low, high
 
 
-def read(files: str | Path | Sequence[str | Path], model: HasOffer) -> Record:
+def read(files: str | Path | Sequence[str | Path], model: HasOffer) -> MeasuredRecord:
     """Take measured files (CSV) as a record of this model. Raises InputError with every fault of every file."""
     paths = tuple(Path(file) for file in ([files] if isinstance(files, (str, Path)) else files))
     if not paths:
@@ -101,7 +101,9 @@ def read(files: str | Path | Sequence[str | Path], model: HasOffer) -> Record:
     return _known(paths, model)
 
 
-def record(frame: Any, model: HasOffer, *, units: Mapping[str, str] | None = None, name: str = "record") -> Record:
+def record(
+    frame: Any, model: HasOffer, *, units: Mapping[str, str] | None = None, name: str = "record"
+) -> MeasuredRecord:
     """Take the rows of a dataframe as a record of this model; NaN is a reading that is missing.
 
     Columns are named as in a file: inputs, results (measured), conditions, ``sigma_NAME``, ``run``, each with its unit
@@ -115,7 +117,7 @@ def record(frame: Any, model: HasOffer, *, units: Mapping[str, str] | None = Non
     return _known((path,), model, folder)
 
 
-def _known(paths: tuple[Path, ...], model: HasOffer, folder: TemporaryDirectory[str] | None = None) -> Record:
+def _known(paths: tuple[Path, ...], model: HasOffer, folder: TemporaryDirectory[str] | None = None) -> MeasuredRecord:
     faults: list[Fault] = []
     files: list[DataRows] = []
     for path in paths:
@@ -130,7 +132,7 @@ def _known(paths: tuple[Path, ...], model: HasOffer, folder: TemporaryDirectory[
     columns = tuple(tuple(_columns(file)) for file in files)
     for text in dict.fromkeys(text for each in columns for text in _misspelt(each, model)):
         warnings.warn(text, stacklevel=4)
-    return Record(paths, folder, sum(map(len, files)), columns)
+    return MeasuredRecord(paths, folder, sum(map(len, files)), columns)
 
 
 def _misspelt(columns: tuple[RecordColumn, ...], model: HasOffer) -> Iterator[str]:

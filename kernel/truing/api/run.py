@@ -22,7 +22,7 @@ from truing.calculation import Calculation, calculate
 from truing.cases import CaseResult, CasesTable, run_cases
 from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
-from truing.executors import BatchLog, KeptExecutor, Place, open_executor
+from truing.executors import BatchLog, KeptExecutor, WorkerPool, open_executor
 from truing.formulas import symbol_text
 from truing.inputs_file.culprit import told_by_line
 from truing.kernel import Offer
@@ -277,7 +277,7 @@ def _cases_of(cases: Any, offer: Offer, setup: Setup) -> CasesFile:
     return CasesFile(tuple(replace(case, file=LABEL) for case in read.cases), replace(read.count, file=LABEL))
 
 
-def _computed(place: Place) -> dict[str, Any]:
+def _computed(place: WorkerPool) -> dict[str, Any]:
     """Return what run.json says of where it was computed: workers, what befell them, batches that were taken up."""
     return {
         "workers": {"count": place.workers, "lost": place.losses, "where": place.where},

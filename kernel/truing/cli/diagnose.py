@@ -7,7 +7,7 @@ from pathlib import Path
 import typer
 
 from truing.api.model import Diagnosis
-from truing.api.records import Record
+from truing.api.records import MeasuredRecord
 from truing.cli.console import Settings, out, out_json, say, settings_of
 from truing.cli.diagnosis_printed import report
 from truing.cli.load import find_model, say_example
@@ -39,7 +39,7 @@ def diagnose(
     model = find_model(plugin, settings, changed)
     say_example(inputs, plugin, settings)
     folder = output or Path("runs") / measured[0].stem
-    done = model.diagnose(Record(measured), inputs, output=folder, pdf=pdf, progress=not settings.quiet)
+    done = model.diagnose(MeasuredRecord(measured), inputs, output=folder, pdf=pdf, progress=not settings.quiet)
     _say_beside(done, settings)
     if as_json:
         out_json(done.document)

@@ -9,11 +9,12 @@ from dataclasses import MISSING, dataclass, field, replace
 from typing import Any, Literal, TypeVar, dataclass_transform, get_args, get_origin, get_type_hints
 
 from truing.declare.near_miss import near_miss
-from truing.declare.specs import KEY, Axis, Float, Found, Given, InputKind, Loaded, Part, Spec, in_si
+from truing.declare.specs import KEY, Array, Axis, Float, Found, Given, InputKind, Loaded, Part, Spec, in_si
 from truing.errors import DeclarationError, UsageError
 
 __all__ = [
-    "KEY", "Axis", "Float", "Found", "Given", "InputField", "InputKind", "Loaded", "Part", "ResultField", "Spec",
+    "KEY", "Array", "Axis", "Float", "Found", "Given", "InputField", "InputKind", "Loaded", "Part", "ResultField",
+    "Spec",
     "axis",
     "found", "given", "hints_of", "in_si", "input_fields", "inputs", "loaded", "make", "part", "read",
     "result_fields", "results", "rows", "spec_of", "with_values",

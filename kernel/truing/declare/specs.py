@@ -7,14 +7,13 @@ from dataclasses import MISSING, dataclass, field
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from truing.units import read_quantity, to_si
 from truing.units.names import PURE
 
+Array: TypeAlias = NDArray[np.float64]
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     Float: TypeAlias = float | NDArray[np.float64]
 else:
     Float = Annotated[float, "a number or an array: may vary inside a batch"]

@@ -53,7 +53,7 @@ class Covariate:
 
 
 @dataclass(frozen=True)
-class UnitError:
+class SuspectedUnit:
     """A unit that was probably written wrong: the column, the factor that would set it right, in words."""
 
     column: str
@@ -82,7 +82,7 @@ class Records:
     covariates: Mapping[str, Covariate]
     held_out: Mask
     notes: tuple[str, ...] = ()
-    unit_errors: tuple[UnitError, ...] = ()
+    unit_errors: tuple[SuspectedUnit, ...] = ()
     absent: frozenset[str] = field(default_factory=frozenset)
     """Conditions of effects that no column gives: not measured."""
     sides: Mapping[str, Sides] = field(default_factory=dict)

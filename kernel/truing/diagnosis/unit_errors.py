@@ -17,7 +17,7 @@ import numpy as np
 from truing.arrays import Indices, Matrix
 from truing.diagnosis.data_file import DataRows, declared_units
 from truing.diagnosis.joining import rows_of
-from truing.diagnosis.records import UnitError
+from truing.diagnosis.records import SuspectedUnit
 from truing.diagnosis.tidying import is_angle, keeps_bounds
 from truing.gauge import one_machine, read_by_gauge
 from truing.setup import Setup
@@ -62,7 +62,7 @@ class _Gauge:
         return best
 
 
-def suspected_unit_errors(joined: DataRows, setup: Setup) -> tuple[UnitError, ...]:
+def suspected_unit_errors(joined: DataRows, setup: Setup) -> tuple[SuspectedUnit, ...]:
     """Return the columns whose unit is probably wrong, by what each factor does to the error of the model."""
     out_of_range = tuple(_out_of_range(joined, setup))
     if not any(_is_far(values, joined.answers[name]) for name, values in joined.named("measured").items()):
@@ -126,7 +126,7 @@ def _factors(unit: str) -> Mapping[float, str]:
     return {**FACTORS, **(INCHES if is_length else {}), **(ANGLES if is_angle(unit) else {})}
 
 
-def _own_slip(one: _Gauge, few: DataRows, setup: Setup) -> UnitError | None:
+def _own_slip(one: _Gauge, few: DataRows, setup: Setup) -> SuspectedUnit | None:
     """Return the slip in the unit of a measured result, if one factor on it explains the error."""
     factors = _factors(setup.model.own_result_fields[one.name].unit)
     gains = {factor: one.gain(one.measured * factor, one.answer) for factor in factors}
@@ -136,9 +136,9 @@ def _own_slip(one: _Gauge, few: DataRows, setup: Setup) -> UnitError | None:
     return _slip(one.name, best, few, _off(one, one.measured * best - one.answer, setup), factors[best])
 
 
-def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup: Setup) -> UnitError | None:
+def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup: Setup) -> SuspectedUnit | None:
     """Return the slip of an input or condition that explains every error that is too large, and worsens none."""
-    best: tuple[float, UnitError] | None = None
+    best: tuple[float, SuspectedUnit] | None = None
     trials = list(_trials(few, setup))
     scaled = [{name: few.columns[name] * factor} for name, factor, _ in trials]
     found = read_trials(one_machine(setup), rows_of(few), scaled, few.named("measured"))
@@ -173,16 +173,16 @@ def _off(one: _Gauge, after: Matrix, setup: Setup) -> str:
     return f"the model is then {then:.3g}{scale} off '{one.name}'{about} instead of {before:.3g}{scale}"
 
 
-def _slip(name: str, factor: float, joined: DataRows, why: str, words: str) -> UnitError:
+def _slip(name: str, factor: float, joined: DataRows, why: str, words: str) -> SuspectedUnit:
     sentence = f"the unit of column {_header(name, joined)} is probably wrong: multiply it by {words}; {why}"
-    return UnitError(name, factor, sentence)
+    return SuspectedUnit(name, factor, sentence)
 
 
 def _header(name: str, joined: DataRows) -> str:
     return shown(f"{name} [{joined.units.get(name) or '1'}]")
 
 
-def _out_of_range(joined: DataRows, setup: Setup) -> Iterator[UnitError]:
+def _out_of_range(joined: DataRows, setup: Setup) -> Iterator[SuspectedUnit]:
     """Give conditions that lie far beyond the range in which they can be set, where one factor brings them into it."""
     for name, values in joined.named("condition").items():
         condition = setup.model.known_conditions[name]

@@ -7,22 +7,22 @@ from truing.executors.cluster import ClusterExecutor
 from truing.executors.data import keepable
 from truing.executors.kept import BatchLog, KeptExecutor
 from truing.executors.ordered import in_order
-from truing.executors.places import Place, SerialExecutor
+from truing.executors.places import SerialExecutor, WorkerPool
 from truing.executors.processes import ProcessExecutor
 
 __all__ = [
     "BatchLog",
     "KeptExecutor",
-    "Place",
     "ProcessExecutor",
     "SerialExecutor",
+    "WorkerPool",
     "in_order",
     "keepable",
     "open_executor",
 ]
 
 
-def open_executor(address: str) -> Place:
+def open_executor(address: str) -> WorkerPool:
     """Open "serial", "processes:N" or "dask:tcp://HOST:PORT"; a ``with`` block closes it.
 
     Raises UsageError for any other address, and where no cluster answers.

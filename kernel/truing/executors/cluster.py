@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import Any
 
 from truing.errors import LostWorkersError, UsageError
-from truing.executors.places import Place
+from truing.executors.places import WorkerPool
 from truing.executors.versions import differences, versions_here
 
 CONNECT_SECONDS = 15
@@ -23,7 +23,7 @@ PATIENCE = 5.0
 MOST_RENEWALS = 3
 
 
-class ClusterExecutor(Place):
+class ClusterExecutor(WorkerPool):
     """The workers of a dask scheduler; dask hands out again what a lost worker had, ``losses`` counts such workers.
 
     Raises UsageError where dask.distributed is missing, where no scheduler answers in 15 s, or no worker is there in

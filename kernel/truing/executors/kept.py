@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from truing.executors.data import NoDataError, answer_of, text_of
-from truing.executors.places import Place, Timed, answered
+from truing.executors.places import Timed, WorkerPool, answered
 
 J = TypeVar("J")
 A = TypeVar("A")
@@ -118,10 +118,10 @@ class BatchLog:
         self._file.truncate(self._end)
 
 
-class KeptExecutor(Place):
+class KeptExecutor(WorkerPool):
     """Takes answers from a log where it holds them, else computes them elsewhere and keeps them."""
 
-    def __init__(self, inner: Place, log: BatchLog) -> None:
+    def __init__(self, inner: WorkerPool, log: BatchLog) -> None:
         self._inner = inner
         self._log = log
         self._earlier = log.keys()

@@ -8,7 +8,7 @@ from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from truing.executors.places import Place, Timed, answered
+from truing.executors.places import Timed, WorkerPool, answered
 
 J = TypeVar("J")
 A = TypeVar("A")
@@ -21,7 +21,7 @@ def in_order(executor: Executor, function: Callable[[J], A], jobs: Iterable[J], 
     Short jobs travel together, as many as are computed in a moment. Jobs that were under way when a worker was lost are
     handed out again. For a place that is not this process (``SerialExecutor``) function and jobs must be picklable.
     """
-    place = executor if isinstance(executor, Place) else _Foreign(executor)
+    place = executor if isinstance(executor, WorkerPool) else _Foreign(executor)
     work = _Work(place, function, 1 if place.where == "serial" else window)
     try:
         for job in jobs:
@@ -31,7 +31,7 @@ def in_order(executor: Executor, function: Callable[[J], A], jobs: Iterable[J], 
         work.cancel()
 
 
-class _Foreign(Place):
+class _Foreign(WorkerPool):
     """Any other executor, which is left to itself."""
 
     where = "foreign"
@@ -54,7 +54,7 @@ class _Part(Generic[J, A]):
 class _Work(Generic[J, A]):
     """The jobs under way, oldest first, and those that wait until enough of them can travel together."""
 
-    def __init__(self, place: Place, function: Callable[[J], A], window: int) -> None:
+    def __init__(self, place: WorkerPool, function: Callable[[J], A], window: int) -> None:
         self._place = place
         self._function = function
         self._window = window

@@ -39,7 +39,7 @@ def answered(future: Future[Any]) -> bool:
     return future.done() and not future.cancelled() and future.exception() is None
 
 
-class Place(Executor):
+class WorkerPool(Executor):
     """An executor that knows how many workers it has, how many were lost, and what to do then."""
 
     where: str = "serial"
@@ -89,7 +89,7 @@ class Place(Executor):
         return []
 
 
-class SerialExecutor(Place):
+class SerialExecutor(WorkerPool):
     """Computes every call at once, in this process."""
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:

@@ -17,13 +17,13 @@ from types import TracebackType
 from typing import Any
 
 from truing.errors import LostWorkersError
-from truing.executors.places import Place, SerialExecutor
+from truing.executors.places import SerialExecutor, WorkerPool
 
 MOST_LOSSES = 3
 PATIENCE = 5.0  # where an interrupt does not end a wait (Windows), it is heard after this many seconds
 
 
-class ProcessExecutor(Place):
+class ProcessExecutor(WorkerPool):
     """Worker processes that start afresh (spawn); when one is lost, all are replaced and ``losses`` counts it."""
 
     where = "processes"

@@ -16,12 +16,10 @@ from truing.declare.sources import Condition, Effect, Tolerance, Unknown
 from truing.declare.spreads import read_spread
 from truing.errors import UnitError
 from truing.inputs_file.study_options import options_of, read_option
-from truing.inputs_file.values import InputsRead, SentenceError, plain, read_input, read_number
+from truing.inputs_file.values import InputsRead, SentenceError, ValueCheck, plain, read_input, read_number
 from truing.units import demand_dimension, difference_unit, from_si, to_si, unit_factor
 from truing.units.grammar import shown
 from truing.units.names import PURE
-
-ValueCheck = Callable[[Any, InputsRead], Any]
 
 
 def stored(path: str | tuple[str, ...], read: Callable[[Any], Any]) -> ValueCheck:

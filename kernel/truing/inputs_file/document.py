@@ -15,7 +15,7 @@ from typing import Any
 from truing.errors import Fault
 from truing.units.grammar import shown
 
-Path = tuple[str, ...]
+KeyPath = tuple[str, ...]
 
 # An unclosed quotation mark takes the rest of its line with it: a scan that fails there and tries again at the next
 # character takes a time that grows with the square of the text.
@@ -46,15 +46,15 @@ class Document:
 
     file: str
     data: dict[str, Any] = field(default_factory=dict)
-    places: dict[Path, tuple[str, int | None]] = field(default_factory=dict)
+    places: dict[KeyPath, tuple[str, int | None]] = field(default_factory=dict)
     faults: list[Fault] = field(default_factory=list)
     overrides: list[str] = field(default_factory=list)
 
-    def fault(self, path: Path, message: str) -> Fault:
+    def fault(self, path: KeyPath, message: str) -> Fault:
         """Return a fault at the place of a name, or of the nearest section around it."""
         return Fault(message, *self.place(path))
 
-    def place(self, path: Path) -> tuple[str, int | None]:
+    def place(self, path: KeyPath) -> tuple[str, int | None]:
         """Return file and line of a name, or of the nearest section around it."""
         for length in range(len(path), -1, -1):
             if path[:length] in self.places:
@@ -159,7 +159,7 @@ def _after_long_text(text: str, position: int, mark: str) -> int:
         return end
 
 
-def _parts(key: str) -> Path:
+def _parts(key: str) -> KeyPath:
     """Return the names of a dotted key."""
     if re.fullmatch(r"[A-Za-z0-9_-]+", key):
         return (key,)
@@ -172,7 +172,7 @@ def _parts(key: str) -> Path:
 
 
 def _note_places(document: Document, found: list[Statement]) -> None:
-    section: Path = ()
+    section: KeyPath = ()
     for statement in found:
         header = _HEADER.fullmatch(statement.text)
         assignment = None if header else _ASSIGNMENT.match(statement.text)
@@ -185,7 +185,7 @@ def _note_places(document: Document, found: list[Statement]) -> None:
         _note(document, path, statement.line)
 
 
-def _note(document: Document, path: Path, line: int) -> None:
+def _note(document: Document, path: KeyPath, line: int) -> None:
     for length in range(1, len(path) + 1):
         document.places.setdefault(path[:length], (document.file, line))
 
@@ -195,8 +195,8 @@ class _Repair:
 
     def __init__(self, document: Document) -> None:
         self.document = document
-        self.section: Path | None = ()
-        self.headings: dict[Path, int] = {}
+        self.section: KeyPath | None = ()
+        self.headings: dict[KeyPath, int] = {}
 
     def run(self, found: list[Statement]) -> None:
         """Read all statements."""
@@ -259,7 +259,7 @@ class _Repair:
             self.say(statement, f"the section [{_short('.'.join(path))}] has the name of a value given before")
             self.section = None
 
-    def inner(self, path: Path) -> dict[str, Any] | None:
+    def inner(self, path: KeyPath) -> dict[str, Any] | None:
         """Return the table at a path, made where it is missing, or None where a value stands."""
         table = self.document.data
         for name in path:
@@ -269,7 +269,7 @@ class _Repair:
             table = inner
         return table
 
-    def keep(self, path: Path, value: Any, statement: Statement) -> None:
+    def keep(self, path: KeyPath, value: Any, statement: Statement) -> None:
         """Put a value in its place; a name that is taken is a fault."""
         table = self.inner(path[:-1])
         if table is None or path[-1] in table:

@@ -6,7 +6,7 @@ that are right are known even where others are wrong. The JSON Schema for editor
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import MISSING, dataclass
 from functools import lru_cache
 from typing import Annotated, Any
@@ -29,10 +29,9 @@ from truing.inputs_file.schema_words import (
     unknown_schema,
 )
 from truing.inputs_file.study_options import NAME, diagnose_schema, of_diagnose
-from truing.inputs_file.values import InputsRead
+from truing.inputs_file.values import ValueCheck
 from truing.setup import DEFAULT_SEED
 
-ValueCheck = Callable[[Any, InputsRead], Any]
 HEAD = (
     "project", "drawing", "revision", "prepared_by", "checked_by", "approved_by", "date", "company", "logo",
 )  # fmt: skip

@@ -44,6 +44,10 @@ class InputsRead:
     stated: dict[str, frozenset[str]] = field(default_factory=dict)
 
 
+ValueCheck = Callable[[Any, InputsRead], Any]
+"""Checks one value of an inputs file and returns it as it is used, or raises with a sentence."""
+
+
 def read_input(item: InputField, raw: Any, reading: InputsRead) -> Any:
     """Return an input as the function sees it. Raises ValueError with one sentence."""
     if item.kind in {"float", "whole"}:

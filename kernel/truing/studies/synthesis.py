@@ -192,7 +192,7 @@ CHEAPER = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Search:
+class AllocationSearch:
     """The widths to choose, as logarithms over those in force, with these grades; goals in standard deviations."""
 
     problem: AllocationProblem
@@ -278,7 +278,7 @@ def bought(problem: AllocationProblem, plan: AllocationPlan) -> AllocationPlan:
     """Return the plan with the widths that meet all goals at the least cost; where none do, those that come nearest."""
     if not problem.variables or any(demand.goal is not None and demand.goal >= 1.0 for demand in problem.demands):
         return plan
-    search = Search(problem, plan.grades)
+    search = AllocationSearch(problem, plan.grades)
     starts = list(_starts(search))
     with one_thread():
         found = _cheapest(search, starts)
@@ -308,7 +308,7 @@ def _steps_from(problem: AllocationProblem, plan: AllocationPlan) -> Iterator[Al
         place = offered.index(plan.grades[name])
         for grade in offered[max(place - 1, 0) : place] + offered[place + 1 : place + 2]:
             other = replace(plan, grades={**plan.grades, name: grade})
-            search = Search(problem, other.grades)
+            search = AllocationSearch(problem, other.grades)
             held = [np.log(plan.widths[key] / variable.start) for key, variable in problem.variables.items()]
             low, high = search.ends()
             found = _cheapest(search, [np.clip(held, low, high), low])
@@ -331,7 +331,7 @@ def _with(
     return replace(plan, cost=cost, chances=chances, reached=reached, status=status, widths=widths, residual=residual)
 
 
-def _starts(search: Search) -> Iterator[Matrix]:
+def _starts(search: AllocationSearch) -> Iterator[Matrix]:
     """Yield the widths in force, the narrowest, the widest, those between, and some by chance, always the same."""
     low, high = search.ends()
     yield np.clip(np.zeros(len(low)), low, high)
@@ -341,7 +341,7 @@ def _starts(search: Search) -> Iterator[Matrix]:
         yield rng.uniform(low, high)
 
 
-def _cheapest(search: Search, starts: Sequence[Matrix]) -> Matrix | None:
+def _cheapest(search: AllocationSearch, starts: Sequence[Matrix]) -> Matrix | None:
     """Return the least cost that was found; goals are held a little off until they are met exactly."""
     for margin in MARGINS:
         ends = [end for start in starts if (end := _descended(search, start, margin)) is not None]
@@ -353,7 +353,7 @@ def _cheapest(search: Search, starts: Sequence[Matrix]) -> Matrix | None:
     return None
 
 
-def _exact(search: Search, x: Matrix) -> Matrix:
+def _exact(search: AllocationSearch, x: Matrix) -> Matrix:
     """Take the last rounding out of the goals that are just missed, by the shortest way."""
     for _ in range(4):
         if search.problem.reached(search.grades, search.widths(x)):
@@ -364,7 +364,7 @@ def _exact(search: Search, x: Matrix) -> Matrix:
     return x
 
 
-def _descended(search: Search, start: Matrix, margin: float) -> Matrix | None:
+def _descended(search: AllocationSearch, start: Matrix, margin: float) -> Matrix | None:
     """Follow one start to its minimum; None where it ends outside the goals."""
     x = _solved(
         search.cost,
@@ -375,7 +375,7 @@ def _descended(search: Search, start: Matrix, margin: float) -> Matrix | None:
     return x if x is not None and search.slack(x)[0].min() >= margin - FEASIBLE else None
 
 
-def _nearest(search: Search, starts: Sequence[Matrix]) -> Matrix:
+def _nearest(search: AllocationSearch, starts: Sequence[Matrix]) -> Matrix:
     """Return the widths whose worst goal is nearest to being met: the largest slack that all goals can have."""
     low, high = search.ends()
     upward = np.append(np.zeros(len(low)), -1.0)
@@ -407,7 +407,7 @@ def _solved(objective: Any, start: Matrix, ends: tuple[Matrix, Matrix], constrai
     return x if np.isfinite(x).all() else None
 
 
-def _residual(search: Search, x: Matrix) -> float:
+def _residual(search: AllocationSearch, x: Matrix) -> float:
     """Return how far the end of a search is from a minimum: what no active goal or bound balances of the gradient.
 
     0 is a minimum of Karush, Kuhn and Tucker; 1 is no balance at all.

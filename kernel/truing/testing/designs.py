@@ -32,7 +32,7 @@ RUN = "run"
 
 
 @dataclass(frozen=True)
-class RecordColumn:
+class DesignColumn:
     """A column that varies: the unit in its header, its ends (or the ``levels`` it takes) in that unit.
 
     One that ``rises`` goes from end to end with the rows, as a clock does; one that ``places`` the rows on an axis does
@@ -63,7 +63,7 @@ class RecordColumn:
 class RecordDesign:
     """How many rows in how many runs, and what varies. Where a result runs along an axis every run is a record."""
 
-    columns: tuple[RecordColumn, ...]
+    columns: tuple[DesignColumn, ...]
     rows: int
     runs: int
 
@@ -92,7 +92,7 @@ class RecordDesign:
 
 def columns_of(
     setup: Setup, effect: Effect[Any, Any] | None, measured: Sequence[str], over: Mapping[str, Any] | None
-) -> tuple[list[RecordColumn], list[str]]:
+) -> tuple[list[DesignColumn], list[str]]:
     """Return the columns that vary, and what is wrong with what was asked for, a sentence each.
 
     ``over`` names them all; without it they are what the effect needs and what is declared to vary. The axis of a
@@ -166,7 +166,7 @@ def _whole_axis(setup: Setup, axis: str) -> str:
     return f"{float(np.min(places))!r}..{float(np.max(places))!r} {unit}".strip()
 
 
-def _column(setup: Setup, name: str, said: Any, measured: Sequence[str]) -> RecordColumn:
+def _column(setup: Setup, name: str, said: Any, measured: Sequence[str]) -> DesignColumn:
     """Read one range, or the values that a column takes. Raises UsageError with a sentence."""
     model = setup.model
     item = model.input_fields.get(name)
@@ -181,7 +181,7 @@ def _column(setup: Setup, name: str, said: Any, measured: Sequence[str]) -> Reco
     low, high, levels, shown = _ends(said, unit)
     if item is not None:
         _demand_bounds(item, [low, high, *levels], shown)
-    return RecordColumn(
+    return DesignColumn(
         name, shown, low, high, levels,
         rises=name == "time" or _is_counted(setup, name),
         places=name in set(_axes(setup, measured)),
@@ -203,7 +203,7 @@ def _ends(said: Any, unit: str) -> tuple[float, float, tuple[float, ...], str]:
     return low, high, (), shown
 
 
-def _words(item: Any, said: Any) -> RecordColumn:
+def _words(item: Any, said: Any) -> DesignColumn:
     """Read the values of a choice, a switch or a whole number. Raises UsageError with a sentence."""
     words = [word.strip() for word in said.split(",")] if isinstance(said, str) else [str(word) for word in said]
     for word in words:
@@ -211,7 +211,7 @@ def _words(item: Any, said: Any) -> RecordColumn:
             read_word(item, word, decimal_comma=False)
         except ValueError as error:
             raise UsageError(str(error)) from error
-    return RecordColumn(item.name, "", words=tuple(words))
+    return DesignColumn(item.name, "", words=tuple(words))
 
 
 def _demand_bounds(item: Any, ends: Sequence[float], unit: str) -> None:
