@@ -17,7 +17,7 @@ from truing.diagnosis.findings import wrong_of
 from truing.diagnosis.gain import gains_of, nested
 from truing.diagnosis.halves import contradictions_of, thinned_of
 from truing.diagnosis.learning import first_noise
-from truing.diagnosis.long_records import machine_for_search, on_all_rows
+from truing.diagnosis.long_records import RANKED, machine_for_search, on_all_rows
 from truing.diagnosis.machine import Calibration, calibration_of
 from truing.diagnosis.naming import alternative_of, by_share, calibrated_of, causes_of, extended_setup, remainder_of
 from truing.diagnosis.probing import probe
@@ -36,7 +36,6 @@ from truing.studies.threads import one_thread
 
 ROUGH = 6**0.5
 """A step so many times what is left of the readings is half of it: its mean square is a twelfth of its own."""
-RANKED = 8
 SIZED = 4
 """Of so many alternatives it is told what their own fit says."""
 SHARES = {"columns": 0.05, "search": 0.75, "significance": 0.85, "gain": 1.0}

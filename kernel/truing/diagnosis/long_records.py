@@ -17,7 +17,6 @@ from truing.diagnosis.competition import competition_of
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.learning import first_noise
 from truing.diagnosis.machine import Calibration, calibration_of
-from truing.diagnosis.records import Records
 from truing.diagnosis.sample import sample_of
 
 LONG = 2500
@@ -26,13 +25,15 @@ RANKED = 8
 """So many of the best explanations are fitted to all rows beside the chosen one and its rivals."""
 
 
-def searched(records: Records, *, seed: int) -> Records:
-    """Return the rows that a search looks at: all of a record that is not long."""
+def machine_for_search(machine: Calibration, *, seed: int) -> Calibration:
+    """Return the machine on the rows that a search looks at: all of a record that is not long."""
+    records = machine.records
     if len(records) <= LONG or records.rows.series:
-        return records
+        return machine
     edges = np.linspace(0, len(records), LONG + 1).astype(np.intp)
     generator = np.random.Generator(np.random.SFC64(seed))
-    return records.part(edges[:-1] + (generator.random(LONG) * np.diff(edges)).astype(np.intp))
+    drawn = edges[:-1] + (generator.random(LONG) * np.diff(edges)).astype(np.intp)
+    return calibration_of(machine.design, records.part(drawn))
 
 
 def on_all_rows(chosen: Chosen, machine: Calibration) -> Chosen:
@@ -56,9 +57,3 @@ def on_all_rows(chosen: Chosen, machine: Calibration) -> Chosen:
     ends = [made.exact(made.known[rival.fit.key]) for rival in chosen.rivals if rival.fit.key in made.known]
     rivals = tuple(Rival(found, max(0.0, made.score(found) - made.score(best))) for found in ends)
     return replace(chosen, competition=made, best=made.exact(best), rivals=rivals, of_some_rows=chosen)
-
-
-def machine_for_search(machine: Calibration, *, seed: int) -> Calibration:
-    """Return the machine on the rows that a search looks at."""
-    records = searched(machine.records, seed=seed)
-    return machine if records is machine.records else calibration_of(machine.design, records)

@@ -352,7 +352,6 @@ def readable_unit(unit: str, size: float) -> str:
 
 # What makes a named cause doubtful: what a wrong cause looks like, each in one sentence with what to check
 
-
 AT_BOUND = 5e-3
 """Of the declared range of an unknown: what lies nearer to an end of it lies there."""
 OUTSIDE = 3.0
@@ -507,7 +506,6 @@ def _text(value: float, unit: str) -> str:
 
 
 # The verdict of a diagnosis: one rule over all that was found, for headline, terminal, sheet and JSON alike
-
 
 Verdict = Literal["named", "one_of", "unknown", "none", "undecided"]
 
