@@ -120,7 +120,7 @@ def test_a_decision_on_some_rows_is_kept_and_its_rivals_are_fitted_to_all(
     error = 0.3 * (bench.temperature - 20) + np.random.default_rng(9).normal(size=400)
     records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
     whole = machine.calibration_of(asked.setup, records)
-    few = laid_out(long_records.machine_for_search(whole, seed=1))
+    few = laid_out(machine.calibration_of(asked.setup, long_records.searched(records, seed=1)))
     search.search(few)
     chosen = choose(few, seed=1)
     assert few.sample.rows == 100

@@ -17,7 +17,7 @@ from truing.diagnosis.findings import wrong_of
 from truing.diagnosis.gain import gains_of, nested
 from truing.diagnosis.halves import contradictions_of, thinned_of
 from truing.diagnosis.learning import first_noise
-from truing.diagnosis.long_records import RANKED, machine_for_search, on_all_rows
+from truing.diagnosis.long_records import RANKED, on_all_rows, searched
 from truing.diagnosis.machine import Calibration, calibration_of
 from truing.diagnosis.naming import alternative_of, by_share, calibrated_of, causes_of, extended_setup, remainder_of
 from truing.diagnosis.probing import probe
@@ -53,7 +53,8 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
     with one_thread(), np.errstate(all="ignore" if is_short else None):
         machine = calibration_of(setup, records)
         told("columns", round(FINE * SHARES["columns"]), FINE)
-        competition = laid_out(machine_for_search(machine, seed=setup.seed))
+        few = searched(records, seed=setup.seed)
+        competition = laid_out(machine if few is records else calibration_of(setup, few))
         probe(competition)
         search(competition, part_of(told, "diagnosis", SHARES["columns"], SHARES["search"]))
         told("search", round(FINE * SHARES["search"]), FINE)

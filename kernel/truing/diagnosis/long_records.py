@@ -16,7 +16,8 @@ from truing.diagnosis.choice import Chosen, Rival
 from truing.diagnosis.competition import competition_of
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.learning import first_noise
-from truing.diagnosis.machine import Calibration, calibration_of
+from truing.diagnosis.machine import Calibration
+from truing.diagnosis.records import Records
 from truing.diagnosis.sample import sample_of
 
 LONG = 2500
@@ -25,15 +26,13 @@ RANKED = 8
 """So many of the best explanations are fitted to all rows beside the chosen one and its rivals."""
 
 
-def machine_for_search(machine: Calibration, *, seed: int) -> Calibration:
-    """Return the machine on the rows that a search looks at: all of a record that is not long."""
-    records = machine.records
+def searched(records: Records, *, seed: int) -> Records:
+    """Return the rows that a search looks at: all of a record that is not long."""
     if len(records) <= LONG or records.rows.series:
-        return machine
+        return records
     edges = np.linspace(0, len(records), LONG + 1).astype(np.intp)
     generator = np.random.Generator(np.random.SFC64(seed))
-    drawn = edges[:-1] + (generator.random(LONG) * np.diff(edges)).astype(np.intp)
-    return calibration_of(machine.design, records.part(drawn))
+    return records.part(edges[:-1] + (generator.random(LONG) * np.diff(edges)).astype(np.intp))
 
 
 def on_all_rows(chosen: Chosen, machine: Calibration) -> Chosen:
