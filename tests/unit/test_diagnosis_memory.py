@@ -219,7 +219,7 @@ class Held(Exception):
 def begun(setup, records):
     raise Held([(pool["internal_api"], pool["num_threads"]) for pool in threadpool_info()])
 engine._check_options = lambda setup: None
-engine.machine_of = begun
+engine.calibration_of = begun
 try:
     engine.diagnose(None, SimpleNamespace(readings=99))
 except Held as held:
