@@ -27,7 +27,7 @@ from test_sheet import (  # noqa: F401
     test_what_is_wide_scrolls_in_its_own_box_on_a_phone,
 )
 
-from truing.diagnosis.records import Slip
+from truing.diagnosis.records import SuspectedUnit
 from truing.diagnosis.result import Alternative, DiagnosisResult, ResidualFinding, VisibleSize
 from truing.report.diagnosis_sheet import diagnosis_html, make_diagnosis_sheet
 from truing.runs.provenance import provenance_of
@@ -46,7 +46,9 @@ def hostile() -> DiagnosisResult:
         alternatives=(Alternative((LONG, HOSTILE), 1.0, 2.0, (LONG,)),),
         ranking=(*made.ranking, Alternative((LONG, HOSTILE), 7.0, 2.0)),
         seen=(*made.seen, VisibleSize(LONG, None, "not excited", HOSTILE)),
-        records=replace(made.records, notes=(HOSTILE,), slips=(Slip(LONG, 1e3, HOSTILE),), files=(LONG, HOSTILE)),
+        records=replace(
+            made.records, notes=(HOSTILE,), unit_errors=(SuspectedUnit(LONG, 1e3, HOSTILE),), files=(LONG, HOSTILE)
+        ),
     )
 
 

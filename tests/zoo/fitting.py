@@ -138,7 +138,7 @@ def fitting(family: str, measured: Measured, effects: Sequence[str] = ()) -> Fit
     inner = [item for spread in setup.distributions().values() for item in spread.items()]
     return Fitting(
         setup=setup,
-        records=records_of(setup, csv_of(measured), MEASURED, with_slips=False),
+        records=records_of(setup, csv_of(measured), MEASURED, with_unit_errors=False),
         result=result,
         noise=to_si(measured.noise, unit) - to_si(0.0, unit),
         spreads={name: one.sd for name, one in inner if name in model.input_fields},

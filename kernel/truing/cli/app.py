@@ -57,7 +57,7 @@ def _loaded(declared: Callable[P, None]) -> Callable[P, None]:
     return app.command(declared.__name__)(verb(call))
 
 
-@app.command()
+@app.command("plugins")
 @verb
 def plugins(
     context: typer.Context,

@@ -16,7 +16,7 @@ from typing import Protocol
 
 import pytest
 
-from truing.cli import main
+from truing.heavy import Later
 
 LONGEST = 900
 """Seconds that a process may take."""
@@ -56,7 +56,7 @@ def calc(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tm
     def run(*arguments: str | Path, cwd: Path | None = None) -> Answer:
         monkeypatch.chdir(tmp_path if cwd is None else cwd)
         capsys.readouterr()
-        code = main([str(argument) for argument in arguments])
+        code = Later("truing.cli").main([str(argument) for argument in arguments])
         said = capsys.readouterr()
         return Answer(code, said.out, said.err)
 
