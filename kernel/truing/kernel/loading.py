@@ -16,6 +16,9 @@ from truing.declare.near_miss import near_miss
 from truing.errors import DeclarationError, UnknownPluginError
 from truing.kernel.blame import line_of
 
+PREFIX = "truing_file_"
+"""Before the name of a module whose plain name another module has."""
+
 
 def load_file(path: Path) -> ModuleType:
     """Import one Python file by its path, under its own name unless that is taken by another module.
@@ -30,7 +33,7 @@ def load_file(path: Path) -> ModuleType:
         return taken
     plain = re.sub(r"\W", "_", path.stem)
     is_free = plain == path.stem and taken is None and importlib.util.find_spec(plain) is None
-    name = plain if is_free else f"truing_file_{plain}"
+    name = plain if is_free else PREFIX + plain
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:
         raise UnknownPluginError(f"{path}: not a Python file")

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
+from types import ModuleType
 from typing import Any, NoReturn
 
 import numpy as np
@@ -17,6 +19,7 @@ from truing.errors import InfeasibleError, TruingError, UsageError
 from truing.evaluate import evaluate
 from truing.inputs_file import read_setup
 from truing.kernel import Kernel, Offer, Origin
+from truing.kernel.loading import PREFIX
 from truing.setup import Setup, default_setup
 from truing.units import difference_unit, to_si, unit_factor
 
@@ -55,7 +58,7 @@ class Subject:
         for module in modules:
             if not hasattr(module, "truing_models"):
                 continue
-            for offer in Kernel([module]).offers.values():
+            for offer in _offers(module):
                 if offer.model.function is self.model.function and offer.model.name == self.model.name:
                     return offer.origin
         return None
@@ -162,3 +165,12 @@ class Subject:
             for name, distribution in inner.items():
                 widest[name] = max(widest.get(name, 0.0), distribution.sd)
         return widest
+
+
+def _offers(module: ModuleType) -> Sequence[Offer]:
+    """Return what a module offers; of a file whose plain name another module has, as found by its path."""
+    if not module.__name__.startswith(PREFIX):
+        return list(Kernel([module]).offers.values())
+    kernel = Kernel()
+    kernel.add_file(Path(str(module.__file__)))
+    return list(kernel.offers.values())
