@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import pickle
-import sys
 import threading
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
@@ -15,7 +14,6 @@ from truing.declare.fields import Part, spec_of
 from truing.declare.model import Model
 from truing.errors import PluginError
 from truing.kernel import Kernel, Origin, kernel_for
-from truing.kernel.loading import PREFIX
 from truing.kernel.source import code_hash
 from truing.setup import Setup, SwitchedOn
 
@@ -65,15 +63,6 @@ def _plain(content: Any) -> bytes:
     return stream.getvalue()
 
 
-class _Unpickler(pickle.Unpickler):
-    """Finds the classes of a plugin in one file also where another file of its name was loaded before it."""
-
-    def find_class(self, module: str, name: str) -> Any:
-        """Return a class by its module, which here may have the file's plain name."""
-        plain = module.removeprefix(PREFIX)
-        return super().find_class(plain if plain != module and module not in sys.modules else module, name)
-
-
 def unpack(packed: Packed) -> Setup:
     """Make the setup again from the plugin that ``ref`` names. Raises PluginError where it offers no such model."""
     with _LOADING:
@@ -82,7 +71,7 @@ def unpack(packed: Packed) -> Setup:
                 f"a worker has another {packed.ref.partition(':')[2]}; bring the same file there and start it again"
             )
         model, origin = _model(packed.ref, packed.plugin, packed.model)
-    content = _Unpickler(io.BytesIO(packed.content)).load()  # after the plugin was loaded: its classes can be found
+    content = pickle.loads(packed.content)  # after the plugin was loaded: its classes can be found now
     spreads = {name: tolerance.spread for name, tolerance in model.tolerances.items()}
     values = {model.input_fields[name].path: value for name, value in content["inputs"].items()}
     return Setup(

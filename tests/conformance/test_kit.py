@@ -12,6 +12,7 @@ import pytest
 from gear_record import GEAR_RECORD
 from pin_wear import PIN_WEAR
 
+from shared import TESTS
 from truing import (
     Condition,
     Effect,
@@ -38,6 +39,7 @@ from truing.calculation import calculate
 from truing.declare.checks import PROMISES
 from truing.describe import description
 from truing.errors import DeclarationError
+from truing.kernel.loading import load_file
 from truing.report.render import html_of, markdown_of
 from truing.report.sheet import make_sheet
 from truing.runs.provenance import provenance_of
@@ -509,3 +511,16 @@ def test_what_halving_changes_stands_where_a_user_looks() -> None:
         "doubling it"
         in description(Subject(with_input(default=2, unit="", whole=True, halving=0.1)).offer)["inputs"][0]["bounds"]
     )
+
+
+def test_a_file_whose_name_is_taken_is_found_by_another_process(tmp_path: Path) -> None:
+    """The first file of a name has it; of the second one a worker knows nothing but where it lies."""
+    source = (TESTS / "data" / "pin_wear.py").read_text(encoding="utf-8")
+    loaded = []
+    for folder in ("first", "second"):
+        file = tmp_path / folder / "taken_pin.py"
+        file.parent.mkdir()
+        file.write_text(source, encoding="utf-8")
+        loaded.append(load_file(file))
+    assert [module.__name__ for module in loaded] == ["taken_pin", "truing_file_taken_pin"]
+    assert failures(loaded[1].PIN_WEAR) == {}

@@ -28,7 +28,6 @@ from truing.units import to_si
 
 ShapeKind = Literal["trend", "product", "order", "wave", "step", "jump", "kink", "dead zone", "settling"]
 INPUT = "input:"
-UNKNOWN = "unknown"
 ENDS = 0.02
 """Share of a record at each end within which nothing begins."""
 LITTLE = 1e-3

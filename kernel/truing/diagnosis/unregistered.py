@@ -15,8 +15,9 @@ from math import inf, pi
 import numpy as np
 
 from truing.arrays import Matrix
-from truing.diagnosis.causes import ENDS, UNKNOWN, Candidate, Parameter, ShapeKind, Term, UnregisteredShape
+from truing.diagnosis.causes import ENDS, Candidate, Parameter, ShapeKind, Term, UnregisteredShape
 from truing.diagnosis.records import Covariate, Records
+from truing.diagnosis.result import UNKNOWN
 
 DEGREES = (2, 4)
 HIGHEST_ORDER = 16
