@@ -14,7 +14,7 @@ from truing import Float, Model, Reliability, Require, Sensitivities, Sensitivit
 from truing.calculation import calculate
 from truing.cases import CaseResult, CasesTable, case_setup, run_cases
 from truing.errors import InputError
-from truing.executors import Place, SerialExecutor, open_executor
+from truing.executors import SerialExecutor, WorkerPool, open_executor
 from truing.kernel import Origin
 from truing.measurements import Case, CasesFile, RowCount
 from truing.report.content import least_margin
@@ -140,7 +140,7 @@ def test_an_effect_that_is_on_acts_in_every_case() -> None:
     assert added == pytest.approx([7e-6, 7e-6])
 
 
-class Counting(Place):
+class Counting(WorkerPool):
     """Two workers who are in fact this process, and who count what they are asked."""
 
     slots = workers = 2

@@ -17,7 +17,15 @@ from study_models import CHAIN, WEAR, setup_of
 
 from truing.declare.spreads import Off
 from truing.errors import LostWorkersError, PluginError, UsageError
-from truing.executors import BatchLog, KeptExecutor, Place, ProcessExecutor, SerialExecutor, in_order, open_executor
+from truing.executors import (
+    BatchLog,
+    KeptExecutor,
+    ProcessExecutor,
+    SerialExecutor,
+    WorkerPool,
+    in_order,
+    open_executor,
+)
 from truing.executors.data import answer_of, text_of
 from truing.executors.kept import HEAD, MAGIC, key_of
 from truing.executors.versions import differences
@@ -147,7 +155,7 @@ def test_a_model_that_a_worker_cannot_find_is_named():
 # ---- short jobs travel together -----------------------------------------------------------------------------------
 
 
-class Travel(Place):
+class Travel(WorkerPool):
     """A place which notes how many jobs came together, and pretends that each took ``seconds``."""
 
     where = "travel"
