@@ -6,7 +6,7 @@ import time
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from types import NoneType
 from typing import Any
@@ -40,8 +40,7 @@ from truing.measurements import RowsFile, read_rows
 from truing.progress import progress_bar
 from truing.published import ComparedRow, compare_published
 from truing.report.diagnosis_lines import questions
-from truing.report.diagnosis_run import diagnosis_sheet_of, write_diagnosed
-from truing.report.diagnosis_sheet import data_words, diagnosis_html, diagnosis_markdown
+from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, write_diagnosed
 from truing.report.diagnosis_words import headline, verdict_word
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_text
@@ -343,8 +342,7 @@ class Diagnosis:
 
     def sheet(self, path: str | Path) -> Path:
         """Write the sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
-        make = lambda: diagnosis_sheet_of(self.result, self.started)  # noqa: E731
-        return write_sheet(path, make, diagnosis_html, diagnosis_markdown)
+        return write_sheet(path, partial(diagnosis_sheet_of, self.result, self.started))
 
     def save(self, folder: str | Path, *, pdf: bool = False) -> Path:
         """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes. Raises OutputError."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +30,6 @@ from truing.measurements import CasesFile, read_cases
 from truing.numbers import format_value, with_unit
 from truing.progress import progress_bar
 from truing.report.content import check_rows, least_margin
-from truing.report.render import html_of, markdown_of
 from truing.report.run import UNDISTURBED, sheet_of, write_calculation
 from truing.report.sheet import sentence_of_cases
 from truing.runs.documents import results_document
@@ -164,12 +163,8 @@ class Run:
 
     def sheet(self, path: str | Path) -> Path:
         """Write the calculation sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
-        return write_sheet(
-            path,
-            lambda: sheet_of(self.calculation, self.offer, started=self.started, cases=self.cases),
-            html_of,
-            markdown_of,
-        )
+        make = partial(sheet_of, self.calculation, self.offer, started=self.started, cases=self.cases)
+        return write_sheet(path, make)
 
     def save(self, folder: str | Path, *, pdf: bool = False, excel: bool = False) -> Path:
         """Write the folder that ``calc run`` writes: inputs, results, sheets, arrays; an earlier run there goes.

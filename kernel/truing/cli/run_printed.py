@@ -15,7 +15,7 @@ from truing.cases import CaseResult, CasesTable
 from truing.cli.console import aligned, columns
 from truing.numbers import format_value, with_unit
 from truing.report.content import check_rows, least_margin
-from truing.report.context import Value
+from truing.report.document import Value
 from truing.report.sheet import sentence_of_cases
 from truing.setup import Setup
 from truing.studies.bench import files_of

@@ -7,7 +7,6 @@ from functools import partial
 
 import numpy as np
 
-from truing.declare.blocks import Words
 from truing.diagnosis.result import (
     APART,
     UNKNOWN,
@@ -15,14 +14,13 @@ from truing.diagnosis.result import (
     Amount,
     DiagnosisResult,
     FittedUnknown,
+    NextPoint,
     NoiseSummary,
     explanations_of,
 )
 from truing.numbers import ABSENT, STATED_DIGITS, format_number, pretty
 from truing.report import diagnosis_figures as figures
 from truing.report.chapters import Figures
-from truing.report.context import BlockView, Chapter, TableView
-from truing.report.diagnosis_next import next_blocks, table_of
 from truing.report.diagnosis_words import (
     amount_text,
     certainty,
@@ -39,6 +37,7 @@ from truing.report.diagnosis_words import (
     spoken,
     together,
 )
+from truing.report.document import BlockView, Chapter, Paragraph, TableView, table_of
 from truing.runs.diagnosis_document import file_labels
 
 MOST_OUTLIERS = 12
@@ -48,16 +47,12 @@ EVERYTHING = "extended.toml"
 
 def diagnosis_chapters(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
     """Write the chapters in the order in which they are asked for."""
-    yield _chapter("wrong", "What is wrong", _wrong(diagnosis, drawn))
-    yield _chapter("cause", "Cause", _cause(diagnosis, drawn))
-    yield _chapter("model", "Extended model", _model(diagnosis))
-    yield _chapter("gain", "Gain", _gain(diagnosis, drawn))
-    yield _chapter("next", "Next measurement", next_blocks(diagnosis))
-    yield _chapter("data", "Data", _data(diagnosis))
-
-
-def _chapter(ident: str, title: str, blocks: Iterator[BlockView]) -> Chapter:
-    return Chapter("", ident, title, "blocks", blocks=tuple(blocks))
+    yield Chapter("What is wrong", tuple(_wrong(diagnosis, drawn)), "wrong")
+    yield Chapter("Cause", tuple(_cause(diagnosis, drawn)), "cause")
+    yield Chapter("Extended model", tuple(_model(diagnosis)), "model")
+    yield Chapter("Gain", tuple(_gain(diagnosis, drawn)), "gain")
+    yield Chapter("Next measurement", tuple(_next(diagnosis)), "next")
+    yield Chapter("Data", tuple(_data(diagnosis)), "data")
 
 
 # What is wrong
@@ -86,7 +81,7 @@ def _wrong(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
         kinds = ("Result", "Kind", "What the residuals show", "How sure, the search paid for")
         yield table_of("Structure in the residuals", kinds, found)
     else:
-        yield Words("At the level of 5 % the residuals show no bias, trend, order, step, wave or spread.")
+        yield Paragraph("At the level of 5 % the residuals show no bias, trend, order, step, wave or spread.")
     noise = [(spoken(item.result), *_noise(item.noise)) for item in diagnosis.wrong]
     about = ("Result", "Standard deviation", "Autocorrelation", "Tails", "Spread", "Suspected outliers")
     yield table_of("The noise, once everything found is taken out", about, noise, (1, 2))
@@ -116,7 +111,7 @@ def _labelled(outliers: Sequence[tuple[str, int]]) -> Iterator[tuple[str, int]]:
 
 
 def _cause(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
-    yield Words(" ".join(_significance(diagnosis)))
+    yield Paragraph(" ".join(_significance(diagnosis)))
     if diagnosis.causes:
         yield _named_table(diagnosis)
     if diagnosis.ranking:
@@ -243,7 +238,7 @@ def _model(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
             "Unknowns as fitted", heads, fitted, (2, 3), "Intervals hold if the named cause is the true one."
         )
     else:
-        yield Words("Nothing was named, so no effect is switched on.")
+        yield Paragraph("Nothing was named, so no effect is switched on.")
     others = [
         row
         for item in diagnosis.alternatives
@@ -264,7 +259,7 @@ def _model(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
         )  # fmt: skip
     if diagnosis.causes or diagnosis.calibrated:
         name = diagnosis.setup.model.name
-        yield Words(f"{EVERYTHING} holds all of it; every verb accepts it: calc run {name} --inputs {EVERYTHING}.")
+        yield Paragraph(f"{EVERYTHING} holds all of it; every verb accepts it: calc run {name} --inputs {EVERYTHING}.")
     yield from _remainder(diagnosis)
 
 
@@ -292,7 +287,7 @@ def _remainder(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     remainder = diagnosis.remainder
     if remainder is None:
         return
-    yield Words(
+    yield Paragraph(
         f"The remainder ({prose(remainder.shape)}) is in no inputs file. new_effect.py holds its fitted shape as an "
         "effect, ready to be made physical. It must not be extrapolated beyond the measured range."
     )
@@ -303,7 +298,7 @@ def _remainder(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
 
 def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
     if not diagnosis.gain:
-        yield Words("No gain was estimated.")
+        yield Paragraph("No gain was estimated.")
         return
     rows = [
         (
@@ -322,7 +317,7 @@ def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
     )
     yield table_of("What the extension is worth", heads, rows, tuple(range(1, 8)), note)
     if diagnosis.causes:
-        yield Words(f"The same causes were named in {percent(diagnosis.stability)} of the folds.")
+        yield Paragraph(f"The same causes were named in {percent(diagnosis.stability)} of the folds.")
     held = [
         (
             spoken(item.result),
@@ -337,7 +332,61 @@ def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
     yield drawn.view(title, partial(figures.gain_bars, diagnosis), f"{title}, on rows that were not fitted.")
 
 
-# Next measurement and data
+# Next measurement
+
+
+def _next(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
+    """Write the chapter on the next measurement."""
+    if not diagnosis.next and diagnosis.verdict == "one_of":
+        yield Paragraph("No setting can be proposed that tells the explanations apart.")
+    elif not diagnosis.next:
+        can_be_more = any(item.sight == "not excited" for item in diagnosis.seen) or diagnosis.not_measured
+        yield Paragraph(
+            ("More readings would decide." if diagnosis.verdict == "undecided" else "There is nothing to separate.")
+            + (" Of what was not excited or not measured (chapter 2) this data says nothing." if can_be_more else "")
+        )
+    else:
+        yield from _points(diagnosis)
+    yield from _ties(diagnosis)
+
+
+def _points(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
+    names = list(dict.fromkeys(name for point in diagnosis.next for name in (*point.measure, *point.settings)))
+    rows = [_point(index, point, names) for index, point in enumerate(diagnosis.next, start=1)]
+    heads = ("Point", *(spoken(name).capitalize() for name in names), "Separates", "λ then")
+    note = (
+        "λ then is the separation to expect once all points up to this one are measured; from "
+        f"{APART:.0f} on the two are apart."
+    )
+    yield table_of("Settings to measure", heads, rows, (*range(1, len(names) + 1), len(names) + 2), note)
+    for reason in dict.fromkeys(point.why for point in diagnosis.next if point.why):
+        yield Paragraph(f"{reason[:1].upper()}{reason[1:].rstrip('.')}.")
+
+
+def _ties(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
+    """Say which facts decide between explanations that no measurement proposed here tells apart."""
+    for tie in diagnosis.ties:
+        names = listed([together([name]) for name in tie.explanations])
+        yield Paragraph(f"No measurement proposed here tells {names} apart; a fact from elsewhere does.")
+        facts = [
+            (
+                together([fact.explanation]), spoken(fact.quantity.removeprefix("input:")), fact.note or ABSENT,
+                amount_text(readable(fact.value)),
+            )
+            for fact in tie.facts
+        ]  # fmt: skip
+        if facts:
+            heads = ("If it is", "then this quantity", "that is", "has this value")
+            yield table_of("Facts that decide", heads, facts, (3,))
+
+
+def _point(place: int, point: NextPoint, names: Sequence[str]) -> tuple[str, ...]:
+    settings = ["measure" if name in point.measure else amount_text(point.settings.get(name), 4) for name in names]
+    pair = " / ".join(together([name]) for name in point.separates)
+    return str(place), *settings, pair, score_text(point.separation)
+
+
+# Data
 
 
 def _data(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
@@ -352,10 +401,10 @@ def _data(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     yield table_of("Files", ("File", "Rows in the file", "Used", "Left out", "Runs"), rows, (1, 2, 3, 4), note)
     for label, count in zip(file_labels(records.files), records.counts, strict=True):
         if count.unused:
-            yield Words(f"{label}: {count.sentence()}.")
+            yield Paragraph(f"{label}: {count.sentence()}.")
     yield table_of("Covariates", ("Name", "From", "To", "Role", "Remark"), list(_covariates(diagnosis)), (1, 2))
     for sentence in records.notes:
-        yield Words(sentence.rstrip(".") + ".")
+        yield Paragraph(sentence.rstrip(".") + ".")
 
 
 def _covariates(diagnosis: DiagnosisResult) -> Iterator[tuple[str, ...]]:
