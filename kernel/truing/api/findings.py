@@ -21,7 +21,7 @@ from truing.report.diagnosis_figures import (
     shown_curves,
 )
 from truing.report.diagnosis_words import explanation
-from truing.units import from_si, unit_text
+from truing.units import from_si
 
 
 @dataclass(frozen=True)
@@ -32,12 +32,6 @@ class Fitted:
     interval95: tuple[float | None, float | None]
     unit: str
     quantity: Any
-
-    @property
-    def texts(self) -> tuple[str, str]:
-        """The value with its unit, and the interval."""
-        low, high = ("open" if end is None else f"{end:.4g}" for end in self.interval95)
-        return f"{self.value:.4g} {unit_text(self.unit)}".rstrip(), f"{low} … {high} {unit_text(self.unit)}".rstrip()
 
 
 @dataclass(frozen=True)

@@ -43,6 +43,7 @@ from truing.runs.diagnosis_document import file_labels
 MOST_OUTLIERS = 12
 FITTED_DIGITS = 7
 EVERYTHING = "extended.toml"
+HEADS = ("Cause", "Unknown", "Value", "95 % interval", "Unit")
 
 
 def diagnosis_chapters(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
@@ -226,17 +227,9 @@ def _sight(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
 
 
 def _model(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
-    fitted = [
-        row
-        for cause in diagnosis.causes
-        for unknown in cause.unknowns
-        for row in _fitted(spoken(cause.effect), unknown)
-    ]
-    heads = ("Cause", "Unknown", "Value", "95 % interval", "Unit")
-    if fitted:
-        yield table_of(
-            "Unknowns as fitted", heads, fitted, (2, 3), "Intervals hold if the named cause is the true one."
-        )
+    fitted = fitted_table(diagnosis)
+    if fitted.rows:
+        yield fitted
     else:
         yield Paragraph("Nothing was named, so no effect is switched on.")
     others = [
@@ -250,7 +243,7 @@ def _model(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
         if effect != UNKNOWN
     ]
     if others:
-        yield table_of("The same for the explanations that are not excluded", ("Instead", *heads[1:]), others, (2, 3))
+        yield table_of("The same for the explanations that are not excluded", ("Instead", *HEADS[1:]), others, (2, 3))
     if diagnosis.calibrated:
         note = "Within its tolerance an input may move freely; what matters is how far, in standard deviations."
         yield table_of(
@@ -261,6 +254,17 @@ def _model(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
         name = diagnosis.setup.model.name
         yield Paragraph(f"{EVERYTHING} holds all of it; every verb accepts it: calc run {name} --inputs {EVERYTHING}.")
     yield from _remainder(diagnosis)
+
+
+def fitted_table(diagnosis: DiagnosisResult) -> TableView:
+    """Say the size of every cause that is named, with its interval."""
+    rows = [
+        row
+        for cause in diagnosis.causes
+        for unknown in cause.unknowns
+        for row in _fitted(spoken(cause.effect), unknown)
+    ]
+    return table_of("Unknowns as fitted", HEADS, rows, (2, 3), "Intervals hold if the named cause is the true one.")
 
 
 def _fitted(cause: str, unknown: FittedUnknown) -> Iterator[tuple[str, ...]]:

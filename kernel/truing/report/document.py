@@ -11,7 +11,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from truing.formulas import Formula
+from truing.formulas import Formula, symbol_text
+from truing.numbers import pretty, with_unit
 from truing.runs.provenance import Provenance
 
 MARKS = {
@@ -97,6 +98,31 @@ def joined(parts: Iterable[Text], between: Piece = ", ") -> tuple[Piece, ...]:
     for part in parts:
         pieces += [*([between] if pieces else []), *(part if isinstance(part, tuple) else (part,))]
     return tuple(pieces)
+
+
+def plain_text(text: Text) -> str:
+    """Write a text without markup, on one line."""
+    return "".join(map(_plain, text if isinstance(text, tuple) else (text,)))
+
+
+def _plain(piece: Piece) -> str:
+    match piece:
+        case str():
+            return pretty(piece)
+        case Value(number, unit):
+            return with_unit(pretty(number), unit)
+        case Symbol(symbol):
+            return symbol_text(symbol)
+        case Code(name, bracketed):
+            return f"({name})" if bracketed else name
+        case Source(source):
+            return f"({source})"
+        case Break(instead):
+            return instead
+        case Judgement(state):
+            return f"{MARKS[state]} {VERDICTS[state]}"
+        case Strong(inner) | Aside(inner):
+            return _plain(inner)
 
 
 def with_source(words: str, source: str) -> Text:
