@@ -40,8 +40,7 @@ from truing.measurements import RowsFile, read_rows
 from truing.progress import progress_bar
 from truing.published import ComparedRow, compare_published
 from truing.report.diagnosis_chapters import fitted_table
-from truing.report.diagnosis_lines import questions
-from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, write_diagnosed
+from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, questions, write_diagnosed
 from truing.report.diagnosis_words import headline, verdict_word
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_text

@@ -6,10 +6,12 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from truing.diagnosis.result import DiagnosisResult
+import numpy as np
+
+from truing.diagnosis.result import Amount, DiagnosisResult
 from truing.report.chapters import Figures, numbered
 from truing.report.diagnosis_chapters import diagnosis_chapters
-from truing.report.diagnosis_words import headline, verdict_word
+from truing.report.diagnosis_words import amount_text, headline, verdict_word
 from truing.report.document import Banner, Document
 from truing.report.run import run_info, sheets_of
 from truing.report.sheet import end_chapters, head_of, logo_of
@@ -52,6 +54,27 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
         chapters=numbered([*chapters, *end_chapters(warnings, provenance)]),
         warnings=warnings,
         provenance=provenance,
+    )
+
+
+def questions(diagnosis: DiagnosisResult) -> dict[str, tuple[str, ...]]:
+    """Return what a diagnosis says to each of its questions, line by line."""
+    chapters = diagnosis_chapters(diagnosis, Figures(skipped=True))
+    return {
+        chapter.title.removesuffix(" measurement"): chapter.lines for chapter in chapters if chapter.ident != "data"
+    }
+
+
+def data_line(diagnosis: DiagnosisResult) -> str:
+    """Say what was measured, how long it took, and which model it was held against."""
+    time = next((item for item in diagnosis.records.covariates.values() if item.role == "time"), None)
+    lasting = ""
+    if time is not None:
+        hours = Amount(float(np.nanmax(time.values) - np.nanmin(time.values)), time.unit)
+        lasting = f", {amount_text(hours)}"
+    model = diagnosis.setup.model
+    return (
+        f"{data_words(diagnosis)}{lasting}; {model.name}: {model.title}, {len(diagnosis.calibrated)} inputs calibrated"
     )
 
 

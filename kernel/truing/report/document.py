@@ -231,6 +231,8 @@ class Chapter:
     blocks: tuple[BlockView, ...]
     ident: str = ""
     number: str = ""
+    lines: tuple[str, ...] = ()
+    """What a terminal and a notebook print of it; a line that begins with spaces belongs to the one above."""
 
 
 @dataclass(frozen=True)

@@ -88,8 +88,9 @@ def _blocks(blocks: Iterable[BlockView]) -> Iterator[str]:
 def _items(items: Items) -> Iterator[str]:
     for index, text in enumerate(items.texts):
         mark = f"{index + 1}." if items.kind == "references" else "-"
-        label = f"**{escaped(items.labels[index])}.** " if items.labels else ""
-        yield f"{mark} {label}{_said(text)}"
+        label = escaped(items.labels[index]) if items.labels else ""
+        label = f"**{label}.** " if items.kind == "findings" else f"{label}: " if label else ""
+        yield f"{mark} {label}{_said(text)}".rstrip()
 
 
 def _table(table: TableView) -> Iterator[str]:
