@@ -104,7 +104,7 @@ def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
 
 def _is_idle(setup: Setup, name: str, value: Value) -> bool:
     has_source = setup.model.input_fields[name].spec.source
-    return name not in setup.stated and value.text in {"0", NOT_GIVEN} and not has_source
+    return name not in setup.source.stated and value.text in {"0", NOT_GIVEN} and not has_source
 
 
 def _input_row(setup: Setup, name: str, value: Value, *, calibrated: bool) -> tuple[Text, ...]:
@@ -114,15 +114,15 @@ def _input_row(setup: Setup, name: str, value: Value, *, calibrated: bool) -> tu
     own = "" if fitted is None else format_value(fitted, setup.print_unit(name), STATED_DIGITS)[0]
     return (
         Symbol(item.symbol) if item.symbol else "", label_of(note, name), value.text, value.unit,
-        *((own,) if calibrated else ()), "stated" if name in setup.stated else "default", item.spec.source,
+        *((own,) if calibrated else ()), "stated" if name in setup.source.stated else "default", item.spec.source,
     )  # fmt: skip
 
 
 def input_value(setup: Setup, item: InputField, value: Any) -> Value:
     """Write one input: a number in its printed unit, a choice, a switch, a file."""
     if item.kind == "file":
-        if item.name in setup.tables:
-            return Value(PurePath(setup.tables[item.name]["file"]).name)
+        if item.name in setup.source.tables:
+            return Value(PurePath(setup.source.tables[item.name]["file"]).name)
         return Value(NOT_GIVEN if value is None else "default")
     if isinstance(value, bool):
         return Value("yes" if value else "no")

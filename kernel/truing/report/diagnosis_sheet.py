@@ -47,7 +47,7 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
         kind=DIAGNOSIS,
         title=f"{DIAGNOSIS}: {head.title}",
         head=replace(head, footer=" · ".join(part for part in (DIAGNOSIS, head.footer) if part)),
-        detail=diagnosis.setup.detail,
+        detail=diagnosis.setup.sheet.detail,
         summary=data_words(diagnosis),
         banner=Banner(_mood(diagnosis), verdict_word(diagnosis), tuple(headline(diagnosis))),
         alarms=tuple(unit_error.text for unit_error in diagnosis.records.unit_errors),
