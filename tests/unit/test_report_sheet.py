@@ -204,7 +204,7 @@ def test_checks_are_told_by_words_and_not_by_colour(html: str) -> None:
     assert rows == ["passes", "fails", "passes"]
     text = Page(html).text
     assert text.count("✓ pass") == 2
-    assert text.count("✗ FAIL") == 1
+    assert text.count("✗ FAILS") == 1
 
 
 def test_a_tolerance_that_is_off_is_not_in_force(html: str) -> None:

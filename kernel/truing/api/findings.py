@@ -8,11 +8,12 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from truing.api.notebook import html_table, plotted
+from truing.api.notebook import plotted, table_html
 from truing.api.quantities import quantity_of
 from truing.api.tables import frame_of
 from truing.diagnosis import result as found
 from truing.errors import UsageError
+from truing.report.diagnosis_chapters import ranking_table
 from truing.report.diagnosis_figures import (
     against_simulated,
     main_covariates,
@@ -69,8 +70,7 @@ class Ranking:
         return plotted(lambda: ranking_bars(self.result))
 
     def _repr_html_(self) -> str:
-        rows = [(explanation(each), f"{each.behind:.1f}", f"{each.separation:.1f}") for each in self.result.ranking]
-        return html_table(rows, ("explanation", "behind", "separation"))
+        return table_html(ranking_table(self.result))
 
 
 @dataclass(frozen=True)

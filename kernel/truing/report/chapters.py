@@ -15,7 +15,7 @@ from truing.declare.fields import Axis, Found, ResultField
 from truing.declare.model import Section
 from truing.errors import PluginError, UnitError
 from truing.kernel.blame import spoken_place
-from truing.numbers import format_value, pretty
+from truing.numbers import format_ends, format_value, pretty
 from truing.report.document import (
     Aside,
     BlockView,
@@ -180,15 +180,11 @@ def _departure(setup: Setup) -> str:
 
 def _range(writing: Writing, item: ResultField) -> tuple[Value, str]:
     """Say a result along an axis by its ends, and how many values it has."""
-    values = np.asarray(writing.calculation.answers[item.name], dtype=float)
-    finite = values[np.isfinite(values)]
+    values = writing.calculation.answers[item.name]
     along = item.along if isinstance(item.spec, Found) else ""
-    words = f"{values.size} values" + (f" along {along}" if along and along != item.name else "")
-    if not finite.size:
-        return Value("no finite value"), words
-    unit = writing.setup.print_unit(item.name)
-    (low, text), (high, _) = (format_value(float(end), unit) for end in (finite.min(), finite.max()))
-    return Value(f"{pretty(low)} … {pretty(high)}", text), words
+    words = f"{np.size(values)} values" + (f" along {along}" if along and along != item.name else "")
+    low, high, unit = format_ends(values, writing.setup.print_unit(item.name))
+    return Value(f"{pretty(low)} … {pretty(high)}", unit) if low else Value("no finite value"), words
 
 
 def _axis_tables(writing: Writing, names: Sequence[str]) -> Iterator[TableView]:

@@ -141,7 +141,7 @@ def _cause(diagnosis: DiagnosisResult, drawn: Figures) -> Parts:
         yield from _named(diagnosis)
     yield from _near(diagnosis)
     if diagnosis.ranking:
-        yield _ranking(diagnosis)
+        yield ranking_table(diagnosis)
         title = "Ranking of the explanations"
         caption = f"{title}; blue is what this data does not exclude."
         yield drawn.view(title, partial(figures.ranking_bars, diagnosis), caption)
@@ -237,7 +237,8 @@ def _significance(diagnosis: DiagnosisResult) -> Iterator[str]:
         yield f"The verdict is one of {len(names)}, and this record cannot say which: {which}."
 
 
-def _ranking(diagnosis: DiagnosisResult) -> TableView:
+def ranking_table(diagnosis: DiagnosisResult) -> TableView:
+    """Say the explanations that were compared, and what this data makes of each."""
     items = figures.shown_ranking(diagnosis)
     rows = [
         (explanation(item), pretty(f"{item.behind:.1f}"), score_text(item.separation), _judged(item, diagnosis))

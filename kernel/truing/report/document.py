@@ -14,12 +14,12 @@ from typing import TypeAlias
 from truing.formulas import Formula, symbol_text
 from truing.numbers import pretty, with_unit
 from truing.runs.provenance import Provenance
+from truing.studies.checks import SHORT, State
 
 MARKS = {
     "passes": "✓", "proposed": "!", "undecided": "?", "fails": "✗", "none": "○", "calm": "✓", "found": "●", "open": "?",
 }  # fmt: skip
 """The sign before a verdict: of a limit or a run, and of a diagnosis (calm, found, open)."""
-VERDICTS = {"passes": "pass", "proposed": "not as stated", "undecided": "undecided", "fails": "FAIL"}
 
 
 # Pieces of a text
@@ -80,7 +80,7 @@ class Break:
 class Judgement:
     """What became of a limit: its state in a sign and a word."""
 
-    state: str
+    state: State
 
 
 Piece: TypeAlias = str | Value | Symbol | Code | Strong | Aside | Source | Break | Judgement
@@ -120,7 +120,7 @@ def _plain(piece: Piece) -> str:
         case Break(instead):
             return instead
         case Judgement(state):
-            return f"{MARKS[state]} {VERDICTS[state]}"
+            return f"{MARKS[state]} {SHORT[state]}"
         case Strong(inner) | Aside(inner):
             return _plain(inner)
 

@@ -17,7 +17,6 @@ from truing.report import equations
 from truing.report.columns import with_room
 from truing.report.document import (
     MARKS,
-    VERDICTS,
     Aside,
     BlockView,
     Break,
@@ -34,6 +33,7 @@ from truing.report.document import (
     Value,
 )
 from truing.report.templates import template_folder
+from truing.studies.checks import SHORT
 
 COLUMN = equations.LINE
 """How wide a formula may be, in em, beside the words of its result; a wider one stands below them."""
@@ -134,7 +134,7 @@ def _piece(piece: Piece) -> str:
         case Break():
             return "<br>"
         case Judgement(state):
-            return f'<span aria-hidden="true">{MARKS[state]}</span> {VERDICTS[state]}'
+            return f'<span aria-hidden="true">{MARKS[state]}</span> {SHORT[state]}'
 
 
 def _breakable(name: str) -> Any:

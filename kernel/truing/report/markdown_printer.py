@@ -10,7 +10,6 @@ from truing.numbers import pretty, with_unit
 from truing.report import equations
 from truing.report.document import (
     MARKS,
-    VERDICTS,
     Aside,
     BlockView,
     Break,
@@ -31,6 +30,7 @@ from truing.report.document import (
     Value,
 )
 from truing.report.markdown import escaped
+from truing.studies.checks import SHORT
 
 LINE = 60.0
 """How wide a line of a formula may be, in em as estimated."""
@@ -151,7 +151,7 @@ def _piece(piece: Piece, *, begins: bool = True) -> str:
         case Break(instead):
             return instead
         case Judgement(state):
-            word = VERDICTS[state]
+            word = SHORT[state]
             return f"{MARKS[state]} {word if state == 'passes' else f'**{word}**'}"
 
 
