@@ -207,6 +207,11 @@ def test_checks_are_told_by_words_and_not_by_colour(html: str) -> None:
     assert text.count("✗ FAILS") == 1
 
 
+def test_a_long_name_may_break_behind_its_underscores(html: str) -> None:
+    assert "<code>early_<wbr>depth</code>" in html
+    assert "early_depth" in Page(html).text
+
+
 def test_a_tolerance_that_is_off_is_not_in_force(html: str) -> None:
     assert "day and night" not in html
 

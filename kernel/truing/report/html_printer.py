@@ -139,7 +139,7 @@ def _piece(piece: Piece) -> str:
 
 def _breakable(name: str) -> Any:
     """Let a long name break behind its underscores."""
-    return _markup(escape(_one_line(name)).replace("_", "_<wbr>"))
+    return _markup(str(escape(_one_line(name))).replace("_", "_<wbr>"))
 
 
 def _unbroken(markup: str) -> Any:
