@@ -40,7 +40,8 @@ from truing.declare.checks import PROMISES
 from truing.describe import description
 from truing.errors import DeclarationError
 from truing.kernel.loading import load_file
-from truing.report.render import html_of, markdown_of
+from truing.report.html_printer import html_of
+from truing.report.markdown_printer import markdown_of
 from truing.report.sheet import make_sheet
 from truing.runs.provenance import provenance_of
 from truing.setup import default_setup
