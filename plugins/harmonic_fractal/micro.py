@@ -48,11 +48,6 @@ class ContactLaw:
         """(D - 2)/2, the exponent of stiffness that is lost to plastic contacts."""
         return 0.5 * (np.asarray(self.dimension) - 2.0)
 
-    def on_axis(self, axes: int = 1) -> "ContactLaw":
-        """Return the law with so many axes behind, one value of it for each row."""
-        last = (..., *(np.newaxis,) * axes)
-        return ContactLaw(np.asarray(self.dimension)[last], np.asarray(self.pressure_ratio)[last])
-
 
 def domain_factor(dimension: Float) -> Float:
     """Return psi of the area distribution of contacts for a surface of dimension D, 2 < D < 3.
