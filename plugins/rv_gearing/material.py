@@ -69,8 +69,8 @@ CURVES: dict[str, dict[str, Float]] = {
         "slip_layer": 0.003e-3,
     },
     "through_hardened": {
-        **HARDENED_CONTACT, **HARDENED_SURFACE, "bending_life_most": 2.5, "bending_life_slope": 0.16, "size_constant": 1.03,
-        "size_slope": 0.006, "size_least": 0.85,
+        **HARDENED_CONTACT, **HARDENED_SURFACE, "bending_life_most": 2.5, "bending_life_slope": 0.16,
+        "size_constant": 1.03, "size_slope": 0.006, "size_least": 0.85,
     },
     "nitrided": {
         "contact_life_most": 1.3, "contact_life_knee": 2e6, "contact_life_slope": 0.0876, "contact_life_tail": 0.0191,
