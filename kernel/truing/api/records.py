@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -18,6 +17,7 @@ from truing.declare.near_miss import near_miss
 from truing.diagnosis.data_file import DataRows, read_data_file
 from truing.errors import Fault, InputError, UsageError
 from truing.kernel import Offer
+from truing.measurements import read_table
 from truing.numbers import counted, format_number
 from truing.units import from_si, unit_text
 from truing.units.grammar import shown
@@ -72,11 +72,10 @@ class MeasuredRecord:
         columns: dict[str, list[str]] = {}
         count = 0
         for file in self.files:
-            with file.open(encoding="utf-8-sig", newline="") as stream:
-                rows = list(csv.DictReader(stream))
-            for name in dict.fromkeys([*columns, *(rows[0] if rows else ())]):
-                columns.setdefault(name, [""] * count).extend(row.get(name, "") or "" for row in rows)
-            count += len(rows)
+            table, _ = read_table(file, {}, is_measured=False)
+            for name in {**columns, **table.cells}:
+                columns.setdefault(name, [""] * count).extend(table.cells.get(name, ("",) * len(table)))
+            count += len(table)
         return frame_of(columns)
 
     def _repr_html_(self) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -16,6 +15,7 @@ from typing import Any
 import narwhals as nw
 
 from truing.errors import InputError, UsageError
+from truing.measurements import write_table
 
 LIBRARIES = ("pandas", "polars", "pyarrow")
 LABEL = "dataframe"
@@ -72,14 +72,11 @@ def write_frame(frame: Any, path: Path, units: Mapping[str, str], *, gaps: bool)
     if unknown:
         raise UsageError(f"units names '{unknown[0]}', which is no column; the columns are {', '.join(names)}")
     _demand_one_kind(table)
-    rows = [[_cell(cell, gaps=gaps) for cell in row] for row in table.iter_rows()]
-    empty = next((number for number, row in enumerate(rows, start=1) if not any(row)), 0)
-    if empty or not rows:
+    columns = [[_cell(cell, gaps=gaps) for cell in table[name].to_list()] for name in table.columns]
+    empty = next((number for number, row in enumerate(zip(*columns, strict=True), start=1) if not any(row)), 0)
+    if empty or not len(table):
         raise UsageError(f"row {empty} of the dataframe holds nothing" if empty else "the dataframe holds no rows")
-    with path.open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow([f"{name} [{units[name]}]" if name in units else name for name in names])
-        writer.writerows(rows)
+    write_table(path, [f"{name} [{units[name]}]" if name in units else name for name in names], columns)
 
 
 def _table(frame: Any) -> Any:

@@ -17,7 +17,7 @@ from typing import TextIO
 
 from truing.errors import Fault, InputError
 from truing.inputs_file.files import refuse_file
-from truing.measurements.cell_text import EITHER, MARK, all_unguarded
+from truing.measurements.cells import EITHER, MARK, all_unguarded
 from truing.measurements.row_count import LeftOut, RowCount
 from truing.numbers import counted
 from truing.units.grammar import shown
