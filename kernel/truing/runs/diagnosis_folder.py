@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from hashlib import file_digest
 from pathlib import Path
 from typing import Any
 
 from truing.diagnosis.result import DiagnosisResult
+from truing.inputs_file.files import digest_of
 from truing.runs.diagnosis_document import diagnosis_document, file_labels
 from truing.runs.extension import extended_text
 from truing.runs.folder import RUN_SCHEMA, json_text, npz_bytes, write_folder
@@ -37,7 +37,7 @@ def write_diagnosis(
         **run_info,
         "plugin": {"name": origin.name, "version": origin.version, "distribution": origin.distribution},
         "versions": {"truing": provenance.kernel, "python": provenance.python, **provenance.packages},
-        "data": {file: digest_of(file) for file in diagnosis.records.files},
+        "data": {file: digest_of(Path(file)) for file in diagnosis.records.files},
     }
     files: dict[str, str | bytes] = {
         "inputs.toml": complete_inputs(diagnosis.setup, folder),
@@ -51,19 +51,10 @@ def write_diagnosis(
     return document
 
 
-def digest_of(file: str) -> str:
-    """Return the SHA-256 of a file; nothing where it cannot be read."""
-    try:
-        with Path(file).open("rb") as stream:
-            return file_digest(stream, "sha256").hexdigest()
-    except OSError:
-        return ""
-
-
 def data_digests(diagnosis: DiagnosisResult) -> dict[str, str]:
     """Return the SHA-256 of every data file by the name it is given on the sheet."""
     files = diagnosis.records.files
-    return {label: digest_of(file) for label, file in zip(file_labels(files), files, strict=True)}
+    return {label: digest_of(Path(file)) for label, file in zip(file_labels(files), files, strict=True)}
 
 
 def curve_arrays(diagnosis: DiagnosisResult) -> dict[str, Any]:
