@@ -354,7 +354,7 @@ def test_rows_keep_what_is_written(table: Write) -> None:
     np.testing.assert_allclose(found.columns["probe_temperature"], [303.15, 293.15])
     assert set(found.columns) == {"load", "probe_temperature"}
     assert found.others == ("depth", "batch")
-    assert found.headers == ("load [kN]", "probe_temperature [degC]", "depth [um]", "batch")
+    assert tuple(found.cells) == ("load [kN]", "probe_temperature [degC]", "depth [um]", "batch")
     assert found.cells["load [kN]"] == ("0.1", "")
     assert found.cells["batch"] == ("A", "B")
     assert len(found) == 2

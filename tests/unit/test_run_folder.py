@@ -21,7 +21,7 @@ from truing.errors import OutputError, PluginError, UnknownPluginError
 from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Kernel, Offer
 from truing.runs.documents import clean, results_document
-from truing.runs.folder import demand_place, is_run, json_text, load_run, npz_bytes, write_folder, write_run
+from truing.runs.folder import demand_place, is_ours, json_text, load_either, npz_bytes, write_folder, write_run
 from truing.runs.inputs_written import complete_inputs, exact, input_hash
 from truing.runs.provenance import provenance_of
 from truing.units import read_quantity, to_si
@@ -61,7 +61,7 @@ def test_a_run_folder_holds_everything(tmp_path: Path, calculation: Calculation,
     folder = tmp_path / "runs" / "Größe 1"
     document = write(folder, calculation, offer)
     assert leftovers(folder) == ["arrays.npz", "inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md"]
-    assert load_run(folder) == document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert load_either(folder) == document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert json.loads((folder / "run.json").read_text(encoding="utf-8"))["duration_s"] == 1.5
     assert leftovers(tmp_path / "runs") == ["Größe 1"]
 
@@ -222,7 +222,7 @@ def test_a_folder_that_is_no_run_of_ours_is_left_alone(tmp_path: Path, content: 
     folder.mkdir()
     for name, text in content.items():
         (folder / name).write_text(text)
-    assert not is_run(folder)
+    assert not is_ours(folder, "run")
     with pytest.raises(OutputError, match="so it is left alone"):
         write_folder(folder, {"results.json": "x"})
     assert {path.name: path.read_text() for path in folder.iterdir()} == content
@@ -270,7 +270,7 @@ def test_what_is_no_run_is_not_loaded(tmp_path: Path, content: str | None, sente
     if content is not None:
         (tmp_path / "results.json").write_text(content)
     with pytest.raises(UnknownPluginError, match=sentence):
-        load_run(tmp_path)
+        load_either(tmp_path)
 
 
 def test_what_guests_added_is_listed(calculation: Calculation) -> None:

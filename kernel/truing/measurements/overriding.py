@@ -65,11 +65,6 @@ class RowsFile:
     runs: tuple[str, ...] = ()
     count: RowCount = UNCOUNTED
 
-    @property
-    def headers(self) -> tuple[str, ...]:
-        """The header cells as written, in order."""
-        return tuple(self.cells)
-
     def __len__(self) -> int:
         return len(self.lines)
 

@@ -99,11 +99,6 @@ def is_ours(folder: Path, kind: FolderKind) -> bool:
     return isinstance(document, dict) and document.get("schema") == schema and (folder / "run.json").is_file()
 
 
-def is_run(folder: Path) -> bool:
-    """Tell whether a folder is a run of ours: results.json of our schema, and run.json."""
-    return is_ours(folder, "run")
-
-
 def demand_place(folder: Path, kind: FolderKind = "run") -> None:
     """Raise OutputError, with one sentence, unless a run (a diagnosis) can be put at ``folder``; nothing is written.
 
@@ -145,11 +140,6 @@ def write_folder(folder: Path, files: Mapping[str, str | bytes], kind: FolderKin
     """Write files into a folder that appears complete or not at all; an earlier one of its kind is replaced whole."""
     demand_place(folder, kind)
     place_folder(folder, files, kind)
-
-
-def load_run(folder: Path) -> dict[str, Any]:
-    """Return results.json of a run folder; raises UnknownPluginError where there is no such run."""
-    return _loaded(folder, "run")
 
 
 def load_either(folder: Path) -> dict[str, Any]:
