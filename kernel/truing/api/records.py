@@ -12,7 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from truing.api.notebook import heading, html_table, joined, paragraphs
-from truing.api.tables import frame_of, write_frame
+from truing.api.tables import frame_of, frame_text
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.data_file import DataRows, read_data_file
 from truing.errors import Fault, InputError, UsageError
@@ -112,7 +112,7 @@ def record(
         raise UsageError(f"'{name}' is no name for a record; write a word without a folder")
     folder = TemporaryDirectory()
     path = Path(folder.name) / f"{name}.csv"
-    write_frame(frame, path, units or {}, gaps=True)
+    path.write_text(frame_text(frame, units or {}, gaps=True).text, encoding="utf-8", newline="")
     return _known((path,), model, folder)
 
 

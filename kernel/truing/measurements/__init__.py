@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from truing.measurements.csv_text import TableText
 from truing.measurements.overriding import Case, CasesFile, RowsFile, read_cases, read_rows
 from truing.measurements.row_count import LeftOut, RowCount
 from truing.measurements.table import EXCEL, PLAIN, DataTable, TableStyle, read_table, table_text, write_table
@@ -16,6 +17,7 @@ __all__ = [
     "RowCount",
     "RowsFile",
     "TableStyle",
+    "TableText",
     "read_cases",
     "read_rows",
     "read_table",

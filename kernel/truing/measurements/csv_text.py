@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import lru_cache
+from io import StringIO
 from itertools import chain
 from pathlib import Path
 from typing import TextIO
@@ -204,10 +205,24 @@ def _like_a_row(row: list[str]) -> str:
     return f"{what}; put {first} in quotation marks where it is one, and a remark above the header"
 
 
+@dataclass(frozen=True)
+class TableText:
+    """A table that stands in no file, and what sentences call it."""
+
+    label: str
+    text: str
+
+    def __str__(self) -> str:
+        return self.label
+
+
 @contextmanager
-def opened(path: Path) -> Iterator[CsvFile]:
+def opened(path: Path | TableText) -> Iterator[CsvFile]:
     """Open a table. Raises InputError where it cannot be one, or has no header."""
     instead = "the first line of a table holds the names, with units such as 'load [N]'"
+    if isinstance(path, TableText):
+        yield _table(path, StringIO(path.text, newline=""), instead)
+        return
     refuse_file(path, largest=LARGEST_TABLE, instead=instead, is_table=True)
     try:
         with path.open(encoding="utf-8", newline="") as stream:
@@ -229,7 +244,7 @@ def _foreign_line(path: Path) -> int:
     return 1
 
 
-def _table(path: Path, stream: TextIO, instead: str) -> CsvFile:
+def _table(path: Path | TableText, stream: TextIO, instead: str) -> CsvFile:
     faults = Faults(str(path))
     beginning = stream.readline()
     lines = _lines(chain([beginning.removeprefix(MARK)], stream), faults)

@@ -10,8 +10,7 @@ from truing.diagnosis.result import DiagnosisResult
 from truing.inputs_file.files import digest_of
 from truing.runs.diagnosis_document import diagnosis_document, file_labels
 from truing.runs.extension import extended_text
-from truing.runs.folder import RUN_SCHEMA, json_text, npz_bytes, write_folder
-from truing.runs.inputs_written import complete_inputs
+from truing.runs.folder import npz_bytes, write_outcome
 from truing.runs.new_effect import new_effect_source
 from truing.runs.provenance import Provenance
 from truing.units import from_si
@@ -31,23 +30,12 @@ def write_diagnosis(
     replaced whole if it is a diagnosis of ours. Raises OutputError where it is not, or where nothing can be written.
     """
     document = diagnosis_document(diagnosis)
-    origin = diagnosis.setup.origin
-    run = {
-        "schema": RUN_SCHEMA,
-        **run_info,
-        "plugin": {"name": origin.name, "version": origin.version, "distribution": origin.distribution},
-        "versions": {"truing": provenance.kernel, "python": provenance.python, **provenance.packages},
-        "data": {file: digest_of(Path(file)) for file in diagnosis.records.files},
-    }
-    files: dict[str, str | bytes] = {
-        "inputs.toml": complete_inputs(diagnosis.setup, folder),
-        "diagnosis.json": json_text(document),
-        "run.json": json_text(run),
-        "arrays.npz": npz_bytes(curve_arrays(diagnosis)),
-        **sheets,
-    }
+    data = {"data": {file: digest_of(Path(file)) for file in diagnosis.records.files}}
     extension = {"extended.toml": extended_text(diagnosis, folder), "new_effect.py": new_effect_source(diagnosis)}
-    write_folder(folder, {**files, **{name: text for name, text in extension.items() if text}}, "diagnosis")
+    files = {"arrays.npz": npz_bytes(curve_arrays(diagnosis)), **sheets}
+    files |= {name: text for name, text in extension.items() if text}
+    setup, run_info = diagnosis.setup, {**run_info, **data}
+    write_outcome(folder, "diagnosis", setup, document, provenance=provenance, run_info=run_info, files=files)
     return document
 
 
