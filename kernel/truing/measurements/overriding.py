@@ -26,7 +26,7 @@ REMARKS = ("note", "remark", "comment")
 
 
 @dataclass(frozen=True)
-class Case:
+class StatedCase:
     """One case: its row (the first is 1), the line it stands in, its name, and what it changes, in SI."""
 
     row: int
@@ -40,7 +40,7 @@ class Case:
 class CasesFile:
     """The cases of a file, and how many rows it holds."""
 
-    cases: tuple[Case, ...]
+    cases: tuple[StatedCase, ...]
     count: RowCount
 
 
@@ -114,7 +114,7 @@ def read_cases(path: Path | TableText, offer: Offer, setup: Setup) -> CasesFile:
         elif name in NAMES:
             names = [cell or name for cell, name in zip(column, names, strict=True)]
     cases = [
-        Case(row, line, name or f"{row}", changes, str(path))
+        StatedCase(row, line, name or f"{row}", changes, str(path))
         for row, (line, name, changes) in enumerate(zip(table.lines, names, values, strict=True), start=1)
     ]
     return CasesFile(tuple(cases), table.count)
