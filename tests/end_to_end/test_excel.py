@@ -17,7 +17,8 @@ from hypothesis import settings as drawing
 from hypothesis import strategies as st
 
 from shared import Calc
-from truing.measurements import EXCEL, read_table, write_table
+from truing.atomic import write_files
+from truing.measurements import EXCEL, read_table, table_text
 from truing.units import from_si
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
@@ -85,7 +86,7 @@ FORMULAS = st.builds(str.__add__, st.sampled_from(["=", "＝", "'=", "''+", "-",
 def test_anything_reads_back_as_it_was(tmp_path_factory: pytest.TempPathFactory, rows: list[tuple[str, float]]) -> None:
     path = tmp_path_factory.getbasetemp() / "sheet.csv"
     words, numbers = (list(column) for column in zip(*rows, strict=True))
-    write_table(path, ["run", "x [mm]"], [words, numbers], form=EXCEL)
+    write_files({path: table_text(["run", "x [mm]"], [words, numbers], form=EXCEL)})
     found, _ = read_table(path, {})
     assert found.columns["run"] == tuple(re.sub(r"[\r\n]+", " ", word).strip() for word in words)
     read = from_si(found.columns["x"], "mm")
@@ -98,7 +99,7 @@ def test_anything_reads_back_as_it_was(tmp_path_factory: pytest.TempPathFactory,
 
 def test_a_single_column_keeps_its_commas(tmp_path: Path) -> None:
     values = [0.5, 1 / 3, -2e-7]
-    write_table(tmp_path / "one.csv", ["x"], [values], form=EXCEL)
+    write_files({tmp_path / "one.csv": table_text(["x"], [values], form=EXCEL)})
     assert list(read_table(tmp_path / "one.csv", {})[0].columns["x"]) == values
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Protocol
@@ -14,8 +14,8 @@ import numpy as np
 from truing.api.notebook import heading, html_table, joined, paragraphs
 from truing.api.tables import frame_of, frame_text
 from truing.declare.near_miss import near_miss
-from truing.diagnosis.data_file import DataRows, read_data_file
-from truing.errors import Fault, InputError, UsageError
+from truing.diagnosis.data_file import DataRows, read_data_files
+from truing.errors import InputError, UsageError
 from truing.kernel import Offer
 from truing.measurements import read_table
 from truing.numbers import counted, format_number
@@ -117,17 +117,11 @@ def record(
 
 
 def _known(paths: tuple[Path, ...], model: HasOffer, folder: TemporaryDirectory[str] | None = None) -> MeasuredRecord:
-    faults: list[Fault] = []
-    files: list[DataRows] = []
-    for path in paths:
-        try:
-            rows, found = read_data_file(path, model.offer)
-            found.raise_any()
-            files.append(rows)
-        except InputError as error:
-            faults += [Fault(each.message, path.stem if folder else each.file, each.line) for each in error.faults]
-    if faults:
-        raise InputError(faults)
+    try:
+        files = read_data_files(paths, model.offer)
+    except InputError as error:
+        named = {str(path): path.stem for path in paths} if folder else {}
+        raise InputError([replace(fault, file=named.get(fault.file, fault.file)) for fault in error.faults]) from None
     columns = tuple(tuple(_columns(file)) for file in files)
     for text in dict.fromkeys(text for each in columns for text in _misspelt(each, model)):
         warnings.warn(text, stacklevel=4)

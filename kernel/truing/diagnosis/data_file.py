@@ -14,7 +14,7 @@ from truing.arrays import Indices, Mask, Matrix
 from truing.declare.fields import Axis
 from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
-from truing.errors import UnitError
+from truing.errors import Fault, InputError, UnitError
 from truing.gauge import axis_of
 from truing.kernel import Offer
 from truing.measurements.csv_text import Faults
@@ -83,11 +83,21 @@ class DataRows:
         return replace(self.taken(~rows), counts=counts)
 
 
-def read_data_file(path: Path, offer: Offer) -> tuple[DataRows, Faults]:
-    """Read one file for this calculation, with the faults of its headers, cells and bounds.
+def read_data_files(paths: Iterable[Path], offer: Offer) -> list[DataRows]:
+    """Read files for this calculation. Raises InputError with every fault of every file: headers, cells, bounds."""
+    faults: list[Fault] = []
+    files: list[DataRows] = []
+    for path in paths:
+        try:
+            files.append(_read(path, offer))
+        except InputError as error:
+            faults += error.faults
+    if faults:
+        raise InputError(faults)
+    return files
 
-    Raises InputError where the file cannot be read at all.
-    """
+
+def _read(path: Path, offer: Offer) -> DataRows:
     model = offer.model
     table, faults = read_table(path, _known(model))
     columns: dict[str, NDArray[Any]] = {}
@@ -101,8 +111,9 @@ def read_data_file(path: Path, offer: Offer) -> tuple[DataRows, Faults]:
         faults.add(sentence, table.header_line)
     if not set(table.units) & set(model.measurable):
         faults.add(_nothing_measured(table, model), table.header_line)
+    faults.raise_any()
     runs = table.columns.get(RUN, ()) if RUN not in model.input_fields else ()
-    rows = DataRows(
+    return DataRows(
         files=(str(path),),
         columns=columns,
         parts=parts,
@@ -113,7 +124,6 @@ def read_data_file(path: Path, offer: Offer) -> tuple[DataRows, Faults]:
         held_out=np.zeros(len(table), dtype=bool),
         counts=(table.count,),
     )
-    return rows, faults
 
 
 def objects(values: Iterable[Any]) -> NDArray[Any]:

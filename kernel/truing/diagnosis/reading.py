@@ -10,7 +10,7 @@ import numpy as np
 
 from truing.arrays import Matrix
 from truing.diagnosis.covariates import censored_rows, covariates_of, held_out_rows
-from truing.diagnosis.data_file import DataRows, objects, read_data_file
+from truing.diagnosis.data_file import DataRows, objects, read_data_files
 from truing.diagnosis.joining import complete_rows, join, measured_rows, rows_of, settle_conditions
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.tidying import numbered, tidy
@@ -70,16 +70,10 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_unit
 
 def _read(paths: Sequence[Path], offer: Offer) -> list[DataRows]:
     """Read every file and put its rows in order, runs of several told apart; raises InputError with all faults."""
-    faults: list[Fault] = []
-    files: list[DataRows] = []
     once = {path.resolve(): path for path in reversed(paths)}
-    for path in reversed(once.values()):
-        try:
-            file, found = read_data_file(path, offer)
-            found.raise_any()
-        except InputError as error:
-            faults += error.faults
-            continue
+    named = list(reversed(once.values()))
+    files: list[DataRows] = []
+    for path, file in zip(named, read_data_files(named, offer), strict=True):
         file = tidy(file, offer.model)
         if len(once) > 1:
             runs = objects(f"{path}: {run}" if run else str(path) for run in file.runs.tolist())
@@ -88,8 +82,6 @@ def _read(paths: Sequence[Path], offer: Offer) -> list[DataRows]:
             twice = f"{counted(len(paths) - len(once), 'file is', 'files are')} given twice and read once"
             file = replace(file, notes=(twice, *file.notes))
         files.append(file)
-    if faults:
-        raise InputError(faults)
     return files
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from truing.measurements.csv_text import TableText
 from truing.measurements.overriding import CasesFile, RowsFile, StatedCase, read_cases, read_rows
 from truing.measurements.row_count import LeftOut, RowCount
-from truing.measurements.table import EXCEL, PLAIN, DataTable, TableStyle, read_table, table_text, write_table
+from truing.measurements.table import EXCEL, PLAIN, DataTable, TableStyle, read_table, table_text
 
 __all__ = [
     "EXCEL",
@@ -22,5 +22,4 @@ __all__ = [
     "read_rows",
     "read_table",
     "table_text",
-    "write_table",
 ]  # fmt: skip

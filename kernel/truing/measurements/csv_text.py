@@ -42,11 +42,10 @@ class RowError(ValueError):
 
 @dataclass(frozen=True)
 class Header:
-    """One cell of the header: a name, its unit (None where none is written) and its place in the row."""
+    """One cell of the header: a name, its unit (None where none is written), and the text of both."""
 
     name: str
     unit: str | None
-    place: int
     text: str
 
 
@@ -314,7 +313,7 @@ def _headers(cells: list[str], line: int, faults: Faults) -> tuple[Header, ...]:
         elif name in seen:
             faults.add(f"the column {shown(name)} occurs twice", line)
         seen.add(name or "")
-        headers.append(Header(name or "", unit, index, text))
+        headers.append(Header(name or "", unit, text))
     return tuple(headers)
 
 

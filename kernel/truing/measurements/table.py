@@ -9,12 +9,11 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass, field
 from io import StringIO
 from pathlib import Path
-from typing import Any, TextIO, TypeGuard
+from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
 
-from truing.atomic import write_files
 from truing.declare.fields import InputField
 from truing.errors import UnitError
 from truing.inputs_file.values import InputsRead, broken_bound, read_input
@@ -344,7 +343,7 @@ def read_word(item: InputField, cell: str, *, decimal_comma: bool) -> Any:
     return read_input(item, raw, InputsRead(Path()))
 
 
-# Tables to files: numbers that read back exactly, a file that is complete or absent
+# Tables to text: numbers that read back exactly
 
 
 @dataclass(frozen=True)
@@ -363,30 +362,15 @@ EXCEL = TableStyle(MARK, ";", ",", "\r\n", is_guarded=True)
 """What a spreadsheet with a decimal comma opens by a double click."""
 
 
-def write_table(
-    target: Path | TextIO, headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form: TableStyle = PLAIN
-) -> None:
-    """Write columns under headers such as "depth [um]"; the numbers are in these units already.
+def table_text(headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form: TableStyle = PLAIN) -> str:
+    """Return columns under headers such as "depth [um]" as the text of a file; the numbers are in these units already.
 
     Numbers are written so that they read back exactly (at most 17 digits), NaN and None as empty cells; words stay as
-    they are, line ends in them become blanks. A file is written whole or not at all. Raises OutputError.
+    they are, line ends in them become blanks.
     """
-    if isinstance(target, Path):
-        write_files({target: table_text(headers, columns, form=form)})
-    else:
-        _write(target, headers, columns, form)
-
-
-def table_text(headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form: TableStyle = PLAIN) -> str:
-    """Return a table as the text of its file."""
-    stream = StringIO(newline="")
-    _write(stream, headers, columns, form)
-    return stream.getvalue()
-
-
-def _write(stream: TextIO, headers: Sequence[str], columns: Sequence[Iterable[Any]], form: TableStyle) -> None:
     if len(headers) != len(columns):
         raise ValueError(f"{len(headers)} headers for {len(columns)} columns")
+    stream = StringIO(newline="")
     stream.write(form.mark)
     minimal, everything = (
         csv.writer(stream, delimiter=form.delimiter, lineterminator=form.line_end, quoting=quoting)
@@ -396,6 +380,7 @@ def _write(stream: TextIO, headers: Sequence[str], columns: Sequence[Iterable[An
     for row in _rows(headers, columns, form):
         # a line that begins with # would be a comment; a column alone must show what parts the cells
         (everything if row and row[0].lstrip().startswith("#") else minimal).writerow(row + alone)
+    return stream.getvalue()
 
 
 def _rows(headers: Sequence[str], columns: Sequence[Iterable[Any]], form: TableStyle) -> Iterator[list[str]]:
