@@ -342,6 +342,16 @@ def test_faults_of_cases(table: Write) -> None:
     ]
 
 
+def test_a_wrong_unit_does_not_hide_the_cells_below_it(table: Write) -> None:
+    path = table("load [m],rate\nx,1\n1,y\n")
+    for read in (read_cases, read_rows):
+        assert faults(lambda: read(path, PIN_OFFER, pin_setup())) == [  # noqa: B023
+            "1: column 'load [m]': 'm' is a length (m), expected a force (N)",
+            "2: load: 'x' is no number",
+            "3: rate: 'y' is no number",
+        ]
+
+
 # Rows of a virtual measurement
 
 
