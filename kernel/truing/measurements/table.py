@@ -198,12 +198,14 @@ class _Numbers(_Column):
         self, values: NDArray[np.float64], cells: Sequence[str], lines: Sequence[int], faults: Faults
     ) -> NDArray[np.float64]:
         """Bring numbers to SI; one that cannot be one of the declared unit there is a fault."""
-        unit, declared = self.header.unit or "", self.declared
+        unit = self.header.unit or ""
+        if unit in PURE:
+            return values
         with np.errstate(over="ignore"):
             made = in_si(values, unit)
         odd = np.isfinite(values) & (~np.isfinite(made) | (made < 0) | ((made == 0) & (values != 0)))
         for row in np.flatnonzero(odd).tolist():
-            if fault := si_fault(float(values[row]), float(made[row]), declared or ""):
+            if fault := si_fault(float(values[row]), float(made[row]), self.declared or ""):
                 written = f"{cells[row].strip()} {unit}"
                 faults.add(f"{self.header.name}: {shown(written)} {fault}", lines[row])
         return made
@@ -234,9 +236,9 @@ class _Words(_Column):
 
     def take(self, cells: Sequence[str], lines: Sequence[int], file: CsvFile) -> None:
         """Take cells: each is one of the values that the input may have, or empty."""
+        if self.fault:
+            return
         for cell, line in zip(map(str.strip, cells), lines, strict=True):
-            if self.fault:
-                return
             try:
                 if cell not in self.read:
                     self.read[cell] = read_word(self.item, cell, decimal_comma=file.decimal_comma)
