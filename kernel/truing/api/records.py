@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, Protocol
 
 import numpy as np
@@ -15,9 +14,9 @@ from truing.api.notebook import heading, html_table, joined, paragraphs
 from truing.api.tables import frame_of, frame_text
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.data_file import DataRows, read_data_files
-from truing.errors import InputError, UsageError
+from truing.errors import UsageError
 from truing.kernel import Offer
-from truing.measurements import read_table
+from truing.measurements import TableSource, read_table
 from truing.numbers import counted, format_number
 from truing.units import from_si, unit_text
 from truing.units.grammar import shown
@@ -54,13 +53,12 @@ class RecordColumn:
 
 @dataclass(frozen=True)
 class MeasuredRecord:
-    """Measured rows of one machine: one file, or several. A dataframe stands in a file that goes with the record.
+    """Measured rows of one machine: one file, or several, or a dataframe.
 
     ``rows`` counts them; ``columns`` holds, file by file, what each column is to the model.
     """
 
-    files: tuple[Path, ...]
-    folder: TemporaryDirectory[str] | None = field(default=None, compare=False)
+    files: tuple[TableSource, ...]
     rows: int = 0
     columns: tuple[tuple[RecordColumn, ...], ...] = ()
 
@@ -110,22 +108,15 @@ def record(
     """
     if Path(name).name != name or not name:
         raise UsageError(f"'{name}' is no name for a record; write a word without a folder")
-    folder = TemporaryDirectory()
-    path = Path(folder.name) / f"{name}.csv"
-    path.write_text(frame_text(frame, units or {}, gaps=True).text, encoding="utf-8", newline="")
-    return _known((path,), model, folder)
+    return _known((frame_text(frame, units or {}, gaps=True, name=name),), model)
 
 
-def _known(paths: tuple[Path, ...], model: HasOffer, folder: TemporaryDirectory[str] | None = None) -> MeasuredRecord:
-    try:
-        files = read_data_files(paths, model.offer)
-    except InputError as error:
-        named = {str(path): path.stem for path in paths} if folder else {}
-        raise InputError([replace(fault, file=named.get(fault.file, fault.file)) for fault in error.faults]) from None
+def _known(sources: tuple[TableSource, ...], model: HasOffer) -> MeasuredRecord:
+    files = read_data_files(sources, model.offer)
     columns = tuple(tuple(_columns(file)) for file in files)
     for text in dict.fromkeys(text for each in columns for text in _misspelt(each, model)):
         warnings.warn(text, stacklevel=4)
-    return MeasuredRecord(paths, folder, sum(map(len, files)), columns)
+    return MeasuredRecord(sources, sum(map(len, files)), columns)
 
 
 def _misspelt(columns: tuple[RecordColumn, ...], model: HasOffer) -> Iterator[str]:

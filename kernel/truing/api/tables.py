@@ -43,7 +43,7 @@ def name_in(header: str) -> str:
     return header.partition("[")[0].strip()
 
 
-def frame_text(frame: Any, units: Mapping[str, str], *, gaps: bool = False) -> TableText:
+def frame_text(frame: Any, units: Mapping[str, str], *, gaps: bool = False, name: str = LABEL) -> TableText:
     """Return a dataframe as the text that the readers of files read.
 
     A column is named "load [N]", or "load" with its unit in ``units``. With ``gaps`` NaN is an empty cell; without,
@@ -61,7 +61,7 @@ def frame_text(frame: Any, units: Mapping[str, str], *, gaps: bool = False) -> T
     if empty or not len(table):
         raise UsageError(f"row {empty} of the dataframe holds nothing" if empty else "the dataframe holds no rows")
     headers = [f"{name} [{units[name]}]" if name in units else name for name in names]
-    return TableText(LABEL, table_text(headers, columns))
+    return TableText(name, table_text(headers, columns))
 
 
 def _table(frame: Any) -> Any:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -17,7 +16,7 @@ from truing.declare.near_miss import near_miss
 from truing.errors import Fault, InputError, UnitError
 from truing.gauge import axis_of
 from truing.kernel import Offer
-from truing.measurements.csv_text import Faults
+from truing.measurements.csv_text import Faults, TableSource
 from truing.measurements.row_count import RowCount
 from truing.measurements.table import RUN, SIGMA, WORDS, DataTable, Known, is_number, read_table
 from truing.units import check_unit
@@ -83,7 +82,7 @@ class DataRows:
         return replace(self.taken(~rows), counts=counts)
 
 
-def read_data_files(paths: Iterable[Path], offer: Offer) -> list[DataRows]:
+def read_data_files(paths: Iterable[TableSource], offer: Offer) -> list[DataRows]:
     """Read files for this calculation. Raises InputError with every fault of every file: headers, cells, bounds."""
     faults: list[Fault] = []
     files: list[DataRows] = []
@@ -97,7 +96,7 @@ def read_data_files(paths: Iterable[Path], offer: Offer) -> list[DataRows]:
     return files
 
 
-def _read(path: Path, offer: Offer) -> DataRows:
+def _read(path: TableSource, offer: Offer) -> DataRows:
     model = offer.model
     table, faults = read_table(path, _known(model))
     columns: dict[str, NDArray[Any]] = {}

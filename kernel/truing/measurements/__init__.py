@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from truing.measurements.csv_text import TableText
+from truing.measurements.csv_text import TableSource, TableText
 from truing.measurements.overriding import CasesFile, RowsFile, StatedCase, read_cases, read_rows
 from truing.measurements.row_count import LeftOut, RowCount
 from truing.measurements.table import EXCEL, PLAIN, DataTable, TableStyle, read_table, table_text
@@ -16,6 +16,7 @@ __all__ = [
     "RowCount",
     "RowsFile",
     "StatedCase",
+    "TableSource",
     "TableStyle",
     "TableText",
     "read_cases",

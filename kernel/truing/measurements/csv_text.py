@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import lru_cache
+from hashlib import sha256
 from io import StringIO
 from itertools import chain
 from pathlib import Path
@@ -208,15 +209,23 @@ def _like_a_row(row: list[str]) -> str:
 class TableText:
     """A table that stands in no file, and what sentences call it."""
 
-    label: str
+    name: str
     text: str
 
     def __str__(self) -> str:
-        return self.label
+        return self.name
+
+    @property
+    def digest(self) -> str:
+        """The SHA-256 of the text."""
+        return sha256(self.text.encode()).hexdigest()
+
+
+TableSource = Path | TableText
 
 
 @contextmanager
-def opened(path: Path | TableText) -> Iterator[CsvFile]:
+def opened(path: TableSource) -> Iterator[CsvFile]:
     """Open a table. Raises InputError where it cannot be one, or has no header."""
     instead = "the first line of a table holds the names, with units such as 'load [N]'"
     if isinstance(path, TableText):
@@ -243,7 +252,7 @@ def _foreign_line(path: Path) -> int:
     return 1
 
 
-def _table(path: Path | TableText, stream: TextIO, instead: str) -> CsvFile:
+def _table(path: TableSource, stream: TextIO, instead: str) -> CsvFile:
     faults = Faults(str(path))
     beginning = stream.readline()
     lines = _lines(chain([beginning.removeprefix(MARK)], stream), faults)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,7 @@ from truing.declare.fields import Axis
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import SINCE_START
 from truing.kernel import Offer
-from truing.measurements.csv_text import Header, TableText
+from truing.measurements.csv_text import Header, TableSource
 from truing.measurements.derived import TIME, histories
 from truing.measurements.row_count import UNCOUNTED, RowCount
 from truing.measurements.table import RUN, Known, Source, is_number, read_table
@@ -92,7 +91,7 @@ class RowsFile:
         )
 
 
-def read_cases(path: Path | TableText, offer: Offer, setup: Setup) -> CasesFile:
+def read_cases(path: TableSource, offer: Offer, setup: Setup) -> CasesFile:
     """Read cases: every row overrides inputs and conditions; an empty cell keeps what the inputs file says.
 
     A column ``case`` or ``name`` names the cases; ``note`` may hold remarks. Raises InputError with every fault.
@@ -132,7 +131,7 @@ def _known(setup: Setup) -> dict[str, Known]:
     return {**{name: setup.unit_of(name) for name in setup.conditions}, **setup.model.input_fields}
 
 
-def read_rows(path: Path | TableText, offer: Offer, setup: Setup) -> RowsFile:
+def read_rows(path: TableSource, offer: Offer, setup: Setup) -> RowsFile:
     """Read the rows of a virtual measurement; columns that are no input and no condition are kept as written.
 
     Conditions that are history are made from these rows (``derived``); those of the kernel are known where an effect

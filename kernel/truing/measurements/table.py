@@ -18,7 +18,7 @@ from truing.declare.fields import InputField
 from truing.errors import UnitError
 from truing.inputs_file.values import InputsRead, broken_bound, read_input
 from truing.measurements.cells import EITHER, MARK, guarded, plain_numbers, read_cell
-from truing.measurements.csv_text import CsvFile, Faults, Header, TableText, opened
+from truing.measurements.csv_text import CsvFile, Faults, Header, TableSource, opened
 from truing.measurements.row_count import UNCOUNTED, RowCount
 from truing.units import demand_dimension, difference_unit, human_dimension, si_fault, to_si
 from truing.units.grammar import shown
@@ -69,7 +69,7 @@ class DataTable:
 
 
 def read_table(
-    path: Path | TableText,
+    path: TableSource,
     known: Mapping[str, Known],
     *,
     is_measured: bool = True,

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from truing.diagnosis.result import DiagnosisResult
-from truing.inputs_file.files import digest_of
 from truing.runs.diagnosis_document import diagnosis_document, file_labels
 from truing.runs.extension import extended_text
 from truing.runs.folder import npz_bytes, write_outcome
@@ -30,7 +29,7 @@ def write_diagnosis(
     replaced whole if it is a diagnosis of ours. Raises OutputError where it is not, or where nothing can be written.
     """
     document = diagnosis_document(diagnosis)
-    data = {"data": {file: digest_of(Path(file)) for file in diagnosis.records.files}}
+    data = {"data": dict(diagnosis.records.digests)}
     extension = {"extended.toml": extended_text(diagnosis, folder), "new_effect.py": new_effect_source(diagnosis)}
     files = {"arrays.npz": npz_bytes(curve_arrays(diagnosis)), **sheets}
     files |= {name: text for name, text in extension.items() if text}
@@ -41,8 +40,9 @@ def write_diagnosis(
 
 def data_digests(diagnosis: DiagnosisResult) -> dict[str, str]:
     """Return the SHA-256 of every data file by the name it is given on the sheet."""
-    files = diagnosis.records.files
-    return {label: digest_of(Path(file)) for label, file in zip(file_labels(files), files, strict=True)}
+    records = diagnosis.records
+    labels = zip(file_labels(records.files), records.files, strict=True)
+    return {label: records.digests.get(file, "") for label, file in labels}
 
 
 def curve_arrays(diagnosis: DiagnosisResult) -> dict[str, Any]:
