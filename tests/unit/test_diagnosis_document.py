@@ -48,7 +48,7 @@ from truing.kernel.loading import load_file
 from truing.runs.diagnosis_document import diagnosis_document, file_labels
 from truing.runs.diagnosis_folder import write_diagnosis
 from truing.runs.extension import extended_setup, extended_text
-from truing.runs.folder import demand_place, is_ours, is_run, json_text, write_folder
+from truing.runs.folder import demand_place, is_ours, json_text, write_folder
 from truing.runs.new_effect import code_name, new_effect_source, safe_expression
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup, SwitchedOn, default_setup
@@ -412,7 +412,7 @@ def test_the_folder_holds_what_the_verdict_gives(sample: str, more: set[str], tm
     text = (tmp_path / "runs" / "x" / "diagnosis.json").read_text(encoding="utf-8")
     assert json.loads(text) == json.loads(json_text(document))
     assert is_ours(tmp_path / "runs" / "x", "diagnosis")
-    assert not is_run(tmp_path / "runs" / "x")
+    assert not is_ours(tmp_path / "runs" / "x", "run")
 
 
 def test_the_arrays_hold_the_curves_in_printed_units(tmp_path: Path) -> None:
