@@ -12,41 +12,13 @@ from pathlib import Path
 
 import pytest
 from block import write_block
+from refusals import listing, sentences
 
-from shared import Answer, Calc
+from shared import Calc
 
 DATA = Path(__file__).parents[1] / "data"
 PIN = DATA / "pin_wear.py"
-
 Refused = Callable[..., list[str]]
-
-
-def listing(folder: Path) -> list[tuple[str, int]]:
-    """Return everything below a folder, with its size."""
-    return sorted((str(path.relative_to(folder)), path.lstat().st_size) for path in folder.rglob("*"))
-
-
-@pytest.fixture
-def refused(calc: Calc, tmp_path: Path) -> Refused:
-    """Run ``calc``, which must end with exit code 2, leave the folder as it was and print no result."""
-
-    def run(*arguments: str | Path) -> list[str]:
-        before = listing(tmp_path)
-        answer = calc(*arguments)
-        assert listing(tmp_path) == before
-        return sentences(answer)
-
-    return run
-
-
-def sentences(answer: Answer) -> list[str]:
-    """Return what was said of a refusal, line by line."""
-    assert answer.code == 2, answer
-    assert answer.out == ""
-    assert "Traceback" not in answer.err
-    lines = answer.err.rstrip("\n").split("\n")
-    assert all(line.strip() for line in lines)
-    return lines
 
 
 def faults(refused: Refused, folder: Path, text: str | bytes, *more: str | Path, name: str = "press.toml") -> list[str]:

@@ -8,6 +8,7 @@ import json
 from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ import pytest
 
 from harmonic_fractal.structure import structure_function
 from shared import Calc
+from truing.cli import main
 
 SURFACES = Path(__file__).parents[1] / "data" / "surfaces"
 OPTIONS = {"matrix-4.txt": 'spacing = "0.369862 um", height_unit = "2.91818e-8 m"'}
@@ -35,8 +37,6 @@ class Ran:
 
 def ran(folder: Path, *words: str | Path) -> Ran:
     """Run a command in this process and read its folder."""
-    from truing.cli import main
-
     said = io.StringIO()
     with redirect_stdout(said), redirect_stderr(said):
         code = main([*map(str, words), "-o", str(folder), "-q"])
@@ -56,8 +56,6 @@ def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def example(desk: Path) -> Ran:
     """The shipped example, with fewer draws."""
-    from truing.cli import main
-
     assert main(["init", "harmonic_fractal", "-o", str(desk / "drive.toml"), "-q"]) == 0
     few = ("--set", "studies.reliability.draws=2000")
     return ran(desk / "example", "run", "harmonic_fractal", "--inputs", desk / "drive.toml", *few)
@@ -226,41 +224,18 @@ def test_a_roughness_without_its_convention_is_refused(calc: Calc, tmp_path: Pat
     assert [path.name for path in tmp_path.iterdir()] == ["drive.toml"]
 
 
-@pytest.mark.parametrize(("convention", "areal"), [("areal", 1.0), ("one_direction", 1.891), ("profile", 5.844)])
-def test_every_convention_arrives_as_the_areal_one(calc: Calc, tmp_path: Path, convention: str, areal: float) -> None:
-    """At D_s = 1.4 and density 1.5, by hand from the constants."""
-    (tmp_path / "drive.toml").write_text(
-        'plugin = "harmonic_fractal"\n[inputs]\nfractal_dimension = 2.4\nfractal_roughness = "1e-12 m"\n'
-        f'convention = "{convention}"\n'
-    )
-    (tmp_path / "rows.csv").write_text("torque [N*m]\n10\n")
-    answer = calc("table", "harmonic_fractal", "--inputs", "drive.toml", "--rows", "rows.csv")
-    (row,) = rows_of(answer.out)
-    assert row["roughness"] == pytest.approx(areal * 1e-12, rel=1e-3)
-
-
-def rows_of(text: str) -> list[dict[str, float]]:
-    head, *found = csv.reader(io.StringIO(text))
-    names = [name.split(" [")[0] for name in head]
-    return [
-        {name: float(cell) for name, cell in zip(names, row, strict=True) if cell and cell[0] in "-.0123456789"}
-        for row in found
-    ]
-
-
 @pytest.fixture
-def table(calc: Calc, tmp_path: Path) -> Table:
-    """Print results row by row for a CSV, with settings on the command line."""
+def table(tabled: Table) -> Table:
+    """Print results of the plugin row by row for a CSV of inputs."""
+    return partial(tabled, "harmonic_fractal")
 
-    def run(rows: str, *settings: str) -> list[dict[str, float]]:
-        (tmp_path / "drive.toml").write_text('plugin = "harmonic_fractal"\n')
-        (tmp_path / "rows.csv").write_text(rows)
-        words = [word for setting in settings for word in ("--set", setting)]
-        answer = calc("table", "harmonic_fractal", "--inputs", "drive.toml", "--rows", "rows.csv", *words)
-        assert answer.code == 0, answer.err
-        return rows_of(answer.out)
 
-    return run
+@pytest.mark.parametrize(("convention", "areal"), [("areal", 1.0), ("one_direction", 1.891), ("profile", 5.844)])
+def test_every_convention_arrives_as_the_areal_one(table: Table, convention: str, areal: float) -> None:
+    """At D_s = 1.4 and density 1.5, by hand from the constants."""
+    rough = ("fractal_dimension=2.4", "fractal_roughness=1e-12 m", f"convention={convention}")
+    (row,) = table("torque [N*m]\n10\n", *rough)
+    assert row["roughness"] == pytest.approx(areal * 1e-12, rel=1e-3)
 
 
 def test_a_column_of_lags_is_calculated_just_there(table: Table) -> None:
@@ -297,8 +272,6 @@ def test_a_load_below_the_plastic_limit_has_no_stiffness_and_says_so(calc: Calc,
 @pytest.fixture(scope="module")
 def diagnosed(desk: Path) -> tuple[int, dict[str, Any]]:
     """A structure function with 12 nm of white noise in every height, measured at lags of its own."""
-    from truing.cli import main
-
     rng = np.random.default_rng(11)
     lags = np.geomspace(0.4, 20.0, 40)
     clean = structure_function(lags * 1e-6, 1.4, 1e-11) * 1e12
@@ -325,26 +298,6 @@ def test_noise_of_the_instrument_is_named_from_its_structure_function(diagnosed:
     low, high = unknown["interval95"]
     assert low <= true <= high
     assert unknown["value"] == pytest.approx(true, rel=0.03)
-
-
-def test_describe_names_what_is_declared(calc: Calc) -> None:
-    answer = calc("describe", "harmonic_fractal", "--json")
-    assert answer.code == 0
-    found = json.loads(answer.out)
-    inputs, results, effects = ({item["name"] for item in found[kind]} for kind in ("inputs", "results", "effects"))
-    assert {
-        "surface", "mating_surface", "fractal_dimension", "fractal_roughness", "convention", "drive_compliance",
-        "critical_rule", "tip_rule", "catalogue_size",
-    } <= inputs  # fmt: skip
-    assert {
-        "lag", "structure_function", "dimension", "roughness", "stiffness", "mesh_stiffness", "torsion", "clearance",
-        "closing_clearance", "free_play", "resolved_share", "rough_share", "surface_accepted",
-    } <= results  # fmt: skip
-    assert {
-        "hysteresis", "series_compliance", "ellipticity", "eccentricity", "engaged_pairs", "lost_motion", "oil_film",
-        "viscous_hysteresis", "first_load_set", "asperity_smoothing", "flank_wear", "modulus_temperature",
-        "thermal_preload", "creep", "rig_drift", "waviness", "instrument_noise", "lateral_filter",
-    } == effects  # fmt: skip
 
 
 def test_verify_states_every_row_as_it_is(calc: Calc) -> None:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -32,20 +31,9 @@ def example(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, A
 
 
 @pytest.fixture
-def table(calc: Calc, tmp_path: Path) -> Table:
-    """Print results row by row for a CSV of inputs, with settings on the command line."""
-
-    def run(rows: str, *settings: str) -> list[dict[str, float]]:
-        (tmp_path / "screw.toml").write_text('plugin = "roller_screw_shift"\n')
-        (tmp_path / "rows.csv").write_text(rows)
-        words = [word for setting in settings for word in ("--set", setting)]
-        answer = calc("table", "roller_screw_shift", "--inputs", "screw.toml", "--rows", "rows.csv", *words)
-        assert answer.code == 0, answer.err
-        head, *found = csv.reader(io.StringIO(answer.out))
-        names = [name.split(" [")[0] for name in head]
-        return [dict(zip(names, map(float, row), strict=True)) for row in found]
-
-    return run
+def table(tabled: Table) -> Table:
+    """Print results of the plugin row by row for a CSV of inputs."""
+    return partial(tabled, "roller_screw_shift")
 
 
 def shifted(*settings: str) -> Calculation:
@@ -176,23 +164,6 @@ def test_a_neutral_factor_acts_on_its_stress_alone(table: Table) -> None:
     assert shared["root_stress_roller"] == pytest.approx(1.25 * plain["root_stress_roller"])
     for changed in (soft, shared):
         assert changed["stress_difference"] == pytest.approx(plain["stress_difference"], rel=ROUNDING)
-
-
-def test_describe_names_what_is_declared(calc: Calc) -> None:
-    answer = calc("describe", "roller_screw_shift", "--json")
-    assert answer.code == 0
-    found = json.loads(answer.out)
-    inputs, results, effects = ({item["name"] for item in found[kind]} for kind in ("inputs", "results", "effects"))
-    assert {"roller_teeth", "ring_teeth", "roller_shift", "axial_load", "centre_distance", "weights"} <= inputs
-    assert {
-        "root_stress_roller", "root_stress_ring", "transmission_error", "wear_depth", "axial_shift", "friction_torque",
-        "backlash", "ring_shift", "shift_sum", "margin_undercut",
-    } <= results  # fmt: skip
-    assert {
-        "face_misalignment", "mesh_resonance", "roller_load_sharing", "thermal_centre_distance", "rim_compliance",
-        "roller_runout", "carrier_runout", "interrupted_tooth", "flank_wear", "mesh_friction", "axial_migration",
-    } <= effects  # fmt: skip
-    assert {"shift", "optimise"} <= set(found["studies"])
 
 
 def test_verify_prints_every_row_with_its_verdict(calc: Calc) -> None:

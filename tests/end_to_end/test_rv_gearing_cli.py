@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -38,20 +37,9 @@ def value(found: dict[str, Any], name: str) -> Any:
 
 
 @pytest.fixture
-def table(calc: Calc, tmp_path: Path) -> Table:
-    """Print results row by row for a CSV of inputs, with settings on the command line; far quicker than a sheet."""
-
-    def run(rows: str, *settings: str) -> list[dict[str, float]]:
-        (tmp_path / "gearing.toml").write_text('plugin = "rv_gearing"\n')
-        (tmp_path / "rows.csv").write_text(rows)
-        words = [word for setting in settings for word in ("--set", setting)]
-        answer = calc("table", "rv_gearing", "--inputs", "gearing.toml", "--rows", "rows.csv", *words)
-        assert answer.code == 0, answer.err
-        head, *found = csv.reader(io.StringIO(answer.out))
-        names = [name.split(" [")[0] for name in head]
-        return [dict(zip(names, map(float, row), strict=True)) for row in found]
-
-    return run
+def table(tabled: Table) -> Table:
+    """Print results of the plugin row by row for a CSV of inputs."""
+    return partial(tabled, "rv_gearing")
 
 
 def test_the_example_has_the_published_set_up_and_its_reference_stresses(example: tuple[Path, dict[str, Any]]) -> None:
@@ -202,27 +190,6 @@ def test_a_table_over_torques_of_both_signs(table: Table) -> None:
     for row in (back, idle, forth):
         assert row["transmission_error"] == 0
         assert row["flank_temperature"] == pytest.approx(40)
-
-
-def test_describe_names_what_is_declared(calc: Calc) -> None:
-    answer = calc("describe", "rv_gearing", "--json")
-    assert answer.code == 0
-    found = json.loads(answer.out)
-    inputs, results, effects = ({item["name"] for item in found[kind]} for kind in ("inputs", "results", "effects"))
-    assert {
-        "power", "output_speed", "target_ratio", "sun_teeth", "planet_teeth", "pin_teeth", "group", "load_torque",
-        "input_speed", "application_factor", "stated_dynamic_factor", "stated_form_factor_sun",
-    } <= inputs  # fmt: skip
-    assert {
-        "root_stress_sun", "root_stress_planet", "contact_stress", "transmission_error", "efficiency",
-        "flank_temperature", "backlash", "root_stress_outer_sun",
-    } <= results  # fmt: skip
-    assert {
-        "face_misalignment", "structural_resonance", "planet_load_sharing", "centre_distance_growth", "sun_runout",
-        "planet_runout", "mesh_ripple", "output_eccentricity", "speed_dependent_loss", "flash_temperature", "wind_up",
-        "lost_motion", "crowned_contact", "wear_drift", "ratio_drift", "mesh_stiffening", "relief_error",
-    } <= effects  # fmt: skip
-    assert {"search", "sensitivity", "reliability"} <= set(found["studies"])
 
 
 def test_verify_prints_every_row_with_its_verdict(calc: Calc) -> None:

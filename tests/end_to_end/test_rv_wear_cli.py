@@ -126,18 +126,6 @@ def test_a_table_of_working_times(calc: Calc, tmp_path: Path) -> None:
     assert [float(row[place]) for row in rows] == pytest.approx(list(reference.values()), abs=1.1e-3)
 
 
-def test_describe_names_inputs_results_errors_and_goals(calc: Calc) -> None:
-    answer = calc("describe", "rv_wear", "--json")
-    assert answer.code == 0
-    for name in (
-        "output_torque", "output_speed", "working_time", "equidistant_modification", "shift_modification",
-        "pin_circle_radius", "pin_radius", "eccentricity", "pin_count", "disc_width", "composite_roughness",
-        "pressure_viscosity", "max_force", "max_wear", "backlash", "normal_force", "wear_depth", "wear_history",
-        "accuracy_reliability", "manufacturing_cost", "tolerance_price", "modification_error",
-    ):  # fmt: skip
-        assert f'"{name}"' in answer.out, name
-
-
 def test_verify_prints_every_row_with_its_verdict(calc: Calc) -> None:
     answer = calc("verify", "rv_wear", "--json")
     assert (answer.code, answer.err) == (0, "")
