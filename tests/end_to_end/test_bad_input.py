@@ -252,10 +252,6 @@ def test_an_existing_folder_that_is_no_run_of_ours(refused: Refused, tmp_path: P
     (found,) = refused("run", "press_linkage", "-i", "press.toml", "-o", "holiday")
     left = "so it is left alone; name another folder or remove this one"
     assert found == f"calc: holiday: is an existing folder but no run of ours, {left}"
-    (tmp_path / "holiday" / "results.json").write_text('{"schema": "of somebody else"}')
-    (tmp_path / "holiday" / "run.json").write_text("{}")
-    (found,) = refused("run", "press_linkage", "-i", "press.toml", "-o", "holiday")
-    assert found == f"calc: holiday: is an existing folder but no run of ours, {left}"
 
 
 def test_a_table_that_would_replace_what_it_reads(refused: Refused, tmp_path: Path) -> None:
