@@ -90,7 +90,7 @@ def calculate(setup: Setup, *, executor: Executor | None = None, progress: Progr
 
 def _warnings(setup: Setup, outcomes: Mapping[str, Outcome]) -> list[str]:
     of_studies = [text for outcome in outcomes.values() for text in outcome.warnings()]
-    return [*setup.warnings, *_idle_effects(setup), *of_studies]
+    return [*setup.source.warnings, *_idle_effects(setup), *of_studies]
 
 
 def _idle_effects(setup: Setup) -> list[str]:

@@ -12,7 +12,7 @@ from truing.declare.model import Study
 from truing.errors import Fault, InputError, UsageError
 from truing.evaluate import evaluate_rows
 from truing.executors import SerialExecutor, in_order, open_executor
-from truing.measurements import Case, CasesFile, RowCount
+from truing.measurements import CasesFile, RowCount, StatedCase
 from truing.packed import Packed, pack, travels, unpack
 from truing.prices import price_answers
 from truing.setup import Setup
@@ -39,7 +39,7 @@ DECIDE_CHANCES = (Allocation, Reliability)
 class CaseResult:
     """One case, what it answers in SI and its checks, or why it failed; ``absent``: why a result does not exist."""
 
-    case: Case
+    case: StatedCase
     answers: Mapping[str, Any]
     decided: Decided = UNDECIDED
     reason: str | None = None
@@ -120,9 +120,10 @@ class CasesTable:
         return "fails" if found == "proposed" and len(changes) > 1 else found
 
 
-def case_setup(setup: Setup, case: Case) -> Setup:
+def case_setup(setup: Setup, case: StatedCase) -> Setup:
     """Return the setup of one case."""
-    return replace(setup.changed(case.values), stated=setup.stated | set(case.values))
+    source = replace(setup.source, stated=setup.source.stated | set(case.values))
+    return replace(setup.changed(case.values), source=source)
 
 
 def run_cases(
@@ -150,7 +151,7 @@ def run_cases(
     raise InputError([case.fault for case in done])
 
 
-def _completed(setup: Setup, cases: Sequence[Case]) -> list[Case]:
+def _completed(setup: Setup, cases: Sequence[StatedCase]) -> list[StatedCase]:
     """Give every case a value of everything that any case changes; where its own cell is empty, the setup's."""
     varied = dict.fromkeys(name for case in cases for name in case.values)
     kept = {name: setup.nominal(name) for name in varied}
@@ -166,7 +167,7 @@ def _studies_of_each(setup: Setup) -> tuple[Study, ...]:
     return tuple(setup.studies[:last])
 
 
-def _one_by_one(setup: Setup, cases: Sequence[Case], executor: Executor, progress: Progress) -> list[CaseResult]:
+def _one_by_one(setup: Setup, cases: Sequence[StatedCase], executor: Executor, progress: Progress) -> list[CaseResult]:
     """Run the studies of every case.
 
     Where cases are many, each is a job of its own; where they are few, the batches of each are shared out.
@@ -211,7 +212,7 @@ def _case_answer(setup: Setup, executor: Executor, progress: Progress = silent) 
     return found.answers, found.decided, None, found.absent
 
 
-def _in_blocks(setup: Setup, cases: Sequence[Case], executor: Executor, progress: Progress) -> list[CaseResult]:
+def _in_blocks(setup: Setup, cases: Sequence[StatedCase], executor: Executor, progress: Progress) -> list[CaseResult]:
     """Calculate cases in array calls of fixed length: a block is the same wherever it is calculated."""
     blocks = [cases[start : start + BLOCK] for start in range(0, len(cases), BLOCK)]
     jobs = ([case.values for case in block] for block in blocks)
@@ -250,14 +251,14 @@ def _block_answer(setup: Setup, block: list[Mapping[str, Any]]) -> list[CaseRow]
 
 
 def _block_case(
-    setup: Setup, case: Case, answers: Mapping[str, Any], reason: str | None, absent: Mapping[str, str]
+    setup: Setup, case: StatedCase, answers: Mapping[str, Any], reason: str | None, absent: Mapping[str, str]
 ) -> CaseResult:
     if reason is not None:
         return CaseResult(case, {}, reason=reason)
     return replace(_checked(case, case_setup(setup, case), answers), absent=absent)
 
 
-def _checked(case: Case, setup: Setup, answers: Mapping[str, Any]) -> CaseResult:
+def _checked(case: StatedCase, setup: Setup, answers: Mapping[str, Any]) -> CaseResult:
     """Add what the tolerances cost in this case, and its checks."""
     try:
         known = {**answers, **price_answers(setup)}

@@ -21,7 +21,7 @@ from truing.errors import InfeasibleError, PluginError, TruingError, UsageError
 from truing.kernel.blame import home_of, place_of
 from truing.parts_of_batch import uniform_parts
 from truing.repeated import results_of
-from truing.setup import Setup, SwitchedOn
+from truing.setup import Case, SwitchedOn
 from truing.units import to_si
 
 
@@ -67,44 +67,44 @@ class Evaluated:
     absent: Mapping[str, str]
 
 
-def evaluate(setup: Setup, *, reading: bool = False) -> Any:
+def evaluate(case: Case, *, reading: bool = False) -> Any:
     """Run the calculation once and return the model's results; one that does not exist is NaN: see ``answered``."""
-    return answered(setup, reading=reading).results
+    return answered(case, reading=reading).results
 
 
-def answered(setup: Setup, *, reading: bool = False) -> Evaluated:
+def answered(case: Case, *, reading: bool = False) -> Evaluated:
     """Run the calculation once.
 
     Raises InfeasibleError with the sentence of the plugin where something impossible is asked, and where a result is
     not finite; PluginError, with the place, where the plugin's code fails.
     """
     with np.errstate(all="ignore"), watching(1, is_single=True) as log:
-        results = _apply(setup, {}, setup.model.function, reading=reading)
-    flat = setup.model.read_results(results)
-    absent = {name: reasons[0] for name, reasons in _absent(setup, log, 1).items() if reasons}
+        results = _apply(case, {}, case.model.function, reading=reading)
+    flat = case.model.read_results(results)
+    absent = {name: reasons[0] for name, reasons in _absent(case, log, 1).items() if reasons}
     changed: dict[str, Any] = {}
     for name, value in flat.items():
         if name in absent:
             changed[name] = np.full(np.shape(value), np.nan)[()]
-        elif not np.isfinite(_as_rows(setup, name, flat, 1)).all():
-            raise InfeasibleError(f"the result '{name}' of {setup.model.name} is not finite for these inputs")
+        elif not np.isfinite(_as_rows(case, name, flat, 1)).all():
+            raise InfeasibleError(f"the result '{name}' of {case.model.name} is not finite for these inputs")
         elif np.ndim(value) == 0:
             changed[name] = float(value)
-    fields = setup.model.own_result_fields
+    fields = case.model.own_result_fields
     return Evaluated(with_values(results, {fields[name].path: value for name, value in changed.items()}), absent)
 
 
-def _absent(setup: Setup, log: FailedRows, rows: int) -> dict[str, dict[int, str]]:
+def _absent(case: Case, log: FailedRows, rows: int) -> dict[str, dict[int, str]]:
     """Return why results do not exist, by name and row. Raises PluginError where the plugin names no result."""
     for name in log.of:
-        if name not in setup.model.own_result_fields:
-            near = near_miss(name, setup.model.own_result_fields)
-            raise PluginError(f"{setup.model.name}: feasible(only=...) names '{name}', which is no result.{near}")
+        if name not in case.model.own_result_fields:
+            near = near_miss(name, case.model.own_result_fields)
+            raise PluginError(f"{case.model.name}: feasible(only=...) names '{name}', which is no result.{near}")
     return {name: own.reasons(rows) for name, own in log.of.items()}
 
 
 def evaluate_rows(
-    setup: Setup,
+    case: Case,
     columns: Mapping[str, Any],
     rows: int,
     *,
@@ -122,14 +122,14 @@ def evaluate_rows(
     of all behind another, cost no more than one of them where they differ in what acts after the model: see repeated.
     Raises UsageError for a column that nobody knows or that has another length.
     """
-    names = [name for name in setup.model.own_result_fields if wanted is None or name in wanted]
-    fixed, arrays = _sorted_columns(setup, columns, rows)
+    names = [name for name in case.model.own_result_fields if wanted is None or name in wanted]
+    fixed, arrays = _sorted_columns(case, columns, rows)
     parts: list[Rows] = []
     order: list[NDArray[np.intp]] = []
     finished = 0
-    for index, part in uniform_parts(setup, fixed, arrays, rows):
+    for index, part in uniform_parts(case, fixed, arrays, rows):
         copies = repeats if len(index) == rows else 0
-        parts.append(_one_call(setup, part, len(index), names, reading=reading, repeats=copies))
+        parts.append(_one_call(case, part, len(index), names, reading=reading, repeats=copies))
         if len(index) == rows > 0:
             return parts[0]
         order.append(index)
@@ -153,7 +153,7 @@ def _put_together(parts: Sequence[Rows], order: Sequence[NDArray[np.intp]], name
 
 
 def evaluate_in_parts(
-    setup: Setup,
+    case: Case,
     columns: Mapping[str, Any],
     rows: int,
     *,
@@ -163,12 +163,12 @@ def evaluate_in_parts(
 ) -> Rows:
     """Run ``rows`` calculations as ``evaluate_rows`` does, ``size`` in one call; ``done`` hears of every call."""
     if rows <= size:
-        return evaluate_rows(setup, columns, rows, wanted=wanted, done=done)
+        return evaluate_rows(case, columns, rows, wanted=wanted, done=done)
     parts: list[Rows] = []
     for start in range(0, rows, size):
         end = min(start + size, rows)
         taken = {name: values[start:end] if _is_column(values, rows) else values for name, values in columns.items()}
-        parts.append(evaluate_rows(setup, taken, end - start, wanted=wanted))
+        parts.append(evaluate_rows(case, taken, end - start, wanted=wanted))
         done(end, rows)
     places = np.split(np.arange(rows), range(size, rows, size))
     return _put_together(parts, places, list(parts[0].results), rows)
@@ -191,23 +191,23 @@ def _joined(pieces: Sequence[NDArray[np.float64]], order: Sequence[NDArray[np.in
 
 
 def _one_call(
-    setup: Setup, columns: Mapping[str, Any], rows: int, names: Collection[str], *, reading: bool, repeats: int = 0
+    case: Case, columns: Mapping[str, Any], rows: int, names: Collection[str], *, reading: bool, repeats: int = 0
 ) -> Rows:
     """Call the model once for ``rows`` rows; where no column differs between rows, for one that answers for all."""
     alike = not any(isinstance(values, np.ndarray) for values in columns.values())
     called = 1 if alike else rows
     with np.errstate(all="ignore"), watching(called) as log:
-        model = setup.model
+        model = case.model
         calculate = model.function if alike or not repeats else partial(results_of, model, repeats=repeats, failed=log)
-        results = _apply(setup, columns, calculate, reading=reading)
-        flat = setup.model.read_results(results)
-        answers = {name: _as_rows(setup, name, flat, called) for name in names}
+        results = _apply(case, columns, calculate, reading=reading)
+        flat = case.model.read_results(results)
+        answers = {name: _as_rows(case, name, flat, called) for name in names}
         for name, values in answers.items():
             infinite = ~np.isfinite(values)
             if infinite.any():
                 known = log.of[name].codes > 0 if name in log.of else np.zeros(1, dtype=bool)
                 log.add(infinite & ~known.reshape(-1, *[1] * (values.ndim - 1)), f"the result '{name}' is not finite")
-    absent = {name: why for name, why in _absent(setup, log, rows).items() if why and name in answers}
+    absent = {name: why for name, why in _absent(case, log, rows).items() if why and name in answers}
     reasons = log.reasons(rows)
     for name, values in answers.items():
         gaps = [*reasons, *absent.get(name, ())]
@@ -218,9 +218,9 @@ def _one_call(
     return Rows(answers, np.broadcast_to(log.codes > 0, (rows,)), reasons, absent)
 
 
-def _as_rows(setup: Setup, name: str, flat: Mapping[str, Any], rows: int) -> NDArray[np.float64]:
+def _as_rows(case: Case, name: str, flat: Mapping[str, Any], rows: int) -> NDArray[np.float64]:
     """Bring a result to shape (rows,) or (rows, k); raises PluginError for any other shape."""
-    item = setup.model.own_result_fields[name]
+    item = case.model.own_result_fields[name]
     try:
         array = np.asarray(flat[name], dtype=float)
         if not item.along:
@@ -233,22 +233,22 @@ def _as_rows(setup: Setup, name: str, flat: Mapping[str, Any], rows: int) -> NDA
         what = f"has the shape {shape}" if shape is not None else f"is {flat[name]!r:.60}"
         wanted = "(n, k), with column(x) for a value per row" if item.along else "a number or an array (n,)"
         raise PluginError(
-            f"{setup.model.name}: the result '{name}' {what} in a call of {rows}; it is {wanted}"
+            f"{case.model.name}: the result '{name}' {what} in a call of {rows}; it is {wanted}"
         ) from None
 
 
-def _sorted_columns(setup: Setup, columns: Mapping[str, Any], rows: int) -> tuple[dict[str, Any], dict[str, Any]]:
+def _sorted_columns(case: Case, columns: Mapping[str, Any], rows: int) -> tuple[dict[str, Any], dict[str, Any]]:
     """Check the columns and part them: those a batch is split by, and numbers (arrays where they differ)."""
-    fields = setup.model.input_fields
-    unknowns = {effect_column(on.effect.name, each.name) for on in setup.effects for each in on.effect.unknowns}
+    fields = case.model.input_fields
+    unknowns = {effect_column(on.effect.name, each.name) for on in case.effects for each in on.effect.unknowns}
     fixed: dict[str, Any] = {}
     arrays: dict[str, Any] = {}
     for name, values in columns.items():
         if name in fields and not fields[name].varies:
             fixed[name] = values
             continue
-        if name not in fields and name not in setup.model.known_conditions and name not in unknowns:
-            near = near_miss(name, [*fields, *setup.model.known_conditions, *unknowns])
+        if name not in fields and name not in case.model.known_conditions and name not in unknowns:
+            near = near_miss(name, [*fields, *case.model.known_conditions, *unknowns])
             raise UsageError(f"the column '{name}' is no input, condition or effect that is on.{near}")
         numbers = np.asarray(values, dtype=float)
         if numbers.shape not in {(), (rows,)}:
@@ -257,15 +257,15 @@ def _sorted_columns(setup: Setup, columns: Mapping[str, Any], rows: int) -> tupl
     return fixed, arrays
 
 
-def _apply(setup: Setup, columns: Mapping[str, Any], calculate: Callable[[Any], Any], *, reading: bool) -> Any:
+def _apply(case: Case, columns: Mapping[str, Any], calculate: Callable[[Any], Any], *, reading: bool) -> Any:
     """Inputs, effects on inputs, model, effects on results, effects on the reading: in this order.
 
     ``calculate`` is the function of the model, or what remembers its results.
     """
-    model = setup.model
-    switched = [(item, _keywords(item, setup, columns)) for item in setup.effects]
+    model = case.model
+    switched = [(item, _keywords(item, case, columns)) for item in case.effects]
     try:
-        inputs = _inputs(setup, columns)
+        inputs = _inputs(case, columns)
         for item, keywords in switched:
             if item.effect.place == "inputs":
                 inputs = item.effect.function(inputs, **keywords)
@@ -277,7 +277,7 @@ def _apply(setup: Setup, columns: Mapping[str, Any], calculate: Callable[[Any], 
     except TruingError:
         raise
     except (Exception, SystemExit) as error:
-        functions = [model.function, *(item.effect.function for item in setup.effects)]
+        functions = [model.function, *(item.effect.function for item in case.effects)]
         file, line = place_of(error, [home for function in functions if (home := home_of(function))])
         where = f"{file}:{line}: " if file else ""
         raise PluginError(f"{where}{model.name} failed: {type(error).__name__}: {error}") from error
@@ -286,23 +286,23 @@ def _apply(setup: Setup, columns: Mapping[str, Any], calculate: Callable[[Any], 
     return results
 
 
-def _inputs(setup: Setup, columns: Mapping[str, Any]) -> Any:
-    """Make the inputs of a call: those of the setup, and columns in place of some of them."""
-    fields = setup.model.input_fields
+def _inputs(case: Case, columns: Mapping[str, Any]) -> Any:
+    """Make the inputs of a call: those of the case, and columns in place of some of them."""
+    fields = case.model.input_fields
     given = {fields[name].path: value for name, value in columns.items() if name in fields and value is not None}
-    return with_values(setup.numpy_inputs, given) if given else setup.numpy_inputs
+    return with_values(case.numpy_inputs, given) if given else case.numpy_inputs
 
 
-def acting_inputs(setup: Setup) -> Any:
+def acting_inputs(case: Case) -> Any:
     """Return the inputs as the effects that are on leave them: what the calculation itself is called with."""
-    inputs = setup.inputs
-    for item in setup.effects:
+    inputs = case.inputs
+    for item in case.effects:
         if item.effect.place == "inputs":
-            inputs = item.effect.function(inputs, **_keywords(item, setup, {}))
+            inputs = item.effect.function(inputs, **_keywords(item, case, {}))
     return inputs
 
 
-def _keywords(item: SwitchedOn, setup: Setup, columns: Mapping[str, Any]) -> dict[str, Any]:
+def _keywords(item: SwitchedOn, case: Case, columns: Mapping[str, Any]) -> dict[str, Any]:
     """Return what an effect is called with: unknowns and conditions, from the columns, else as they are held."""
     held: dict[str, Any] = {}
     for unknown in item.effect.unknowns:
@@ -312,7 +312,7 @@ def _keywords(item: SwitchedOn, setup: Setup, columns: Mapping[str, Any]) -> dic
         elif unknown.name in item.values or not (item.effect.parts and item.effect.takes_any):
             held[unknown.name] = np.float64(_held(item, unknown))
     for need in item.effect.needs:
-        held[need.name] = columns.get(need.name, np.float64(setup.conditions.get(need.name, need.zero)))
+        held[need.name] = columns.get(need.name, np.float64(case.conditions.get(need.name, need.zero)))
     return held
 
 

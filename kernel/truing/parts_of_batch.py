@@ -10,20 +10,20 @@ from numpy.typing import NDArray
 
 from truing.declare.fields import Axis, InputKind
 from truing.errors import UsageError
-from truing.setup import Setup
+from truing.setup import Case
 
 
 def uniform_parts(
-    setup: Setup, fixed: Mapping[str, Any], arrays: Mapping[str, Any], rows: int
+    case: Case, fixed: Mapping[str, Any], arrays: Mapping[str, Any], rows: int
 ) -> Iterator[tuple[NDArray[np.intp], dict[str, Any]]]:
     """Split a batch so that everything but Float inputs has one value; tables are made row by row, equal rows once."""
-    per_row = {name: _each(values, setup.model.input_fields[name].kind) for name, values in fixed.items()}
+    per_row = {name: _each(values, case.model.input_fields[name].kind) for name, values in fixed.items()}
     for name, values in per_row.items():
         if values is not None and len(values) != rows:
             raise UsageError(f"the column '{name}' has {len(values)} values for {rows} rows")
     common = {name: values for name, values in fixed.items() if per_row[name] is None}
     differing = {name: values for name, values in per_row.items() if values is not None}
-    alone = any(isinstance(item.spec, Axis) and item.spec.is_table for item in setup.model.own_result_fields.values())
+    alone = any(isinstance(item.spec, Axis) and item.spec.is_table for item in case.model.own_result_fields.values())
     vary = differing or any(isinstance(values, np.ndarray) for values in arrays.values())
     groups = [np.array([row]) for row in range(rows)] if alone and vary else _groups(differing, rows)
     for index in groups:

@@ -107,7 +107,7 @@ def compare_one(item: Published, calculation: Calculation) -> ComparedRow:
 
 def holds_for(setup: Setup, item: Published) -> bool:
     """Tell whether a run has just the settings that a printed number holds for, so that ours is its own result."""
-    wanted = setup_from_settings(Offer(setup.model.name, setup.model, setup.origin, setup.added), item.settings)
+    wanted = setup_from_settings(Offer(setup.model.name, setup.model, setup.origin, setup.source.added), item.settings)
     return same_run(setup, wanted)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import isnan
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -83,33 +83,13 @@ def column_and_word(text: str) -> tuple[str, str]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Setup:
-    """What one inputs file says, checked, in SI. ``spreads`` holds the tolerances in force, by name.
-
-    ``places`` holds file and line of what is stated, by name of input or condition and ``effects.NAME``; "" is where
-    the inputs begin.
-    """
+class Case:
+    """What is calculated: a model with its inputs, the conditions (SI) and the effects that act."""
 
     model: Model[Any, Any]
-    origin: Origin
     inputs: Any
-    stated: frozenset[str] = frozenset()
-    spreads: Mapping[str, Spread] = field(default_factory=dict)
     conditions: Mapping[str, float] = field(default_factory=dict)
     effects: tuple[SwitchedOn, ...] = ()
-    calibrated: Mapping[str, float] = field(default_factory=dict)
-    studies: tuple[Study, ...] = ()
-    units: Mapping[str, str] = field(default_factory=dict)
-    head: Mapping[str, str] = field(default_factory=dict)
-    detail: str = "normal"
-    seed: int = DEFAULT_SEED
-    added: tuple[Added, ...] = ()
-    file: str = ""
-    files: Mapping[str, str] = field(default_factory=dict)
-    tables: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    warnings: tuple[str, ...] = ()
-    places: Mapping[str, tuple[str, int | None]] = field(default_factory=dict, compare=False)
-    diagnose: DiagnoseOptions = DiagnoseOptions()
 
     def __post_init__(self) -> None:
         """Put the effects in the order in which they act: the model's own as declared, then the kernel's."""
@@ -132,15 +112,15 @@ class Setup:
         numbers = {path: value if isinstance(value, np.ndarray) else np.float64(value) for path, value in values}
         return with_values(self.inputs, numbers)
 
-    def changed(self, values: Mapping[str, Any]) -> Setup:
-        """Return the setup with these inputs and conditions, by name and in SI, in place of its own."""
+    def changed(self, values: Mapping[str, Any]) -> Self:
+        """Return the case with these inputs and conditions, by name and in SI, in place of its own."""
         fields = self.model.input_fields
         inputs = {fields[name].path: value for name, value in values.items() if name in fields}
         conditions = {name: value for name, value in values.items() if name not in fields}
         return replace(self, inputs=with_values(self.inputs, inputs), conditions={**self.conditions, **conditions})
 
-    def with_effects(self, more: Iterable[SwitchedOn]) -> Setup:
-        """Return the setup with further effects on; parts of one that is on join those that are stated."""
+    def with_effects(self, more: Iterable[SwitchedOn]) -> Self:
+        """Return the case with further effects on; parts of one that is on join those that are stated."""
         on = {item.effect.name: item for item in self.effects}
         for item in more:
             before = on.get(item.effect.name)
@@ -159,16 +139,62 @@ class Setup:
         item = self.model.input_fields.get(name)
         return item.unit if item is not None else self.model.known_conditions[name].unit
 
+    def target(self, name: str) -> Target:
+        """Return what a spread needs to know of the input it acts on."""
+        return Target(name, float(self.nominal(name)), self.unit_of(name), self.nominal)
+
+
+@dataclass(frozen=True, kw_only=True)
+class InputsSource:
+    """Where the inputs come from, for what is said of them; nothing here changes a number.
+
+    ``stated`` names the inputs, conditions and tolerances that are stated; the others have their defaults. ``file`` is
+    the inputs file; of an input read from a file, ``files`` holds the SHA-256 of that one and ``tables`` how it is
+    read. ``places`` holds file and line of what is stated, by name of input or condition and ``effects.NAME``; "" is
+    where the inputs begin. ``added`` are the effects and checks of other plugins.
+    """
+
+    stated: frozenset[str] = frozenset()
+    file: str = ""
+    files: Mapping[str, str] = field(default_factory=dict)
+    tables: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    added: tuple[Added, ...] = ()
+    warnings: tuple[str, ...] = ()
+    places: Mapping[str, tuple[str, int | None]] = field(default_factory=dict, compare=False)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SheetOptions:
+    """What stands at the head of the sheet, by name, and how much of everything: "short", "normal" or "full"."""
+
+    head: Mapping[str, str] = field(default_factory=dict)
+    detail: str = "normal"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setup(Case):
+    """What one inputs file says, checked, in SI: the case, what scatters about it, and what is asked.
+
+    ``spreads`` holds the tolerances in force and ``calibrated`` the standard deviations (SI) that a diagnosis left of
+    some inputs, by name; ``units`` the units in which results are printed, where these are not the declared ones.
+    """
+
+    origin: Origin
+    spreads: Mapping[str, Spread] = field(default_factory=dict)
+    calibrated: Mapping[str, float] = field(default_factory=dict)
+    studies: tuple[Study, ...] = ()
+    seed: int = DEFAULT_SEED
+    diagnose: DiagnoseOptions = DiagnoseOptions()
+    units: Mapping[str, str] = field(default_factory=dict)
+    sheet: SheetOptions = SheetOptions()
+    source: InputsSource = InputsSource()
+
     def print_unit(self, name: str) -> str:
         """Return the unit in which a result or input is printed."""
         if name in self.units:
             return self.units[name]
         item = self.model.result_fields.get(name)
         return item.unit if item is not None else self.unit_of(name)
-
-    def target(self, name: str) -> Target:
-        """Return what a spread needs to know of the input it acts on."""
-        return Target(name, float(self.nominal(name)), self.unit_of(name), self.nominal)
 
     def settled(self, spread: Spread) -> Spread:
         """Return a spread itself, or of one that follows a choice the branch that is chosen."""
@@ -201,7 +227,7 @@ def default_setup(model: Model[Any, Any], origin: Origin | None = None, **values
         model=model,
         origin=origin,
         inputs=model.inputs(**values),
-        stated=frozenset(values),
+        source=InputsSource(stated=frozenset(values)),
         spreads={name: tolerance.spread for name, tolerance in model.tolerances.items()},
         conditions=conditions,
         studies=tuple(model.studies),

@@ -23,6 +23,7 @@ from truing.report.pdf import find_browser, sandbox_arguments
 from truing.report.render import html_of
 from truing.report.sheet import make_sheet
 from truing.runs.provenance import provenance_of
+from truing.setup import SheetOptions
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, ViewportSize
@@ -117,7 +118,7 @@ def sheet(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     kernel.add_file(DATA / "hostile_pin.py")
     offer = kernel.offer("hostile_pin")
     setup = read_setup(DATA / "hostile_pin.toml", offer)
-    setup = replace(setup, detail="full") if request.param == "hostile-full" else setup
+    setup = replace(setup, sheet=SheetOptions(detail="full")) if request.param == "hostile-full" else setup
     calculation = calculate(setup)
     rows = compare_published(offer, known=calculation)
     text = html_of(make_sheet(calculation, provenance=provenance_of(setup, date="2026-11-21"), verified=rows))

@@ -16,7 +16,7 @@ from truing.cases import CaseResult, CasesTable, case_setup, run_cases
 from truing.errors import InputError
 from truing.executors import SerialExecutor, WorkerPool, open_executor
 from truing.kernel import Origin
-from truing.measurements import Case, CasesFile, RowCount
+from truing.measurements import CasesFile, RowCount, StatedCase
 from truing.report.content import least_margin
 from truing.setup import Setup, SwitchedOn, default_setup
 from truing.studies.checks import Check, Proposal
@@ -50,14 +50,17 @@ GIVEN = replace(
 )
 
 
-def cases_file(cases: list[Case]) -> CasesFile:
+def cases_file(cases: list[StatedCase]) -> CasesFile:
     """Return cases as read from a file with two lines of remarks."""
     return CasesFile(tuple(cases), RowCount("cases.csv", len(cases) + 2).without("begins with '#'", (97, 98)))
 
 
 def run(model: Model[Any, Any], *cases: dict[str, Any], setup: Setup | None = None) -> CasesTable:
     """Run cases given in SI."""
-    rows = [Case(place, place + 1, f"case {place}", values, "cases.csv") for place, values in enumerate(cases, start=1)]
+    rows = [
+        StatedCase(place, place + 1, f"case {place}", values, "cases.csv")
+        for place, values in enumerate(cases, start=1)
+    ]
     with open_executor("serial") as executor:
         calculation, table = run_cases(setup or default_setup(model), cases_file(rows), executor=executor)
     governing = table.cases[table.governing]
@@ -68,11 +71,11 @@ def run(model: Model[Any, Any], *cases: dict[str, Any], setup: Setup | None = No
 
 def test_a_case_changes_inputs_and_conditions() -> None:
     setup = default_setup(PIN_WEAR)
-    changed = case_setup(setup, Case(1, 2, "a", {"load": 84.0, "probe_temperature": 300.0}))
+    changed = case_setup(setup, StatedCase(1, 2, "a", {"load": 84.0, "probe_temperature": 300.0}))
     assert changed.inputs == replace(setup.inputs, load=84.0)
     assert isinstance(changed.inputs, Pin)
     assert changed.conditions == {"probe_temperature": 300.0}
-    assert {"load", "probe_temperature"} <= changed.stated
+    assert {"load", "probe_temperature"} <= changed.source.stated
     assert setup.inputs.load == 120
 
 
@@ -165,7 +168,9 @@ def test_cases_are_shared_out_where_they_are_many(count: int, studies: bool, ask
     origin = Origin("pin_wear", "", "", "", "module:pin_wear")
     setup = default_setup(PIN_WEAR, origin)
     setup = replace(setup, studies=(Reliability(draws=2000, gives=PIN_WEAR.studies[-1].gives),) if studies else ())
-    rows = [Case(place, place + 1, str(place), {"load": 100.0 + place}, "cases.csv") for place in range(1, count + 1)]
+    rows = [
+        StatedCase(place, place + 1, str(place), {"load": 100.0 + place}, "cases.csv") for place in range(1, count + 1)
+    ]
     there = Counting()
     _, shared = run_cases(setup, cases_file(rows), executor=there)
     assert there.asked == asked
@@ -192,7 +197,7 @@ def test_cases_that_pass_with_different_changes_only_do_not_pass() -> None:
     fine, finest = (
         Decided((check,), Proposal("allocation", "grades", (("a", "IT7", to),), ())) for to in ("IT6", "IT5")
     )
-    case = Case(1, 2, "", {}, "cases.csv")
+    case = StatedCase(1, 2, "", {}, "cases.csv")
     verdicts = [
         CasesTable(tuple(CaseResult(case, {}, decided) for decided in pair), 0, RowCount("cases.csv", 2)).verdict
         for pair in ((fine, fine), (fine, finest))

@@ -13,15 +13,15 @@ from truing.declare.spreads import Band
 from truing.errors import PluginError
 from truing.example_file import example_text
 from truing.inputs_file import setup_from_text
-from truing.setup import default_setup
+from truing.setup import InputsSource, default_setup
 
 COMMENTED_OUT = re.compile(r"^# (?=\[|[\w\"]+ = )", re.MULTILINE)
 
 
 def test_the_example_is_the_default_setup() -> None:
     setup = setup_from_text(example_text(PIN_OFFER), PIN_OFFER, file="", folder=Path())
-    assert setup.stated == set(PIN_WEAR.input_fields)
-    assert replace(setup, stated=frozenset(), places={}) == default_setup(PIN_WEAR, PIN_OFFER.origin)
+    assert setup.source.stated == set(PIN_WEAR.input_fields)
+    assert replace(setup, source=InputsSource()) == default_setup(PIN_WEAR, PIN_OFFER.origin)
 
 
 def test_what_is_commented_out_states_the_defaults_too() -> None:
@@ -29,7 +29,7 @@ def test_what_is_commented_out_states_the_defaults_too() -> None:
     setup = setup_from_text(text, PIN_OFFER, file="", folder=Path())
     assert [on.effect.name for on in setup.effects] == ["running_in", "warm_probe"]
     assert setup.units == {"pressure": "MPa", "distance": "km", "depth": "um"}
-    plain = replace(setup, stated=frozenset(), effects=(), units={}, places={})
+    plain = replace(setup, source=InputsSource(), effects=(), units={})
     assert plain == default_setup(PIN_WEAR, PIN_OFFER.origin)
 
 

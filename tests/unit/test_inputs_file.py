@@ -43,12 +43,12 @@ def test_values_are_converted_and_the_rest_is_default() -> None:
     setup = pin('[inputs]\nload = "0.2 kN"\ntime = "24 h"\nrate = 4e-8\n')
     assert (setup.inputs.load, setup.inputs.time, setup.inputs.rate) == (200.0, 86400.0, 4e-8)
     assert setup.inputs.area == pytest.approx(28e-6, rel=1e-15)
-    assert setup.stated == {"load", "time", "rate"}
+    assert setup.source.stated == {"load", "time", "rate"}
 
 
 def test_an_empty_section_list_is_the_default_setup() -> None:
     setup = pin("# nothing stated\n")
-    assert replace(setup, file="", places={}) == default_setup(PIN_WEAR, PIN_OFFER.origin)
+    assert replace(setup, source=replace(setup.source, file="")) == default_setup(PIN_WEAR, PIN_OFFER.origin)
 
 
 def test_every_section_is_read() -> None:
@@ -84,8 +84,8 @@ of = ["pressure"]
 depth = "mm"
 load = "kN"
 """)
-    assert setup.head == {"project": "Rig 7", "revision": "2", "date": "2024-02-29"}
-    assert (setup.detail, setup.seed) == ("full", 0)
+    assert setup.sheet.head == {"project": "Rig 7", "revision": "2", "date": "2024-02-29"}
+    assert (setup.sheet.detail, setup.seed) == ("full", 0)
     assert setup.spreads == {"load": Band("3 N", "±"), "hardness": Off()}
     assert setup.conditions == {"probe_temperature": pytest.approx(308.15)}
     assert setup.calibrated == {"hardness": 2.2e9}
@@ -120,7 +120,7 @@ orders = [3, 5, 7]
     np.testing.assert_allclose(inputs.profile, [1e-6, 2e-6])
     assert inputs.orders == (3, 5, 7)
     assert (inputs.surface.heights, inputs.surface.spacing) == ((1.0, 2.0, 4.0), "0.4 um")
-    assert setup.files == {"surface": hashlib.sha256(b"1\n2\n4\n").hexdigest()}
+    assert setup.source.files == {"surface": hashlib.sha256(b"1\n2\n4\n").hexdigest()}
 
 
 def test_a_series_may_share_one_unit_and_a_file_a_short_form(folder: Path) -> None:
@@ -171,7 +171,7 @@ def test_byte_order_marks_and_line_ends(tmp_path: Path, mark: str, end: str) -> 
 def test_old_names_answer_with_a_warning() -> None:
     setup = pin("[inputs]\nk_wear = 5e-8\n")
     assert setup.inputs.rate == 5e-8
-    assert setup.warnings == ("'k_wear' is now called 'rate'; the old name goes with pin_wear 2.0",)
+    assert setup.source.warnings == ("'k_wear' is now called 'rate'; the old name goes with pin_wear 2.0",)
     assert faults("[inputs]\nk_wear = 5e-8\nrate = 4e-8\n") == [
         "wear.toml:2: 'k_wear' is the old name of 'rate', which is given too; leave 'k_wear' out"
     ]

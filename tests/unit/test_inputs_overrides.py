@@ -29,9 +29,9 @@ def test_overrides_replace_what_the_file_says(tmp_path: Path) -> None:
     assert setup.spreads == {"load": Band("0.1 kN", "±"), "hardness": Zone("0 GPa", "0.2 GPa")}
     assert setup.effects[0].values == {"slope": pytest.approx(-1e-6)}
     assert setup.studies == (Census(draws=7, of=("pressure",)),)
-    assert (setup.seed, setup.detail, setup.head["project"]) == (3, "short", "A=B")
+    assert (setup.seed, setup.sheet.detail, setup.sheet.head["project"]) == (3, "short", "A=B")
     assert (setup.units, setup.calibrated) == ({"depth": "mm"}, {"hardness": 2e9})
-    assert setup.file == str(path)
+    assert setup.source.file == str(path)
 
 
 def test_an_effect_is_switched_off(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from sample_models import PIN_OFFER, PIN_WEAR, STAGE, STAGE_OFFER, Surface
 
 from truing.errors import InputError, OutputError
-from truing.measurements import Case, DataTable, LeftOut, RowCount, read_cases, read_rows, read_table, write_table
+from truing.measurements import DataTable, LeftOut, RowCount, StatedCase, read_cases, read_rows, read_table, write_table
 from truing.setup import Setup, default_setup
 
 KNOWN = {"time": "h", "depth": "um", "probe_temperature": "degC", "rate": "", "slope": "um/K"}
@@ -298,9 +298,9 @@ def test_cases_override_inputs_and_conditions(table: Write) -> None:
     cases = read_cases(path, PIN_OFFER, pin_setup())
     assert cases.count == RowCount(str(path), 4, (LeftOut("holds nothing", (3,)),))
     assert list(cases.cases) == [
-        Case(1, 2, "light", {"load": 100.0, "rate": 3e-8, "probe_temperature": 303.15}),
-        Case(2, 4, "heavy", {"load": 3000.0}),
-        Case(3, 5, "3", {"load": 2000.0}),
+        StatedCase(1, 2, "light", {"load": 100.0, "rate": 3e-8, "probe_temperature": 303.15}),
+        StatedCase(2, 4, "heavy", {"load": 3000.0}),
+        StatedCase(3, 5, "3", {"load": 2000.0}),
     ]
 
 

@@ -36,7 +36,7 @@ from truing.describe import description
 from truing.errors import DeclarationError
 from truing.executors import open_executor
 from truing.fits import tolerance
-from truing.measurements import Case, CasesFile, RowCount
+from truing.measurements import CasesFile, RowCount, StatedCase
 from truing.prices import price_of, prices_at
 from truing.runs.documents import results_document
 from truing.runs.provenance import provenance_of
@@ -87,12 +87,12 @@ def test_a_band_on_several_inputs_is_paid_once() -> None:
     assert calculate(default_setup(model)).answers["tolerance_price"] == pytest.approx(40 / BAND**0.5, rel=1e-12)
 
 
-def cases_file(cases: list[Case]) -> CasesFile:
+def cases_file(cases: list[StatedCase]) -> CasesFile:
     return CasesFile(tuple(cases), RowCount("cases.csv", len(cases)))
 
 
 def test_every_case_has_its_own_price() -> None:
-    cases = [Case(1, 2, "light", {"load": 30.0}), Case(2, 3, "as it is", {"load": 120.0})]
+    cases = [StatedCase(1, 2, "light", {"load": 30.0}), StatedCase(2, 3, "as it is", {"load": 120.0})]
     with open_executor("serial") as executor:
         full, table = run_cases(default_setup(LIMITED), cases_file(cases), executor=executor)
     light, normal_ = (case.answers["tolerance_price"] for case in table.cases)
@@ -154,7 +154,7 @@ def test_a_price_follows_the_choice(form: str, price: float) -> None:
 
 
 def test_every_case_has_the_price_of_its_choice() -> None:
-    cases = [Case(n, n + 1, form, {"cost_form": form}) for n, form in enumerate(PRICES)]
+    cases = [StatedCase(n, n + 1, form, {"cost_form": form}) for n, form in enumerate(PRICES)]
     with open_executor("serial") as executor:
         _, table = run_cases(default_setup(CHOSEN), cases_file(cases), executor=executor)
     assert [case.answers["tolerance_price"] for case in table.cases] == pytest.approx(list(PRICES.values()), rel=1e-14)

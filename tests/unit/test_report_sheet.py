@@ -27,7 +27,7 @@ from truing.report.render import css_text, html_of, markdown_of
 from truing.report.sheet import logo_of, make_sheet
 from truing.report.templates import template_folder
 from truing.runs.provenance import Provenance, provenance_of
-from truing.setup import Setup, default_setup
+from truing.setup import InputsSource, Setup, SheetOptions, default_setup
 
 DATA = Path(__file__).parents[1] / "data"
 HOSTILE = "<script>alert(1)</script> {{7*7}} $x$ | # `code` [link](https://evil.example) **bold** & \"' # next"
@@ -239,7 +239,7 @@ def test_a_long_sum_is_broken_into_lines(html: str) -> None:
 def test_detail_chooses_the_chapters(
     setup: Setup, provenance: Provenance, detail: str, shown: list[str], hidden: list[str]
 ) -> None:
-    sheet = make_sheet(calculate(replace(setup, detail=detail)), provenance=provenance)
+    sheet = make_sheet(calculate(replace(setup, sheet=SheetOptions(detail=detail))), provenance=provenance)
     titles = [chapter.title for chapter in sheet.chapters]
     assert [title for title in shown if title not in titles] == []
     assert [title for title in hidden if title in titles] == []
@@ -256,7 +256,7 @@ def test_a_result_hidden_at_this_level_does_not_come_back_as_a_further_one(
 
 
 def test_a_full_sheet_shows_results_along_an_axis_as_a_thinned_table(setup: Setup, provenance: Provenance) -> None:
-    sheet = make_sheet(calculate(replace(setup, detail="full")), provenance=provenance)
+    sheet = make_sheet(calculate(replace(setup, sheet=SheetOptions(detail="full"))), provenance=provenance)
     tables = [block for chapter in sheet.chapters for block in chapter.blocks if hasattr(block, "rows")]
     table = next(table for table in tables if table.title == "Along moment")
     assert [len(table.rows), table.rows[0][0], table.rows[-1][0]] == [25, "0", "200"]
@@ -318,9 +318,14 @@ def test_blocks_of_a_guest_do_not_take_the_sheet_away(setup: Setup, provenance: 
     assert ("could not be written" in markdown_of(sheet)) == bool(said)
 
 
+def with_logo(setup: Setup, logo: str, folder: Path) -> Setup:
+    source = InputsSource(file=str(folder / "in.toml"))
+    return replace(setup, sheet=SheetOptions(head={"logo": logo}), source=source)
+
+
 def test_a_logo_stands_in_the_file_itself(setup: Setup, provenance: Provenance, tmp_path: Path) -> None:
     (tmp_path / "sign.svg").write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
-    stated = replace(setup, head={"logo": "sign.svg"}, file=str(tmp_path / "in.toml"))
+    stated = with_logo(setup, "sign.svg", tmp_path)
     images = [
         attributes
         for tag, attributes in Page(html_of(make_sheet(calculate(stated), provenance=provenance))).tags
@@ -332,7 +337,7 @@ def test_a_logo_stands_in_the_file_itself(setup: Setup, provenance: Provenance, 
 
 @pytest.mark.parametrize("name", ["missing.png", "/etc/hostname", "https://evil.example/x.png", "a\0.png"])
 def test_a_logo_that_cannot_be_shown_is_a_warning(setup: Setup, provenance: Provenance, name: str) -> None:
-    sheet = make_sheet(calculate(replace(setup, head={"logo": name})), provenance=provenance)
+    sheet = make_sheet(calculate(replace(setup, sheet=SheetOptions(head={"logo": name}))), provenance=provenance)
     assert sheet.head.logo == ""
     assert len([text for text in sheet.warnings if text.startswith("the logo '")]) == 1
 
@@ -377,7 +382,7 @@ def test_the_templates_are_found() -> None:
 def test_the_title_block_leaves_room_for_what_is_not_stated(
     setup: Setup, provenance: Provenance, head: Mapping[str, str], expected: list[tuple[str, str]]
 ) -> None:
-    sheet = make_sheet(calculate(replace(setup, head=head)), provenance=provenance)
+    sheet = make_sheet(calculate(replace(setup, sheet=SheetOptions(head=head))), provenance=provenance)
     assert list(sheet.head.fields) == expected
     assert sheet.head.signatures == (("Prepared", ""), ("Checked", ""), ("Approved", ""))
 
@@ -395,7 +400,7 @@ def test_a_data_file_is_named_on_the_sheet(tmp_path: Path) -> None:
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
 def test_a_logo_that_is_a_pipe_does_not_keep_the_sheet_waiting(setup: Setup, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "sign.png")
-    piped = replace(setup, head={"logo": "sign.png"}, file=str(tmp_path / "in.toml"))
+    piped = with_logo(setup, "sign.png", tmp_path)
     assert logo_of(piped) == ("", "the logo 'sign.png' is left out: it is no ordinary file")
 
 
@@ -403,7 +408,7 @@ def test_a_logo_that_is_a_pipe_does_not_keep_the_sheet_waiting(setup: Setup, tmp
 
 
 def sheet_of_press(provenance: Provenance, detail: str) -> str:
-    calculation = calculate(replace(default_setup(PRESS_LINKAGE), detail=detail, studies=()))
+    calculation = calculate(replace(default_setup(PRESS_LINKAGE), sheet=SheetOptions(detail=detail), studies=()))
     return Page(html_of(make_sheet(calculation, provenance=provenance))).text
 
 

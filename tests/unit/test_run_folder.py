@@ -299,7 +299,7 @@ def test_data_files_are_named_as_seen_from_the_run_folder(tmp_path: Path) -> Non
         again = read_setup(tmp_path / "runs" / "one" / "inputs.toml", offer)
         assert calculate(again).answers["mean"] == mean
         assert input_hash(again) == document["input_hash"]
-        assert (Path(again.file).parent / again.head["logo"]).read_text() == "<svg/>"
+        assert (Path(again.source.file).parent / again.sheet.head["logo"]).read_text() == "<svg/>"
 
 
 PROFILED = """

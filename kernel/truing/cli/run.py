@@ -90,7 +90,7 @@ def _say_where_from(done: Run, settings: Settings) -> None:
     if done.computed["resumed"]:
         settings.say(f"{done.computed['resumed']} finished batches of an interrupted run were taken up")
     setup = done.calculation.setup
-    stated = len(setup.stated & set(setup.model.input_fields))
+    stated = len(setup.source.stated & set(setup.model.input_fields))
     settings.detail(f"plugin {setup.origin.name} {setup.origin.version} from {setup.origin.file}")
     settings.detail(f"inputs: {stated} stated, {len(setup.model.input_fields) - stated} at their defaults")
     settings.detail(f"input hash {provenance_of(setup).input_hash}, seed {setup.seed}")

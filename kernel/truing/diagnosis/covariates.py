@@ -91,7 +91,7 @@ def held_out_rows(joined: DataRows, setup: Setup) -> DataRows:
 
 def _marked(option: str, column: str, word: str, joined: DataRows, setup: Setup) -> Mask:
     """Mark the rows that hold a word, or the number it is, in a column. Raises InputError where there are none."""
-    place = setup.places.get(f"studies.diagnose.{option}", (setup.file, None))
+    place = setup.source.places.get(f"studies.diagnose.{option}", (setup.source.file, None))
     cells = joined.runs if column == "run" else joined.columns.get(column)
     if cells is None:
         near = near_miss(column[:80], list(joined.columns))

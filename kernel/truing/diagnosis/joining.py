@@ -99,7 +99,7 @@ def settle_conditions(joined: DataRows, files: Sequence[DataRows], setup: Setup)
             del columns[name], parts[name]
             notes.append(why)
         value = setup.conditions.get(name, condition.zero)
-        if name in setup.stated and value != condition.zero:
+        if name in setup.source.stated and value != condition.zero:
             columns[name], parts[name] = np.full(len(joined), value), "condition"
             notes.append(f"'{name}' is not measured and taken as the inputs file states it, the same in all rows")
         else:

@@ -34,7 +34,7 @@ def of_input(setup: Setup, name: str) -> dict[str, Any]:
         "note": item.spec.note,
         "source": item.spec.source,
         **amount(setup, name, model.read_inputs(setup.inputs)[name]),
-        "stated": name in setup.stated,
+        "stated": name in setup.source.stated,
         "choices": list(item.choices),
         "bounds": bounds_in_words(item),
         "followed_by": list(direct),

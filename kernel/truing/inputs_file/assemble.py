@@ -18,7 +18,7 @@ from truing.inputs_file.document import Document
 from truing.inputs_file.study_options import diagnose_options
 from truing.inputs_file.values import InputsRead, StatedValues, plain
 from truing.kernel import Offer
-from truing.setup import DEFAULT_SEED, Setup, SwitchedOn
+from truing.setup import DEFAULT_SEED, InputsSource, Setup, SheetOptions, SwitchedOn
 from truing.units.names import PURE
 
 
@@ -159,23 +159,24 @@ def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], do
         model=model,
         origin=offer.origin,
         inputs=make(model.input_type, inputs),
-        stated=frozenset(names),
         spreads=spreads_of(model, values),
         conditions=_conditions_in_force(model, values, effects),
         effects=effects,
         calibrated=of("calibrated"),
         studies=studies,
-        units=of("units"),
-        detail=head.pop("detail", "normal"),
-        head=head,
         seed=values.get(("studies", "seed"), DEFAULT_SEED),
-        added=offer.added,
-        file=document.file,
-        files=dict(reading.files),
-        tables=dict(reading.tables),
-        places=places_of(model, document),
-        warnings=tuple(of("warnings").values()),
         diagnose=diagnose_options(model, values),
+        units=of("units"),
+        sheet=SheetOptions(detail=head.pop("detail", "normal"), head=head),
+        source=InputsSource(
+            stated=frozenset(names),
+            file=document.file,
+            files=dict(reading.files),
+            tables=dict(reading.tables),
+            added=offer.added,
+            warnings=tuple(of("warnings").values()),
+            places=places_of(model, document),
+        ),
     )
 
 

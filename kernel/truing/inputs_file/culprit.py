@@ -29,10 +29,10 @@ def located(setup: Setup, sentence: str) -> Fault:
     """
     names = set(re.findall(r"\w+", sentence))
     changed = _changed(setup)
-    stated = [name for name in setup.places if name]
+    stated = [name for name in setup.source.places if name]
     ranked = sorted(enumerate(stated), key=lambda item: (item[1] in changed, item[1] in names, item[0]))
     likeliest = ranked[-1][1] if ranked and (ranked[-1][1] in changed or ranked[-1][1] in names) else ""
-    return Fault(sentence, *setup.places.get(likeliest, ("", None)))
+    return Fault(sentence, *setup.source.places.get(likeliest, ("", None)))
 
 
 def _changed(setup: Setup) -> set[str]:
@@ -42,7 +42,7 @@ def _changed(setup: Setup) -> set[str]:
     changed = {f"effects.{item.effect.name}" for item in setup.effects}
     known = setup.model.known_conditions
     changed |= {name for name, value in setup.conditions.items() if name in known and value != known[name].zero}
-    for name in setup.places:
+    for name in setup.source.places:
         if name in fields and not _is_default(fields[name].spec, values[name]):
             changed.add(name)
     return changed

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from truing.measurements.overriding import Case, CasesFile, RowsFile, read_cases, read_rows
+from truing.measurements.overriding import CasesFile, RowsFile, StatedCase, read_cases, read_rows
 from truing.measurements.row_count import LeftOut, RowCount
 from truing.measurements.table import EXCEL, PLAIN, DataTable, TableStyle, read_table, table_text, write_table
 
 __all__ = [
     "EXCEL",
     "PLAIN",
-    "Case",
     "CasesFile",
     "DataTable",
     "LeftOut",
     "RowCount",
     "RowsFile",
+    "StatedCase",
     "TableStyle",
     "read_cases",
     "read_rows",

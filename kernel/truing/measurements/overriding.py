@@ -32,7 +32,7 @@ WORDS = frozenset({"switch", "integer", "choice", "text"})
 
 
 @dataclass(frozen=True)
-class Case:
+class StatedCase:
     """One case: its row (the first is 1), the line it stands in, its name, and what it changes, in SI."""
 
     row: int
@@ -46,7 +46,7 @@ class Case:
 class CasesFile:
     """The cases of a file, and how many rows it holds."""
 
-    cases: tuple[Case, ...]
+    cases: tuple[StatedCase, ...]
     count: RowCount
 
 
@@ -142,7 +142,7 @@ def read_cases(path: Path, offer: Offer, setup: Setup) -> CasesFile:
     table.marks.judge(table.faults)
     table.faults.raise_any()
     cases = [
-        Case(row, line, name or f"{row}", found, str(path))
+        StatedCase(row, line, name or f"{row}", found, str(path))
         for row, (line, name, found) in enumerate(zip(texts.lines, names, values, strict=True), start=1)
     ]
     return CasesFile(tuple(cases), table.count())

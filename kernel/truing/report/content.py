@@ -53,7 +53,7 @@ def input_rows(setup: Setup) -> Iterator[InputRow]:
             value=input_value(setup, item, value),
             note="; ".join(part for part in (item.spec.note, halving_in_words(item)) if part),
             source=item.spec.source,
-            stated=name in setup.stated,
+            stated=name in setup.source.stated,
             calibrated=None if fitted is None else Value(*format_value(fitted, unit, STATED_DIGITS)),
         )
 
@@ -61,8 +61,8 @@ def input_rows(setup: Setup) -> Iterator[InputRow]:
 def input_value(setup: Setup, item: InputField, value: Any) -> Value:
     """Write one input: a number in its printed unit, a choice, a switch, a file."""
     if item.kind == "file":
-        if item.name in setup.tables:
-            return Value(PurePath(setup.tables[item.name]["file"]).name)
+        if item.name in setup.source.tables:
+            return Value(PurePath(setup.source.tables[item.name]["file"]).name)
         return Value(NOT_GIVEN if value is None else "default")
     if isinstance(value, bool):
         return Value("yes" if value else "no")

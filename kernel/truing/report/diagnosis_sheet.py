@@ -43,7 +43,7 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
     head = head_of(diagnosis.setup, provenance)
     return DiagnosisSheet(
         head=replace(head, footer=" · ".join(part for part in ("Diagnosis", head.footer) if part)),
-        detail=diagnosis.setup.detail,
+        detail=diagnosis.setup.sheet.detail,
         mood=_mood(diagnosis),
         verdict=verdict_word(diagnosis),
         sentences=tuple(headline(diagnosis)),

@@ -60,7 +60,7 @@ def make_sheet(
 ) -> Sheet:
     """Say everything that stands on the sheet of a calculation, at the level of detail of its setup."""
     setup = calculation.setup
-    detail = setup.detail if setup.detail in LONGEST_TABLE else "normal"
+    detail = setup.sheet.detail if setup.sheet.detail in LONGEST_TABLE else "normal"
     figures = Figures()
     results = list(result_chapters(Writing(calculation, detail, figures)))
     own, elsewhere = parted(setup, verified)
@@ -93,7 +93,7 @@ def make_sheet(
 
 def head_of(setup: Setup, provenance: Provenance) -> Head:
     """Fill the title block; what the inputs file leaves open has room to be written by hand."""
-    given = {name: str(text) for name, text in setup.head.items() if str(text).strip()}
+    given = {name: str(text) for name, text in setup.sheet.head.items() if str(text).strip()}
     fields = [
         (label, given.get(name, provenance.date if name == "date" else "")) for name, label in HEAD_FIELDS.items()
     ]
@@ -120,13 +120,13 @@ def head_of(setup: Setup, provenance: Provenance) -> Head:
 
 def logo_of(setup: Setup) -> tuple[str, str]:
     """Return the company's sign as a data address, and what is wrong with it; the file lies beside the inputs file."""
-    name = str(setup.head.get("logo", "")).strip()
+    name = str(setup.sheet.head.get("logo", "")).strip()
     if not name:
         return "", ""
     kind = PICTURES.get(Path(name).suffix.lower())
     if kind is None:
         return "", f"the logo '{name}' is left out: it must be a {', '.join(PICTURES)} file"
-    path = Path(setup.file).parent / name
+    path = Path(setup.source.file).parent / name
     try:
         if path.exists() and not path.is_file():  # a pipe would keep the sheet waiting
             return "", f"the logo '{name}' is left out: it is no ordinary file"

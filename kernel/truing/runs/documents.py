@@ -153,7 +153,7 @@ def _value(value: Any, unit: str) -> dict[str, Any]:
 
 def _input_value(setup: Setup, item: InputField, value: Any) -> dict[str, Any]:
     if item.kind == "file":
-        return {"value": setup.files.get(item.name), "unit": ""}
+        return {"value": setup.source.files.get(item.name), "unit": ""}
     if item.kind in {"switch", "text", "choice", "integer"} or getattr(item.spec, "unit", None) is None:
         return {"value": clean(value), "unit": item.unit}
     if item.kind == "series":

@@ -24,7 +24,7 @@ from truing.units.names import PURE
 def input_hash(setup: Setup) -> str:
     """Return the SHA-256 of everything in the inputs that decides the results; names on the sheet do not."""
     said = {name: content for name, content in _sections(setup, None) if name != "sheet"}
-    text = json.dumps([setup.model.name, said, dict(setup.files)], sort_keys=True, ensure_ascii=True)
+    text = json.dumps([setup.model.name, said, dict(setup.source.files)], sort_keys=True, ensure_ascii=True)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
@@ -48,10 +48,10 @@ def complete_inputs(setup: Setup, folder: Path | None = None) -> str:
 
 def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield every section of the inputs file with its entries as plain TOML values."""
-    detail = {"detail": setup.detail} if setup.detail != "normal" else {}
-    head = {name: str(text) for name, text in setup.head.items()}
+    detail = {"detail": setup.sheet.detail} if setup.sheet.detail != "normal" else {}
+    head = {name: str(text) for name, text in setup.sheet.head.items()}
     if folder is not None and head.get("logo"):
-        head["logo"] = _seen_from(folder, Path(setup.file).parent / head["logo"])
+        head["logo"] = _seen_from(folder, Path(setup.source.file).parent / head["logo"])
     yield "sheet", {**head, **detail}
     inputs = setup.model.read_inputs(setup.inputs)
     fields = setup.model.input_fields
@@ -132,10 +132,13 @@ def _input(setup: Setup, item: InputField, value: Any, folder: Path | None) -> A
 
 def _file(setup: Setup, name: str, folder: Path | None) -> Any:
     """Return what the inputs file says of a data file, with its path as seen from ``folder``; without one, its hash."""
-    table = dict(setup.tables.get(name, {}))
+    table = dict(setup.source.tables.get(name, {}))
     if not table:
         return None
-    return {**table, "file": setup.files.get(name, "") if folder is None else _seen_from(folder, Path(table["file"]))}
+    return {
+        **table,
+        "file": setup.source.files.get(name, "") if folder is None else _seen_from(folder, Path(table["file"])),
+    }
 
 
 def _seen_from(folder: Path, path: Path) -> str:
@@ -182,7 +185,7 @@ def _options(study: Study, declared: Study | None) -> dict[str, Any]:
 
 def _remarks(setup: Setup) -> Iterator[tuple[tuple[str, str], str]]:
     for name, item in setup.model.input_fields.items():
-        words = [printable(item.spec.note), "" if name in setup.stated else "default"]
+        words = [printable(item.spec.note), "" if name in setup.source.stated else "default"]
         yield ("inputs", name), ", ".join(word for word in words if word)
     for name, tolerance in setup.model.tolerances.items():
         yield ("tolerances", name), printable(tolerance.why)
