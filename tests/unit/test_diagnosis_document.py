@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -445,8 +446,6 @@ def test_a_diagnosis_is_replaced_by_a_diagnosis_and_by_nothing_else(tmp_path: Pa
 
 
 def test_every_field_is_explained() -> None:
-    import re
-
     page = Path(__file__).parents[2] / "docs" / "reference" / "verbs" / "diagnose.md"
     rows = re.findall(r"^\| (`[^|]+`) \|(.*)\|$", page.read_text(encoding="utf-8"), re.MULTILINE)
     named = {name for cell, _ in rows for name in re.findall(r"`(\w+)`", cell)}
