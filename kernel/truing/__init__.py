@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from truing.kernel import Kernel
     from truing.markers import hookimpl, hookspec
     from truing.studies.allocation import Allocation, Allotted
-    from truing.studies.bench import Bench
+    from truing.studies.bench import Bench, Outcome
     from truing.studies.checks import Check, Proposal
     from truing.studies.optimise import Optimise, Optimum
     from truing.studies.reliability import Odds, Reliability
@@ -53,7 +53,7 @@ _HOMES = {
     "truing.kernel": ("Kernel",),
     "truing.markers": ("hookimpl", "hookspec"),
     "truing.studies.allocation": ("Allocation", "Allotted"),
-    "truing.studies.bench": ("Bench",),
+    "truing.studies.bench": ("Bench", "Outcome"),
     "truing.studies.checks": ("Check", "Proposal"),
     "truing.studies.optimise": ("Optimise", "Optimum"),
     "truing.studies.reliability": ("Odds", "Reliability"),
@@ -76,7 +76,7 @@ __all__ = [  # noqa: RUF022  # what a user calls; then what a plugin needs, in t
     "Sweep", "Swept", "Sensitivity", "Sensitivities", "Reliability", "Odds", "Allocation", "Allotted",
     "Optimise", "Optimum",
     "Surrogate", "Emulated",
-    "Bench", "Check", "Proposal",
+    "Bench", "Outcome", "Check", "Proposal",
     "hookimpl", "hookspec", "Kernel", "TruingError",
 ]  # fmt: skip
 

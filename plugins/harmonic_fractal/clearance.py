@@ -71,14 +71,14 @@ def approach(load: Float, reference: Float, contact: Contact) -> Float:
     high = np.asarray(load_logarithm(load, contact))
     low = np.minimum(load_logarithm(reference, contact), high)
     begins, ends = (np.log(np.expm1(law.decay * micro.size_of(np.maximum(item, 1e-12), law))) for item in (low, high))
-    whole = np.zeros(np.broadcast(begins, ends).shape)
     width = (ends - begins) / PANELS
+    whole, panel = np.zeros(width.shape), np.arange(PANELS).reshape(-1, *(1,) * width.ndim)
     for node, weight in zip(*RULE, strict=True):
-        for panel in range(PANELS):
-            grown = np.exp(begins + width * (panel + 0.5 * (node + 1.0)))
-            size = np.log1p(grown) / law.decay
-            rise = np.exp(micro.load_logarithm(size, law)) * micro.load_slope(size, law)
-            step = grown / ((1.0 + grown) * law.decay)
-            whole = whole + 0.5 * weight * width * rise * step / micro.stiffness_share(size, law)
+        grown = np.exp(begins + width * (panel + 0.5 * (node + 1.0)))
+        size = np.log1p(grown) / law.decay
+        rise = np.exp(micro.load_logarithm(size, law)) * micro.load_slope(size, law)
+        step = grown / ((1.0 + grown) * law.decay)
+        for part in 0.5 * weight * width * rise * step / micro.stiffness_share(size, law):
+            whole = whole + part
     value = whole * contact.plastic_limit / contact.stiffness_scale
     return np.where((low <= 0.0) & (high > low), np.inf, value)

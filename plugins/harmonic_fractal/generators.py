@@ -12,9 +12,9 @@ from truing import Array
 #
 # All randomness comes from the generator that is handed in. Heights and places are in m; S is the structure function.
 
-YAN = "Yan, Komvopoulos, Journal of Applied Physics 84 (1998), p. 3617"
-MAJUMDAR = "Majumdar, Tien, Wear 136 (1990), p. 313"
-DAVIES = "Davies, Harte, Biometrika 74 (1987), p. 95"
+# Yan, Komvopoulos, Journal of Applied Physics 84 (1998), p. 3617
+# Majumdar, Tien, Wear 136 (1990), p. 313
+# Davies, Harte, Biometrika 74 (1987), p. 95
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,7 +134,7 @@ def _increments(exponent: float, step: float, points: int) -> Array:
 
 # Made patches of fractional Brownian motion: alike in all directions, Gaussian, with an exact power law
 
-STEIN = "Stein, Journal of Computational and Graphical Statistics 11 (2002), p. 587"
+# Stein, Journal of Computational and Graphical Statistics 11 (2002), p. 587
 
 
 def brownian_surface(dimension: float, step: float, shape: tuple[int, int], rng: np.random.Generator) -> Array:
@@ -207,7 +207,7 @@ def levelled_structure(every: Array) -> Array:
 
 # What an instrument makes of a surface: lateral filter, noise, steps of its scale, spikes and holes
 
-ISO_16610 = "ISO 16610-21"
+# ISO 16610-21
 DEVIATION = float(np.sqrt(np.log(2.0) / 2.0) / np.pi)  # of the Gaussian weight over the wave that is halved, 0.1874
 REACH = 4.0  # standard deviations to which the weight is taken
 

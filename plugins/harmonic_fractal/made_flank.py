@@ -23,7 +23,21 @@ from harmonic_fractal.generators import (
 )
 from harmonic_fractal.structure import converted, structure_function, structure_sums
 from harmonic_fractal.surface import Direction, Lines, Surface, without_form, without_line
-from truing import Array, Bench, Block, Check, Float, TruingError, Words, feasible, found, given, inputs, results, rows
+from truing import (
+    Array,
+    Bench,
+    Block,
+    Float,
+    Outcome,
+    TruingError,
+    Words,
+    feasible,
+    found,
+    given,
+    inputs,
+    results,
+    rows,
+)
 
 # What a made flank is told: its truth, its size, the waves it consists of, and the instrument that looks at it
 
@@ -395,7 +409,7 @@ def _exact(value: float, scale: float) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class Written:
+class Written(Outcome):
     """The flank that was written, and its file."""
 
     surface: Surface
@@ -425,11 +439,3 @@ class Written:
                 "taking one raises the dimension that is found."
             )
         ]
-
-    def checks(self) -> "Sequence[Check]":
-        """Return nothing: a file keeps no limit."""
-        return ()
-
-    def warnings(self) -> Sequence[str]:
-        """Return nothing."""
-        return ()

@@ -18,6 +18,14 @@ STEPS = 60  # of Newton's iteration at most, kept within its bracket
 FINE = 1e-15
 
 
+def _taken(value: Float, index: NDArray[np.intp], rows: int, axes: int) -> Float:
+    """Return the values of these rows out of so many, with axes behind; what is one number for all stays it."""
+    if np.ndim(value) == 0:
+        return value
+    many = np.broadcast_to(np.asarray(value, dtype=float), (rows,))[index]
+    return many[(..., *(np.newaxis,) * axes)]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Engagement:
     """Pairs over those stated: without torque, and the gain at a large one; 63 % of it at ``scale``, N m."""
@@ -40,7 +48,7 @@ class Engagement:
         low = wanted + np.log(self.start)
         high = low + np.log1p(self.gain)
         way = np.asarray(low, dtype=float)
-        for _ in range(STEPS):
+        for _ in range(STEPS if np.any(self.gain) else 0):
             torque = np.exp(way)
             off = way - np.log(self.factor(torque)) - wanted
             low, high = np.where(off < 0.0, way, low), np.where(off > 0.0, way, high)
@@ -55,9 +63,8 @@ class Engagement:
 
     def of_rows(self, index: NDArray[np.intp], rows: int, axes: int) -> "Engagement":
         """Return that of these rows out of so many, with axes behind."""
-        numbers = (np.broadcast_to(np.asarray(value, dtype=float), (rows,))[index] for value in vars(self).values())
-        start, gain, scale = (value[(..., *(np.newaxis,) * axes)] for value in numbers)
-        return Engagement(start=start, gain=gain, scale=scale)
+        numbers = {name: _taken(value, index, rows, axes) for name, value in vars(self).items()}
+        return Engagement(**numbers)
 
 
 def engagement_of(drive: Drive) -> Engagement:
@@ -67,7 +74,7 @@ def engagement_of(drive: Drive) -> Engagement:
 
 # All engaged pairs of teeth together: who carries how much, and how stiff the mesh is
 
-CHUNK = 2**15  # numbers at a time: they stay in the cache, and memory stays flat
+CHUNK = 2**14  # numbers at a time: they stay in the cache, and memory stays flat
 
 
 @dataclass(frozen=True)
@@ -119,14 +126,11 @@ class ToothPair:
 
     def of_rows(self, index: NDArray[np.intp], rows: int, axes: int) -> "ToothPair":
         """Return the pair of these rows out of so many, with axes behind."""
-
-        def taken(value: Float) -> NDArray[np.float64]:
-            many: NDArray[np.float64] = np.broadcast_to(np.asarray(value, dtype=float), (rows,))[index]
-            return many[(..., *(np.newaxis,) * axes)]
-
-        law = micro.ContactLaw(taken(self.law.dimension), taken(self.law.pressure_ratio))
-        numbers = {name: taken(getattr(self, name)) for name in ("scale", "film", "area_ratio", "compliance")}
-        return ToothPair(law=law, **numbers)
+        dimension, ratio, *numbers = (_taken(value, index, rows, axes) for value in self.numbers)
+        scale, film, area_ratio, compliance = numbers
+        return ToothPair(
+            law=micro.ContactLaw(dimension, ratio), scale=scale, film=film, area_ratio=area_ratio, compliance=compliance
+        )
 
     @property
     def numbers(self) -> tuple[Float, ...]:
@@ -135,15 +139,13 @@ class ToothPair:
             self.law.dimension, self.law.pressure_ratio, self.scale, self.film, self.area_ratio, self.compliance,
         )  # fmt: skip
 
-    def rough(self, size: Float) -> Float:
-        """Return the stiffness of the rough contact alone at u, N/m."""
-        return self.scale * micro.stiffness_share(size, self.law)
+    def around(self, rough: Float, touched: Float) -> Float:
+        """Return the stiffness of the whole pair, N/m, from that of its rough contact.
 
-    def around(self, rough: Float, size: Float) -> Float:
-        """Return the stiffness of the whole pair, N/m, from that of its rough contact."""
+        ``touched`` is the real area in parts of the truncated one at a_L = a_c; without a film it is not asked for.
+        """
         if np.any(self.film):
-            ratio, real = micro.area_shares(size, self.law)
-            rough = rough + self.film * np.maximum(1.0 - self.area_ratio * ratio * real, 0.0)
+            rough = rough + self.film * np.maximum(1.0 - self.area_ratio * touched, 0.0)
         return rough / (1.0 + self.compliance * rough) if np.any(self.compliance) else rough
 
 
@@ -165,12 +167,17 @@ class DriveMesh:
         return tuple(np.broadcast_to(np.asarray(value, dtype=float), shape) for value in values)
 
     @property
+    def law_numbers(self) -> tuple[Float, ...]:
+        """The numbers on which the loads of the pairs and their a_L depend, without stiffnesses."""
+        return (*self.pair.numbers[:2], *vars(self.engagement).values(), self.radius, self.plastic_limit)
+
+    @cached_property
     def plastic_share(self) -> Float:
         """The torque at which the first contact would turn elastic if there were just the pairs stated, N m."""
         torque: Float = self.plastic_limit * self.radius / self.arcs.shares[0]
         return torque
 
-    @property
+    @cached_property
     def plastic_torque(self) -> Float:
         """The torque at which the first contact turns elastic, that of the pair that carries most, N m."""
         return self.engagement.torque_of(self.plastic_share)
@@ -229,7 +236,9 @@ def normal_stiffness(torque: Float, mesh: DriveMesh) -> Float:
         index = np.arange(start, min(start + step, rows))
         pair = mesh.pair.of_rows(index, rows, 1)
         size = micro.size_of(first[index, np.newaxis] + mesh.arcs.offsets, pair.law)
-        found[index] = factor[index] * (pair.around(pair.rough(size), size) @ mesh.arcs.counts)
+        rough = pair.scale * micro.stiffness_share(size, pair.law)
+        touched = micro.touched_area(size, pair.law) if np.any(pair.film) else 0.0
+        found[index] = factor[index] * (pair.around(rough, touched) @ mesh.arcs.counts)
     return found if np.ndim(given) else float(found[0])
 
 
@@ -247,17 +256,17 @@ ROWS = 4096  # cut into panels at a time
 
 @dataclass(frozen=True)
 class Panels:
-    """Pieces of the ways of integration of all rows: the row, where a piece begins and how wide it is."""
+    """Pieces of ways of integration: whose way it is (index into the rows asked for), its begin and its width."""
 
-    row: NDArray[np.intp]
+    owner: NDArray[np.intp]
     start: NDArray[np.float64]
     width: NDArray[np.float64]
 
     def in_pieces(self, count: int) -> "Iterator[Panels]":
         """Yield so many at a time."""
-        for start in range(0, len(self.row), count):
+        for start in range(0, len(self.owner), count):
             some = slice(start, start + count)
-            yield Panels(self.row[some], self.start[some], self.width[some])
+            yield Panels(self.owner[some], self.start[some], self.width[some])
 
 
 def mesh_torsion(torque: Float, reference: Float, mesh: DriveMesh) -> tuple[Float, Float]:
@@ -265,79 +274,153 @@ def mesh_torsion(torque: Float, reference: Float, mesh: DriveMesh) -> tuple[Floa
 
     Both are 0 below the reference, and infinite where all contacts are plastic at the reference. The second one leaves
     out films and springs. Accuracy: 1e-9 of the value; with more than 250 pairs and a reference near the plastic limit
-    1e-7.
+    1e-7. Rows that differ in their torque alone share the way of integration up to where it ends.
     """
     begin, lever = mesh.plastic_torque, np.square(mesh.radius)
     given = mesh.with_rows(np.log(np.maximum(np.abs(torque), 1e-300) / begin), np.log(reference / begin), lever)
     last, first, lever = (np.atleast_1d(item) for item in given)
-    rows = len(last)
-    whole, rough = np.zeros(rows), np.zeros(rows)
-    active = np.flatnonzero((last > first) & (first > 0.0))  # NaN is not
-    for start in range(0, len(active), ROWS):
-        index = active[start : start + ROWS]
-        for piece in _panels(index, first, last, mesh).in_pieces(CHUNK // (len(RULE[0]) * len(mesh.arcs.shares)) + 1):
-            for total, part in zip((whole, rough), _integrals(piece, mesh, rows), strict=True):
-                np.add.at(total, piece.row, part)
+    totals = np.zeros((2, len(last)))
+    active, way = _ways(np.flatnonzero((last > first) & (first > 0.0)), first, mesh)  # NaN is not
+    for start in range(0, int(way[-1]) + 1 if len(way) else 0, ROWS):
+        some = slice(*np.searchsorted(way, (start, start + ROWS)))
+        totals[:, active[some]] = _torsions(active[some], way[some] - start, first, last, mesh)
     endless = (first <= 0.0) & (last > first)
-    both = (np.where(endless, np.inf, total / lever) for total in (whole, rough))
-    all_of_it, of_roughness = (value if np.ndim(given[0]) else value[0] for value in both)
-    return all_of_it, of_roughness
+    whole, rough = np.where(endless, np.inf, totals / lever)
+    return (whole, rough) if np.ndim(given[0]) else (whole[0], rough[0])
 
 
-def _way(size: Float) -> Float:
+def _ways(
+    rows: NDArray[np.intp], first: NDArray[np.float64], mesh: DriveMesh
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return these rows in an order in which those with the same mesh and reference follow each other, and their way.
+
+    Ways are numbers from 0 on.
+    """
+    order, way = _alike(rows, first, *mesh.law_numbers, *mesh.pair.numbers)
+    return rows[order], way
+
+
+def _alike(rows: NDArray[np.intp], *numbers: Float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return an order of these rows in which those with the same numbers follow each other, and their kinds, from 0."""
+    varying = [np.asarray(number)[rows] for number in numbers if np.size(number) > 1]
+    if not varying:
+        return np.arange(len(rows)), np.zeros(len(rows), dtype=np.intp)
+    order = np.lexsort(varying)
+    fresh = np.zeros(len(rows), dtype=bool)
+    for column in varying:
+        fresh[1:] |= np.diff(column[order]) != 0.0
+    return order, np.cumsum(fresh)
+
+
+def _torsions(
+    rows: NDArray[np.intp],
+    way: NDArray[np.intp],
+    first: NDArray[np.float64],
+    last: NDArray[np.float64],
+    mesh: DriveMesh,
+) -> NDArray[np.float64]:
+    """Return the integrals of torque over stiffness of these rows (2, rows): the whole mesh, its roughness alone.
+
+    ``way`` rises from 0 on. Between the places where a pair turns elastic a way is integrated once for all its rows.
+    """
+    begins = np.flatnonzero(np.diff(way, prepend=-1))
+    leaders, furthest = rows[begins], np.maximum.reduceat(last[rows], begins)
+    marks = _marks(leaders, first, mesh)
+    ends = _variable(micro.size_of(marks, mesh.pair.of_rows(leaders, len(first), 1).law))
+    panels, counts = _cut(np.where(marks <= furthest[:, np.newaxis], ends, np.nan))
+    behind = np.concatenate([np.zeros((len(leaders), 1), dtype=int), np.cumsum(counts, axis=1)], axis=1)
+    parts = np.zeros((2, len(leaders), int(behind.max()) + 1))
+    ordinal = np.arange(len(panels.owner)) - np.repeat(np.cumsum(behind[:, -1]) - behind[:, -1], behind[:, -1])
+    parts[:, panels.owner, ordinal + 1] = _integrals(panels, leaders, mesh, len(first))
+    passed = (marks[way] <= last[rows, np.newaxis]).sum(axis=1) - 1
+    found = np.cumsum(parts, axis=2)[:, way, behind[way, passed]]
+    high = _variable(micro.size_of(last[rows], mesh.pair.of_rows(rows, len(first), 0).law))
+    panels, _ = _cut(np.stack([ends[way, passed], high], axis=1))
+    for total, part in zip(found, _integrals(panels, rows, mesh, len(first)), strict=True):
+        np.add.at(total, panels.owner, part)
+    return found
+
+
+def _variable(size: Float) -> NDArray[np.float64]:
     """Return the variable of integration at u: like ln u where u is small, in proportion to u where it is large."""
-    return np.log(np.expm1(TURN * size))
+    return np.asarray(np.log(np.expm1(TURN * size)))
 
 
-def _panels(index: NDArray[np.intp], first: NDArray[np.float64], last: NDArray[np.float64], mesh: DriveMesh) -> Panels:
-    """Cut the way of these rows where a pair turns elastic, and further until no piece is too wide."""
-    law = mesh.pair.of_rows(index, len(first), 1).law
-    low, high = first[index, np.newaxis], last[index, np.newaxis]
-    offsets = mesh.arcs.offsets
+def _marks(rows: NDArray[np.intp], first: NDArray[np.float64], mesh: DriveMesh) -> NDArray[np.float64]:
+    """Return where the ways of these rows begin and where on them a pair turns elastic, (rows, places), rising."""
+    offsets, low = mesh.arcs.offsets, first[rows, np.newaxis]
     some = np.unique(np.linspace(0, len(offsets) - 1, min(KINKS, len(offsets))).astype(int))
-    ends = _onsets(index, offsets[some], mesh, len(first))
-    kinks = np.log(ends[:, 1:] / ends[:, :1])
-    marks = np.concatenate([low, np.clip(kinks, low, high), high], axis=1)
-    ends = np.asarray(_way(micro.size_of(marks, law)))
+    ends = _onsets(rows, offsets[some], mesh, len(first))
+    return np.concatenate([low, np.maximum(np.log(ends[:, 1:] / ends[:, :1]), low)], axis=1)
+
+
+def _cut(ends: NDArray[np.float64]) -> tuple[Panels, NDArray[np.intp]]:
+    """Cut ways at their ends (ways, places), and further until no piece is too wide; NaN ends a way.
+
+    Also return the numbers of pieces between the ends.
+    """
     widths = np.nan_to_num(np.diff(ends, axis=1))  # rows that are refused have none
-    counts = np.ceil(widths / WIDEST).astype(int).ravel()
-    width = np.repeat(widths.ravel() / np.maximum(counts, 1), counts)
-    behind = np.arange(len(width)) - np.repeat(np.cumsum(counts) - counts, counts)
-    start = np.repeat(ends[:, :-1].ravel(), counts) + behind * width
-    row = np.repeat(np.repeat(index, widths.shape[1]), counts)
-    return Panels(row, start, width)
+    counts = np.ceil(widths / WIDEST).astype(int)
+    flat = counts.ravel()
+    width = np.repeat(widths.ravel() / np.maximum(flat, 1), flat)
+    behind = np.arange(len(width)) - np.repeat(np.cumsum(flat) - flat, flat)
+    start = np.repeat(ends[:, :-1].ravel(), flat) + behind * width
+    return Panels(np.repeat(np.arange(len(ends)), counts.sum(axis=1)), start, width), counts
 
 
 def _onsets(index: NDArray[np.intp], offsets: NDArray[np.float64], mesh: DriveMesh, rows: int) -> NDArray[np.float64]:
     """Return the torques at which pairs with these shares turn elastic, (rows asked for, shares)."""
-    share = np.broadcast_to(np.asarray(mesh.plastic_share, dtype=float), (rows,))[index, np.newaxis]
-    return np.asarray(mesh.engagement.of_rows(index, rows, 1).torque_of(share * np.exp(-offsets)))
+    share = _taken(mesh.plastic_share, index, rows, 1) * np.exp(-offsets)
+    found = np.asarray(mesh.engagement.of_rows(index, rows, 1).torque_of(share))
+    return np.broadcast_to(found, (len(index), len(offsets)))
 
 
-def _integrals(panels: Panels, mesh: DriveMesh, rows: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Integrate torque over stiffness on every panel: of the whole mesh, and of its roughness alone."""
-    nodes, weights = RULE
-    pair = mesh.pair.of_rows(panels.row, rows, 2)
-    grown = np.exp(panels.start[:, np.newaxis] + panels.width[:, np.newaxis] * 0.5 * (nodes + 1.0))[..., np.newaxis]
+def _integrals(panels: Panels, rows: NDArray[np.intp], mesh: DriveMesh, count: int) -> NDArray[np.float64]:
+    """Integrate torque over stiffness on every panel of these rows of ``count``, (2, panels)."""
+    together = CHUNK // (len(RULE[0]) * len(mesh.arcs.shares)) + 1
+    parts = [_integrated(piece, rows[piece.owner], mesh, count) for piece in panels.in_pieces(together)]
+    return np.concatenate([np.empty((2, 0)), *parts], axis=1)
+
+
+def _integrated(panels: Panels, rows: NDArray[np.intp], mesh: DriveMesh, count: int) -> NDArray[np.float64]:
+    """Integrate on a few panels: over the stiffness of the whole mesh, and of its roughness alone.
+
+    Panels that differ in film and springs alone share loads and contacts.
+    """
+    some, kind = _distinct(panels, rows, mesh)
+    step, size, law = _contacts(Panels(rows[some], panels.start[some], panels.width[some]), mesh, count)
+    pair = mesh.pair.of_rows(rows, count, 2)
+    alone = pair.scale * micro.stiffness_share(size, law)[kind]
+    touched = micro.touched_area(size, law)[kind] if np.any(pair.film) else 0.0
+    whole, rough = pair.around(alone, touched), alone @ mesh.arcs.counts
+    sums = np.stack([rough if whole is alone else whole @ mesh.arcs.counts, rough])
+    found: NDArray[np.float64] = (0.5 * panels.width[:, np.newaxis] * RULE[1] * step[kind, :, 0] / sums).sum(axis=2)
+    return found
+
+
+def _distinct(panels: Panels, rows: NDArray[np.intp], mesh: DriveMesh) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return one panel of each kind, and the kinds of all, where those of a kind have the same loads."""
+    numbers = [np.asarray(number)[rows] for number in mesh.law_numbers if np.size(number) > 1]
+    order, sorted_kinds = _alike(np.arange(len(rows)), panels.start, panels.width, *numbers)
+    kind = np.empty_like(sorted_kinds)
+    kind[order] = sorted_kinds
+    return order[np.flatnonzero(np.diff(sorted_kinds, prepend=-1))], kind
+
+
+def _contacts(
+    panels: Panels, mesh: DriveMesh, count: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], micro.ContactLaw]:
+    """Return torque steps (panels, nodes, 1) and u of all pairs (panels, nodes, pairs), with the law of the contacts.
+
+    The owners of the panels are rows of ``count``.
+    """
+    law = mesh.pair.of_rows(panels.owner, count, 2).law
+    way = panels.start[:, np.newaxis] + panels.width[:, np.newaxis] * 0.5 * (RULE[0] + 1.0)
+    grown = np.exp(way)[..., np.newaxis]
     size = np.log1p(grown) / TURN
-    begin, share = (
-        np.broadcast_to(np.asarray(value, dtype=float), (rows,))[panels.row][:, np.newaxis, np.newaxis]
-        for value in (mesh.plastic_torque, mesh.plastic_share)
-    )
-    torque = begin * np.exp(micro.load_logarithm(size, pair.law))
-    factor = mesh.engagement.of_rows(panels.row, rows, 2).factor(torque)
-    step = torque / factor * micro.load_slope(size, pair.law) * grown / ((1.0 + grown) * TURN)
+    begin, share = (_taken(value, panels.owner, count, 2) for value in (mesh.plastic_torque, mesh.plastic_share))
+    torque = begin * np.exp(micro.load_logarithm(size, law))
+    factor = mesh.engagement.of_rows(panels.owner, count, 2).factor(torque)
+    step = torque / factor * micro.load_slope(size, law) * grown / ((1.0 + grown) * TURN)
     loads = np.log(torque / (factor * share)) + mesh.arcs.offsets
-    whole, rough = _sums(np.asarray(micro.size_of(loads, pair.law)), pair, mesh)
-    shares = 0.5 * panels.width[:, np.newaxis] * weights * step[..., 0]
-    return (shares / whole).sum(axis=1), (shares / rough).sum(axis=1)
-
-
-def _sums(
-    size: NDArray[np.float64], pair: ToothPair, mesh: DriveMesh
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the sums of the stiffnesses of all pairs: as they stand, and of their rough contacts alone."""
-    alone = pair.rough(size)
-    whole = pair.around(alone, size)
-    rough: NDArray[np.float64] = alone @ mesh.arcs.counts
-    return rough if whole is alone else whole @ mesh.arcs.counts, rough
+    return step, np.asarray(micro.size_of(loads, law)), law

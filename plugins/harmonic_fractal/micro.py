@@ -48,11 +48,6 @@ class ContactLaw:
         """(D - 2)/2, the exponent of stiffness that is lost to plastic contacts."""
         return 0.5 * (np.asarray(self.dimension) - 2.0)
 
-    def on_axis(self, axes: int = 1) -> "ContactLaw":
-        """Return the law with so many axes behind, one value of it for each row."""
-        last = (..., *(np.newaxis,) * axes)
-        return ContactLaw(np.asarray(self.dimension)[last], np.asarray(self.pressure_ratio)[last])
-
 
 def domain_factor(dimension: Float) -> Float:
     """Return psi of the area distribution of contacts for a surface of dimension D, 2 < D < 3.
@@ -103,25 +98,35 @@ def size_of(load: Float, law: ContactLaw) -> Float:
     """
     wanted = np.asarray(load, dtype=float)
     sought = np.maximum(wanted, 0.0)
-    size = sought / (law.growth + law.elastic / (1.0 + 0.25 * law.elastic * sought))
+    size = np.array(sought / (law.growth + law.elastic / (1.0 + 0.25 * law.elastic * sought)))
+    grown, part, step, other = (np.empty_like(size) for _ in range(4))  # every step writes into the same memory
+    ratio = law.elastic / law.bend
     for _ in range(STEPS):
-        grown = np.expm1(law.bend * size)
-        part = law.elastic / law.bend * grown
-        added = law.elastic * (grown + 1.0) / (1.0 + part)
-        slope = law.growth + added
-        step = (law.growth * size + np.log1p(part) - sought) / slope
-        step = step / (1.0 - 0.5 * step * added * (law.bend - added) / slope)
-        size = np.maximum(size - step, 0.0)
-        if not (np.abs(step) > FINE * (1.0 + size)).any():
+        np.expm1(np.multiply(law.bend, size, out=grown), out=grown)
+        np.multiply(ratio, grown, out=part)
+        added = np.multiply(law.elastic, np.add(grown, 1.0, out=grown), out=grown)
+        added /= np.add(1.0, part, out=other)
+        np.multiply(law.growth, size, out=step)
+        step += np.log1p(part, out=part)
+        step -= sought
+        slope = np.add(law.growth, added, out=other)
+        step /= slope
+        np.multiply(0.5, step, out=part)
+        part *= added
+        part *= np.subtract(law.bend, added, out=added)
+        part /= slope
+        step /= np.subtract(1.0, part, out=part)
+        np.maximum(np.subtract(size, step, out=size), 0.0, out=size)
+        if not (np.abs(step, out=step) > FINE * (1.0 + size)).any():
             break
     value: Float = np.where(wanted > 0.0, size, wanted)
     return value
 
 
-def stiffness_share(size: Float, law: ContactLaw) -> Float:
+def stiffness_share(size: Float, law: ContactLaw) -> NDArray[np.float64]:
     """Return K/K_s at u, with K_s the stiffness that the contacts of a_L = a_c would have; 0 where all are plastic."""
     above = np.maximum(size, 0.0)
-    share: Float = -np.exp(law.growth * above) * np.expm1(-law.decay * above)
+    share: NDArray[np.float64] = -np.exp(law.growth * above) * np.expm1(-law.decay * above)
     return share
 
 
@@ -141,3 +146,9 @@ def area_shares(size: Float, law: ContactLaw) -> tuple[Float, NDArray[np.float64
     above = np.maximum(size, 0.0)
     real = 0.5 * (1.0 + np.exp(-0.5 * (3.0 - np.asarray(law.dimension)) * above))
     return np.exp(size), real
+
+
+def touched_area(size: Float, law: ContactLaw) -> NDArray[np.float64]:
+    """Return the real area at u in parts of the truncated one at a_L = a_c."""
+    ratio, real = area_shares(size, law)
+    return ratio * real

@@ -18,9 +18,9 @@ from truing import (
     Array,
     Bench,
     Block,
-    Check,
     Drawing,
     Float,
+    Outcome,
     Sensitivities,
     Table,
     Tolerance,
@@ -147,7 +147,6 @@ def slopes(found_by: Sensitivities) -> LocalSlopes:
 
 OF = ("stiffness", "clearance", "mesh_stiffness", "torsion")
 PAIR = ("dimension_deviation", "roughness_deviation")
-CAUSE = "estimate"  # the tolerance that draws the pairs
 MOST = 100_000
 TOGETHER = 1024
 NOTHING = (
@@ -213,7 +212,7 @@ class Uncertainty:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Propagated:
+class Propagated(Outcome):
     """Pairs (n, 2) as deviations of D and ln G, and by result what they give (n,) in SI: together, and drawn apart.
 
     ``pairs`` is None where no flank was measured. ``inputs`` are those of the run, as effects leave them.
@@ -305,10 +304,6 @@ class Propagated:
             f"{100 * found.relative_sd:.2g} %. Two independent error bars would claim {100 * found.independent_sd:.2g} "
             f"%, {ratio:.2g} times as much."
         )
-
-    def checks(self) -> "Sequence[Check]":
-        """Return nothing: an uncertainty decides no limit."""
-        return ()
 
     def warnings(self) -> Sequence[str]:
         """Name pairs without an answer."""
@@ -408,7 +403,7 @@ def _of_contact(answers: Any) -> Iterator[str]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SurfaceValid:
+class SurfaceValid(Outcome):
     """What was found; ``inputs`` are those of the run, as effects leave them."""
 
     name: str
@@ -419,14 +414,6 @@ class SurfaceValid:
         """Return every flank with what each direction says, and what is beyond its range."""
         flanks = {name: _flank_json(flank) for name in BODIES if (flank := getattr(self.inputs, name)) is not None}
         return {"flanks": flanks, "beyond": list(self.beyond)}
-
-    def blocks(self) -> Sequence[Block]:
-        """Return nothing: the sections say it where it belongs."""
-        return ()
-
-    def checks(self) -> "Sequence[Check]":
-        """Return nothing: a refused surface fails the check of surface_accepted."""
-        return ()
 
     def warnings(self) -> Sequence[str]:
         """Return what is beyond its range."""

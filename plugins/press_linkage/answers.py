@@ -1,6 +1,6 @@
 """What each study gives back as results, and a study of our own: both readings of the paper."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import nan, pi
 from typing import Any
@@ -20,7 +20,7 @@ from press_linkage.errors import (
 )
 from press_linkage.kinematics import Half, crank_at, cycle_demands, nominal, smallest_sine, solve, top_crank_angle
 from press_linkage.quantities import Cycle, ErrorInfluence, Press, PressChances, Synthesis
-from truing import Allocation, Allotted, Bench, Block, Check, Odds, Sensitivities, Swept, Table, feasible
+from truing import Allocation, Allotted, Bench, Odds, Outcome, Sensitivities, Swept, Table, feasible
 
 # What each study gives back as results of the press linkage
 
@@ -188,7 +188,7 @@ def _part(bench: "Bench", name: str, place: int) -> Callable[[str, int, int], No
 
 
 @dataclass(frozen=True)
-class Compared:
+class Compared(Outcome):
     """What each reading comes to."""
 
     by_reading: Mapping[str, Allotted]
@@ -220,15 +220,3 @@ class Compared:
             ("", "%", "%", "%", "%", "", ""),
             f"First order, links down to {self.finest}. Tolerances that the inputs file states hold for both.",
         )
-
-    def blocks(self) -> Sequence[Block]:
-        """Return nothing: a section of the sheet shows the table."""
-        return ()
-
-    def checks(self) -> "Sequence[Check]":
-        """Return nothing: only the reading of the inputs decides limits."""
-        return ()
-
-    def warnings(self) -> Sequence[str]:
-        """Return nothing."""
-        return ()

@@ -27,7 +27,7 @@ from roller_screw_shift.objectives import (
     weights_of,
 )
 from roller_screw_shift.quantities import Pair
-from truing import Array, Bench, Block, Check, Float, Table, TruingError, Words, found, results
+from truing import Array, Bench, Block, Float, Outcome, Table, TruingError, Words, found, results
 
 # The complex method of Box: the least cost within limits, by a cloud of vertices that walks, shrinks and settles
 #
@@ -407,7 +407,7 @@ def before(field: Field) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class ChosenShift:
+class ChosenShift(Outcome):
     """The optimum by Box's method and on the grid, and where the objectives were weighed.
 
     Without any shift that keeps every limit ``field`` is None and ``status`` says why. ``equal`` is the shift at which
@@ -443,14 +443,6 @@ class ChosenShift:
     def as_json(self) -> Mapping[str, Any]:
         """Return intervals, ranges, weights, both optima and the variants."""
         return chosen_json(self)
-
-    def blocks(self) -> "Sequence[Block]":
-        """Return nothing: the sections on the choice of the shift show it."""
-        return ()
-
-    def checks(self) -> "Sequence[Check]":
-        """Return nothing: the checks judge the shift that is stated."""
-        return ()
 
     def warnings(self) -> Sequence[str]:
         """Say what was not found."""

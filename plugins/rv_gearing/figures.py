@@ -41,11 +41,6 @@ def one_panel(height: float) -> "tuple[Figure, Any]":
     return figure, figure.subplots()
 
 
-def minus(text: str) -> str:
-    """A text of numbers with a true minus."""
-    return text.replace("-", "−")
-
-
 # The groups that the search finds: where they lie in the window, and how hard each is loaded
 
 MOST_NUMBERED = 40

@@ -12,7 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rv_gearing.quantities import Gearing
-from truing import Array, Bench, Block, Check, Float, Table, TruingError, column, either, feasible, found, results, rows
+from truing import (
+    Array,
+    Bench,
+    Float,
+    Outcome,
+    Table,
+    TruingError,
+    column,
+    either,
+    feasible,
+    found,
+    results,
+    rows,
+)
 
 # What the drive must do: ratio, efficiency, torque, and the sizes of pin circle and centre distance they ask for
 #
@@ -485,7 +498,7 @@ def _stable(stage: Gearing, groups: Groups) -> bool:
 
 
 @dataclass(frozen=True, kw_only=True)
-class FoundGroups:
+class FoundGroups(Outcome):
     """Groups with their numbers and strength, (groups,) in SI; how many there are in all; which is rated.
 
     ``stable`` says that the rated number keeps its teeth while the efficiency of the bearings scatters.
@@ -543,14 +556,6 @@ class FoundGroups:
         told = ("common_first", "mesh_phases", "planet_kinds", "preference")
         asked = zip(*(getattr(self.groups, name) for name in told), strict=True)
         return [reason_of(*map(float, values)) for values in asked]
-
-    def blocks(self) -> Sequence[Block]:
-        """Return nothing: the section on the search shows tables and figures where they are read."""
-        return ()
-
-    def checks(self) -> "Sequence[Check]":
-        """Return nothing: a list decides no limit."""
-        return ()
 
     def warnings(self) -> Sequence[str]:
         """Say that there is no group, or that none is the one that is rated."""

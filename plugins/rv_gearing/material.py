@@ -1,7 +1,5 @@
 """What the treatment of the steel fixes, and what it bears at the number of loads of a life."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from rv_gearing.geometry import ToothLoad
@@ -57,53 +55,37 @@ class Steel:
                               method=BY_MATERIAL, source=SIZE)  # fmt: skip
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Values:
-    """One row of the tables of the standard."""
-
-    contact: tuple[float, float, float, float]  # most, knee, slope, tail
-    bending: tuple[float, float]  # most, slope
-    surface: tuple[float, float, float, float]  # smooth, constant, slope, exponent
-    size: tuple[float, float, float]  # constant, slope per mm, least
-
-
-HARDENED = (1.12, 1.674, 0.529, 0.1)
-CURVES = {
-    "case_hardened": _Values(
-        contact=(1.6, 5e7, 0.0756, 0.0306), bending=(2.5, 0.115), surface=HARDENED, size=(1.05, 0.01, 0.8)
-    ),
-    "through_hardened": _Values(
-        contact=(1.6, 5e7, 0.0756, 0.0306), bending=(2.5, 0.16), surface=HARDENED, size=(1.03, 0.006, 0.85)
-    ),
-    "nitrided": _Values(
-        contact=(1.3, 2e6, 0.0876, 0.0191), bending=(1.6, 0.0587), surface=(1.025, 4.299, 3.259, 0.0058),
-        size=(1.05, 0.01, 0.8),
-    ),
+HARDENED_CONTACT = {
+    "contact_life_most": 1.6,
+    "contact_life_knee": 5e7,
+    "contact_life_slope": 0.0756,
+    "contact_life_tail": 0.0306,
+}
+HARDENED_SURFACE = {"surface_smooth": 1.12, "surface_constant": 1.674, "surface_slope": 0.529, "surface_exponent": 0.1}
+HARDENED_SIZE = {"size_constant": 1.05, "size_slope": 0.01, "size_least": 0.8}
+CURVES: dict[str, dict[str, Float]] = {
+    "case_hardened": {
+        **HARDENED_CONTACT, **HARDENED_SURFACE, **HARDENED_SIZE, "bending_life_most": 2.5, "bending_life_slope": 0.115,
+        "slip_layer": 0.003e-3,
+    },
+    "through_hardened": {
+        **HARDENED_CONTACT, **HARDENED_SURFACE, "bending_life_most": 2.5, "bending_life_slope": 0.16,
+        "size_constant": 1.03, "size_slope": 0.006, "size_least": 0.85,
+    },
+    "nitrided": {
+        "contact_life_most": 1.3, "contact_life_knee": 2e6, "contact_life_slope": 0.0876, "contact_life_tail": 0.0191,
+        "bending_life_most": 1.6, "bending_life_slope": 0.0587, "slip_layer": 0.1005e-3, "surface_smooth": 1.025,
+        "surface_constant": 4.299, "surface_slope": 3.259, "surface_exponent": 0.0058, **HARDENED_SIZE,
+    },
 }  # fmt: skip
 
 
 def steel_of(stage: Gearing) -> Steel:
     """Return the constants of the material that is stated."""
     values = CURVES[stage.material]
-    slip: Float = 0.003e-3 if stage.material == "case_hardened" else 0.1005e-3
     if stage.material == "through_hardened":
-        slip = np.interp(stage.proof_stress, PROOF_STRESS, SLIP_LAYER)
-    return Steel(
-        contact_life_most=values.contact[0],
-        contact_life_knee=values.contact[1],
-        contact_life_slope=values.contact[2],
-        contact_life_tail=values.contact[3],
-        bending_life_most=values.bending[0],
-        bending_life_slope=values.bending[1],
-        slip_layer=slip,
-        surface_smooth=values.surface[0],
-        surface_constant=values.surface[1],
-        surface_slope=values.surface[2],
-        surface_exponent=values.surface[3],
-        size_constant=values.size[0],
-        size_slope=values.size[1],
-        size_least=values.size[2],
-    )
+        return Steel(**values, slip_layer=np.interp(stage.proof_stress, PROOF_STRESS, SLIP_LAYER))
+    return Steel(**values)
 
 
 # How often the teeth are loaded, and what their material bears that often. Reference: ISO 6336-2 and -3:2006

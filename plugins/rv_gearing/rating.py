@@ -37,7 +37,7 @@ from rv_gearing.stress_factors import (
     contact_ratio_factor,
     root_of,
 )
-from truing import Array, Bench, Block, Check, Float, Sweep, Swept, Table, TruingError, found, part, results
+from truing import Array, Bench, Block, Float, Outcome, Sweep, Swept, Table, TruingError, found, part, results
 
 # What the gearing calculation answers: the duty, every factor, the stresses, and what they may be
 #
@@ -430,7 +430,7 @@ def _used_up(bench: "Bench", column: str, start: float, done: Callable[[int, int
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reserve:
+class Reserve(Outcome):
     """By limit (4,): safety, what is asked, and torque (N m) and time (s) at which they meet; infinite where never."""
 
     inputs: Gearing
@@ -481,14 +481,6 @@ class Reserve:
                 f"Everything else as stated. {self.governing[0].upper() + self.governing[1:]} comes first.",
             )
         ]
-
-    def checks(self) -> "Sequence[Check]":
-        """Return nothing: the stresses of the run are checked, not what would be."""
-        return ()
-
-    def warnings(self) -> Sequence[str]:
-        """Return nothing."""
-        return ()
 
 
 def _finite(value: Any) -> float | None:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from truing import Bench, Block, Check, Float, Price, Table, Tolerance, by_choice, found, normal, results, zone
+from truing import Bench, Block, Float, Outcome, Price, Table, Tolerance, by_choice, found, normal, results, zone
 
 # What a tolerance costs: the paper's three cost functions, each in three readings of its lost equations
 #
@@ -124,7 +124,7 @@ class Costs:
 
 
 @dataclass(frozen=True)
-class Bill:
+class Bill(Outcome):
     """The sum in force (yuan), the width of every priced zone (m), and its price by form (yuan)."""
 
     total: float
@@ -162,14 +162,6 @@ class Bill:
                 "The paper's coefficients in three forms of its lost equations 25 to 27. Its total is 1402 yuan.",
             )
         ]
-
-    def checks(self) -> "Sequence[Check]":
-        """Return nothing: a cost decides no limit."""
-        return ()
-
-    def warnings(self) -> Sequence[str]:
-        """Return nothing."""
-        return ()
 
 
 def cost(bill: Bill) -> Cost:

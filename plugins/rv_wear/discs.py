@@ -12,8 +12,8 @@ from rv_wear.calculation import rv_wear
 from rv_wear.forces import Loads, holding, refuse, shared, start_scale
 from rv_wear.geometry import Mesh, Teeth, many, mesh_of, teeth_of
 from rv_wear.quantities import Reducer
-from rv_wear.wear import exposure_of, oil_part, unworn, wear_at, worn
-from truing import Array, Bench, Block, Check, Float, Table, TruingError, found, results
+from rv_wear.wear import exposure_of, oil_part, unworn, wear_at
+from truing import Array, Bench, Block, Float, Outcome, Table, TruingError, found, results
 
 # Curves for figures and tests: plain numpy out of one reducer or of many, every Float a number or an array (n,); SI
 #
@@ -54,23 +54,10 @@ def worn_mesh(reducer: Reducer, time: float = 0.0) -> tuple[Teeth, Loads, Array]
     return teeth, shared(teeth, teeth.slack + wear / teeth.relative_arm, start_scale(teeth)), wear
 
 
-def wear_over_time(reducer: Reducer, times: ArrayLike) -> Array:
-    """Largest wear (n, t) after each time (s), with everything that the inputs say. Raises InfeasibleError."""
-    rows = _in_rows(reducer)
-    moments = [np.asarray(worn(replace(rows, working_time=time)).depth) for time in np.asarray(times, dtype=float)]
-    return np.stack([np.atleast_1d(moment) for moment in moments], axis=-1)
-
-
 def clearance_over_angle(reducer: Reducer, angle: ArrayLike) -> Array:
     """Normal clearance (n, k) of the new disc at phase angles (k,) from 0 to pi."""
     mesh = many(mesh_of(reducer))
     return np.asarray(geometry.clearance(mesh, np.asarray(angle, dtype=float)[:, None])).T
-
-
-def profile_points(reducer: Reducer, count: int = 2000) -> tuple[Array, Array]:
-    """Points x and y (count,) of the whole ground profile of one disc, in its own frame; the last is the first."""
-    x, y = geometry.profile(mesh_of(reducer), np.linspace(0.0, 2.0 * np.pi, count))
-    return np.asarray(x), np.asarray(y)
 
 
 def allowed_equidistant(reducer: Reducer, lower: PermittedRange = "double_clearance") -> tuple[Array, Array]:
@@ -175,7 +162,7 @@ class Modifications:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ground:
+class Ground(Outcome):
     """Discs by their equidistant modification (n,) in m: largest force in N, deepest wear in m, flanks new and worn."""
 
     hours: float
@@ -212,14 +199,6 @@ class Ground:
                 f"At the same radial clearance, new; wear after {self.hours:g} h.",
             )
         ]
-
-    def checks(self) -> "Sequence[Check]":
-        """Return nothing: a comparison decides no limit."""
-        return ()
-
-    def warnings(self) -> Sequence[str]:
-        """Return nothing."""
-        return ()
 
 
 def trend(ground: Ground) -> Trend:
@@ -282,7 +261,7 @@ def _beyond(reducer: Reducer, lowest: float, pins: float) -> Iterator[str]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class DiscValid:
+class DiscValid(Outcome):
     """The equidistant modification and the ends of its range (m), and what was found outside of its own range."""
 
     name: str
@@ -315,10 +294,6 @@ class DiscValid:
         )
         note = "Equation 17 at this radial clearance. The paper prints -53 to 11 µm; its lower condition is lost."
         return [Table("Equidistant modification", ("", "modification"), rows, ("", "µm"), note)]
-
-    def checks(self) -> "Sequence[Check]":
-        """Return nothing: a range decides no limit."""
-        return ()
 
     def warnings(self) -> Sequence[str]:
         """Return what is beyond its range."""

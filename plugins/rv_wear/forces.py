@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rv_wear import geometry
-from rv_wear.geometry import Mesh, Teeth, Truths, pitch_number
+from rv_wear.geometry import Mesh, Teeth, pitch_number
 from truing import Array, feasible
 
 # How the pins share the torque: equations 1b to 4 with rigid take-up, solved for all meshes and positions at once
@@ -55,13 +55,25 @@ def shared(teeth: Teeth, slack: Array, guess: Array) -> Loads:
     return Loads(scale, approach, taken, force)
 
 
+class Line(NamedTuple):
+    """Numbers of positions (k,): compliance and depth number of equation 1b, torque and take-up."""
+
+    compliance: Array
+    number: Array
+    torque: Array
+    taken: Array
+
+    def approach(self, scale: Array) -> Array:
+        """Approach at the longest arm under the force there, equation 1b."""
+        return self.compliance * scale * (self.number - np.log(scale))
+
+
 def linear(teeth: Teeth, slack: Array, taken: Array, guess: Array) -> tuple[Array, Array, Array]:
     """Forces in proportion to the approach, as in the paper: scale, approach, pin forces."""
     pins = len(slack)
-    line = np.stack([x.reshape(-1) for x in (teeth.compliance, teeth.depth_number, teeth.torque, taken)])
+    line = Line(*(values.reshape(-1) for values in (teeth.compliance, teeth.depth_number, teeth.torque, taken)))
     settled = _settled(teeth.weight.reshape(pins, -1), slack.reshape(pins, -1), line, guess.reshape(-1))
-    scale = settled.reshape(guess.shape)
-    approach = teeth.compliance * scale * (teeth.depth_number - np.log(scale))
+    scale, approach = (values.reshape(guess.shape) for values in settled)
     force = (approach + taken) - slack
     np.maximum(force, teeth.nothing, out=force)  # much faster than with the number 0
     force *= teeth.relative_arm
@@ -69,27 +81,23 @@ def linear(teeth: Teeth, slack: Array, taken: Array, guess: Array) -> tuple[Arra
     return scale, approach, force
 
 
-def _settled(weight: Array, slack: Array, line: Array, scale: Array) -> Array:
-    """Force at the longest arm (k,) of positions with pins (pins, k), all with the pins that then bear.
+def _settled(weight: Array, slack: Array, line: Line, scale: Array) -> tuple[Array, Array]:
+    """Force and approach at the longest arm (k,) of positions with pins (pins, k), all with the pins that then bear.
 
-    ``line`` holds compliance, depth number, torque and take-up of the positions. Where other pins bear than were
-    thought, those positions are solved again.
+    Where other pins bear than were thought, those positions are solved again.
     """
-    touching = _touching(slack, line, scale)
+    touching = slack < line.approach(scale) + line.taken
     bearing = weight * touching
     stiffness = _total(bearing)
     bearing *= slack
-    scale = _balanced(stiffness, _total(bearing) - line[3] * stiffness, line, scale)
-    again = np.flatnonzero((_touching(slack, line, scale) != touching).any(axis=0))
-    if len(again):
-        scale[again] = _settled(weight[:, again], slack[:, again], line[:, again], scale[again])
-    return scale
-
-
-def _touching(slack: Array, line: Array, scale: Array) -> Truths:
-    """Which pins touch at this force."""
-    found: Truths = slack < line[0] * scale * (line[1] - np.log(scale)) + line[3]
-    return found
+    scale = _balanced(stiffness, _total(bearing) - line.taken * stiffness, line, scale)
+    approach = line.approach(scale)
+    others = (slack < approach + line.taken) != touching
+    if others.any():
+        again = np.flatnonzero(others.any(axis=0))
+        some = Line(*(values[again] for values in line))
+        scale[again], approach[again] = _settled(weight[:, again], slack[:, again], some, scale[again])
+    return scale, approach
 
 
 def _total(values: Array) -> Array:
@@ -100,7 +108,7 @@ def _total(values: Array) -> Array:
     return total
 
 
-def _balanced(stiffness: Array, lost: Array, line: Array, scale: Array) -> Array:
+def _balanced(stiffness: Array, lost: Array, line: Line, scale: Array) -> Array:
     """Force at which these pins hold the torque: F A - (F / delta) B = T, solved by Newton's rule."""
     compliance, number, torque, _ = line
     moving = np.ones(scale.shape, dtype=bool)

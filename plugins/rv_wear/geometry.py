@@ -13,8 +13,6 @@ from truing import Array, Float
 
 # What the teeth know of a reducer: one entry per distinct mesh, and which row of a batch runs on which mesh
 
-Truths = NDArray[np.bool_]
-
 
 @dataclass(frozen=True)
 class Choices:

@@ -1,6 +1,6 @@
 """Drawn machines: their backlash when new, and histories, indices and chances over the years."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import nan
 from typing import Any
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rv_wear.calculation import backlash_of
 from rv_wear.discs import DiscFlank, flank
 from rv_wear.quantities import Reducer
-from truing import Bench, Block, Check, Float, Odds, Sensitivities, Swept, TruingError, axis, found, results
+from truing import Bench, Float, Odds, Outcome, Sensitivities, Swept, TruingError, axis, found, results
 
 # What the studies give as results: histories, indices and chances, each known once per run and never per draw
 
@@ -212,7 +212,7 @@ class NewMachines:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Newborn:
+class Newborn(Outcome):
     """Backlash of machines (n,) in rad, new and after the working time, NaN where one cannot be; the permitted one."""
 
     new: "NDArray[np.float64]"
@@ -239,15 +239,3 @@ class Newborn:
             "within": float(np.mean(values <= self.limit)),
             "failed": len(values) - len(known),
         }
-
-    def blocks(self) -> "Sequence[Block]":
-        """Return nothing: the section on reliability shows the machines."""
-        return ()
-
-    def checks(self) -> "Sequence[Check]":
-        """Return nothing: the study 'reliability' decides the limit."""
-        return ()
-
-    def warnings(self) -> Sequence[str]:
-        """Return nothing."""
-        return ()

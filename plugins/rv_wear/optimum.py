@@ -14,11 +14,10 @@ from truing import (
     Allotted,
     Array,
     Bench,
-    Block,
-    Check,
     Emulated,
     Float,
     Optimum,
+    Outcome,
     Reliability,
     TruingError,
     axis,
@@ -172,7 +171,7 @@ class CostFront:
 
 
 @dataclass(frozen=True, eq=False)
-class Fronts:
+class Fronts(Outcome):
     """One front by goal."""
 
     fronts: tuple[CostFront, ...]
@@ -181,14 +180,6 @@ class Fronts:
     def as_json(self) -> Mapping[str, Any]:
         """Return every front with its knee."""
         return {"fronts": [_front_json(front) for front in self.fronts]}
-
-    def blocks(self) -> "Sequence[Block]":
-        """Return nothing: the section on better tolerances shows the fronts."""
-        return ()
-
-    def checks(self) -> "Sequence[Check]":
-        """Return nothing: a front decides no limit."""
-        return ()
 
     def warnings(self) -> Sequence[str]:
         """Say which goal cannot be reached."""

@@ -1,8 +1,10 @@
 """Wear of the flank, step by step, for many meshes at once, and the largest wear after the working time."""
 
-from collections.abc import Callable, Iterator
+from collections import OrderedDict
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,7 +56,7 @@ def wear_coefficient(modulus: Float, line_load: Float, relative_radius: Float, o
 
 def unworn_share(film_ratio: Float) -> Float:
     """Share of the wear that a film leaves: 1 below Lambda 0.5, 0 above 3."""
-    return np.clip((3.0 - film_ratio) / 2.5, 0.0, 1.0)
+    return np.minimum(np.maximum((3.0 - film_ratio) / 2.5, 0.0), 1.0)
 
 
 def film_number(mesh: Mesh, speed: Float, relative_radius: Float) -> Float:
@@ -83,6 +85,7 @@ SLIGHT = 1e-6  # N; a smaller force does not wear
 NEVER = 1e200  # exposure of a step in which nothing wears
 
 Rate = Callable[[Array], Array]
+Answer = TypeVar("Answer")
 
 
 @dataclass(frozen=True)
@@ -121,30 +124,29 @@ def growth(teeth: Teeth, unworn: Loads) -> Rate:
         factor = _at_pitch_point(teeth, unworn) * by_load
         return lambda force: factor * force
     by_load = by_load * contact_part(modulus, 1.0 / mesh.width, teeth.relative_radius)
-    bare = _power_law(by_load, 1.0 + LOAD)
     if mesh.film is None:
-        return bare
+        return _power_law(by_load, 1.0 + LOAD, None)
     turning = 2.0 * np.pi * mesh.film.speed
     carried = geometry.rolling_speed(mesh, teeth.angle) - 0.5 * geometry.sliding_speed(mesh, teeth.angle)
     number = film_number(mesh, np.abs(carried) * turning, teeth.relative_radius)
-    line = number * (mesh.width * modulus * teeth.relative_radius) ** 0.13
-
-    def with_film(force: Array) -> Array:
-        return bare(force) * unworn_share(line * np.maximum(force, SLIGHT) ** -0.13)
-
-    return with_film
+    return _power_law(by_load, 1.0 + LOAD, number * (mesh.width * modulus * teeth.relative_radius) ** 0.13)
 
 
-def _power_law(factor: Array, power: float) -> Rate:
-    """Factor times force to a power, 0 for a force of 0; its power would take three times as long as any other."""
+def _power_law(factor: Array, power: float, film: Float | None) -> Rate:
+    """Factor times force to a power, 0 for a force of 0, less where a film carries; ``film`` is Lambda at 1 N.
+
+    The power of 0 would take three times as long as any other.
+    """
     slight = np.full_like(factor, SLIGHT)
     least = (slight.reshape(-1)[:8] ** power)[0]
 
     def rate_of(force: Array) -> Array:
-        rate = np.maximum(force, slight)
-        np.power(rate, power, out=rate)
+        reached = np.maximum(force, slight)
+        rate: Array = reached**power
         rate -= least
         rate *= factor
+        if film is not None:
+            rate *= unworn_share(film * reached**-0.13)
         return rate
 
     return rate_of
@@ -175,7 +177,7 @@ def states(teeth: Teeth) -> Iterator[WearState]:
         exposure = exposure + lasts
         guess, last = np.maximum(2.0 * loads.scale - last, 0.5 * loads.scale), loads.scale
         loads = shared(part, _slack(part, wear), guess)
-        while np.any(clear - loads.taken <= loads.approach):
+        while (clear - loads.taken <= loads.approach).any():
             wider, clear = widened(teeth, part)
             wear = _put(wear, part, wider)
             part, rate_of = wider, growth(wider, unworn)
@@ -220,17 +222,18 @@ def _put(values: Array, part: Teeth, whole: Teeth) -> Array:
     return wide
 
 
-def histories(teeth: Teeth, reach: Array) -> Histories:
-    """Histories of all meshes to an exposure (m,) each, or to the largest number of steps."""
+def histories(teeth: Teeth, first_steps: Float) -> Histories:
+    """Histories of all meshes over so many times (m,) the exposure of their first step, or the most steps."""
     nodes: list[tuple[Array, Array, Array]] = []
-    deepest = np.zeros(0, dtype=np.intp)
+    deepest, reach = np.zeros(0, dtype=np.intp), np.zeros(0)
     for count, state in enumerate(states(teeth), 1):
         if not nodes:
+            reach = state.lasts * first_steps
             deepest = _flat(state.rate).argmax(axis=0) + state.teeth.first * teeth.angle.shape[1]
             nodes.append((state.exposure, np.zeros(teeth.count), teeth.angle.reshape(-1)[deepest]))
         deepest, added = _step(state, deepest, teeth.angle.reshape(-1))
         nodes.extend(added)
-        if np.all(nodes[-1][0] >= reach) or count == MOST_STEPS:
+        if (nodes[-1][0] >= reach).all() or count == MOST_STEPS:
             break
     exposure, depth, angle = (np.array(column) for column in zip(*nodes, strict=True))
     return Histories(exposure, depth, angle)
@@ -258,7 +261,8 @@ def _step(
         new = old.copy()
         new[passed] = after[:, passed].argmax(axis=0)
         behind = start[passed] - before[new[passed], passed]
-        part[passed] = np.clip(behind / (grown[new[passed], passed] - lead[passed]), 0.0, 1.0)
+        share = behind / (grown[new[passed], passed] - lead[passed])
+        part[passed] = np.minimum(np.maximum(share, 0.0), 1.0)
     middle = (state.exposure + part * state.lasts, start + part * lead, angle[leader])
     return new + offset, [middle, (state.exposure + state.lasts, top, angle[new + offset])]
 
@@ -280,10 +284,11 @@ def wear_at(teeth: Teeth, exposure: Array) -> Array:
 # Forces and histories of many meshes, which each are calculated once; those of a few are remembered
 
 CHUNK = 256  # meshes at a time: their contacts stay in the cache of a core
-FEW = 8  # so many meshes are calculated and remembered one by one
+FEW = 8  # so many meshes are remembered one by one
 FEW_REMEMBERED = 64
 GROUPS_REMEMBERED = 8  # a fit asks for the same rows again and again
 FINENESS = 32  # a history reaches to the next power of two ^ (1 / 32), so that batches ask for the same one
+FURTHER = 16  # of the powers of 2 ^ (1 / 32)
 SHORTEST = 1e-9
 ROUNDING = 1e-9
 
@@ -348,30 +353,62 @@ def unworn(mesh: Mesh) -> Unworn:
     )
 
 
-def history(key: HistoryKey, power: int) -> Histories:
+@lru_cache(maxsize=GROUPS_REMEMBERED)
+def unworn_of_group(key: HistoryKey) -> Unworn:
+    """Solve the new meshes of a key."""
+    return unworn(mesh_from(key))
+
+
+@lru_cache(maxsize=GROUPS_REMEMBERED)
+def history_of_group(key: HistoryKey, power: int) -> Histories:
     """Histories of the meshes of a key, each over 2 ^ (power / FINENESS) times the exposure of its first step."""
-    teeth = teeth_of(mesh_from(key))
-    return histories(teeth, next(states(teeth)).lasts * 2.0 ** (power / FINENESS))
+    return histories(teeth_of(mesh_from(key)), 2.0 ** (power / FINENESS))
 
 
-unworn_of_one = lru_cache(maxsize=FEW_REMEMBERED)(lambda key: unworn(mesh_from(key)))
-unworn_of_group = lru_cache(maxsize=GROUPS_REMEMBERED)(lambda key: unworn(mesh_from(key)))
-history_of_one = lru_cache(maxsize=FEW_REMEMBERED)(history)
-history_of_group = lru_cache(maxsize=GROUPS_REMEMBERED)(history)
+class Latest(OrderedDict[HistoryKey, Answer]):
+    """The latest answers to single meshes."""
+
+    def cache_clear(self) -> None:
+        """Forget them all, as ``lru_cache`` says it."""
+        self.clear()
+
+    def keep(self, key: HistoryKey, answer: Answer) -> None:
+        """Remember an answer, and forget the oldest of too many."""
+        self[key] = answer
+        self.move_to_end(key)
+        if len(self) > FEW_REMEMBERED:
+            self.popitem(last=False)
+
+
+unworn_of_one: Latest[Unworn] = Latest()
+history_of_one: Latest[tuple[int, Histories]] = Latest()
+"""The power to which a history reaches, and the history."""
 
 
 def groups(order: NDArray[np.intp]) -> list[NDArray[np.intp]]:
-    """Part meshes into groups that are calculated at once; a few of them are alone each."""
-    size = CHUNK if len(order) > FEW else 1
-    return [order[start : start + size] for start in range(0, len(order), size)]
+    """Part meshes into groups that are calculated at once."""
+    return [order[start : start + CHUNK] for start in range(0, len(order), CHUNK)]
 
 
 def all_unworn(mesh: Mesh, count: int) -> Unworn:
     """The new meshes, all of them."""
     if count == 0:
         return unworn_of_nothing()
-    solve = unworn_of_group if count > FEW else unworn_of_one
-    parts = [solve(key_of(mesh, places)) for places in groups(np.arange(count))]
+    if count > FEW:
+        return _joined([unworn_of_group(key_of(mesh, places)) for places in groups(np.arange(count))])
+    keys = [key_of(mesh, np.array([place])) for place in range(count)]
+    answers = {key: unworn_of_one[key] for key in keys if key in unworn_of_one}
+    missing = [place for place, key in enumerate(keys) if key not in answers]
+    if missing:
+        new = unworn(some_of(mesh, np.array(missing)))
+        for column, place in enumerate(missing):
+            answers[keys[place]] = Unworn(*(values[column : column + 1] for values in vars(new).values()))
+    for key, answer in answers.items():
+        unworn_of_one.keep(key, answer)
+    return _joined([answers[key] for key in keys])
+
+
+def _joined(parts: Sequence[Unworn]) -> Unworn:
     names = Unworn.__dataclass_fields__
     return Unworn(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
 
@@ -384,11 +421,33 @@ def unworn_of_nothing() -> Unworn:
 def all_histories(mesh: Mesh, reach: Array, first_step: Array) -> Iterator[tuple[NDArray[np.intp], Histories]]:
     """Histories to an exposure (m,) each, in groups of about the same length: the places of their meshes, and they."""
     steps = np.maximum(reach / first_step, SHORTEST)
-    follow = history_of_group if len(reach) > FEW else history_of_one
+    if len(reach) <= FEW:
+        powers = np.ceil(FINENESS * np.log2(steps) + ROUNDING).astype(int)
+        yield from ((np.array([place]), history) for place, history in enumerate(_few_histories(mesh, powers)))
+        return
     order = np.argsort(steps, kind="stable") if len(reach) > CHUNK else np.arange(len(reach))
     for places in groups(order):
         power = int(np.ceil(FINENESS * np.log2(steps[places].max()) + ROUNDING))
-        yield places, follow(key_of(mesh, places), power)
+        yield places, history_of_group(key_of(mesh, places), power)
+
+
+def _few_histories(mesh: Mesh, powers: NDArray[np.intp]) -> list[Histories]:
+    """Histories of a few meshes, remembered each; those that are missing or too short are calculated together.
+
+    One that was too short goes further than asked for, since a fit asks again for a little more.
+    """
+    keys = [key_of(mesh, np.array([place])) for place in range(len(powers))]
+    known = {key: history_of_one[key] for key in keys if key in history_of_one}
+    missing = [place for place, key in enumerate(keys) if key not in known or known[key][0] < powers[place]]
+    if missing:
+        asked = powers[missing] + np.array([FURTHER * (keys[place] in known) for place in missing])
+        new = histories(teeth_of(some_of(mesh, np.array(missing))), 2.0 ** (asked / FINENESS))
+        for column, place in enumerate(missing):
+            part = Histories(*(values[:, column : column + 1].copy() for values in vars(new).values()))
+            known[keys[place]] = int(asked[column]), part
+    for key, answer in known.items():
+        history_of_one.keep(key, answer)
+    return [known[key][1] for key in keys]
 
 
 # Reading wear off the histories: which exposure of which mesh a row of a batch has, and how deep it has worn

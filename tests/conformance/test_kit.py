@@ -1,6 +1,7 @@
 """The kit itself: for every check a model that breaks just this promise, because a check that cannot fail is none."""
 
 import itertools
+import multiprocessing
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -128,8 +129,6 @@ def forgetful_draw(rng: np.random.Generator, rows: int) -> dict[str, Any]:
 
 def elsewhere(it: Spring) -> Force:
     """Give another answer in another process."""
-    import multiprocessing
-
     answer = spring(it)
     return answer if multiprocessing.parent_process() is None else replace(answer, energy=answer.energy * 2)
 

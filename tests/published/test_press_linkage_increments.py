@@ -11,6 +11,7 @@ from math import erf, sqrt
 import numpy as np
 import pytest
 from press_linkage_cases import AROUND, MECHANISMS, PAPER, SIZES, moved, off_by, scattered, sensitivities, solve
+from press_linkage_loops import loop_increments
 
 from press_linkage import errors, kinematics
 from press_linkage.errors import ARM, DRIVEN, KINDS, PASSIVE, POLAR_ANGLES, SOURCES, source
@@ -95,7 +96,7 @@ def test_sensitivity_at_bdc(kind: str, expected: float) -> None:
 def test_derivatives_are_slopes_of_the_exact_kinematics(geometry: Press, name: str) -> None:
     nominal = solve(geometry, AROUND)
     closed = errors.derivatives(geometry, nominal)
-    solved = errors.loop_increments(geometry, nominal)
+    solved = loop_increments(geometry, nominal)
     up, down = moved(geometry, AROUND, name, 1e-6), moved(geometry, AROUND, name, -1e-6)
     for result in ("position", "tilt"):
         exact = getattr(closed, result)[name] * np.ones_like(AROUND)
@@ -110,7 +111,7 @@ def test_closed_forms_hold_with_deviations_present(geometry: Press) -> None:
         geometry, 0.4, side_1=scattered(5e-3, 6, (40,)), side_2=scattered(5e-3, 7, (40,)), platform_arm=3e-3
     )
     closed = errors.derivatives(geometry, position)
-    solved = errors.loop_increments(geometry, position)
+    solved = loop_increments(geometry, position)
     for name in SOURCES:
         assert closed.position[name] == pytest.approx(solved.position[name], abs=1e-12)
         assert closed.tilt[name] == pytest.approx(solved.tilt[name], abs=1e-12)

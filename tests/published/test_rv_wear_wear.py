@@ -212,7 +212,8 @@ def test_between_the_steps_the_largest_wear_is_that_of_the_whole_flank(changes: 
 def test_nodes_do_not_depend_on_how_far_a_history_goes() -> None:
     teeth = teeth_of(mesh_of(PAPER))
     exposure = float(exposure_of(PAPER, oil_part(PAPER), 6000 * HOUR))
-    short, long = (histories(teeth, np.array([share * exposure])) for share in (0.3, 3.0))
+    first_step = next(states(teeth)).lasts
+    short, long = (histories(teeth, share * exposure / first_step) for share in (0.3, 3.0))
     count = len(short.exposure)
     assert len(long.exposure) > 2 * count
     for name in ("exposure", "depth", "angle"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 import sys
@@ -43,6 +44,7 @@ from truing.report.diagnosis_words import (
     p_text,
     percent,
     prose,
+    readable,
     score_text,
     spoken,
     verdict_word,
@@ -217,8 +219,6 @@ def test_words_are_listed_as_a_sentence_does(words: tuple[str, ...], expected: s
     ],
 )  # fmt: skip
 def test_sizes_are_written_in_a_unit_that_reads_well(amount: Amount, expected: str) -> None:
-    from truing.report.diagnosis_words import readable
-
     assert amount_text(readable(amount)) == expected
 
 
@@ -392,8 +392,6 @@ def test_the_verb_prints_the_report_and_writes_the_folder(
 
 
 def test_the_verb_prints_one_document_with_json(calc: Calc, plugin: str, engine: list[Any], tmp_path: Path) -> None:
-    import json
-
     (tmp_path / "in.toml").write_text('[inputs]\nradius = "81 mm"\n', encoding="utf-8")
     answer = calc(
         "diagnose",

@@ -11,8 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from markdown_it import MarkdownIt
 
 from press_linkage.model import PRESS_LINKAGE
+from truing import Section, Table
 from truing.calculation import Calculation, calculate
 from truing.cases import run_cases
 from truing.executors import open_executor
@@ -161,8 +163,6 @@ def test_markdown_holds_no_html_and_no_template_mark(markdown: str) -> None:
 
 
 def test_every_table_of_the_markdown_has_equal_rows(markdown: str) -> None:
-    from markdown_it import MarkdownIt
-
     tokens = MarkdownIt("commonmark").enable("table").parse(markdown)
     rows = sum(token.type == "tr_open" for token in tokens)
     lines = [line for line in markdown.splitlines() if line.startswith("|")]
@@ -294,8 +294,6 @@ def test_rows_that_this_run_reproduces_come_first(offer: Offer) -> None:
 
 
 def test_a_figure_that_fails_is_a_warning_and_not_the_end(offer: Offer, setup: Setup, provenance: Provenance) -> None:
-    from truing import Section
-
     def broken(record: Any) -> Any:
         raise ZeroDivisionError("nothing to divide by")
 
@@ -308,7 +306,6 @@ def test_a_figure_that_fails_is_a_warning_and_not_the_end(offer: Offer, setup: S
 
 def test_a_section_without_anything_to_show_has_no_heading(setup: Setup, provenance: Provenance) -> None:
     """Its study did not run; a section that is words and nothing else stays."""
-    from truing import Section
 
     def nothing(record: Any) -> Any:
         return []
@@ -322,7 +319,6 @@ def test_a_section_without_anything_to_show_has_no_heading(setup: Setup, provena
 @pytest.mark.parametrize("rows", [[["a"], ["a", 1.0, "too many"]], "no table at all"])
 def test_blocks_of_a_guest_do_not_take_the_sheet_away(setup: Setup, provenance: Provenance, rows: Any) -> None:
     """Rows too short or too long are printed as far as they go; what is no table is said to have failed."""
-    from truing import Section, Table
 
     def blocks(record: Any) -> Any:
         return [Table("T", ["one", "two"], rows)] if isinstance(rows, list) else rows

@@ -20,7 +20,7 @@ from truing.api.records import MeasuredRecord
 from truing.api.run import Order, Run, performed
 from truing.api.settings import settings_of, text_of
 from truing.api.study import StudyResult
-from truing.api.tables import LABEL, as_file, beside
+from truing.api.tables import LABEL, beside, frame_text
 from truing.api.writing import write_sheet
 from truing.declare.model import Study
 from truing.declare.near_miss import near_miss
@@ -171,8 +171,7 @@ class LoadedModel:
         ``fault``. Raises InputError with every fault of the dataframe.
         """
         setup = self.setup(inputs, set=set, **values)
-        with as_file(frame, units or {}) as path:
-            rows = read_rows(path, self.offer, setup)
+        rows = read_rows(frame_text(frame, units or {}), self.offer, setup)
         _demand_known(rows, setup)
         with told_by_line(setup):
             shown_rows = shown_by_gauge(setup, rows)

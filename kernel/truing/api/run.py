@@ -16,7 +16,7 @@ from truing.api.comparison import Differences, comparison_of
 from truing.api.notebook import MOST_ROWS, fold, heading, html_table, joined, paragraphs, table_html
 from truing.api.quantities import quantity_of
 from truing.api.study import StudyResult
-from truing.api.tables import LABEL, as_file, frame_of
+from truing.api.tables import frame_of, frame_text
 from truing.api.writing import write_sheet
 from truing.calculation import Calculation, calculate
 from truing.cases import CaseResult, CasesTable, run_cases
@@ -260,11 +260,7 @@ def _with_cases(
 
 def _cases_of(cases: Any, offer: Offer, setup: Setup) -> CasesFile:
     """Read cases from a file, or from a dataframe, which goes by that name."""
-    if isinstance(cases, (str, Path)):
-        return read_cases(Path(cases), offer, setup)
-    with as_file(cases, {}) as path:
-        read = read_cases(path, offer, setup)
-    return CasesFile(tuple(replace(case, file=LABEL) for case in read.cases), replace(read.count, file=LABEL))
+    return read_cases(Path(cases) if isinstance(cases, (str, Path)) else frame_text(cases, {}), offer, setup)
 
 
 def _computed(place: WorkerPool) -> dict[str, Any]:

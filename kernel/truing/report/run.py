@@ -47,7 +47,6 @@ def write_calculation(
     write_run(
         folder,
         calculation,
-        offer,
         provenance=sheet.provenance,
         run_info={**run_info(started), **computed},
         sheets=sheets,

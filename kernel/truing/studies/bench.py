@@ -119,6 +119,8 @@ def proposals_of(outcome: Outcome) -> Sequence[Proposal]:
 class Outcome(Protocol):
     """What a study found; the sheet and results.json ask it for their part.
 
+    A class that names this one as its base says only what it has to say: it shows, decides and warns of nothing else.
+
     One that has ``files``, a mapping from file names to text or bytes, leaves these in the run folder. One with a
     method ``proposals()`` proposes designs of which each keeps limits that the stated one may miss.
     """
@@ -128,9 +130,12 @@ class Outcome(Protocol):
 
     def blocks(self) -> Sequence[Block]:
         """Return what the sheet shows: words, tables, drawings."""
+        return ()
 
     def checks(self) -> Sequence[Check]:
         """Return the limits this study decides, for the design as stated."""
+        return ()
 
     def warnings(self) -> Sequence[str]:
         """Return what the user must know: failed rows, a search without end, a method beside its range."""
+        return ()
