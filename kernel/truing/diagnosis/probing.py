@@ -37,6 +37,8 @@ FINE, COARSE = 1e-9, 1e-6
 """Shares of the largest answer: what lies nearer to a multiple is one, and no step is smaller."""
 FEWEST = 6
 """So many answers that differ must be multiples of one step."""
+ROUNDING = 1e-12
+"""Share of the largest answer by which two calls may differ: how libraries round depends on where an array lies."""
 
 
 def probe(made: Competition) -> None:
@@ -79,6 +81,7 @@ def _grain_of(extended: Extended, causes: list[Candidate], point: Point) -> dict
     for name, shown in first.items():
         known = np.isfinite(shown) & np.isfinite(again[name])
         scatter = float(np.abs(shown - again[name])[known].max(initial=0.0))
+        scatter = scatter if scatter > ROUNDING * float(np.abs(shown)[known].max(initial=0.0)) else 0.0
         base = extended.machine.base[name]
         step = 0.0 if np.array_equal(shown, base, equal_nan=True) else step_of(shown[known])
         if scatter > 0 or (step > 0 and abs(step_of(base[np.isfinite(base)]) / step - 1) < COARSE):
